@@ -1,0 +1,50 @@
+//! Stamps the binary with what it was built from, and embeds every scene and experiment in `experiments/`.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::{env, fs, io};
+
+/// What a render depends on: an uncommitted change elsewhere does not make a measurement dirty.
+const SOURCES: [&str; 6] = ["src", "experiments", "Cargo.toml", "Cargo.lock", "build.rs", "assets"];
+
+fn main() -> io::Result<()> {
+    for source in SOURCES {
+        println!("cargo::rerun-if-changed={source}");
+    }
+    println!("cargo::rerun-if-changed=.git/logs/HEAD");
+    let commit = output("git", &["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "unknown".to_string());
+    let mut status = vec!["status", "--porcelain", "--"];
+    status.extend(SOURCES);
+    let dirty = output("git", &status).is_none_or(|changes| !changes.is_empty());
+    let rustc = env::var("RUSTC").ok().and_then(|rustc| output(&rustc, &["--version"]));
+    println!("cargo::rustc-env=PATHMARK_COMMIT={commit}");
+    println!("cargo::rustc-env=PATHMARK_DIRTY={dirty}");
+    println!("cargo::rustc-env=PATHMARK_RUSTC={}", rustc.unwrap_or_else(|| "unknown".to_string()));
+    println!("cargo::rustc-env=PATHMARK_PROFILE={}", env::var("PROFILE").unwrap_or_default());
+    println!("cargo::rustc-env=PATHMARK_TARGET={}", env::var("TARGET").unwrap_or_default());
+    println!("cargo::rustc-env=PATHMARK_RUSTFLAGS={}", env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\x1f', " "));
+
+    let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
+    embed("experiments/scenes", &out.join("scenes.rs"))?;
+    embed("experiments", &out.join("experiments.rs"))
+}
+
+fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).trim().to_string())
+}
+
+/// Writes an array of (stem, text) over the TOML files of a folder, sorted by name.
+fn embed(folder: &str, target: &Path) -> io::Result<()> {
+    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join(folder);
+    let mut files: Vec<PathBuf> = fs::read_dir(root)?.map(|entry| entry.map(|e| e.path())).collect::<io::Result<_>>()?;
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.sort();
+    let mut code = String::from("&[");
+    for file in files {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        code.push_str(&format!("({stem:?}, include_str!({:?})),", file.display().to_string()));
+    }
+    code.push(']');
+    fs::write(target, code)
+}

@@ -1,0 +1,188 @@
+//! Percentile bootstrap: how much a statistic would have differed had other values of the same kind been drawn.
+//!
+//! B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 7 (1979). Resamples are drawn from a generator
+//! with a fixed seed, so the same values give the same interval on every machine. The percentile interval is somewhat too narrow for small
+//! samples (about 90 % instead of 95 % for a mean of ten values): prefer the order statistics of [`super::quantile`] for one median.
+
+use rand::Rng;
+use rand_pcg::Pcg64Dxsm;
+
+use super::interval::{Estimate, Interval, all_finite, is_level};
+use super::quantile::{median, quantile_of_sorted, sorted};
+
+/// Resamples per interval: the ends then move by about a tenth of the interval's width at most if the seed is changed.
+pub const RESAMPLES: usize = 4000;
+
+/// The interval of any `statistic` of one sample. `statistic` gets as many values as the sample has, in arbitrary order.
+///
+/// `None` for fewer than two values, values without spread, one that is not finite, or a statistic that does not exist.
+pub fn of_sample(values: &[f64], level: f64, statistic: impl Fn(&[f64]) -> Option<f64>) -> Option<Estimate> {
+    if !can_vary(values) {
+        return None;
+    }
+    let mut draw = Resampler::new();
+    let mut buffer = Vec::with_capacity(values.len());
+    let replicates = (0..RESAMPLES).map(|_| {
+        draw.fill(values, &mut buffer);
+        statistic(&buffer)
+    });
+    estimate(statistic(values)?, replicates, level)
+}
+
+/// median(`numerator`) / median(`denominator`) of two independent samples, such as T1 / Tp from separate repetitions.
+///
+/// `None` if a sample has fewer than two values, neither has any spread, or one holds a value that is not positive and finite.
+pub fn median_ratio(numerator: &[f64], denominator: &[f64], level: f64) -> Option<Estimate> {
+    let usable = numerator.len() >= 2 && denominator.len() >= 2 && all_positive(numerator) && all_positive(denominator);
+    if !usable || !(can_vary(numerator) || can_vary(denominator)) {
+        return None;
+    }
+    let mut draw = Resampler::new();
+    let (mut top, mut bottom) = (Vec::with_capacity(numerator.len()), Vec::with_capacity(denominator.len()));
+    let replicates = (0..RESAMPLES).map(|_| {
+        draw.fill(numerator, &mut top);
+        draw.fill(denominator, &mut bottom);
+        Some(median(&top)? / median(&bottom)?)
+    });
+    estimate(median(numerator)? / median(denominator)?, replicates, level)
+}
+
+/// The median of the ratios numerator\[i\] / denominator\[i\] of values measured side by side: what disturbed both cancels.
+///
+/// `None` if the lengths differ, there are fewer than two pairs, the ratios have no spread, or a value is not positive and finite.
+pub fn paired_ratio(numerator: &[f64], denominator: &[f64], level: f64) -> Option<Estimate> {
+    if numerator.len() != denominator.len() || !all_positive(numerator) || !all_positive(denominator) {
+        return None;
+    }
+    let ratios: Vec<f64> = numerator.iter().zip(denominator).map(|(top, bottom)| top / bottom).collect();
+    of_sample(&ratios, level, median)
+}
+
+/// The percentile interval of `replicates` around `value`. A statistic that fails on one resample has no interval.
+fn estimate(value: f64, replicates: impl Iterator<Item = Option<f64>>, level: f64) -> Option<Estimate> {
+    if !is_level(level) || !value.is_finite() {
+        return None;
+    }
+    let ordered = sorted(&replicates.collect::<Option<Vec<f64>>>()?)?;
+    let tail = 0.5 * (1.0 - level);
+    let interval =
+        Interval::between(quantile_of_sorted(&ordered, tail)?, quantile_of_sorted(&ordered, 1.0 - tail)?, level)?;
+    Some(Estimate { value, interval })
+}
+
+/// Two values at least, all finite, not all equal.
+fn can_vary(values: &[f64]) -> bool {
+    all_finite(values) && values.iter().any(|value| Some(value) != values.first())
+}
+
+fn all_positive(values: &[f64]) -> bool {
+    values.iter().all(|&value| value > 0.0 && value.is_finite())
+}
+
+/// Draws with replacement.
+struct Resampler(Pcg64Dxsm);
+
+impl Resampler {
+    /// The seed is any odd-looking constant with about as many ones as zeros: two words of the digits of pi's fraction.
+    fn new() -> Self {
+        Self(Pcg64Dxsm::new(0x243f_6a88_85a3_08d3_1319_8a2e_0370_7344, 0xa409_3822_299f_31d0_082e_fa98_ec4e_6c89))
+    }
+
+    /// Replaces `out` by as many values as there are, drawn from them with replacement.
+    fn fill(&mut self, values: &[f64], out: &mut Vec<f64>) {
+        out.clear();
+        out.extend((0..values.len()).map(|_| values[self.index(values.len())]));
+    }
+
+    /// An index below `n`. The high half of a product is biased by at most n / 2^64, and unlike the generators' own ranges it may not
+    /// change with a new version of a library.
+    fn index(&mut self, n: usize) -> usize {
+        ((u128::from(self.0.next_u64()) * n as u128) >> 64) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::mean::Moments;
+
+    /// Twelve normal deviates or so: sums of uniforms, minus their mean (the classic Irwin-Hall construction).
+    fn normal(draw: &mut Resampler) -> f64 {
+        (0..12).map(|_| (draw.0.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0).sum::<f64>() - 6.0
+    }
+
+    #[test]
+    fn same_values_same_interval() {
+        let values = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+        let first = of_sample(&values, 0.95, median).unwrap();
+        assert_eq!(Some(first), of_sample(&values, 0.95, median));
+        assert!((first.value - 6.0).abs() < 1e-12);
+        assert!(first.interval.low >= 1.0 && first.interval.high <= 32.0 && first.interval.contains(6.0));
+    }
+
+    #[test]
+    fn interval_of_the_mean_matches_its_standard_error() {
+        // For the values 1..=100 the bootstrap's standard error is sqrt((100^2 - 1) / 12 / 100) = 2.8866, so +-1.96 of it: 44.84 to 56.16.
+        let values: Vec<f64> = (1..=100).map(f64::from).collect();
+        let mean = |sample: &[f64]| Some(sample.iter().sum::<f64>() / sample.len() as f64);
+        let interval = of_sample(&values, 0.95, mean).unwrap().interval;
+        assert!((interval.low - 44.84).abs() < 0.3 && (interval.high - 56.16).abs() < 0.3, "{interval:?}");
+    }
+
+    #[test]
+    fn coverage_of_the_mean_is_near_nominal() {
+        // 300 samples of 30 normal values: nominal 95 %, the percentile interval's known shortfall at this size is 1 to 2 %,
+        // and the simulation's own standard deviation is 1.4 %.
+        let mut draw = Resampler(Pcg64Dxsm::new(1, 2));
+        let mean = |sample: &[f64]| Some(sample.iter().sum::<f64>() / sample.len() as f64);
+        let hits = (0..300)
+            .filter(|_| {
+                let values: Vec<f64> = (0..30).map(|_| normal(&mut draw)).collect();
+                of_sample(&values, 0.95, mean).unwrap().interval.contains(0.0)
+            })
+            .count();
+        assert!((270..=294).contains(&hits), "{hits} of 300");
+    }
+
+    #[test]
+    fn ratios_of_medians_and_of_pairs() {
+        let slow = [8.1, 7.9, 8.0, 8.2, 7.8, 8.0, 8.3];
+        let fast = [4.0, 4.1, 3.9, 4.0, 4.2, 4.0, 3.8];
+        let ratio = median_ratio(&slow, &fast, 0.95).unwrap();
+        assert!((ratio.value - 2.0).abs() < 1e-12);
+        assert!(ratio.interval.low > 1.8 && ratio.interval.high < 2.2 && ratio.interval.contains(2.0));
+        // A disturbance common to both members of a pair cancels exactly.
+        let drift = [1.0, 5.0, 2.0, 9.0];
+        let twice: Vec<f64> = drift.iter().enumerate().map(|(i, d)| d * (2.0 + 0.01 * i as f64)).collect();
+        let paired = paired_ratio(&twice, &drift, 0.95).unwrap();
+        assert!(paired.interval.low >= 2.0 - 1e-12 && paired.interval.high <= 2.03 + 1e-12, "{paired:?}");
+    }
+
+    #[test]
+    fn indices_cover_their_range_evenly() {
+        let mut draw = Resampler::new();
+        let mut spread = Moments::default();
+        for _ in 0..70_000 {
+            let index = draw.index(7);
+            assert!(index < 7);
+            spread.push(index as f64);
+        }
+        // A uniform index below 7 has mean 3 and variance (49 - 1) / 12 = 4.
+        assert!((spread.mean().unwrap() - 3.0).abs() < 0.03);
+        assert!((spread.sample_variance().unwrap() - 4.0).abs() < 0.05);
+    }
+
+    #[test]
+    fn degenerate_input_has_no_answer() {
+        assert_eq!(of_sample(&[], 0.95, median), None);
+        assert_eq!(of_sample(&[1.0], 0.95, median), None);
+        assert_eq!(of_sample(&[2.0; 8], 0.95, median), None);
+        assert_eq!(of_sample(&[1.0, f64::NAN, 2.0], 0.95, median), None);
+        assert_eq!(of_sample(&[1.0, 2.0], 0.95, |_| Some(f64::NAN)), None);
+        assert_eq!(of_sample(&[1.0, 2.0], 1.0, median), None);
+        assert_eq!(median_ratio(&[1.0, 2.0], &[0.0, 1.0], 0.95), None);
+        assert_eq!(median_ratio(&[1.0], &[1.0, 2.0], 0.95), None);
+        assert_eq!(median_ratio(&[1.0, 1.0], &[2.0, 2.0], 0.95), None);
+        assert_eq!(paired_ratio(&[1.0, 2.0], &[1.0], 0.95), None);
+    }
+}

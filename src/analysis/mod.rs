@@ -1,0 +1,15 @@
+//! Statistics: plain numbers in, estimates with intervals out.
+//!
+//! Nothing here knows what a record is, draws a figure or reads a clock. Input for which an answer does not exist (too few values,
+//! a value that is not finite, no spread where a spread is what is divided by) gives `None`, never NaN.
+
+pub mod bootstrap;
+pub mod fit;
+pub mod interval;
+pub mod mean;
+pub mod quantile;
+pub mod slope;
+pub mod speedup;
+pub mod z_test;
+
+pub use interval::{Estimate, Interval};

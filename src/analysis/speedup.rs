@@ -1,0 +1,108 @@
+//! What more workers bring: speedup, efficiency, and the serial fraction that would explain them.
+//!
+//! Karp-Flatt: A. H. Karp and H. P. Flatt, "Measuring parallel processor performance", Communications of the ACM 33(5), 1990,
+//! e = (1/S - 1/p) / (1 - 1/p), here from times in seconds. Constant e over p means serial work; growing e means overhead.
+
+use serde::Serialize;
+
+use super::interval::Interval;
+
+/// S = T1 / Tp, from times in seconds; `None` unless both are positive and finite.
+pub fn speedup(serial_s: f64, parallel_s: f64) -> Option<f64> {
+    let ratio = serial_s / parallel_s;
+    (serial_s > 0.0 && parallel_s > 0.0 && ratio > 0.0 && ratio.is_finite()).then_some(ratio)
+}
+
+/// E = S / p; `None` for p = 0 or a speedup that is not positive and finite.
+pub fn efficiency(speedup: f64, workers: usize) -> Option<f64> {
+    (workers > 0 && speedup > 0.0 && speedup.is_finite()).then(|| speedup / workers as f64)
+}
+
+/// The experimentally determined serial fraction e; `None` for fewer than two workers, where it does not exist.
+///
+/// It is negative for a superlinear speedup and above 1 for a slowdown: both are findings to be explained, not errors.
+pub fn serial_fraction(speedup: f64, workers: usize) -> Option<f64> {
+    if workers < 2 || !(speedup > 0.0 && speedup.is_finite()) {
+        return None;
+    }
+    let share = 1.0 / workers as f64;
+    let fraction = (1.0 / speedup - share) / (1.0 - share);
+    fraction.is_finite().then_some(fraction)
+}
+
+/// Whether S > p, which needs a cause: a cache that now fits, a higher clock, or a baseline that was built differently.
+pub fn is_superlinear(speedup: f64, workers: usize) -> bool {
+    speedup > workers as f64
+}
+
+/// A speedup that needs an explanation beside the number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Oddity {
+    /// The whole interval lies above the number of workers.
+    Superlinear,
+    /// The whole interval lies below 1.
+    Slowdown,
+}
+
+/// What is odd about a speedup, judged by its interval so that noise alone seldom raises it.
+pub fn oddity(speedup: &Interval, workers: usize) -> Option<Oddity> {
+    if is_superlinear(speedup.low, workers) {
+        Some(Oddity::Superlinear)
+    } else if speedup.high < 1.0 {
+        Some(Oddity::Slowdown)
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speedup_and_efficiency() {
+        assert_eq!(speedup(12.0, 3.0), Some(4.0));
+        assert_eq!(efficiency(4.0, 8), Some(0.5));
+    }
+
+    #[test]
+    fn karp_flatt_returns_the_fraction_of_amdahls_law() {
+        // S = 1 / (f + (1 - f) / p) (Amdahl 1967) put into Karp-Flatt gives f back.
+        for fraction in [0.0, 0.01, 0.1, 0.5, 1.0] {
+            for workers in [2_usize, 3, 8, 64] {
+                let speedup = 1.0 / (fraction + (1.0 - fraction) / workers as f64);
+                assert!((serial_fraction(speedup, workers).unwrap() - fraction).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn karp_flatt_on_a_textbook_row() {
+        // M. J. Quinn, "Parallel Programming in C with MPI and OpenMP", 7.5: S = 4.71 at p = 8 has e = 0.1.
+        assert!((serial_fraction(4.71, 8).unwrap() - 0.1).abs() < 5e-4);
+    }
+
+    #[test]
+    fn odd_speedups_are_flagged() {
+        assert!(is_superlinear(2.01, 2) && !is_superlinear(2.0, 2));
+        assert!(serial_fraction(2.2, 2).unwrap() < 0.0);
+        assert!(serial_fraction(0.5, 2).unwrap() > 1.0);
+        let interval = |low, high| Interval { low, high, level: 0.95 };
+        assert_eq!(oddity(&interval(2.1, 2.4), 2), Some(Oddity::Superlinear));
+        assert_eq!(oddity(&interval(1.9, 2.1), 2), None);
+        assert_eq!(oddity(&interval(0.6, 0.9), 4), Some(Oddity::Slowdown));
+    }
+
+    #[test]
+    fn degenerate_input_has_no_answer() {
+        assert_eq!(speedup(0.0, 1.0), None);
+        assert_eq!(speedup(1.0, 0.0), None);
+        assert_eq!(speedup(f64::NAN, 1.0), None);
+        assert_eq!(speedup(f64::INFINITY, 1.0), None);
+        assert_eq!(efficiency(1.0, 0), None);
+        assert_eq!(serial_fraction(1.0, 1), None);
+        assert_eq!(serial_fraction(0.0, 4), None);
+        assert_eq!(serial_fraction(f64::NAN, 4), None);
+    }
+}

@@ -1,0 +1,130 @@
+//! What can go wrong, and whose turn it is to act: the user's (exit code 2), the system's (3), or a check that failed (1).
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The result of everything that a user's input or the system can make fail.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// A failure, sorted by who can mend it.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The user's input is wrong. Nothing has been written.
+    #[error("{0}")]
+    Input(Box<InputError>),
+    /// A self-check failed: a checksum, a coverage, a strict rule.
+    #[error("check failed: {0}")]
+    Check(String),
+    /// The system refused: disk, memory, threads, processes.
+    #[error("{action} {}: {source}", path.display())]
+    System {
+        /// What was tried, as a gerund: "writing".
+        action: &'static str,
+        /// What it was tried on.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+}
+
+impl Error {
+    /// The process's exit code for this failure.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Check(_) => 1,
+            Self::Input(_) => 2,
+            Self::System { .. } => 3,
+        }
+    }
+
+    /// A refusal of the system while doing `action` on `path`.
+    pub fn system(action: &'static str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Self::System { action, path: path.as_ref().to_path_buf(), source }
+    }
+}
+
+impl From<InputError> for Error {
+    fn from(error: InputError) -> Self {
+        Self::Input(Box::new(error))
+    }
+}
+
+/// Where in a text file something stands; lines and columns count from 1.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file's name as the user gave it, or the name of the embedded file.
+    pub file: String,
+    /// Line and column, where they are known.
+    pub at: Option<(usize, usize)>,
+}
+
+/// What is wrong with something that the user gave.
+///
+/// ```
+/// use pathmark::error::InputError;
+/// let error = InputError::new("--spp", "0", "must be at least 1").allowed("1 to 16777216");
+/// assert_eq!(error.to_string(), "--spp = 0: must be at least 1 (allowed: 1 to 16777216)");
+/// let error = InputError::new("radius", "-1", "must be positive").in_file("box.toml", Some((4, 10)));
+/// assert_eq!(error.to_string(), "box.toml:4:10: radius = -1: must be positive");
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputError {
+    /// Where it stands, when it came from a file.
+    pub place: Option<Place>,
+    /// The field, option or column.
+    pub field: String,
+    /// The value as the user wrote it; empty when there is none.
+    pub value: String,
+    /// What is wrong with it.
+    pub problem: String,
+    /// What would be right; empty when `problem` says it.
+    pub allowed: String,
+}
+
+impl InputError {
+    /// `field` has `value`, and `problem` says why that can't be.
+    pub fn new(field: impl Into<String>, value: impl Into<String>, problem: impl Into<String>) -> Self {
+        Self {
+            place: None,
+            field: field.into(),
+            value: value.into(),
+            problem: problem.into(),
+            allowed: String::new(),
+        }
+    }
+
+    /// Adds what would be right.
+    #[must_use]
+    pub fn allowed(mut self, allowed: impl Into<String>) -> Self {
+        self.allowed = allowed.into();
+        self
+    }
+
+    /// Adds the file and, where known, line and column.
+    #[must_use]
+    pub fn in_file(mut self, file: impl Into<String>, at: Option<(usize, usize)>) -> Self {
+        self.place = Some(Place { file: file.into(), at });
+        self
+    }
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(place) = &self.place {
+            write!(f, "{}:", place.file)?;
+            if let Some((line, column)) = place.at {
+                write!(f, "{line}:{column}:")?;
+            }
+            f.write_str(" ")?;
+        }
+        f.write_str(&self.field)?;
+        if !self.value.is_empty() {
+            write!(f, " = {}", self.value)?;
+        }
+        write!(f, ": {}", self.problem)?;
+        if !self.allowed.is_empty() {
+            write!(f, " (allowed: {})", self.allowed)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,182 @@
+//! How a film is cut into jobs: `--decomposition rows | bands:N | grid:N | tiles:WxH[:ORDER]`.
+//!
+//! To add one: give it a line in `DECOMPOSITIONS` and a function that makes its plan.
+
+use super::order::ORDERS;
+use super::{Plan, TileOrder};
+use crate::error::{InputError, Result};
+use std::ops::Range;
+
+/// One line of the table of decompositions.
+pub struct Entry {
+    /// Its name, the part before the first colon.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+    /// An example that runs as it is, with its parameters at their defaults.
+    pub example: &'static str,
+    /// Reads the parameters; `None` if they can't be read.
+    parse: fn(Option<&str>) -> Option<Cut>,
+}
+
+/// The decompositions, in the order in which they are listed.
+pub const DECOMPOSITIONS: &[Entry] = &[
+    Entry { name: "rows", about: "one job per row of pixels (report A)", example: "rows", parse: parse_rows },
+    Entry { name: "bands", about: "N bands of rows, sizes differing by at most one (report B)", example: "bands:20", parse: parse_bands },
+    Entry { name: "grid", about: "N rectangles, columns times rows being N's most nearly square factors (report D)", example: "grid:16", parse: parse_grid },
+    Entry {
+        name: "tiles",
+        about: "tiles of WxH pixels, handed out in scanline, hilbert or spiral order",
+        example: "tiles:32x32:scanline",
+        parse: parse_tiles,
+    },
+];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cut {
+    Rows,
+    Bands(u32),
+    Grid(u32),
+    Tiles { width: u32, height: u32, order: TileOrder },
+}
+
+/// A way to cut a film.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Decomposition {
+    text: String,
+    cut: Cut,
+}
+
+fn parse_rows(parameter: Option<&str>) -> Option<Cut> {
+    parameter.is_none().then_some(Cut::Rows)
+}
+
+fn parse_bands(parameter: Option<&str>) -> Option<Cut> {
+    count(parameter.unwrap_or("20")).map(Cut::Bands)
+}
+
+fn parse_grid(parameter: Option<&str>) -> Option<Cut> {
+    count(parameter.unwrap_or("16")).map(Cut::Grid)
+}
+
+fn parse_tiles(parameter: Option<&str>) -> Option<Cut> {
+    let parameter = parameter.unwrap_or("32x32");
+    let (size, order) = parameter.split_once(':').unwrap_or((parameter, "scanline"));
+    let (width, height) = size.split_once('x')?;
+    let order = ORDERS.iter().find(|(name, _)| *name == order)?.1;
+    Some(Cut::Tiles { width: count(width)?, height: count(height)?, order })
+}
+
+fn count(text: &str) -> Option<u32> {
+    text.parse().ok().filter(|count| (1..=1 << 24).contains(count))
+}
+
+impl Decomposition {
+    /// Reads it as it stands on the command line.
+    pub fn parse(text: &str) -> Result<Self> {
+        let (name, parameter) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
+        let entry = DECOMPOSITIONS.iter().find(|entry| entry.name == name);
+        match entry.and_then(|entry| (entry.parse)(parameter)) {
+            Some(cut) => Ok(Self { text: text.to_string(), cut }),
+            None => {
+                let problem = if entry.is_some() { "cannot be read" } else { "there is no decomposition of that name" };
+                Err(InputError::new("decomposition", text, problem)
+                    .allowed("rows, bands:N, grid:N, tiles:WxH, tiles:WxH:hilbert, tiles:WxH:spiral with numbers from 1")
+                    .into())
+            }
+        }
+    }
+
+    /// The text that it was read from.
+    pub fn name(&self) -> &str {
+        &self.text
+    }
+
+    /// Cuts a film of `width` x `height` pixels, each job with all the samples in `samples`.
+    pub fn plan(&self, width: u32, height: u32, samples: &Range<u32>) -> Plan {
+        match self.cut {
+            Cut::Rows => Plan::from_boundaries(&[0, width], &even(height, height), samples),
+            Cut::Bands(bands) => Plan::from_boundaries(&[0, width], &even(height, bands), samples),
+            Cut::Grid(cells) => {
+                let (columns, rows) = nearly_square_factors(cells);
+                Plan::from_boundaries(&even(width, columns), &even(height, rows), samples)
+            }
+            Cut::Tiles { width: tile_width, height: tile_height, order } => {
+                let (columns, rows) = (steps(width, tile_width), steps(height, tile_height));
+                let order = order.permutation(columns.len() - 1, rows.len() - 1);
+                Plan::from_boundaries(&columns, &rows, samples).reordered(&order)
+            }
+        }
+    }
+}
+
+/// Boundaries of `parts` parts of `length`, no two of which differ by more than one: boundary k is k · length / parts, rounded up.
+fn even(length: u32, parts: u32) -> Vec<u32> {
+    let parts = parts.min(length);
+    (0..=parts).map(|k| (u64::from(length) * u64::from(k)).div_ceil(u64::from(parts)) as u32).collect()
+}
+
+/// Boundaries every `step`, the last part taking what is left.
+fn steps(length: u32, step: u32) -> Vec<u32> {
+    (0..length).step_by(step as usize).chain(std::iter::once(length)).collect()
+}
+
+/// The two factors of `n` that are nearest to each other, the larger first: more columns than rows, as images are wider than high.
+fn nearly_square_factors(n: u32) -> (u32, u32) {
+    let rows = (1..=n.isqrt()).rev().find(|rows| n.is_multiple_of(*rows)).unwrap_or(1);
+    (n / rows, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Report D's own numbers (P16): 815 pixels over a 4 x 4 grid.
+    #[test]
+    fn report_d_grid() {
+        assert_eq!(even(815, 4), [0, 204, 408, 612, 815]);
+        assert_eq!((nearly_square_factors(16), nearly_square_factors(12), nearly_square_factors(7)), ((4, 4), (4, 3), (7, 1)));
+    }
+
+    /// P15: every pixel exactly once, for awkward sizes and every kind of cut.
+    #[test]
+    fn every_pixel_is_covered_once() {
+        for width in [1, 2, 3, 7, 17, 63, 64, 65] {
+            for height in [1, 2, 3, 7, 17, 63, 64, 65, 1023] {
+                for text in ["rows", "bands:20", "bands:9", "grid:16", "grid:7", "tiles:32x32", "tiles:5x3:hilbert", "tiles:16x16:spiral", "tiles:1x1"] {
+                    if text == "tiles:1x1" && width * height > 5000 {
+                        continue;
+                    }
+                    let plan = Decomposition::parse(text).unwrap().plan(width, height, &(0..4));
+                    let mut covered = vec![0u8; (width * height) as usize];
+                    for piece in plan.pieces() {
+                        assert!(piece.bounds.area() > 0 && piece.samples == (0..4));
+                        for y in piece.bounds.y0..piece.bounds.y1 {
+                            for x in piece.bounds.x0..piece.bounds.x1 {
+                                covered[(y * width + x) as usize] += 1;
+                            }
+                        }
+                    }
+                    assert!(covered.iter().all(|count| *count == 1), "{text} on {width}x{height}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bands_differ_by_at_most_one_row() {
+        let plan = Decomposition::parse("bands:20").unwrap().plan(784, 784, &(0..1));
+        let heights: Vec<u32> = plan.pieces().iter().map(|piece| piece.bounds.height()).collect();
+        assert_eq!((heights.len(), heights.iter().min(), heights.iter().max()), (20, Some(&39), Some(&40)));
+    }
+
+    #[test]
+    fn every_listed_example_parses_and_junk_does_not() {
+        for entry in DECOMPOSITIONS {
+            assert!(Decomposition::parse(entry.example).is_ok() && Decomposition::parse(entry.name).is_ok());
+        }
+        for junk in ["", "row", "rows:3", "bands:0", "bands:-1", "grid:x", "tiles:0x4", "tiles:4", "tiles:4x4:zigzag", "tiles:99999999x1"] {
+            assert!(Decomposition::parse(junk).is_err(), "{junk}");
+        }
+    }
+}

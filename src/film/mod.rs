@@ -1,0 +1,19 @@
+//! The image as sums of samples, and how it is cut into pieces of work.
+//!
+//! Sums have a fixed shape, so that who rendered what, and in which order, cannot change a bit.
+
+mod decomposition;
+mod film_file;
+mod order;
+mod plan;
+mod sum;
+mod tile_buffer;
+mod whole;
+
+pub use decomposition::{DECOMPOSITIONS, Decomposition, Entry};
+pub use film_file::{FilmKey, read_film, write_film};
+pub use order::TileOrder;
+pub use plan::{Bounds, Piece, Plan};
+pub use sum::{PixelSum, SAMPLE_BLOCK, SampleSum};
+pub use tile_buffer::TileBuffer;
+pub use whole::{Film, LARGEST_SIDE, check_size};

@@ -1,0 +1,83 @@
+//! A film cut into pieces: every pixel's every sample belongs to exactly one.
+
+use std::ops::Range;
+
+/// A rectangle of pixels; the upper ends are excluded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Bounds {
+    /// First column.
+    pub x0: u32,
+    /// First row.
+    pub y0: u32,
+    /// Column after the last.
+    pub x1: u32,
+    /// Row after the last.
+    pub y1: u32,
+}
+
+impl Bounds {
+    /// Columns.
+    pub const fn width(&self) -> u32 {
+        self.x1 - self.x0
+    }
+
+    /// Rows.
+    pub const fn height(&self) -> u32 {
+        self.y1 - self.y0
+    }
+
+    /// Pixels.
+    pub const fn area(&self) -> usize {
+        self.width() as usize * self.height() as usize
+    }
+}
+
+/// One job: a rectangle and a range of its pixels' samples.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Piece {
+    /// The pixels.
+    pub bounds: Bounds,
+    /// The samples of each.
+    pub samples: Range<u32>,
+}
+
+/// All pieces of a film, in the order in which they are handed out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Plan {
+    pieces: Vec<Piece>,
+}
+
+impl Plan {
+    /// The rectangles between successive column and row boundaries: disjoint and complete because boundaries are shared.
+    pub(super) fn from_boundaries(columns: &[u32], rows: &[u32], samples: &Range<u32>) -> Self {
+        let mut pieces = Vec::with_capacity((columns.len() - 1) * (rows.len() - 1));
+        for row in rows.windows(2) {
+            for column in columns.windows(2) {
+                let bounds = Bounds { x0: column[0], y0: row[0], x1: column[1], y1: row[1] };
+                pieces.push(Piece { bounds, samples: samples.clone() });
+            }
+        }
+        Self { pieces }
+    }
+
+    /// The same pieces in another order; `order` must be a permutation.
+    pub(super) fn reordered(self, order: &[usize]) -> Self {
+        debug_assert_eq!(order.len(), self.pieces.len());
+        Self { pieces: order.iter().map(|&index| self.pieces[index].clone()).collect() }
+    }
+
+    /// The pieces.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.pieces.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.pieces.is_empty()
+    }
+}

@@ -1,0 +1,34 @@
+//! The sums of one piece's pixels: what a kernel writes, and nobody else.
+
+use super::{Bounds, PixelSum};
+
+/// The pixels of a rectangle, row by row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TileBuffer {
+    bounds: Bounds,
+    pixels: Vec<PixelSum>,
+}
+
+impl TileBuffer {
+    /// An empty buffer for the rectangle.
+    pub fn new(bounds: Bounds) -> Self {
+        Self { bounds, pixels: vec![PixelSum::default(); bounds.area()] }
+    }
+
+    /// The rectangle.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The pixels of row `y` of the image, from the rectangle's first column on.
+    pub fn row_mut(&mut self, y: u32) -> &mut [PixelSum] {
+        let width = self.bounds.width() as usize;
+        let start = (y - self.bounds.y0) as usize * width;
+        &mut self.pixels[start..start + width]
+    }
+
+    /// The rows, from the top.
+    pub fn rows(&self) -> impl Iterator<Item = &[PixelSum]> {
+        self.pixels.chunks_exact(self.bounds.width() as usize)
+    }
+}

@@ -1,0 +1,105 @@
+//! The whole image as sums.
+
+use super::{PixelSum, TileBuffer};
+use crate::error::{InputError, Result};
+use crate::image_io::Image;
+use sha2::{Digest, Sha256};
+
+/// Largest width and height.
+pub const LARGEST_SIDE: u32 = 1 << 16;
+/// Largest number of pixels: their sums take 14 GiB at 56 bytes a pixel.
+const LARGEST_AREA: u64 = 1 << 28;
+
+/// Refuses sizes that no film can have, before anything is allocated.
+pub fn check_size(width: u32, height: u32) -> Result<()> {
+    let sides = (1..=LARGEST_SIDE).contains(&width) && (1..=LARGEST_SIDE).contains(&height);
+    if sides && u64::from(width) * u64::from(height) <= LARGEST_AREA {
+        return Ok(());
+    }
+    Err(InputError::new("size", format!("{width}x{height}"), "is no size that an image can have")
+        .allowed(format!("1x1 to {LARGEST_SIDE}x{LARGEST_SIDE}, at most {LARGEST_AREA} pixels"))
+        .into())
+}
+
+/// Sums of all pixels, row 0 at the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    pixels: Vec<PixelSum>,
+}
+
+impl Film {
+    /// An empty film.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { width, height, pixels: vec![PixelSum::default(); width as usize * height as usize] }
+    }
+
+    pub(super) fn from_pixels(width: u32, height: u32, pixels: Vec<PixelSum>) -> Self {
+        Self { width, height, pixels }
+    }
+
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The sums, row by row.
+    pub fn pixels(&self) -> &[PixelSum] {
+        &self.pixels
+    }
+
+    /// Puts a piece where it belongs. Pieces of one pixel are added in the order of their samples; the caller sees to that order.
+    pub fn add(&mut self, tile: &TileBuffer) {
+        let bounds = tile.bounds();
+        for (y, row) in (bounds.y0..bounds.y1).zip(tile.rows()) {
+            let start = y as usize * self.width as usize + bounds.x0 as usize;
+            for (pixel, part) in self.pixels[start..start + row.len()].iter_mut().zip(row) {
+                *pixel = if pixel.count == 0 { *part } else { pixel.plus(part) };
+            }
+        }
+    }
+
+    /// The estimate of each pixel's radiance.
+    pub fn image(&self) -> Image {
+        let mut image = Image::new(self.width, self.height);
+        for (out, pixel) in image.pixels.iter_mut().zip(&self.pixels) {
+            *out = pixel.mean();
+        }
+        image
+    }
+
+    /// The mean over pixels of the variance of a pixel's estimate, averaged over channels: the square of the RMSE to expect.
+    pub fn mean_variance(&self) -> f64 {
+        let mut total = 0.0;
+        for pixel in &self.pixels {
+            let n = f64::from(pixel.count);
+            if pixel.count >= 2 {
+                for channel in 0..3 {
+                    let spread = (pixel.square[channel] - pixel.sum[channel] * pixel.sum[channel] / n).max(0.0);
+                    total += spread / (n * (n - 1.0));
+                }
+            }
+        }
+        total / (3.0 * self.pixels.len() as f64)
+    }
+
+    /// SHA-256 over size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero does not count.
+    pub fn checksum(&self) -> String {
+        let mut hash = Sha256::new();
+        hash.update(self.width.to_le_bytes());
+        hash.update(self.height.to_le_bytes());
+        for pixel in &self.pixels {
+            hash.update(pixel.count.to_le_bytes());
+            for value in pixel.sum.iter().chain(&pixel.square) {
+                hash.update((value + 0.0).to_bits().to_le_bytes());
+            }
+        }
+        hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+    }
+}

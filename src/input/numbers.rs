@@ -1,0 +1,74 @@
+//! Numbers in scene files, checked while they are read, so that the reader can point at them.
+//!
+//! Lengths and coordinates stop at 1e100: their squares and products must stay finite in every intersection formula.
+
+use crate::math::{Rgb, Vec3};
+use serde::de::{Deserialize, Deserializer, Error};
+
+const LARGEST: f64 = 1e100;
+const SMALLEST: f64 = 1e-100;
+
+fn checked<'de, D: Deserializer<'de>>(
+    deserializer: D,
+    is_allowed: impl Fn(f64) -> bool,
+    allowed: &str,
+) -> Result<f64, D::Error> {
+    let value = f64::deserialize(deserializer)?;
+    if is_allowed(value) { Ok(value) } else { Err(out_of_range(value, allowed)) }
+}
+
+fn checked_triple<'de, D: Deserializer<'de>>(
+    deserializer: D,
+    is_allowed: impl Fn(f64) -> bool,
+    allowed: &str,
+) -> Result<[f64; 3], D::Error> {
+    let values = <[f64; 3]>::deserialize(deserializer)?;
+    match values.iter().find(|value| !is_allowed(**value)) {
+        None => Ok(values),
+        Some(value) => Err(out_of_range(*value, allowed)),
+    }
+}
+
+fn out_of_range<E: Error>(value: f64, allowed: &str) -> E {
+    E::custom(format_args!("{value} is out of range (allowed: {allowed})"))
+}
+
+/// Three shares between 0 and 1.
+pub fn albedo<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
+    checked_triple(deserializer, |x| (0.0..=1.0).contains(&x), "0 to 1 in each channel").map(Rgb::from)
+}
+
+/// Three radiances, zero or more.
+pub fn radiance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
+    checked_triple(deserializer, |x| (0.0..=LARGEST).contains(&x), "0 to 1e100 in each channel").map(Rgb::from)
+}
+
+/// Three coordinates.
+pub fn point<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
+    checked_triple(deserializer, |x| x.abs() <= LARGEST, "-1e100 to 1e100 in each coordinate").map(Vec3::from)
+}
+
+/// A direction of any length; it is normalised here.
+pub fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
+    let d = point(deserializer)?;
+    let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
+    if largest < SMALLEST {
+        return Err(D::Error::custom("the zero vector has no direction (allowed: a length of at least 1e-100)"));
+    }
+    Ok((d * (1.0 / largest)).normalized())
+}
+
+/// A length above zero.
+pub fn length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    checked(deserializer, |x| (SMALLEST..=LARGEST).contains(&x), "1e-100 to 1e100")
+}
+
+/// A distance, zero or more.
+pub fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    checked(deserializer, |x| (0.0..=LARGEST).contains(&x), "0 to 1e100")
+}
+
+/// A ratio of indices of refraction.
+pub fn refractive_index<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    checked(deserializer, |x| (0.01..=100.0).contains(&x), "0.01 to 100")
+}

@@ -1,0 +1,69 @@
+//! TOML files: size limits before reading, and errors that name file, line, column, field and value.
+
+use crate::error::{Error, InputError, Result};
+use serde::de::DeserializeOwned;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+
+/// No scene or experiment comes near this; a device file or a mistaken path does.
+const LARGEST_FILE: u64 = 16 << 20;
+
+/// The text of a user's file.
+pub fn read_text(path: &Path) -> Result<String> {
+    let name = path.display().to_string();
+    let file = std::fs::File::open(path).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => InputError::new("file", &name, "there is no such file").into(),
+        _ => Error::system("reading", path, e),
+    })?;
+    if file.metadata().is_ok_and(|data| data.is_dir()) {
+        return Err(InputError::new("file", name, "is a directory").into());
+    }
+    let mut bytes = Vec::new();
+    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(|e| Error::system("reading", path, e))?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        return Err(InputError::new("file", name, "is larger than a definition can be").allowed("up to 16 MiB").into());
+    }
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        InputError::new("file", name, format!("is not UTF-8 text at byte {at}")).into()
+    })
+}
+
+/// Reads a definition; `file` is the name to show.
+pub fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
+    toml::from_str(text).map_err(|e| located(text, file, e.message(), e.span()).into())
+}
+
+fn located(text: &str, file: &str, message: &str, span: Option<Range<usize>>) -> InputError {
+    let message = message.trim().replace('\n', "; ");
+    let Some(span) = span else {
+        return InputError::new("definition", "", message).in_file(file, None);
+    };
+    let (field, value) = field_and_value(text, &span);
+    InputError::new(field, value, message).in_file(file, Some(line_and_column(text, span.start)))
+}
+
+/// Counted from 1, columns in characters.
+fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = &text[..offset.min(text.len())];
+    let start = before.rfind('\n').map_or(0, |at| at + 1);
+    (before.matches('\n').count() + 1, before[start..].chars().count() + 1)
+}
+
+/// The key that owns the span, and the span's own text as the value. The parser tells neither, but the text does: the key stands
+/// before the nearest `=`, unless the span is itself a key (an unknown field) or a whole table.
+fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
+    let is_key = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | '"');
+    let spanned = text.get(span.clone()).unwrap_or("").trim();
+    let after = text.get(span.end..).unwrap_or("").trim_start_matches([' ', '\t']);
+    if !spanned.is_empty() && spanned.chars().all(is_key) && after.starts_with('=') {
+        return (spanned.to_string(), String::new());
+    }
+    let before = text.get(..span.start).unwrap_or("");
+    let owner = before.rfind('=').map(|at| before[..at].trim_end()).unwrap_or_default();
+    let start = owner.char_indices().rev().find(|(_, c)| !is_key(*c)).map_or(0, |(at, c)| at + c.len_utf8());
+    let field = owner[start..].to_string();
+    let value: String = spanned.lines().next().unwrap_or("").chars().take(80).collect();
+    if field.is_empty() { ("definition".to_string(), value) } else { (field, value) }
+}

@@ -1,0 +1,2 @@
+//! Pathmark.
+fn main() {}

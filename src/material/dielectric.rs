@@ -1,0 +1,138 @@
+//! Clear glass, as smallpt has it: Schlick's Fresnel term, total internal reflection, and a tint that multiplies both directions.
+//!
+//! ```toml
+//! material = { dielectric = { eta = 1.5, tint = [0.999, 0.999, 0.999] } }
+//! ```
+//!
+//! Radiance is not scaled by η² on the way through (smallpt's convention): right wherever camera and lights are in the same medium.
+
+use super::{Bsdf, BsdfSample, Density};
+use crate::input::{albedo, refractive_index};
+use crate::math::{Rgb, Vec3, fresnel_schlick, reflect, refract};
+use serde::Deserialize;
+
+/// A smooth surface between air and a clear medium inside the shape.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Dielectric {
+    /// Index of refraction of the inside over that of the outside.
+    #[serde(deserialize_with = "refractive_index")]
+    pub eta: f64,
+    /// The share of light that either direction keeps, per channel, 0 to 1.
+    #[serde(deserialize_with = "albedo")]
+    pub tint: Rgb,
+}
+
+/// The refracted direction and the share of light that is reflected; `None` under total internal reflection.
+struct Interface {
+    refracted: Vec3,
+    reflectance: f64,
+}
+
+impl Dielectric {
+    #[inline(always)]
+    fn interface(&self, wo: Vec3, inside: bool) -> Option<Interface> {
+        let eta = if inside { self.eta } else { 1.0 / self.eta };
+        let (refracted, cos2) = refract(wo, eta);
+        if cos2 < 0.0 {
+            return None;
+        }
+        let root = (self.eta - 1.0) / (self.eta + 1.0);
+        // Schlick's cosine is the one in the thinner medium.
+        let cos = if eta < 1.0 { wo.z } else { -refracted.z };
+        Some(Interface { refracted, reflectance: fresnel_schlick(cos, root * root) })
+    }
+
+    #[inline(always)]
+    fn delta(&self, wi: Vec3, share: f64) -> BsdfSample {
+        BsdfSample { wi, weight: self.tint * share, density: Density::Delta }
+    }
+}
+
+impl Bsdf for Dielectric {
+    /// Reflects with probability 1/4 + R/2 (smallpt's), so that neither lobe's weight exceeds 4/3.
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
+        let Some(Interface { refracted, reflectance }) = self.interface(wo, inside) else {
+            return Some(self.delta(reflect(wo), 1.0));
+        };
+        let chance = 0.25 + 0.5 * reflectance;
+        Some(if u[0] < chance {
+            self.delta(reflect(wo), reflectance / chance)
+        } else {
+            self.delta(refracted, (1.0 - reflectance) / (1.0 - chance))
+        })
+    }
+
+    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn split(&self, wo: Vec3, inside: bool) -> Option<[BsdfSample; 2]> {
+        let Interface { refracted, reflectance } = self.interface(wo, inside)?;
+        Some([self.delta(reflect(wo), reflectance), self.delta(refracted, 1.0 - reflectance)])
+    }
+
+    #[inline(always)]
+    fn albedo(&self) -> Rgb {
+        self.tint
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn glass() -> Dielectric {
+        Dielectric { eta: 1.5, tint: Rgb::WHITE }
+    }
+
+    fn towards(cos: f64) -> Vec3 {
+        Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
+    }
+
+    /// H13: the mean weight over the choice of lobe is 1, whatever the angle, from either side, and no weight is above 4/3.
+    #[test]
+    fn choosing_a_lobe_keeps_the_energy() {
+        for inside in [false, true] {
+            for k in 0..=1000 {
+                let wo = towards(f64::from(k) / 1000.0);
+                let low = glass().sample(wo, inside, [0.0, 0.0]).unwrap();
+                let high = glass().sample(wo, inside, [1.0 - f64::EPSILON, 0.0]).unwrap();
+                match glass().split(wo, inside) {
+                    None => assert_eq!((low.weight.r, high.weight.r), (1.0, 1.0)),
+                    Some([reflected, refracted]) => {
+                        let chance = 0.25 + 0.5 * reflected.weight.r;
+                        assert!((0.25..=0.75).contains(&chance));
+                        let mean = chance * low.weight.r + (1.0 - chance) * high.weight.r;
+                        assert!((mean - 1.0).abs() < 1e-15 && low.weight.r.max(high.weight.r) <= 4.0 / 3.0 + 1e-15);
+                        assert!((reflected.weight.r + refracted.weight.r - 1.0).abs() < 1e-15);
+                        assert!(reflected.wi.z >= 0.0 && refracted.wi.z <= 0.0);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Schlick's own values at n = 1.5 (hard-cases 3.2), by the light that is split off.
+    #[test]
+    fn reflectance_by_angle() {
+        for (inside, cos, expected) in [
+            (false, 1.0, 0.04),
+            (false, 0.5, 0.07),
+            (false, 0.1, 0.606_870_4),
+            (true, 0.9, 0.040_819_485_607_2),
+            (true, 0.8, 0.094_839_139_6),
+            (true, 0.75, 0.532_392_578_125),
+        ] {
+            let [reflected, _] = glass().split(towards(cos), inside).unwrap();
+            assert!((reflected.weight.r - expected).abs() < 1e-9, "inside {inside} cos {cos}: {}", reflected.weight.r);
+        }
+        assert!(glass().split(towards(0.7), true).is_none(), "cos 0.7 is beyond the critical angle");
+    }
+}

@@ -1,0 +1,39 @@
+//! Ideal specular reflection.
+//!
+//! ```toml
+//! material = { mirror = { albedo = [0.999, 0.999, 0.999] } }
+//! ```
+
+use super::{Bsdf, BsdfSample, Density};
+use crate::input::albedo;
+use crate::math::{Rgb, Vec3, reflect};
+use serde::Deserialize;
+
+/// A mirror.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mirror {
+    /// The share of light that it reflects, per channel, 0 to 1.
+    #[serde(deserialize_with = "albedo")]
+    pub albedo: Rgb,
+}
+
+impl Bsdf for Mirror {
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, _inside: bool, _u: [f64; 2]) -> Option<BsdfSample> {
+        Some(BsdfSample { wi: reflect(wo), weight: self.albedo, density: Density::Delta })
+    }
+
+    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn albedo(&self) -> Rgb {
+        self.albedo
+    }
+}

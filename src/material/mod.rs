@@ -1,0 +1,148 @@
+//! What a surface does with light. One effect a file; this file is their table.
+//!
+//! To add one: write its file with a type that implements [`Bsdf`] and `Deserialize`, and give it a line in `materials!` below.
+
+use crate::math::{Rgb, Vec3};
+use serde::Deserialize;
+
+/// How likely a direction was.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Density {
+    /// Per steradian.
+    PerSolidAngle(f64),
+    /// One of finitely many directions: there is no density, and never an infinite one.
+    Delta,
+}
+
+/// A direction that a surface scatters to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BsdfSample {
+    /// The direction, away from the surface; z < 0 goes through it.
+    pub wi: Vec3,
+    /// bsdf times |cos| over density: what the throughput is multiplied by.
+    pub weight: Rgb,
+    /// How likely it was.
+    pub density: Density,
+}
+
+/// Scattering at a point. Directions are unit, local (z is the shading normal on the side of `wo`) and point away from the surface.
+pub trait Bsdf {
+    /// Scatters light that leaves along `wo`. `inside` tells that `wo` is on the inner side of the shape. `None` absorbs.
+    fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample>;
+
+    /// The bsdf's value per steradian for a pair of directions; black for delta lobes.
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb;
+
+    /// The density per steradian with which [`Bsdf::sample`] chooses `wi`; 0 for delta lobes.
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f64;
+
+    /// The two directions of a surface that both reflects and transmits, each weighted by its share of the light, for estimators
+    /// that follow both; `None` if there is only one.
+    fn split(&self, _wo: Vec3, _inside: bool) -> Option<[BsdfSample; 2]> {
+        None
+    }
+
+    /// The largest share of light that it scatters: smallpt's "colour".
+    fn albedo(&self) -> Rgb;
+}
+
+/// A set of material effects, as bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Effects(u32);
+
+impl Effects {
+    /// The effects of both.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    /// Whether every effect of `other` is in `self`.
+    pub const fn cover(self, other: Self) -> bool {
+        self.0 & other.0 == other.0
+    }
+
+    /// The effects' names, joined with `+`.
+    pub fn names(self) -> String {
+        let names: Vec<&str> =
+            MATERIALS.iter().filter(|entry| self.cover(entry.effects)).map(|entry| entry.name).collect();
+        names.join("+")
+    }
+}
+
+/// The effects that a kernel is compiled for. What is not in it costs no branch: the test is on a constant.
+pub trait EffectSet: Send + Sync + 'static {
+    /// The set.
+    const EFFECTS: Effects;
+}
+
+/// One line of the table of materials.
+pub struct Entry {
+    /// Its name in scene files.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+    /// The effect that it stands for.
+    pub effects: Effects,
+}
+
+macro_rules! materials {
+    ($($module:ident :: $Type:ident, $name:literal, $about:literal;)*) => {
+        $(mod $module; pub use $module::$Type;)*
+
+        #[derive(Clone, Copy)]
+        enum Index { $($Type),* }
+
+        $(impl $Type {
+            /// The bit of this effect.
+            pub const EFFECT: Effects = Effects(1 << Index::$Type as u32);
+        })*
+
+        /// The materials, in the order in which they are listed.
+        pub const MATERIALS: &[Entry] = &[$(Entry { name: $name, about: $about, effects: $Type::EFFECT }),*];
+
+        /// Any material. In a scene file: `material = { diffuse = { albedo = [0.75, 0.25, 0.25] } }`.
+        #[derive(Debug, Clone, PartialEq, Deserialize)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        pub enum Material {
+            $(#[doc = $about] $Type($Type)),*
+        }
+
+        impl Material {
+            /// The effect that it stands for.
+            pub const fn effects(&self) -> Effects {
+                match self { $(Self::$Type(_) => $Type::EFFECT),* }
+            }
+
+            /// The largest share of light that it scatters.
+            #[inline(always)]
+            pub fn albedo(&self) -> Rgb {
+                match self { $(Self::$Type(material) => material.albedo()),* }
+            }
+
+            /// [`Bsdf::sample`] for the effects in `X`; whoever chooses `X` makes sure that it covers the scene.
+            #[inline(always)]
+            pub fn sample<X: EffectSet>(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
+                match self {
+                    $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.sample(wo, inside, u),)*
+                    _ => None,
+                }
+            }
+
+            /// [`Bsdf::split`] for the effects in `X`.
+            #[inline(always)]
+            pub fn split<X: EffectSet>(&self, wo: Vec3, inside: bool) -> Option<[BsdfSample; 2]> {
+                match self {
+                    $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.split(wo, inside),)*
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+materials! {
+    diffuse::Diffuse, "diffuse", "ideal diffuse (Lambertian) reflection";
+    mirror::Mirror, "mirror", "ideal specular reflection";
+    dielectric::Dielectric, "dielectric", "clear glass: refraction and reflection by Schlick's Fresnel term";
+}

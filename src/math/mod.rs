@@ -1,0 +1,21 @@
+//! Vectors, colours, rays and the leaf formulas of the path, written once over a small number trait.
+//!
+//! Nothing here calls the platform's elementary functions, so a path has the same bits everywhere.
+
+mod frame;
+mod optics;
+mod ray;
+mod real;
+mod rgb;
+mod sphere;
+mod trig;
+mod vector;
+
+pub use frame::Frame;
+pub use optics::{fresnel_schlick, reflect, refract};
+pub use ray::Ray;
+pub use real::Real;
+pub use rgb::Rgb;
+pub use sphere::{nearest_root, roots};
+pub use trig::sin_cos_turns;
+pub use vector::{Vec3, dot};

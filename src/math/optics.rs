@@ -1,0 +1,75 @@
+//! Mirror reflection, refraction and Schlick's Fresnel approximation, in the local frame (z is the normal on the ray's side).
+
+use super::{Real, Vec3};
+
+/// The mirror image of `wo`, which points away from the surface: flips the tangential part.
+#[inline(always)]
+pub fn reflect<T: Real>(wo: Vec3<T>) -> Vec3<T> {
+    Vec3::new(-wo.x, -wo.y, wo.z)
+}
+
+/// The refracted direction of `wo` (pointing away from the surface, z >= 0) and the squared cosine on the far side, for
+/// `eta` = index here / index there. The squared cosine is below zero under total internal reflection; the direction is then NaN.
+#[inline(always)]
+pub fn refract<T: Real>(wo: Vec3<T>, eta: T) -> (Vec3<T>, T) {
+    let one = T::splat(1.0);
+    let cos2 = one - eta * eta * (one - wo.z * wo.z);
+    (Vec3::new(-(wo.x * eta), -(wo.y * eta), -cos2.sqrt()), cos2)
+}
+
+/// Schlick's approximation (1994) of the Fresnel reflectance between two dielectrics: R₀ + (1 - R₀)(1 - cos)⁵, where the cosine is
+/// taken on the side with the smaller index and R₀ = ((n₁ - n₂)/(n₁ + n₂))². At most 0.036 from the exact value for n = 1.5.
+#[inline(always)]
+pub fn fresnel_schlick<T: Real>(cos: T, r0: T) -> T {
+    let one = T::splat(1.0);
+    let c = one - cos;
+    r0 + (one - r0) * c * c * c * c * c
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::dot;
+
+    const R0: f64 = 0.04;
+
+    /// Values of hard-cases section 3.2: Schlick, air to glass and, by the cosine inside the air, glass to air.
+    #[test]
+    fn schlick_values() {
+        for (cos, expected) in [(1.0, 0.04), (0.9, 0.040_009_6), (0.75, 0.040_937_5), (0.25, 0.267_812_5), (0.1, 0.606_870_4), (0.0, 1.0)] {
+            let found = fresnel_schlick(cos, R0);
+            assert!((found - expected).abs() < 1e-15, "cos {cos}: {found}");
+        }
+        // Leaving the glass at cos 0.8 the cosine in air is sqrt(1 - 2.25 (1 - 0.64)).
+        let (_, cos2) = refract(Vec3::new(0.6, 0.0, 0.8), 1.5);
+        assert!((fresnel_schlick(cos2.sqrt(), R0) - 0.094_839_139_6).abs() < 1e-9);
+    }
+
+    /// H10: the critical angle of n = 1.5 has cosine sqrt(5)/3; next to it the far cosine is a small number, never NaN when real.
+    #[test]
+    fn total_internal_reflection_starts_at_the_critical_angle() {
+        let critical = 5f64.sqrt() / 3.0;
+        for k in 1..1000_u32 {
+            let step = f64::from(k) * f64::EPSILON;
+            let wo = |cos: f64| Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+            let (above, cos2) = refract(wo(critical + step), 1.5);
+            assert!(cos2 >= 0.0 && above.z <= 0.0 && above.x.is_finite());
+            assert!(refract(wo(critical - step), 1.5).1 < 0.0);
+        }
+    }
+
+    /// H11, H12: equal indices change nothing; there and back is the identity; grazing and normal incidence stay finite.
+    #[test]
+    fn refraction_is_reversible() {
+        for k in 0..=1000_u32 {
+            let cos = f64::from(k) / 1000.0;
+            let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
+            let (same, _) = refract(wo, 1.0);
+            assert!((same.x + wo.x).abs() <= f64::EPSILON && (same.z + wo.z).abs() <= 2.0 * f64::EPSILON / cos.max(1e-3));
+            let (into, cos2) = refract(wo, 1.0 / 1.5);
+            assert!((dot(into, into) - 1.0).abs() < 4.0 * f64::EPSILON);
+            let (back, _) = refract(-into, 1.5);
+            assert!((back.x + wo.x).abs() <= 8.0 * f64::EPSILON / cos2.sqrt());
+        }
+    }
+}

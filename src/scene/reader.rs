@@ -1,0 +1,89 @@
+//! Scene files.
+//!
+//! ```toml
+//! about = "A red wall"
+//! estimator = "smallpt"        # optional: the estimator that is used unless another is asked for
+//!
+//! [camera.smallpt]
+//! position = [50.0, 52.0, 295.6]
+//! direction = [0.0, -0.042612, -1.0]
+//! field = 0.5135
+//! advance = 140.0
+//!
+//! [[objects]]
+//! name = "left wall"
+//! shape = { sphere = { center = [100001.0, 40.8, 81.6], radius = 1e5 } }
+//! material = { diffuse = { albedo = [0.75, 0.25, 0.25] } }
+//! emission = [0.0, 0.0, 0.0]   # optional
+//! ```
+
+use super::{Camera, Object, Scene, Sphere};
+use crate::error::{InputError, Result};
+use crate::input::{parse, radiance};
+use crate::material::{Effects, Material};
+use crate::math::Rgb;
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SceneFile {
+    about: String,
+    estimator: Option<String>,
+    camera: CameraFile,
+    objects: Vec<ObjectFile>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+enum CameraFile {
+    Smallpt(Camera),
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ObjectFile {
+    name: String,
+    shape: ShapeFile,
+    material: Material,
+    #[serde(default = "black", deserialize_with = "radiance")]
+    emission: Rgb,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+enum ShapeFile {
+    Sphere(Sphere),
+}
+
+fn black() -> Rgb {
+    Rgb::BLACK
+}
+
+/// Reads a scene; `name` becomes the scene's, `file` is shown in errors.
+pub(super) fn scene_from_text(name: &str, file: &str, text: &str) -> Result<Scene> {
+    let parsed: SceneFile = parse(text, file)?;
+    if parsed.objects.is_empty() {
+        return Err(InputError::new("objects", "[]", "a scene needs at least one object").in_file(file, None).into());
+    }
+    let CameraFile::Smallpt(camera) = parsed.camera;
+    let objects: Vec<Object> = parsed
+        .objects
+        .into_iter()
+        .map(|object| {
+            let ShapeFile::Sphere(shape) = object.shape;
+            Object { name: object.name, shape, material: object.material, emission: object.emission }
+        })
+        .collect();
+    let effects = objects.iter().fold(Effects::default(), |all, object| all.and(object.material.effects()));
+    let digest = Sha256::digest(text.as_bytes());
+    Ok(Scene {
+        name: name.to_string(),
+        about: parsed.about,
+        hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect(),
+        default_estimator: parsed.estimator,
+        camera,
+        objects,
+        effects,
+    })
+}
