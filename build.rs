@@ -22,7 +22,10 @@ fn main() -> io::Result<()> {
     println!("cargo::rustc-env=PATHMARK_RUSTC={}", rustc.unwrap_or_else(|| "unknown".to_string()));
     println!("cargo::rustc-env=PATHMARK_PROFILE={}", env::var("PROFILE").unwrap_or_default());
     println!("cargo::rustc-env=PATHMARK_TARGET={}", env::var("TARGET").unwrap_or_default());
-    println!("cargo::rustc-env=PATHMARK_RUSTFLAGS={}", env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\x1f', " "));
+    println!(
+        "cargo::rustc-env=PATHMARK_RUSTFLAGS={}",
+        env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\x1f', " ")
+    );
 
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     embed("experiments/scenes", &out.join("scenes.rs"))?;
@@ -37,7 +40,8 @@ fn output(program: &str, arguments: &[&str]) -> Option<String> {
 /// Writes an array of (stem, text) over the TOML files of a folder, sorted by name.
 fn embed(folder: &str, target: &Path) -> io::Result<()> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join(folder);
-    let mut files: Vec<PathBuf> = fs::read_dir(root)?.map(|entry| entry.map(|e| e.path())).collect::<io::Result<_>>()?;
+    let mut files: Vec<PathBuf> =
+        fs::read_dir(root)?.map(|entry| entry.map(|e| e.path())).collect::<io::Result<_>>()?;
     files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     files.sort();
     let mut code = String::from("&[");

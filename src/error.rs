@@ -84,13 +84,7 @@ pub struct InputError {
 impl InputError {
     /// `field` has `value`, and `problem` says why that can't be.
     pub fn new(field: impl Into<String>, value: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self {
-            place: None,
-            field: field.into(),
-            value: value.into(),
-            problem: problem.into(),
-            allowed: String::new(),
-        }
+        Self { place: None, field: field.into(), value: value.into(), problem: problem.into(), allowed: String::new() }
     }
 
     /// Adds what would be right.

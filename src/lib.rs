@@ -1,12 +1,46 @@
-//! Pathmark.
+//! Pathmark: how should many unequal pieces of work be scheduled on many cores, and what does accuracy cost in time?
+//!
+//! The workload is a deterministic, seeded path tracer of the smallpt family. Three axes are never multiplied in code: *what* is rendered
+//! ([`scene`], [`estimator`], [`sampling`], [`kernel`]), in which *pieces* ([`film`]), and *who* renders them when ([`strategy`]). They
+//! meet in [`measure`], the only place that reads a clock.
+//!
+//! ```
+//! use pathmark::measure::{Settings, Setup};
+//! use pathmark::kernel::Spec;
+//!
+//! let settings = Settings {
+//!     scene: "cornell".into(),
+//!     spp: 4,
+//!     spec: Spec { width: 16, height: 12, seed: 7, ..Spec::default() },
+//!     decomposition: "tiles:8x8".into(),
+//!     strategy: "work-stealing".into(),
+//!     threads: 2,
+//! };
+//! let outcome = Setup::prepare(settings)?.run(None)?;
+//! assert_eq!(outcome.counts.paths, 16 * 12 * 4);
+//! # Ok::<(), pathmark::error::Error>(())
+//! ```
+//!
+//! Layers, each importing only those above it: `error`, `math`, `input`, `atomic_file`; `image_io`, `metric`, `sampling`; `material`;
+//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `experiment`, `analysis`; `plot`, `report`;
+//! `cli`.
+
+pub mod analysis;
 pub mod atomic_file;
+pub mod cli;
 pub mod error;
 pub mod estimator;
+pub mod experiment;
 pub mod film;
 pub mod image_io;
 pub mod input;
 pub mod kernel;
 pub mod material;
 pub mod math;
+pub mod measure;
+pub mod metric;
+pub mod plot;
+pub mod report;
 pub mod sampling;
 pub mod scene;
+pub mod strategy;

@@ -1,2 +1,7 @@
-//! Pathmark.
-fn main() {}
+//! The program `pathmark`. `pathmark --help` lists its verbs.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    pathmark::cli::main()
+}

@@ -22,8 +22,18 @@ pub struct Entry {
 /// The decompositions, in the order in which they are listed.
 pub const DECOMPOSITIONS: &[Entry] = &[
     Entry { name: "rows", about: "one job per row of pixels (report A)", example: "rows", parse: parse_rows },
-    Entry { name: "bands", about: "N bands of rows, sizes differing by at most one (report B)", example: "bands:20", parse: parse_bands },
-    Entry { name: "grid", about: "N rectangles, columns times rows being N's most nearly square factors (report D)", example: "grid:16", parse: parse_grid },
+    Entry {
+        name: "bands",
+        about: "N bands of rows, sizes differing by at most one (report B)",
+        example: "bands:20",
+        parse: parse_bands,
+    },
+    Entry {
+        name: "grid",
+        about: "N rectangles, columns times rows being N's most nearly square factors (report D)",
+        example: "grid:16",
+        parse: parse_grid,
+    },
     Entry {
         name: "tiles",
         about: "tiles of WxH pixels, handed out in scanline, hilbert or spiral order",
@@ -81,7 +91,9 @@ impl Decomposition {
             None => {
                 let problem = if entry.is_some() { "cannot be read" } else { "there is no decomposition of that name" };
                 Err(InputError::new("decomposition", text, problem)
-                    .allowed("rows, bands:N, grid:N, tiles:WxH, tiles:WxH:hilbert, tiles:WxH:spiral with numbers from 1")
+                    .allowed(
+                        "rows, bands:N, grid:N, tiles:WxH, tiles:WxH:hilbert, tiles:WxH:spiral with numbers from 1",
+                    )
                     .into())
             }
         }
@@ -135,7 +147,10 @@ mod tests {
     #[test]
     fn report_d_grid() {
         assert_eq!(even(815, 4), [0, 204, 408, 612, 815]);
-        assert_eq!((nearly_square_factors(16), nearly_square_factors(12), nearly_square_factors(7)), ((4, 4), (4, 3), (7, 1)));
+        assert_eq!(
+            (nearly_square_factors(16), nearly_square_factors(12), nearly_square_factors(7)),
+            ((4, 4), (4, 3), (7, 1))
+        );
     }
 
     /// P15: every pixel exactly once, for awkward sizes and every kind of cut.
@@ -143,7 +158,17 @@ mod tests {
     fn every_pixel_is_covered_once() {
         for width in [1, 2, 3, 7, 17, 63, 64, 65] {
             for height in [1, 2, 3, 7, 17, 63, 64, 65, 1023] {
-                for text in ["rows", "bands:20", "bands:9", "grid:16", "grid:7", "tiles:32x32", "tiles:5x3:hilbert", "tiles:16x16:spiral", "tiles:1x1"] {
+                for text in [
+                    "rows",
+                    "bands:20",
+                    "bands:9",
+                    "grid:16",
+                    "grid:7",
+                    "tiles:32x32",
+                    "tiles:5x3:hilbert",
+                    "tiles:16x16:spiral",
+                    "tiles:1x1",
+                ] {
                     if text == "tiles:1x1" && width * height > 5000 {
                         continue;
                     }
@@ -175,7 +200,18 @@ mod tests {
         for entry in DECOMPOSITIONS {
             assert!(Decomposition::parse(entry.example).is_ok() && Decomposition::parse(entry.name).is_ok());
         }
-        for junk in ["", "row", "rows:3", "bands:0", "bands:-1", "grid:x", "tiles:0x4", "tiles:4", "tiles:4x4:zigzag", "tiles:99999999x1"] {
+        for junk in [
+            "",
+            "row",
+            "rows:3",
+            "bands:0",
+            "bands:-1",
+            "grid:x",
+            "tiles:0x4",
+            "tiles:4",
+            "tiles:4x4:zigzag",
+            "tiles:99999999x1",
+        ] {
             assert!(Decomposition::parse(junk).is_err(), "{junk}");
         }
     }

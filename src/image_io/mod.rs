@@ -1,8 +1,115 @@
-//! stub
-/// stub
-pub struct Image { /// w
-pub width: u32, /// h
-pub height: u32, /// p
-pub pixels: Vec<[f64;3]> }
-impl Image { /// n
-pub fn new(width: u32, height: u32) -> Self { Self { width, height, pixels: vec![[0.0;3]; (width*height) as usize] } } }
+//! Pictures in files: one format a file, one line each in [`FORMATS`].
+//!
+//! In memory a picture is linear radiance in f64, row 0 at the top. `exr`, `pfm` and `hdr` store linear values; `png`, `ppm` and
+//! `bmp` store what a display shows, through [`tone_map`], and lose what lies outside [0, 1].
+//!
+//! A file that cannot be read is an [`InputError`] that names it, whatever is wrong inside: nothing in a file can make a reader
+//! panic, or allocate more than the file's own length justifies. Pixels that a format cannot hold are an [`Error::Check`].
+
+mod bmp;
+mod codec;
+mod exr;
+mod hdr;
+mod pfm;
+mod png;
+mod ppm;
+pub mod tone_map;
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+
+/// A picture: linear radiance per colour channel (red, green, blue), row by row from the top.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Image {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Number of rows.
+    pub height: u32,
+    /// `width * height` pixels; pixel (x, y) is at `y * width + x`.
+    pub pixels: Vec<[f64; 3]>,
+}
+
+impl Image {
+    /// A black picture.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { width, height, pixels: vec![[0.0; 3]; width as usize * height as usize] }
+    }
+
+    /// The pixel in column `x` of row `y`.
+    pub fn pixel(&self, x: u32, y: u32) -> [f64; 3] {
+        assert!(x < self.width, "column {x} of a picture {} wide", self.width);
+        self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// The mean of each channel; NaN for a picture without pixels.
+    pub fn mean(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for pixel in &self.pixels {
+            for (sum, value) in sum.iter_mut().zip(pixel) {
+                *sum += value;
+            }
+        }
+        sum.map(|sum| sum / self.pixels.len() as f64)
+    }
+}
+
+/// A file format, told by the extension of the file's name.
+#[derive(Debug)]
+pub struct Format {
+    /// The extension, in lower case.
+    pub name: &'static str,
+    /// One line for a list.
+    pub about: &'static str,
+    /// Whether values are linear radiance; otherwise 8 bits of what a display shows.
+    pub linear: bool,
+    /// The picture in a file's bytes, or what is wrong with them.
+    decode: fn(&[u8]) -> std::result::Result<Image, String>,
+    /// The bytes of the file; the picture has the number of pixels it says.
+    encode: fn(&Image) -> Result<Vec<u8>>,
+}
+
+/// Every format, for reading and for writing.
+pub const FORMATS: &[Format] = &[png::FORMAT, exr::FORMAT, hdr::FORMAT, pfm::FORMAT, ppm::FORMAT, bmp::FORMAT];
+
+/// The format that the extension of `path` asks for, in either case; to be asked before anything is rendered.
+pub fn check_format(path: &Path) -> Result<&'static Format> {
+    let extension = path.extension().unwrap_or_default();
+    FORMATS.iter().find(|format| extension.eq_ignore_ascii_case(format.name)).ok_or_else(|| {
+        let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
+        let problem = "the extension names no picture format";
+        InputError::new("image", path.display().to_string(), problem).allowed(names.join(", ")).into()
+    })
+}
+
+/// Reads the picture in `path`.
+pub fn read(path: &Path) -> Result<Image> {
+    let format = check_format(path)?;
+    let refuse = |problem: String| Error::from(InputError::new("image", path.display().to_string(), problem));
+    let metadata = fs::metadata(path).map_err(|e| match e.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => refuse("there is no such file".into()),
+        _ => Error::system("reading", path, e),
+    })?;
+    if !metadata.is_file() {
+        return Err(refuse("is not a regular file".into()));
+    }
+    if metadata.len() > codec::MAX_FILE_LENGTH {
+        return Err(refuse(format!("{} bytes are more than a picture can have", metadata.len())));
+    }
+    let bytes = fs::read(path).map_err(|e| Error::system("reading", path, e))?;
+    (format.decode)(&bytes).map_err(|problem| refuse(format!("not a readable {} picture: {problem}", format.name)))
+}
+
+/// Writes `image` to `path`, whole or not at all.
+pub fn write(path: &Path, image: &Image) -> Result<()> {
+    let format = check_format(path)?;
+    let (width, height, count) = (image.width, image.height, image.pixels.len());
+    assert_eq!(width as usize * height as usize, count, "a picture of {width} x {height} holds {count} pixels");
+    codec::check_size(u64::from(width), u64::from(height))
+        .map_err(|problem| InputError::new("size", format!("{width}x{height}"), problem))?;
+    let bytes = (format.encode)(image)?;
+    atomic_file::write(path, |out| out.write_all(&bytes))
+}

@@ -67,3 +67,13 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
     let value: String = spanned.lines().next().unwrap_or("").chars().take(80).collect();
     if field.is_empty() { ("definition".to_string(), value) } else { (field, value) }
 }
+
+/// Line and column of a value that was found wrong after parsing: its first appearance behind the key.
+pub fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
+    let at_key = text.match_indices(key).map(|(at, _)| at).find(|at| {
+        let starts_line = text[..*at].rsplit('\n').next().is_some_and(|before| before.trim().is_empty());
+        starts_line && text[*at + key.len()..].trim_start().starts_with('=')
+    })?;
+    let at_value = text[at_key + key.len()..].find(value).filter(|_| !value.is_empty());
+    Some(line_and_column(text, at_value.map_or(at_key, |at| at_key + key.len() + at)))
+}

@@ -60,11 +60,39 @@ pub struct Spec {
     pub estimator: String,
     /// Sampler by name.
     pub sampler: String,
+    /// Kernel by name.
+    pub kernel: String,
     /// Effect profile by name; the smallest that covers the scene if `None`.
     pub effects: Option<String>,
     /// Whether each subpixel's mean is clamped to 1 before averaging, as smallpt does: biased.
     pub subpixel_clamp: bool,
 }
+
+impl Default for Spec {
+    fn default() -> Self {
+        Self {
+            width: 256,
+            height: 192,
+            seed: 1,
+            estimator: "smallpt".to_string(),
+            sampler: "independent".to_string(),
+            kernel: "scalar".to_string(),
+            effects: None,
+            subpixel_clamp: false,
+        }
+    }
+}
+
+/// One line of the table of kernels.
+pub struct Entry {
+    /// Its name on the command line, in CSV and TOML.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+}
+
+/// The kernels, in the order in which they are listed.
+pub const KERNELS: &[Entry] = &[Entry { name: "scalar", about: "one path at a time in f64" }];
 
 /// A kernel and the name of the profile that it was compiled for.
 pub struct Built {
@@ -85,9 +113,13 @@ pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Built> {
     };
     if !profile.effects.cover(scene.effects) {
         let calls_for = scene.effects.names();
-        return Err(InputError::new("effects", wanted, format!("does not cover the scene, which calls for {calls_for}"))
-            .allowed(smallest_profile(scene.effects))
-            .into());
+        return Err(InputError::new(
+            "effects",
+            wanted,
+            format!("does not cover the scene, which calls for {calls_for}"),
+        )
+        .allowed(smallest_profile(scene.effects))
+        .into());
     }
     let with_names = ByProfile { scene: Arc::clone(scene), spec: spec.clone() };
     let by_sampler = with_profile(profile.name, with_names)
@@ -124,7 +156,10 @@ impl<X: EffectSet> SamplerVisitor for BySampler<X> {
     type Output = Option<Box<dyn Kernel>>;
     fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
         let name = self.spec.estimator.clone();
-        with_estimator(&name, ByEstimator::<S, X> { scene: self.scene, spec: self.spec, sampler, profile: self.profile })
+        with_estimator(
+            &name,
+            ByEstimator::<S, X> { scene: self.scene, spec: self.spec, sampler, profile: self.profile },
+        )
     }
 }
 

@@ -36,7 +36,9 @@ mod tests {
     /// Values of hard-cases section 3.2: Schlick, air to glass and, by the cosine inside the air, glass to air.
     #[test]
     fn schlick_values() {
-        for (cos, expected) in [(1.0, 0.04), (0.9, 0.040_009_6), (0.75, 0.040_937_5), (0.25, 0.267_812_5), (0.1, 0.606_870_4), (0.0, 1.0)] {
+        for (cos, expected) in
+            [(1.0, 0.04), (0.9, 0.040_009_6), (0.75, 0.040_937_5), (0.25, 0.267_812_5), (0.1, 0.606_870_4), (0.0, 1.0)]
+        {
             let found = fresnel_schlick(cos, R0);
             assert!((found - expected).abs() < 1e-15, "cos {cos}: {found}");
         }
@@ -65,7 +67,9 @@ mod tests {
             let cos = f64::from(k) / 1000.0;
             let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
             let (same, _) = refract(wo, 1.0);
-            assert!((same.x + wo.x).abs() <= f64::EPSILON && (same.z + wo.z).abs() <= 2.0 * f64::EPSILON / cos.max(1e-3));
+            assert!(
+                (same.x + wo.x).abs() <= f64::EPSILON && (same.z + wo.z).abs() <= 2.0 * f64::EPSILON / cos.max(1e-3)
+            );
             let (into, cos2) = refract(wo, 1.0 / 1.5);
             assert!((dot(into, into) - 1.0).abs() < 4.0 * f64::EPSILON);
             let (back, _) = refract(-into, 1.5);

@@ -6,7 +6,11 @@ use std::ops::{Add, AddAssign, Mul};
 
 /// Linear red, green and blue. In TOML: `[0.75, 0.25, 0.25]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(from = "[T; 3]", into = "[T; 3]", bound(serialize = "T: Clone + Serialize", deserialize = "T: Deserialize<'de>"))]
+#[serde(
+    from = "[T; 3]",
+    into = "[T; 3]",
+    bound(serialize = "T: Clone + Serialize", deserialize = "T: Deserialize<'de>")
+)]
 pub struct Rgb<T = f64> {
     /// Red.
     pub r: T,

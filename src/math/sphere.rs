@@ -3,39 +3,45 @@
 //! The discriminant is taken from the ray's closest approach (Haines et al., "Precision Improvements for Ray/Sphere Intersection",
 //! Ray Tracing Gems, 2019, ch. 7), which keeps small spheres far away; the roots come from q and c/q, which keeps the small root of a
 //! huge sphere. smallpt's own b² - f·f + r² loses both.
+//!
+//! `f` is the ray's origin seen from the centre, `d` its direction, `a` = |d|², `r` the radius. The quadratic is a t² - 2 b t + c = 0.
+//! Errors of the roots are bounded by 8u(|t| + |f| + (r² + 2l|f|)/2s + (|f|² + r²)/(|b| + s)), where l is the line's distance from the
+//! centre, s² = r² - l² and u = 2^-53.
 
 use super::{Real, Vec3, dot};
 
-/// b, c and q of the quadratic |f + t d|² = r² for `f` = origin - centre, `a` = |d|²; q is NaN if the line misses.
+/// b and the discriminant r² - l²; below zero the line misses.
 #[inline(always)]
-fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
+pub fn approach<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
     let b = -dot(f, d);
     let closest = f + d * (b / a);
-    let discriminant = r * r - dot(closest, closest);
-    let q = b + (a * discriminant).sqrt().copysign(b);
-    (dot(f, f) - r * r, q)
+    (b, r * r - dot(closest, closest))
+}
+
+/// The root of larger magnitude times a: b and the square root added with the same sign, so that nothing cancels.
+#[inline(always)]
+fn stable_sum<T: Real>(b: T, discriminant: T, a: T) -> T {
+    b + (a * discriminant).sqrt().copysign(b)
 }
 
 /// Both intersections of the whole line with the sphere, nearer first, in lengths of `d`; NaN if there are none.
-///
-/// `f` is the origin seen from the centre, `a` is |d|². Errors are bounded by
-/// 8u(|t| + |f| + (r² + 2l|f|)/2s + (|f|² + r²)/(|b| + s)), where l is the line's distance from the centre and s² = r² - l².
 #[inline(always)]
 pub fn roots<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
-    let (c, q) = quadratic(f, d, a, r);
-    let (by_q, by_c) = (q / a, c / q);
+    let (b, discriminant) = approach(f, d, a, r);
+    let q = stable_sum(b, discriminant, a);
+    let (by_q, by_c) = (q / a, (dot(f, f) - r * r) / q);
     let forward = T::splat(0.0).lt(q);
     (T::select(forward, by_c, by_q), T::select(forward, by_q, by_c))
 }
 
 /// The first intersection at t > 0 of a ray with the sphere, in lengths of `d`; zero, negative or NaN if there is none.
 ///
-/// A ray that starts exactly on the sphere does not see the point it starts from. Arguments as for [`roots`].
+/// `b` and `discriminant` are those of [`approach`]. A ray that starts exactly on the sphere does not see the point it starts from.
 #[inline(always)]
-pub fn nearest_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T {
-    let (c, q) = quadratic(f, d, a, r);
+pub fn first_root<T: Real>(f: Vec3<T>, a: T, r: T, b: T, discriminant: T) -> T {
+    let q = stable_sum(b, discriminant, a);
+    let c = dot(f, f) - r * r;
     let zero = T::splat(0.0);
     // From inside (c <= 0) and forward (q > 0) the far root q/a is the first ahead; in every other case that hits it is c/q.
-    let far = zero.lt(q) & c.le(zero);
-    T::select(far, q, c) / T::select(far, a, q)
+    T::select(zero.lt(q) & c.le(zero), q / a, c / q)
 }

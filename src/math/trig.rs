@@ -81,7 +81,9 @@ mod tests {
 
     #[test]
     fn quarter_turns_are_exact() {
-        for (u, expected) in [(0.0, (0.0, 1.0)), (0.25, (1.0, 0.0)), (0.5, (0.0, -1.0)), (0.75, (-1.0, 0.0)), (1.0, (0.0, 1.0))] {
+        for (u, expected) in
+            [(0.0, (0.0, 1.0)), (0.25, (1.0, 0.0)), (0.5, (0.0, -1.0)), (0.75, (-1.0, 0.0)), (1.0, (0.0, 1.0))]
+        {
             let (sin, cos) = sin_cos_turns(u);
             assert_eq!((sin + 0.0, cos + 0.0), expected, "u = {u}");
         }

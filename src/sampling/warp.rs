@@ -56,7 +56,8 @@ mod tests {
             assert!((-1.0..=1.0).contains(&tent(u)), "u = {u}");
         }
         let n = 100_000;
-        let variance: f64 = (0..n).map(|k| tent((f64::from(k) + 0.5) / f64::from(n))).map(|x| x * x).sum::<f64>() / f64::from(n);
+        let variance: f64 =
+            (0..n).map(|k| tent((f64::from(k) + 0.5) / f64::from(n))).map(|x| x * x).sum::<f64>() / f64::from(n);
         assert!((variance - 1.0 / 6.0).abs() < 1e-6, "{variance}");
     }
 }

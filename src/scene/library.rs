@@ -16,7 +16,8 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
     let path = Path::new(name_or_path);
     if path.extension().is_some_and(|extension| extension == "toml") || path.components().count() > 1 {
         let text = read_text(path)?;
-        let stem = path.file_stem().map_or_else(|| name_or_path.to_string(), |stem| stem.to_string_lossy().into_owned());
+        let stem =
+            path.file_stem().map_or_else(|| name_or_path.to_string(), |stem| stem.to_string_lossy().into_owned());
         return scene_from_text(&stem, name_or_path, &text);
     }
     match SCENES.iter().find(|(name, _)| *name == name_or_path) {

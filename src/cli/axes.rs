@@ -1,0 +1,80 @@
+//! The options that choose what is rendered, in which pieces and by whom.
+
+use crate::error::{InputError, Result};
+use crate::kernel::Spec;
+use crate::measure::{LARGEST_SEED, Settings, available_threads};
+use crate::scene;
+use clap::Args;
+
+/// The axes of DESIGN: *what*, *pieces*, *who*.
+#[derive(Args)]
+pub(super) struct Axes {
+    /// Columns and rows.
+    #[arg(long, value_name = "WxH", default_value = "512x384")]
+    pub(super) size: String,
+    /// Estimator [default: the scene's own]
+    #[arg(long, value_name = "NAME")]
+    pub(super) estimator: Option<String>,
+    /// Sampler
+    #[arg(long, value_name = "NAME", default_value = "independent")]
+    pub(super) sampler: String,
+    /// Kernel
+    #[arg(long, value_name = "NAME", default_value = "scalar")]
+    pub(super) kernel: String,
+    /// Effect profile [default: the smallest that covers the scene]
+    #[arg(long, value_name = "PROFILE")]
+    pub(super) effects: Option<String>,
+    /// Who renders: a strategy of `pathmark list strategies`, or thread-per-row
+    #[arg(long, value_name = "NAME", default_value = "work-stealing")]
+    pub(super) strategy: String,
+    /// Workers [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    pub(super) threads: Option<usize>,
+    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral]
+    #[arg(long, value_name = "CUT", default_value = "tiles:32x32")]
+    pub(super) decomposition: String,
+    /// Clamp each subpixel's mean to 1 before averaging, as smallpt does: biased
+    #[arg(long)]
+    pub(super) subpixel_clamp: bool,
+}
+
+/// Columns and rows from `WxH`.
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32)> {
+    let parsed = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    parsed.ok_or_else(|| InputError::new("size", text, "is no size").allowed("WxH, like 1024x768").into())
+}
+
+impl Axes {
+    /// The settings for a scene, samples and a seed that belongs to an image, not to a reference.
+    pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
+        let (width, height) = parse_size(&self.size)?;
+        if seed > LARGEST_SEED {
+            let problem = "belongs to the references";
+            return Err(InputError::new("seed", seed.to_string(), problem)
+                .allowed(format!("0 to {LARGEST_SEED}"))
+                .into());
+        }
+        let default = Spec::default();
+        let estimator = match &self.estimator {
+            Some(estimator) => estimator.clone(),
+            None => scene::load(scene)?.default_estimator.unwrap_or(default.estimator),
+        };
+        Ok(Settings {
+            scene: scene.to_string(),
+            spp,
+            spec: Spec {
+                width,
+                height,
+                seed,
+                estimator,
+                sampler: self.sampler.clone(),
+                kernel: self.kernel.clone(),
+                effects: self.effects.clone(),
+                subpixel_clamp: self.subpixel_clamp,
+            },
+            decomposition: self.decomposition.clone(),
+            strategy: self.strategy.clone(),
+            threads: self.threads.unwrap_or_else(available_threads),
+        })
+    }
+}

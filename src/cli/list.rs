@@ -1,0 +1,102 @@
+//! `pathmark list [KIND]`: what there is to choose from.
+
+use super::output::{print, print_json};
+use crate::error::Result;
+use crate::estimator::ESTIMATORS;
+use crate::experiment::{Definition, EXPERIMENTS};
+use crate::film::DECOMPOSITIONS;
+use crate::image_io::FORMATS;
+use crate::kernel::KERNELS;
+use crate::material::MATERIALS;
+use crate::metric::METRICS;
+use crate::sampling::SAMPLERS;
+use crate::scene::{PROFILES, SCENES, load, smallest_profile};
+use crate::strategy::STRATEGIES;
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+/// `pathmark list strategies --json`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// What to list [default: everything]
+    kind: Option<Kind>,
+    /// Print an array of objects with name and about
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    Scenes,
+    Strategies,
+    Decompositions,
+    Estimators,
+    Samplers,
+    Kernels,
+    Effects,
+    Materials,
+    Metrics,
+    Formats,
+    Experiments,
+}
+
+#[derive(Serialize)]
+struct Item {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<String>,
+    name: String,
+    about: String,
+}
+
+fn item(name: &str, about: &str) -> Item {
+    Item { kind: None, name: name.to_string(), about: about.to_string() }
+}
+
+fn items(kind: Kind) -> Result<Vec<Item>> {
+    Ok(match kind {
+        Kind::Scenes => {
+            let scene = |(name, _): &(&str, &str)| {
+                let scene = load(name)?;
+                let (effects, profile) = (scene.effects.names(), smallest_profile(scene.effects));
+                Ok(item(name, &format!("{} (calls for {effects}; profile {profile})", scene.about)))
+            };
+            SCENES.iter().map(scene).collect::<Result<_>>()?
+        }
+        Kind::Strategies => STRATEGIES.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Decompositions => DECOMPOSITIONS.iter().map(|entry| item(entry.example, entry.about)).collect(),
+        Kind::Estimators => ESTIMATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Kernels => KERNELS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Materials => MATERIALS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Metrics => METRICS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Formats => FORMATS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Experiments => {
+            let experiment = |(name, _): &(&str, &str)| Ok(item(name, &Definition::load(name)?.title));
+            EXPERIMENTS.iter().map(experiment).collect::<Result<_>>()?
+        }
+    })
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    if let Some(kind) = arguments.kind {
+        let items = items(kind)?;
+        return if arguments.json { print_json(&items) } else { print(&table(&items)) };
+    }
+    let mut all = Vec::new();
+    for kind in Kind::value_variants() {
+        let name = format!("{kind:?}").to_lowercase();
+        let listed = items(*kind)?;
+        if arguments.json {
+            all.extend(listed.into_iter().map(|item| Item { kind: Some(name.clone()), ..item }));
+        } else {
+            print(&format!("{name}\n{}\n", table(&listed)))?;
+        }
+    }
+    if arguments.json { print_json(&all) } else { Ok(()) }
+}
+
+fn table(items: &[Item]) -> String {
+    let width = items.iter().map(|item| item.name.len()).max().unwrap_or(0);
+    items.iter().map(|item| format!("  {:width$}  {}", item.name, item.about)).collect::<Vec<_>>().join("\n")
+}

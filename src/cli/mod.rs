@@ -1,0 +1,80 @@
+//! The command line: one file a verb. Results go to standard output or files, talk goes to standard error.
+//!
+//! Exit codes: 0 done, 1 a check failed, 2 the user's input is wrong, 3 the system failed.
+
+mod axes;
+mod compare;
+mod list;
+mod output;
+mod progress;
+mod reference;
+mod render;
+mod report;
+mod reproduce;
+mod run;
+
+use crate::error::Result;
+use clap::{Parser, Subcommand};
+use progress::Talk;
+use std::process::ExitCode;
+
+/// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
+#[derive(Parser)]
+#[command(name = "pathmark", version, about, max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+    /// Say nothing on standard error but errors.
+    #[arg(long, global = true)]
+    quiet: bool,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    /// Run all committed experiments: CSV, figures and one report page.
+    Reproduce(reproduce::Arguments),
+    /// Render a scene.
+    Render(render::Arguments),
+    /// Run one experiment.
+    Run(run::Arguments),
+    /// Measure the error of an image against a reference image.
+    Compare(compare::Arguments),
+    /// Render the two half-references of a scene.
+    Reference(reference::Arguments),
+    /// Draw the figures and the page again from the records in a folder.
+    Report(report::Arguments),
+    /// Show what there is to choose from.
+    List(list::Arguments),
+    /// One cell of a sweep, read from standard input.
+    #[command(hide = true)]
+    Cell,
+}
+
+/// Runs the program with the process's arguments.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let talk = Talk::new(cli.quiet);
+    let result: Result<()> = match cli.verb {
+        Verb::Reproduce(arguments) => reproduce::run(&arguments, &talk),
+        Verb::Render(arguments) => render::run(&arguments, &talk),
+        Verb::Run(arguments) => run::run(&arguments, &talk),
+        Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Reference(arguments) => reference::run(&arguments, &talk),
+        Verb::Report(arguments) => report::run(&arguments),
+        Verb::List(arguments) => list::run(&arguments),
+        Verb::Cell => crate::experiment::child_main(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            talk.error(&error);
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+/// The command as the user gave it, whatever folder the program lies in.
+fn command_line() -> String {
+    let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+    std::iter::once("pathmark".to_string()).chain(arguments).collect::<Vec<_>>().join(" ")
+}

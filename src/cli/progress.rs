@@ -1,0 +1,90 @@
+//! What long work says while it lasts: a bar with the time left on a terminal, plain lines elsewhere, nothing with `--quiet`.
+
+use crate::error::Error;
+use crate::experiment::Progress;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{IsTerminal, Write};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Talks on standard error.
+pub(super) struct Talk {
+    quiet: bool,
+    terminal: bool,
+    work: Mutex<Work>,
+}
+
+#[derive(Default)]
+struct Work {
+    title: String,
+    total: u64,
+    bar: Option<ProgressBar>,
+    /// Tenths that have been told.
+    told: u64,
+}
+
+impl Talk {
+    pub(super) fn new(quiet: bool) -> Self {
+        Self { quiet, terminal: std::io::stderr().is_terminal(), work: Mutex::new(Work::default()) }
+    }
+
+    fn work(&self) -> MutexGuard<'_, Work> {
+        self.work.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn line(text: &str) {
+        // Nobody may be listening; that is no reason to stop.
+        let _ = writeln!(std::io::stderr().lock(), "{text}");
+    }
+
+    /// Why the program ends.
+    pub(super) fn error(&self, error: &Error) {
+        self.end();
+        Self::line(&format!("pathmark: {error}"));
+    }
+}
+
+impl Progress for Talk {
+    fn begin(&self, title: &str, total: u64) {
+        if self.quiet {
+            return;
+        }
+        let bar = self.terminal.then(|| {
+            let style = ProgressStyle::with_template("{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {eta} left");
+            let bar = ProgressBar::new(total);
+            bar.with_message(title.to_string()).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        });
+        if bar.is_none() {
+            Self::line(&format!("{title} ..."));
+        }
+        *self.work() = Work { title: title.to_string(), total, bar, told: 0 };
+    }
+
+    fn advance(&self, done: u64) {
+        let mut work = self.work();
+        if let Some(bar) = &work.bar {
+            bar.set_position(done);
+            return;
+        }
+        let tenths = (done * 10).checked_div(work.total).unwrap_or(0).min(10);
+        if tenths > work.told && !self.quiet {
+            work.told = tenths;
+            Self::line(&format!("{} {tenths}0 %", work.title));
+        }
+    }
+
+    fn note(&self, text: &str) {
+        if self.quiet {
+            return;
+        }
+        match &self.work().bar {
+            Some(bar) => bar.println(text),
+            None => Self::line(text),
+        }
+    }
+
+    fn end(&self) {
+        if let Some(bar) = self.work().bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! `pathmark reproduce`: all committed experiments.
+
+use super::progress::Talk;
+use super::{command_line, output::print};
+use crate::error::{Error, Result};
+use crate::experiment::{Definition, EXPERIMENTS, Options, Profile, Progress, sweep};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// `pathmark reproduce --full --out results-here`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// Small images, minutes (the default)
+    #[arg(long, conflicts_with = "full")]
+    quick: bool,
+    /// The reports' own sizes, hours
+    #[arg(long)]
+    full: bool,
+    /// Folder for what comes out; an earlier run's goes to its folder `earlier`
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// Go on with a run that was stopped
+    #[arg(long)]
+    resume: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+    let profile = if arguments.full && !arguments.quick { Profile::Full } else { Profile::Quick };
+    let options = Options {
+        out: arguments.out.clone(),
+        profile,
+        resume: arguments.resume,
+        repetitions: None,
+        filters: Vec::new(),
+        command: command_line(),
+    };
+    let definitions = EXPERIMENTS.iter().map(|(name, _)| Definition::load(name)).collect::<Result<Vec<_>>>()?;
+    if !arguments.resume {
+        put_aside(&arguments.out, &definitions, talk)?;
+    }
+    let (mut rows, mut failed) = (0, 0);
+    for definition in &definitions {
+        let summary = sweep(definition, &options, talk)?;
+        rows += summary.rows;
+        failed += summary.failed;
+    }
+    let page = crate::report::write(&arguments.out)?;
+    print(&format!("{rows} rows from {} experiments, report in {}", definitions.len(), page.display()))?;
+    if failed > 0 {
+        return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));
+    }
+    Ok(())
+}
+
+/// Moves what an earlier run left out of the way: measurements are never overwritten.
+fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> {
+    let stamp = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace(':', "-");
+    let earlier = out.join("earlier").join(stamp);
+    for definition in definitions {
+        let folder = out.join(&definition.name);
+        if folder.exists() {
+            std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;
+            let target = earlier.join(&definition.name);
+            std::fs::rename(&folder, &target).map_err(|e| Error::system("moving", &folder, e))?;
+            talk.note(&format!("what was in {} is now in {}", folder.display(), target.display()));
+        }
+    }
+    Ok(())
+}

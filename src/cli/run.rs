@@ -1,0 +1,51 @@
+//! `pathmark run EXPERIMENT`: one experiment, and its report.
+
+use super::progress::Talk;
+use super::{command_line, output::print};
+use crate::error::{Error, Result};
+use crate::experiment::{Definition, Options, Profile, sweep};
+use crate::report::check_figures;
+use clap::Args;
+use std::path::PathBuf;
+
+/// `pathmark run thread-scaling --filter rayon`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// An experiment of `pathmark list experiments`, or the path of a .toml file
+    experiment: String,
+    /// Folder for what comes out
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// Go on with a sweep that was stopped
+    #[arg(long)]
+    resume: bool,
+    /// How often each cell is run [default: what the experiment says]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    repetitions: Option<u32>,
+    /// Only cells whose name contains this; may be given several times
+    #[arg(long = "filter", value_name = "TEXT")]
+    filters: Vec<String>,
+    /// The report's own sizes instead of small images
+    #[arg(long)]
+    full: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+    let definition = Definition::load(&arguments.experiment)?;
+    check_figures(&definition)?;
+    let options = Options {
+        out: arguments.out.clone(),
+        profile: if arguments.full { Profile::Full } else { Profile::Quick },
+        resume: arguments.resume,
+        repetitions: arguments.repetitions,
+        filters: arguments.filters.clone(),
+        command: command_line(),
+    };
+    let summary = sweep(&definition, &options, talk)?;
+    let page = crate::report::write(&arguments.out)?;
+    print(&format!("{} rows in {}, report in {}", summary.rows, summary.folder.display(), page.display()))?;
+    match summary.failed {
+        0 => Ok(()),
+        failed => Err(Error::Check(format!("{failed} of {} rows failed; their column `error` says why", summary.rows))),
+    }
+}

@@ -1,0 +1,32 @@
+//! An experiment: a question in a TOML file, the cells that answer it, and a row for every repetition of every cell.
+//!
+//! To add one, write `experiments/NAME.toml`: the build embeds every file there, and `pathmark run path/to/NAME.toml` runs any other.
+
+mod cell;
+mod cell_process;
+mod definition;
+mod records_file;
+mod reference;
+mod run_file;
+mod shuffle;
+mod sweep;
+
+pub use cell::Cell;
+pub use cell_process::{CellJob, child_main};
+pub use definition::{Definition, EXPERIMENTS, Profile};
+pub use records_file::{RecordsFile, read_records};
+pub use reference::{Reference, reference_path, reference_seed, render_reference};
+pub use run_file::{RunFile, read_run_file};
+pub use sweep::{Options, Summary, sweep};
+
+/// Told how far long work has come. Implemented by the command line.
+pub trait Progress: Sync {
+    /// Work of `total` units begins.
+    fn begin(&self, title: &str, total: u64);
+    /// `done` units are done.
+    fn advance(&self, done: u64);
+    /// A line for the user.
+    fn note(&self, text: &str);
+    /// The work is over.
+    fn end(&self);
+}

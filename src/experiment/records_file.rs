@@ -1,0 +1,126 @@
+//! `records.csv`: written row by row, flushed to the disk after each, so that a killed sweep loses at most the row it was writing.
+
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use crate::measure::{Record, SCHEMA};
+use std::collections::HashSet;
+use std::fs::{File, OpenOptions};
+use std::io::{Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// An open file of records, locked against a second sweep.
+pub struct RecordsFile {
+    path: PathBuf,
+    file: File,
+}
+
+/// Reads every row; a row that cannot be read is an error that names its line.
+pub fn read_records(path: &Path) -> Result<Vec<Record>> {
+    let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => {
+            InputError::new("records", path.display().to_string(), "there is no such file").into()
+        }
+        _ => Error::system("reading", path, e),
+    })?;
+    let complete = complete_part(&text);
+    if complete.len() < text.len() {
+        let line = complete.matches('\n').count() + 1;
+        let problem = "the last row is only half written; `pathmark run --resume` drops it and runs it again";
+        let row: String = text[complete.len()..].chars().take(40).collect();
+        return Err(InputError::new("row", row, problem).in_file(path.display().to_string(), Some((line, 1))).into());
+    }
+    parse(complete, path)
+}
+
+/// The part of a file that ends with a finished line.
+fn complete_part(text: &str) -> &str {
+    text.rfind('\n').map_or("", |end| &text[..=end])
+}
+
+fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
+    let file = path.display().to_string();
+    let mut records = Vec::new();
+    let mut seen = HashSet::new();
+    for row in csv::Reader::from_reader(text.as_bytes()).deserialize::<Record>() {
+        let record = row.map_err(|e| {
+            let line = e.position().map(|position| (position.line() as usize, 1));
+            InputError::new("row", "", format!("cannot be read: {e}")).in_file(&file, line)
+        })?;
+        let line = Some((records.len() + 2, 1));
+        if record.schema != SCHEMA {
+            let problem = "was written by another version of the program";
+            return Err(InputError::new("schema", record.schema.to_string(), problem)
+                .allowed(SCHEMA.to_string())
+                .in_file(&file, line)
+                .into());
+        }
+        if !seen.insert((record.cell.clone(), record.repetition)) {
+            let problem = format!("stands there twice for repetition {}", record.repetition);
+            return Err(InputError::new("cell", &record.cell, problem).in_file(&file, line).into());
+        }
+        records.push(record);
+    }
+    Ok(records)
+}
+
+impl RecordsFile {
+    /// Starts a new file; refuses to touch one that is there.
+    pub fn create(path: &Path) -> Result<Self> {
+        let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(|e| match e.kind() {
+            std::io::ErrorKind::AlreadyExists => {
+                let problem = "is there already: `--resume` goes on with it, another `--out` starts anew";
+                InputError::new("records", path.display().to_string(), problem).into()
+            }
+            _ => Error::system("creating", path, e),
+        })?;
+        Self::locked(path, file)
+    }
+
+    /// Goes on with a file: what is in it, but for a half-written last row and for rows that failed, which are run again.
+    pub fn resume(path: &Path) -> Result<(Self, Vec<Record>)> {
+        let file =
+            OpenOptions::new().read(true).write(true).open(path).map_err(|e| Error::system("opening", path, e))?;
+        let locked = Self::locked(path, file)?;
+        let text = std::fs::read_to_string(path).map_err(|e| Error::system("reading", path, e))?;
+        let mut records = parse(complete_part(&text), path)?;
+        let rows = records.len();
+        records.retain(|record| record.error.is_empty());
+        if rows == records.len() && complete_part(&text).len() == text.len() {
+            return Ok((locked, records));
+        }
+        // The new file takes the old one's place in one step, so being killed here loses nothing either.
+        let mut bytes = Vec::new();
+        for (index, record) in records.iter().enumerate() {
+            bytes.extend(row_bytes(record, index == 0).map_err(|e| Error::system("writing", path, e))?);
+        }
+        atomic_file::write(path, |out| out.write_all(&bytes))?;
+        let file =
+            OpenOptions::new().read(true).write(true).open(path).map_err(|e| Error::system("opening", path, e))?;
+        Ok((Self::locked(path, file)?, records))
+    }
+
+    fn locked(path: &Path, file: File) -> Result<Self> {
+        match file.try_lock() {
+            Ok(()) => Ok(Self { path: path.to_path_buf(), file }),
+            Err(std::fs::TryLockError::WouldBlock) => {
+                let problem = "is being written by another sweep";
+                Err(InputError::new("records", path.display().to_string(), problem).into())
+            }
+            Err(std::fs::TryLockError::Error(e)) => Err(Error::system("locking", path, e)),
+        }
+    }
+
+    /// Appends a row and waits until the disk has it.
+    pub fn append(&mut self, record: &Record) -> Result<()> {
+        let system = |e| Error::system("writing", &self.path, e);
+        let end = self.file.seek(SeekFrom::End(0)).map_err(system)?;
+        let bytes = row_bytes(record, end == 0).map_err(system)?;
+        self.file.write_all(&bytes).and_then(|()| self.file.sync_data()).map_err(system)
+    }
+}
+
+fn row_bytes(record: &Record, header: bool) -> std::io::Result<Vec<u8>> {
+    let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
+    writer.serialize(record)?;
+    writer.into_inner().map_err(csv::IntoInnerError::into_error)
+}

@@ -1,0 +1,90 @@
+//! What images are measured against: two independent halves, from seeds that no image under test can have.
+//!
+//! With two halves R₁ and R₂ the mean of (T - R₁)(T - R₂) is the image's squared error without the references' own noise
+//! (METHODOLOGY: cross form).
+
+use super::Progress;
+use crate::error::Result;
+use crate::film::{Film, FilmKey, read_film, write_film};
+use crate::kernel::Spec;
+use crate::measure::{Settings, Setup, available_threads};
+use crate::sampling::REFERENCE_SEEDS;
+use std::path::{Path, PathBuf};
+
+/// The seed of a half: above every seed that an image may have.
+pub fn reference_seed(half: u32) -> u64 {
+    REFERENCE_SEEDS + u64::from(half)
+}
+
+/// What a reference is of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reference {
+    /// Scene: a name or a path.
+    pub scene: String,
+    /// Estimator.
+    pub estimator: String,
+    /// Sampler.
+    pub sampler: String,
+    /// Columns and rows.
+    pub size: [u32; 2],
+    /// Samples per pixel of each half.
+    pub spp: u32,
+}
+
+impl Reference {
+    fn half(&self, half: u32) -> Settings {
+        Settings {
+            scene: self.scene.clone(),
+            spp: self.spp,
+            spec: Spec {
+                width: self.size[0],
+                height: self.size[1],
+                seed: reference_seed(half),
+                estimator: self.estimator.clone(),
+                sampler: self.sampler.clone(),
+                ..Spec::default()
+            },
+            decomposition: "tiles:16x16".to_string(),
+            strategy: "work-stealing".to_string(),
+            threads: available_threads(),
+        }
+    }
+}
+
+/// Where a film of that key is cached.
+pub fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
+    let half = key.seed - REFERENCE_SEEDS;
+    folder.join(format!(
+        "{}-{}-{}-{}-{}x{}-{}spp-r{}-half{half}.film",
+        key.scene, key.scene_hash, key.estimator, key.sampler, key.width, key.height, key.spp, key.revision
+    ))
+}
+
+impl Reference {
+    /// Refuses what cannot be rendered, before anything is made.
+    pub fn check(&self) -> Result<()> {
+        Setup::prepare(self.half(0)).map(|_| ())
+    }
+}
+
+/// The two halves, from the cache in `folder` where they are there and whole, rendered otherwise.
+pub fn render_reference(reference: &Reference, folder: &Path, progress: &dyn Progress) -> Result<[(PathBuf, Film); 2]> {
+    let half = |index: u32| -> Result<(PathBuf, Film)> {
+        let setup = Setup::prepare(reference.half(index))?;
+        let key = setup.film_key();
+        let path = reference_path(folder, &key);
+        if path.is_file() {
+            // A damaged file is an error, never quietly replaced: it may be the user's only copy.
+            let (found, film) = read_film(&path)?;
+            if found == key {
+                return Ok((path, film));
+            }
+        }
+        progress.begin(&format!("reference {} of 2: {} at {} spp", index + 1, key.scene, key.spp), setup.jobs() as u64);
+        let outcome = setup.run(Some(&|done| progress.advance(done)))?;
+        progress.end();
+        write_film(&path, &key, &outcome.film)?;
+        Ok((path, outcome.film))
+    };
+    Ok([half(0)?, half(1)?])
+}

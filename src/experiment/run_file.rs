@@ -1,0 +1,52 @@
+//! `machine.toml`: what the rows beside it were measured on, and with which command.
+
+use crate::atomic_file;
+use crate::error::{InputError, Result};
+use crate::input::{parse, read_text};
+use crate::measure::Machine;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// What is written beside the rows.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunFile {
+    /// The command that made them.
+    pub command: String,
+    /// `quick` or `full`.
+    pub profile: String,
+    /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
+    pub definition_hash: String,
+    /// Where and with what.
+    pub machine: Machine,
+}
+
+/// Reads a `machine.toml`.
+pub fn read_run_file(path: &Path) -> Result<RunFile> {
+    parse(&read_text(path)?, &path.display().to_string())
+}
+
+impl RunFile {
+    /// Writes it.
+    pub(super) fn write(&self, path: &Path) -> Result<()> {
+        let text = toml::to_string_pretty(self)
+            .map_err(|e| InputError::new("machine", "", format!("cannot be written as TOML: {e}")))?;
+        atomic_file::write(path, |out| out.write_all(text.as_bytes()))
+    }
+
+    /// Refuses to mix rows that are not repetitions of each other: another processor, revision, profile or definition.
+    pub(super) fn check_same(&self, now: &Self, path: &Path) -> Result<()> {
+        let mut pairs = vec![
+            ("profile", self.profile.clone(), now.profile.clone()),
+            ("definition_hash", self.definition_hash.clone(), now.definition_hash.clone()),
+        ];
+        let (then, here) = (self.machine.identity(), now.machine.identity());
+        pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));
+        match pairs.into_iter().find(|(_, old, new)| old != new) {
+            None => Ok(()),
+            Some((name, old, new)) => Err(InputError::new(name, old, "is what the rows were measured with")
+                .allowed(format!("{new} as it is now, or another --out"))
+                .in_file(path.display().to_string(), None)
+                .into()),
+        }
+    }
+}

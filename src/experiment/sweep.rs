@@ -1,0 +1,167 @@
+//! Runs the cells of an experiment, a row at a time.
+
+use super::records_file::RecordsFile;
+use super::run_file::{RunFile, read_run_file};
+use super::shuffle::shuffled;
+use super::{Cell, CellJob, Definition, Profile, Progress, Reference, render_reference};
+use crate::atomic_file;
+use crate::error::{Error, Result};
+use crate::measure::{Machine, Record};
+use sha2::{Digest, Sha256};
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+/// How to run an experiment.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Folder that gets a folder for the experiment, and one for references.
+    pub out: PathBuf,
+    /// How large.
+    pub profile: Profile,
+    /// Goes on with rows that are there.
+    pub resume: bool,
+    /// Repetitions, if not the definition's.
+    pub repetitions: Option<u32>,
+    /// Only cells whose word contains each of these.
+    pub filters: Vec<String>,
+    /// The command as the user gave it.
+    pub command: String,
+}
+
+/// What a sweep did.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Summary {
+    /// Where the rows are.
+    pub folder: PathBuf,
+    /// Rows in all.
+    pub rows: usize,
+    /// Rows that failed, checksum mismatches included.
+    pub failed: usize,
+}
+
+/// Runs what is not yet in the folder. Each repetition visits all cells once, in an order of its own.
+pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress) -> Result<Summary> {
+    let mut cells = definition.cells(options.profile)?;
+    cells.retain(|cell| options.filters.iter().all(|filter| cell.id.contains(filter.as_str())));
+    if cells.is_empty() {
+        let filters = options.filters.join(" ");
+        return Err(crate::error::InputError::new("filter", filters, "leaves no cell to run").into());
+    }
+    let reference = definition.reference(options.profile)?;
+    let folder = options.out.join(&definition.name);
+    let (mut file, done) = open(definition, options, &folder)?;
+
+    let references = match reference {
+        None => HashMap::new(),
+        Some((estimator, spp)) => references(&cells, &estimator, spp, options, progress)?,
+    };
+    let images = folder.join("images");
+    if definition.images {
+        std::fs::create_dir_all(&images).map_err(|e| Error::system("creating", &images, e))?;
+    }
+
+    let mut checksums: HashMap<String, String> = HashMap::new();
+    let known: HashMap<&str, &str> = cells.iter().map(|cell| (cell.id.as_str(), cell.image.as_str())).collect();
+    for record in &done {
+        if let Some(image) = known.get(record.cell.as_str()) {
+            checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
+        }
+    }
+    let finished: HashSet<(&str, u32)> = done.iter().map(|record| (record.cell.as_str(), record.repetition)).collect();
+    let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
+    let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
+    let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0 };
+    let (mut units, mut order) = (0, done.len() as u64);
+    progress.begin(&definition.name, total);
+    for repetition in 0..repetitions {
+        for index in shuffled(cells.len(), &definition.name, repetition) {
+            let cell = &cells[index];
+            if !finished.contains(&(cell.id.as_str(), repetition)) {
+                let kept = (definition.images && repetition == 0).then(|| images.join(cell.image_file()));
+                let job = CellJob {
+                    experiment: definition.name.clone(),
+                    cell: cell.id.clone(),
+                    repetition,
+                    order,
+                    settings: cell.settings.clone(),
+                    references: references.get(cell.settings.scene.as_str()).cloned(),
+                    image: kept,
+                };
+                let record = verified(job.run_in_child(), cell, &mut checksums);
+                if !record.error.is_empty() {
+                    summary.failed += 1;
+                    progress.note(&format!("{} repetition {repetition}: {}", cell.id, record.error));
+                }
+                file.append(&record)?;
+                summary.rows += 1;
+                order += 1;
+            }
+            units += cell.weight;
+            progress.advance(units);
+        }
+    }
+    progress.end();
+    Ok(summary)
+}
+
+/// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.
+fn verified(record: Record, cell: &Cell, checksums: &mut HashMap<String, String>) -> Record {
+    if !record.error.is_empty() {
+        return record;
+    }
+    let expected = checksums.entry(cell.image.clone()).or_insert_with(|| record.checksum.clone());
+    if *expected == record.checksum {
+        return record;
+    }
+    let error = format!("checksum {} instead of {expected}", record.checksum);
+    Record { error, ..record }
+}
+
+/// The rows' file, and the rows that are there.
+fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(RecordsFile, Vec<Record>)> {
+    let digest = Sha256::digest(definition.text.as_bytes());
+    let run = RunFile {
+        command: options.command.clone(),
+        profile: options.profile.name().to_string(),
+        definition_hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect(),
+        machine: Machine::look(),
+    };
+    let (rows, machine) = (folder.join("records.csv"), folder.join("machine.toml"));
+    if options.resume && rows.is_file() {
+        read_run_file(&machine)?.check_same(&run, &machine)?;
+        return RecordsFile::resume(&rows);
+    }
+    std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
+    let file = RecordsFile::create(&rows)?;
+    run.write(&machine)?;
+    atomic_file::write(&folder.join("experiment.toml"), |out| out.write_all(definition.text.as_bytes()))?;
+    Ok((file, Vec::new()))
+}
+
+/// The half-references of every scene in the cells.
+fn references(
+    cells: &[Cell],
+    estimator: &str,
+    spp: u32,
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<HashMap<String, [PathBuf; 2]>> {
+    let folder = options.out.join("references");
+    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+    let mut halves = HashMap::new();
+    for cell in cells {
+        let settings = &cell.settings;
+        if !halves.contains_key(&settings.scene) {
+            let reference = Reference {
+                scene: settings.scene.clone(),
+                estimator: estimator.to_string(),
+                sampler: "independent".to_string(),
+                size: [settings.spec.width, settings.spec.height],
+                spp,
+            };
+            let [(first, _), (second, _)] = render_reference(&reference, &folder, progress)?;
+            halves.insert(settings.scene.clone(), [first, second]);
+        }
+    }
+    Ok(halves)
+}

@@ -1,0 +1,32 @@
+//! BMP: 8 bits a channel of display values, for programs that read nothing else.
+
+use std::io::Cursor;
+
+use image::codecs::bmp::{BmpDecoder, BmpEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+
+use super::codec::{self, Decoded};
+use super::{Format, Image, tone_map};
+use crate::error::{InputError, Result};
+
+pub(super) const FORMAT: Format =
+    Format { name: "bmp", about: "what a display shows, 8 bits, uncompressed", linear: false, decode, encode };
+
+fn decode(bytes: &[u8]) -> Decoded<Image> {
+    // The header's own word for the file's length finds both a cut and what was appended.
+    let declared = bytes.get(2..6).and_then(|field| field.try_into().ok()).map(u32::from_le_bytes);
+    if declared.map(u64::from) != Some(bytes.len() as u64) {
+        return Err("its length is not the one that its header tells".into());
+    }
+    let decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
+    codec::from_display(codec::decode(decoder, bytes.len())?)
+}
+
+fn encode(image: &Image) -> Result<Vec<u8>> {
+    let pixels = tone_map::quantise_image(image)?;
+    let mut bytes = Vec::new();
+    BmpEncoder::new(&mut bytes)
+        .write_image(&pixels, image.width, image.height, ExtendedColorType::Rgb8)
+        .map_err(|e| InputError::new("image", "bmp", e.to_string()))?;
+    Ok(bytes)
+}

@@ -1,0 +1,95 @@
+//! What the formats share: limits that hold before anything is allocated, and the way to and from the `image` crate.
+//!
+//! A header of 30 bytes can claim 2^32 x 2^32 pixels. So a claim is held against fixed caps and against the file's length
+//! before memory is asked for. No format here packs more than [`MAX_PIXELS_PER_BYTE`] pixels into a byte.
+
+use image::{DynamicImage, ImageDecoder, Limits};
+
+use super::{Image, tone_map};
+use crate::error::Result;
+
+/// What is wrong with a file's bytes; the caller adds whose they are.
+pub(super) type Decoded<T> = std::result::Result<T, String>;
+
+/// The longest side.
+const MAX_SIDE: u64 = 1 << 16;
+/// The most pixels: 6 GiB in memory.
+const MAX_PIXELS: u64 = 1 << 28;
+/// Deflate expands a byte into at most 1032, which is 8 pixels each when a pixel is one bit.
+const MAX_PIXELS_PER_BYTE: u64 = 8 * 1032;
+/// More than the largest picture has in the most wasteful format (text with 16 bits a channel).
+pub(super) const MAX_FILE_LENGTH: u64 = 20 * MAX_PIXELS;
+/// What a decoder may allocate for anything but pixels.
+const MAX_METADATA: u64 = 64 << 20;
+
+/// Whether a picture of this size is one that Pathmark reads and writes.
+pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {
+    if width == 0 || height == 0 {
+        Err(format!("{width} x {height} pixels are none"))
+    } else if width > MAX_SIDE || height > MAX_SIDE || width * height > MAX_PIXELS {
+        Err(format!("{width} x {height} pixels are more than {MAX_SIDE} a side or {MAX_PIXELS} in all"))
+    } else {
+        Ok(())
+    }
+}
+
+/// [`check_size`], and whether a file of `length` bytes can hold that many pixels at all.
+pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()> {
+    check_size(width, height)?;
+    if width * height / MAX_PIXELS_PER_BYTE > length as u64 {
+        return Err(format!("{width} x {height} pixels cannot come from {length} bytes"));
+    }
+    Ok(())
+}
+
+/// The limits that a decoder of the `image` crate is opened with.
+pub(super) fn limits() -> Limits {
+    let mut limits = Limits::default();
+    limits.max_image_width = Some(MAX_SIDE as u32);
+    limits.max_image_height = Some(MAX_SIDE as u32);
+    limits.max_alloc = Some(MAX_METADATA);
+    limits
+}
+
+/// The pixels behind a decoder that has read its header, from a file of `length` bytes.
+pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<DynamicImage> {
+    let (width, height) = decoder.dimensions();
+    check_claim(u64::from(width), u64::from(height), length)?;
+    DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())
+}
+
+/// A picture of display values in linear radiance.
+pub(super) fn from_display(image: DynamicImage) -> Decoded<Image> {
+    // What lies behind a transparent pixel is not in the file.
+    if image.color().has_alpha() && image.to_rgba16().pixels().any(|pixel| pixel[3] != u16::MAX) {
+        return Err("it has transparent pixels".into());
+    }
+    let (width, height) = (image.width(), image.height());
+    let deep = image.color().bytes_per_pixel() / image.color().channel_count() > 1;
+    let pixels = if deep {
+        let values = image.into_rgb16();
+        values.pixels().map(|pixel| pixel.0.map(|v| tone_map::linear(f64::from(v) / 65535.0))).collect()
+    } else {
+        let table: Vec<_> = (0..=u8::MAX).map(|v| tone_map::linear(f64::from(v) / 255.0)).collect();
+        let values = image.into_rgb8();
+        values.pixels().map(|pixel| pixel.0.map(|v| table[usize::from(v)])).collect()
+    };
+    Ok(Image { width, height, pixels })
+}
+
+/// A picture of linear values, as they are.
+pub(super) fn from_linear(image: DynamicImage) -> Image {
+    let (width, height) = (image.width(), image.height());
+    let values = image.into_rgb32f();
+    Image { width, height, pixels: values.pixels().map(|pixel| pixel.0.map(f64::from)).collect() }
+}
+
+/// All channel values in f32, the precision of the linear formats. NaN and infinity stay, so that a picture can show where they
+/// are; a finite value that only f64 can hold is refused.
+pub(super) fn to_f32(image: &Image) -> Result<Vec<f32>> {
+    let too_large = |value: &f64| value.is_finite() && (*value as f32).is_infinite();
+    match image.pixels.iter().position(|pixel| pixel.iter().any(too_large)) {
+        Some(index) => Err(tone_map::bad_pixel(image, index, "is too large for f32")),
+        None => Ok(image.pixels.iter().flatten().map(|&value| value as f32).collect()),
+    }
+}

@@ -1,0 +1,86 @@
+//! EXR: linear values in f32, lossless and compressed; the format to keep results in. Read: one part, not deep, RGB.
+//!
+//! Source of the header's layout: the file layout document of openexr.com.
+
+use std::io::Cursor;
+
+use image::codecs::openexr::{OpenExrDecoder, OpenExrEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+
+use super::codec::{self, Decoded};
+use super::{Format, Image};
+use crate::error::{InputError, Result};
+
+pub(super) const FORMAT: Format =
+    Format { name: "exr", about: "linear radiance in f32, compressed, lossless", linear: true, decode, encode };
+
+/// Bits of the version field that ask for more than one picture of plain pixels: deep data, several parts.
+const UNSUPPORTED: u32 = 0x800 | 0x1000;
+
+fn decode(bytes: &[u8]) -> Decoded<Image> {
+    check_header(bytes).ok_or("its header is damaged, or it is deep or of several parts")??;
+    let mut source = Cursor::new(bytes);
+    let decoder = OpenExrDecoder::with_alpha_preference(&mut source, Some(false)).map_err(|e| e.to_string())?;
+    let image = codec::decode(decoder, bytes.len())?;
+    let rest = bytes.len() as u64 - source.position().min(bytes.len() as u64);
+    if rest > 0 {
+        return Err(format!("{rest} bytes follow the last pixel"));
+    }
+    Ok(codec::from_linear(image))
+}
+
+/// Checks the sizes of what is stored, of what is shown and of a tile: the decoder allocates by all of them, tells only the second,
+/// and takes a window whose corners are swapped for another. `None` when there is no such header.
+fn check_header(bytes: &[u8]) -> Option<Decoded<()>> {
+    let mut rest = bytes.strip_prefix(b"\x76\x2f\x31\x01")?;
+    let flags = u32::from_le_bytes(*take(&mut rest)?);
+    if flags & UNSUPPORTED != 0 {
+        return None;
+    }
+    while rest.first() != Some(&0) {
+        let name = text(&mut rest)?;
+        let kind = text(&mut rest)?;
+        let length = u32::from_le_bytes(*take(&mut rest)?) as usize;
+        let value = rest.get(..length)?;
+        rest = &rest[length..];
+        let (words, _) = value.as_chunks::<4>();
+        let claim = match (name, kind, words) {
+            (b"dataWindow" | b"displayWindow", b"box2i", &[left, top, right, bottom]) => {
+                let side = |low, high| i64::from(i32::from_le_bytes(high)) - i64::from(i32::from_le_bytes(low)) + 1;
+                (side(left, right).max(0) as u64, side(top, bottom).max(0) as u64)
+            }
+            (b"tiles", b"tiledesc", &[width, height]) => {
+                (u64::from(u32::from_le_bytes(width)), u64::from(u32::from_le_bytes(height)))
+            }
+            _ => continue,
+        };
+        if let Err(problem) = codec::check_claim(claim.0, claim.1, bytes.len()) {
+            return Some(Err(problem));
+        }
+    }
+    Some(Ok(()))
+}
+
+/// The next `N` bytes.
+fn take<'a, const N: usize>(rest: &mut &'a [u8]) -> Option<&'a [u8; N]> {
+    let (head, tail) = rest.split_first_chunk()?;
+    *rest = tail;
+    Some(head)
+}
+
+/// The next text, which a zero ends; an empty one is none.
+fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let end = rest.iter().position(|&byte| byte == 0).filter(|&end| end > 0)?;
+    let head = &rest[..end];
+    *rest = &rest[end + 1..];
+    Some(head)
+}
+
+fn encode(image: &Image) -> Result<Vec<u8>> {
+    let samples: Vec<u8> = codec::to_f32(image)?.into_iter().flat_map(f32::to_ne_bytes).collect();
+    let mut bytes = Cursor::new(Vec::new());
+    OpenExrEncoder::new(&mut bytes)
+        .write_image(&samples, image.width, image.height, ExtendedColorType::Rgb32F)
+        .map_err(|e| InputError::new("image", "exr", e.to_string()))?;
+    Ok(bytes.into_inner())
+}

@@ -1,0 +1,193 @@
+//! One row of `records.csv`: one repetition of one cell, with everything that is needed to repeat it.
+
+use super::{Outcome, Settings, Setup};
+use serde::{Deserialize, Serialize};
+use std::time::SystemTime;
+
+/// Version of the columns.
+pub const SCHEMA: u32 = 1;
+
+/// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    /// Version of the columns.
+    pub schema: u32,
+    /// Name of the experiment; `render` outside of one.
+    pub experiment: String,
+    /// The cell's settings in one word; with `repetition`, unique within an experiment.
+    pub cell: String,
+    /// Scene.
+    pub scene: String,
+    /// Hash of the scene's definition.
+    pub scene_hash: String,
+    /// Effect profile that the kernel was compiled for.
+    pub effects: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Seed.
+    pub seed: u64,
+    /// Estimator.
+    pub estimator: String,
+    /// Sampler.
+    pub sampler: String,
+    /// Kernel.
+    pub kernel: String,
+    /// Floating-point format of the kernel.
+    pub precision: String,
+    /// Whether an option was on that changes what the image converges to.
+    pub biased: bool,
+    /// How the film was cut.
+    pub decomposition: String,
+    /// Strategy.
+    pub strategy: String,
+    /// Workers asked for.
+    pub threads: usize,
+    /// Number of the repetition, from 0.
+    pub repetition: u32,
+    /// Position in the order in which the sweep really ran.
+    pub order: u64,
+    /// Jobs.
+    pub jobs: usize,
+    /// What was measured; empty if the run failed.
+    pub workers_used: Option<u32>,
+    /// Seconds to make the strategy (its pool, if it keeps one).
+    pub setup_s: Option<f64>,
+    /// Seconds from handing the jobs to the strategy until it returned.
+    pub makespan_s: Option<f64>,
+    /// Seconds to put the pieces together.
+    pub merge_s: Option<f64>,
+    /// CPU seconds in the program during the makespan, over all threads.
+    pub cpu_user_s: Option<f64>,
+    /// CPU seconds in the kernel of the operating system, likewise.
+    pub cpu_system_s: Option<f64>,
+    /// Seconds inside jobs, over all workers.
+    pub busy_sum_s: Option<f64>,
+    /// Seconds inside jobs of the busiest worker.
+    pub busy_max_s: Option<f64>,
+    /// Shortest job.
+    pub job_min_s: Option<f64>,
+    /// Median job.
+    pub job_median_s: Option<f64>,
+    /// Longest job.
+    pub job_max_s: Option<f64>,
+    /// Times that a thread gave up its processor.
+    pub voluntary_switches: Option<i64>,
+    /// Times that a thread had to.
+    pub involuntary_switches: Option<i64>,
+    /// Most memory that the process ever had.
+    pub peak_rss_bytes: Option<i64>,
+    /// Samples.
+    pub paths: Option<u64>,
+    /// Rays.
+    pub rays: Option<u64>,
+    /// Rays that met nothing.
+    pub escaped: Option<u64>,
+    /// Paths cut at the bounce limit.
+    pub truncated: Option<u64>,
+    /// Samples that were NaN, infinite or negative.
+    pub invalid_samples: Option<u64>,
+    /// Mean squared error in linear radiance, cross form: free of the reference's noise, and so sometimes below zero.
+    pub mse: Option<f64>,
+    /// Its square root, where there is one.
+    pub rmse: Option<f64>,
+    /// Likewise on display values (clamped, gamma 2.2), in units of the display's range.
+    pub rmse_display: Option<f64>,
+    /// Checksum of the film.
+    pub checksum: String,
+    /// Doubts, separated by semicolons.
+    pub warnings: String,
+    /// Why it failed; empty if it did not.
+    pub error: String,
+    /// Version control revision of the sources.
+    pub commit: String,
+    /// Whether they had uncommitted changes.
+    pub dirty: bool,
+    /// When it started.
+    pub started_utc: String,
+}
+
+/// The errors of an image, where there was a reference.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Measured {
+    /// See [`Record::mse`].
+    pub mse: Option<f64>,
+    /// See [`Record::rmse_display`].
+    pub rmse_display: Option<f64>,
+}
+
+fn described(settings: &Settings) -> Record {
+    let spec = &settings.spec;
+    Record {
+        schema: SCHEMA,
+        experiment: "render".to_string(),
+        scene: settings.scene.clone(),
+        width: spec.width,
+        height: spec.height,
+        spp: settings.spp,
+        seed: spec.seed,
+        estimator: spec.estimator.clone(),
+        sampler: spec.sampler.clone(),
+        kernel: spec.kernel.clone(),
+        precision: "f64".to_string(),
+        biased: spec.subpixel_clamp,
+        decomposition: settings.decomposition.clone(),
+        strategy: settings.strategy.clone(),
+        threads: settings.threads,
+        commit: env!("PATHMARK_COMMIT").to_string(),
+        dirty: env!("PATHMARK_DIRTY") == "true",
+        started_utc: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        ..Record::default()
+    }
+}
+
+/// The row of a run that failed.
+pub fn failure(settings: &Settings, error: &str) -> Record {
+    Record { error: error.replace('\n', "; "), ..described(settings) }
+}
+
+impl Record {
+    /// The row of a run that was done.
+    pub fn new(setup: &Setup, outcome: &Outcome, errors: Measured) -> Self {
+        let durations = outcome.trace.sorted_durations_s();
+        let busy = outcome.trace.busy_s();
+        let counts = &outcome.counts;
+        let mut record = described(setup.settings());
+        record.started_utc.clone_from(&outcome.started_utc);
+        record.scene.clone_from(&setup.scene().name);
+        record.scene_hash.clone_from(&setup.scene().hash);
+        record.effects = setup.effects().to_string();
+        record.jobs = durations.len();
+        record.workers_used = Some(outcome.workers_used);
+        record.setup_s = Some(outcome.setup_s);
+        record.makespan_s = Some(outcome.makespan_s);
+        record.merge_s = Some(outcome.merge_s);
+        if let Some(cpu) = &outcome.cpu {
+            record.cpu_user_s = Some(cpu.user_s);
+            record.cpu_system_s = Some(cpu.system_s);
+            record.voluntary_switches = Some(cpu.voluntary_switches);
+            record.involuntary_switches = Some(cpu.involuntary_switches);
+            record.peak_rss_bytes = Some(cpu.peak_rss_bytes);
+        }
+        record.busy_sum_s = Some(busy.iter().sum());
+        record.busy_max_s = busy.iter().copied().reduce(f64::max);
+        record.job_min_s = durations.first().copied();
+        record.job_median_s = durations.get(durations.len() / 2).copied();
+        record.job_max_s = durations.last().copied();
+        record.paths = Some(counts.paths);
+        record.rays = Some(counts.rays);
+        record.escaped = Some(counts.escaped);
+        record.truncated = Some(counts.truncated);
+        record.invalid_samples = Some(counts.invalid);
+        record.mse = errors.mse;
+        record.rmse = errors.mse.filter(|mse| *mse >= 0.0).map(f64::sqrt);
+        record.rmse_display = errors.rmse_display;
+        record.checksum.clone_from(&outcome.checksum);
+        record.warnings = outcome.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";");
+        record
+    }
+}

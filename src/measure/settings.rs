@@ -1,0 +1,83 @@
+//! The three axes of a run, by name: what is rendered, in which pieces, and who renders them when.
+
+use crate::error::{InputError, Result};
+use crate::estimator::ESTIMATORS;
+use crate::film::check_size;
+use crate::kernel::{KERNELS, Spec};
+use crate::sampling::REFERENCE_SEEDS;
+use serde::{Deserialize, Serialize};
+use std::num::NonZeroUsize;
+
+/// Most workers that can be asked for.
+const LARGEST_THREADS: usize = 4096;
+/// Most samples per pixel.
+const LARGEST_SPP: u32 = 1 << 24;
+/// Largest seed of an image under test: the seeds above belong to references.
+pub const LARGEST_SEED: u64 = REFERENCE_SEEDS - 1;
+
+/// What to run. Every field is a name as it stands on the command line or in an experiment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Scene: a name or a path.
+    pub scene: String,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// What the kernel is built from.
+    pub spec: Spec,
+    /// How the film is cut into jobs.
+    pub decomposition: String,
+    /// Who renders them.
+    pub strategy: String,
+    /// How many workers.
+    pub threads: usize,
+}
+
+/// Threads that this process may use at once.
+pub fn available_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
+}
+
+impl Settings {
+    /// `thread-per-row`, as report A names it, is the strategy `thread-per-job` on the decomposition `rows`.
+    #[must_use]
+    pub fn resolved(mut self) -> Self {
+        if self.strategy == "thread-per-row" {
+            self.strategy = "thread-per-job".to_string();
+            self.decomposition = "rows".to_string();
+        }
+        self
+    }
+
+    /// Refuses numbers out of range, before anything is allocated or started. Seeds of references are allowed; whoever takes a seed
+    /// from a user refuses those.
+    pub(super) fn check(&self) -> Result<()> {
+        check_size(self.spec.width, self.spec.height)?;
+        if !(1..=LARGEST_SPP).contains(&self.spp) {
+            let allowed = format!("1 to {LARGEST_SPP}");
+            return Err(InputError::new("spp", self.spp.to_string(), "is out of range").allowed(allowed).into());
+        }
+        let multiple = ESTIMATORS.iter().find(|entry| entry.name == self.spec.estimator).map_or(1, |e| e.spp_multiple);
+        if !self.spp.is_multiple_of(multiple) {
+            let problem =
+                format!("is no multiple of {multiple}, which {} needs for its subpixels", self.spec.estimator);
+            let near = self.spp.next_multiple_of(multiple);
+            let below = near - multiple;
+            let allowed = if below == 0 { near.to_string() } else { format!("{below} or {near}") };
+            return Err(InputError::new("spp", self.spp.to_string(), problem).allowed(allowed).into());
+        }
+        if !(1..=LARGEST_THREADS).contains(&self.threads) {
+            let allowed = format!("1 to {LARGEST_THREADS}");
+            return Err(InputError::new("threads", self.threads.to_string(), "is out of range")
+                .allowed(allowed)
+                .into());
+        }
+        if !KERNELS.iter().any(|entry| entry.name == self.spec.kernel) {
+            let names: Vec<&str> = KERNELS.iter().map(|entry| entry.name).collect();
+            return Err(InputError::new("kernel", &self.spec.kernel, "there is none of that name")
+                .allowed(names.join(", "))
+                .into());
+        }
+        Ok(())
+    }
+}

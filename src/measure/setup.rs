@@ -1,0 +1,244 @@
+//! Settings that have been checked, and the run itself.
+
+use super::slots::{Slot, Slots};
+use super::usage::Usage;
+use super::{Settings, Trace, Warning, available_threads};
+use crate::error::{Error, InputError, Result};
+use crate::film::{Decomposition, Film, FilmKey, Plan};
+use crate::kernel::{self, Counts, Kernel};
+use crate::scene::{SUBPIXELS, Scene};
+use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::time::{Duration, Instant, SystemTime};
+
+/// A run that can start: everything that the user could have got wrong has been checked.
+pub struct Setup {
+    settings: Settings,
+    scene: Arc<Scene>,
+    kernel: Arc<dyn Kernel>,
+    effects: &'static str,
+    plan: Arc<Plan>,
+    strategy: &'static strategy::Entry,
+    parameter: Option<String>,
+}
+
+/// What a run gave.
+pub struct Outcome {
+    /// The image's sums.
+    pub film: Film,
+    /// Who did what when.
+    pub trace: Trace,
+    /// What happened on the paths.
+    pub counts: Counts,
+    /// Threads that ran at least one job.
+    pub workers_used: u32,
+    /// Seconds to make the strategy.
+    pub setup_s: f64,
+    /// Seconds from handing over the jobs until all were done.
+    pub makespan_s: f64,
+    /// Seconds to put the pieces together.
+    pub merge_s: f64,
+    /// The film's checksum.
+    pub checksum: String,
+    /// What a reader should know.
+    pub warnings: Vec<Warning>,
+    /// When it started.
+    pub started_utc: String,
+    /// What the system counted during the makespan.
+    pub(super) cpu: Option<Usage>,
+}
+
+impl Setup {
+    /// Checks the settings, loads the scene, cuts the film and builds the kernel.
+    pub fn prepare(settings: Settings) -> Result<Self> {
+        let scene = Arc::new(crate::scene::load(&settings.scene)?);
+        Self::for_scene(scene, settings)
+    }
+
+    /// Likewise, for a scene that is already there; `settings.scene` is not looked at.
+    pub fn for_scene(scene: Arc<Scene>, settings: Settings) -> Result<Self> {
+        let settings = settings.resolved();
+        settings.check()?;
+        let decomposition = Decomposition::parse(&settings.decomposition)?;
+        let (name, parameter) = match settings.strategy.split_once(':') {
+            Some((name, parameter)) => (name, Some(parameter.to_string())),
+            None => (settings.strategy.as_str(), None),
+        };
+        let Some(strategy) = strategy::find(name) else {
+            let names: Vec<&str> = strategy::STRATEGIES.iter().map(|entry| entry.name).collect();
+            return Err(InputError::new("strategy", name, "there is no strategy of that name")
+                .allowed(format!("{}, thread-per-row", names.join(", ")))
+                .into());
+        };
+        let built = kernel::build(&scene, &settings.spec)?;
+        let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
+        Ok(Self {
+            scene,
+            kernel: Arc::from(built.kernel),
+            effects: built.effects,
+            plan: Arc::new(plan),
+            strategy,
+            parameter,
+            settings,
+        })
+    }
+
+    /// What was asked for.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Name of the effect profile.
+    pub fn effects(&self) -> &'static str {
+        self.effects
+    }
+
+    /// How many jobs there are.
+    pub fn jobs(&self) -> usize {
+        self.plan.len()
+    }
+
+    /// How many workers there will be: what was asked for, unless the strategy has its own rule.
+    pub fn threads(&self) -> usize {
+        match self.strategy.workers {
+            Workers::Caller => 1,
+            Workers::PerJob => self.jobs(),
+            Workers::Threads => self.settings.threads,
+        }
+    }
+
+    /// What the film will be of.
+    pub fn film_key(&self) -> FilmKey {
+        let spec = &self.settings.spec;
+        FilmKey {
+            scene: self.scene.name.clone(),
+            scene_hash: self.scene.hash.clone(),
+            estimator: spec.estimator.clone(),
+            sampler: spec.sampler.clone(),
+            seed: spec.seed,
+            spp: self.settings.spp,
+            width: spec.width,
+            height: spec.height,
+            revision: kernel::REVISION,
+        }
+    }
+
+    /// Renders, times and verifies. `watch` is told the number of jobs done now and then, from another thread.
+    pub fn run(&self, watch: Option<&(dyn Fn(u64) + Sync)>) -> Result<Outcome> {
+        let slots = Arc::new(Slots::new(&self.plan));
+        let started_utc = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+        let before_setup = Instant::now();
+        let mut strategy = self.new_strategy()?;
+        let setup_s = before_setup.elapsed().as_secs_f64();
+
+        let timed = match watch {
+            None => self.timed_run(strategy.as_mut(), &slots)?,
+            Some(watch) => std::thread::scope(|scope| {
+                let (stop, stopped) = std::sync::mpsc::channel::<()>();
+                let watched = Arc::clone(&slots);
+                scope.spawn(move || {
+                    while stopped.recv_timeout(Duration::from_millis(100))
+                        == Err(std::sync::mpsc::RecvTimeoutError::Timeout)
+                    {
+                        watch(watched.done());
+                    }
+                });
+                let timed = self.timed_run(strategy.as_mut(), &slots);
+                drop(stop);
+                timed
+            })?,
+        };
+        drop(strategy);
+
+        let before_merge = Instant::now();
+        let filled = slots.collect().map_err(|problem| {
+            Error::Check(format!("strategy {} broke its contract: {problem}", self.settings.strategy))
+        })?;
+        let mut film = Film::new(self.settings.spec.width, self.settings.spec.height);
+        filled.iter().for_each(|slot| film.add(&slot.tile));
+        let merge_s = before_merge.elapsed().as_secs_f64();
+
+        let mut counts = Counts::default();
+        filled.iter().for_each(|slot| counts.add(&slot.counts));
+        let workers_used = slots.workers_used();
+        Ok(Outcome {
+            checksum: film.checksum(),
+            warnings: self.warnings(&counts, workers_used),
+            trace: Trace { jobs: filled.iter().map(|slot: &Box<Slot>| slot.span).collect() },
+            film,
+            counts,
+            workers_used,
+            setup_s,
+            makespan_s: timed.makespan_s,
+            merge_s,
+            started_utc,
+            cpu: timed.cpu,
+        })
+    }
+
+    fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
+        let threads = NonZeroUsize::new(self.settings.threads).unwrap_or(NonZeroUsize::MIN);
+        let config = Config { parameter: self.parameter.clone(), ..Config::new(threads) };
+        (self.strategy.new)(config).map_err(|error| self.strategy_error(error))
+    }
+
+    fn timed_run(&self, strategy: &mut dyn Strategy, slots: &Arc<Slots>) -> Result<Timed> {
+        let (kernel, plan, filled) = (Arc::clone(&self.kernel), Arc::clone(&self.plan), Arc::clone(slots));
+        let usage = Usage::now();
+        let start = Instant::now();
+        let job = Arc::new(move |index: usize| filled.fill(index, &plan, &*kernel, start));
+        strategy.run(self.plan.len(), job).map_err(|error| self.strategy_error(error))?;
+        let makespan_s = start.elapsed().as_secs_f64();
+        Ok(Timed { makespan_s, cpu: usage.zip(Usage::now()).map(|(before, after)| after.since(&before)) })
+    }
+
+    fn strategy_error(&self, error: StrategyError) -> Error {
+        match error {
+            StrategyError::Parameter { value, allowed, .. } => {
+                InputError::new("strategy", format!("{}:{value}", self.strategy.name), "has no such parameter")
+                    .allowed(allowed)
+                    .into()
+            }
+            other => Error::system("running strategy", self.strategy.name, std::io::Error::other(other)),
+        }
+    }
+
+    fn warnings(&self, counts: &Counts, workers_used: u32) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let asked = self.strategy.workers.at_once(self.settings.threads, self.plan.len());
+        if (workers_used as usize) < asked {
+            warnings.push(Warning::WorkersUnused { asked, used: workers_used });
+        }
+        let processors = available_threads();
+        if workers_used as usize > processors {
+            warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
+        }
+        if !self.settings.spp.is_multiple_of(SUBPIXELS) {
+            warnings.push(Warning::PartialSubpixels);
+        }
+        if self.settings.spec.subpixel_clamp {
+            warnings.push(Warning::Biased);
+        }
+        let counted = [
+            (counts.escaped, Warning::Escaped(counts.escaped)),
+            (counts.truncated, Warning::Truncated(counts.truncated)),
+            (counts.invalid, Warning::InvalidSamples(counts.invalid)),
+        ];
+        warnings.extend(counted.into_iter().filter(|(count, _)| *count > 0).map(|(_, warning)| warning));
+        if cfg!(debug_assertions) {
+            warnings.push(Warning::DebugBuild);
+        }
+        warnings
+    }
+}
+
+struct Timed {
+    makespan_s: f64,
+    cpu: Option<Usage>,
+}

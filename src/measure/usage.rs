@@ -1,0 +1,40 @@
+//! What the system counted for this process: CPU time, context switches, peak memory (getrusage).
+
+use nix::sys::resource::{Usage as Counted, UsageWho, getrusage};
+use nix::sys::time::TimeValLike;
+
+/// Totals since the process started, over all its threads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Usage {
+    pub(super) user_s: f64,
+    pub(super) system_s: f64,
+    pub(super) voluntary_switches: i64,
+    pub(super) involuntary_switches: i64,
+    pub(super) peak_rss_bytes: i64,
+}
+
+impl Usage {
+    /// Reads the totals; `None` where the system does not tell.
+    pub(super) fn now() -> Option<Self> {
+        let counted: Counted = getrusage(UsageWho::RUSAGE_SELF).ok()?;
+        Some(Self {
+            user_s: counted.user_time().num_microseconds() as f64 * 1e-6,
+            system_s: counted.system_time().num_microseconds() as f64 * 1e-6,
+            voluntary_switches: i64::from(counted.voluntary_context_switches()),
+            involuntary_switches: i64::from(counted.involuntary_context_switches()),
+            // Linux counts in KiB.
+            peak_rss_bytes: i64::from(counted.max_rss()) * 1024,
+        })
+    }
+
+    /// What was added since `before`; peak memory is no difference.
+    pub(super) fn since(&self, before: &Self) -> Self {
+        Self {
+            user_s: self.user_s - before.user_s,
+            system_s: self.system_s - before.system_s,
+            voluntary_switches: self.voluntary_switches - before.voluntary_switches,
+            involuntary_switches: self.involuntary_switches - before.involuntary_switches,
+            peak_rss_bytes: self.peak_rss_bytes,
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What a reader of a record should know before believing it.
+
+use std::fmt;
+
+/// A doubt about a run; it goes into the record's `warnings`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Warning {
+    /// Fewer threads did work than were asked for.
+    WorkersUnused {
+        /// Asked for.
+        asked: usize,
+        /// Used.
+        used: u32,
+    },
+    /// More workers than processors.
+    Oversubscribed {
+        /// Workers.
+        workers: u32,
+        /// Processors.
+        processors: usize,
+    },
+    /// The samples do not divide among the four subpixels, so the pixel's filter is lopsided.
+    PartialSubpixels,
+    /// Subpixels are clamped before averaging.
+    Biased,
+    /// Rays left the scene.
+    Escaped(u64),
+    /// Paths were cut at the bounce limit.
+    Truncated(u64),
+    /// Samples were NaN, infinite or negative.
+    InvalidSamples(u64),
+    /// The program was built without optimisation for measuring.
+    DebugBuild,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WorkersUnused { asked, used } => write!(f, "workers-unused({used} of {asked})"),
+            Self::Oversubscribed { workers, processors } => write!(f, "oversubscribed({workers} on {processors})"),
+            Self::PartialSubpixels => f.write_str("partial-subpixels"),
+            Self::Biased => f.write_str("biased"),
+            Self::Escaped(count) => write!(f, "escaped({count})"),
+            Self::Truncated(count) => write!(f, "truncated({count})"),
+            Self::InvalidSamples(count) => write!(f, "invalid-samples({count})"),
+            Self::DebugBuild => f.write_str("debug-build"),
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! Mean squared error against two independent references, in which their noise cancels.
+//!
+//! With test picture T and references R1, R2 that share no samples, the expectation of (T - R1)(T - R2) is bias squared plus the
+//! variance of T, whatever the noise of R1 and R2: the noises enter only as products of independent numbers with mean 0. The
+//! plain mean squared error against one reference of M samples is too large by that reference's variance, which at N samples of
+//! the test makes the error look (1 + N/M)^(1/2) times as large and flattens the slope of a convergence plot.
+
+use super::check_sizes;
+use crate::error::Result;
+use crate::image_io::{Image, tone_map};
+
+/// The mean of (T - R1)(T - R2) over pixels and channels of linear radiance. Unbiased, and so it may come out negative when
+/// the true error is small against the noise of the references.
+pub fn cross_mse(test: &Image, reference1: &Image, reference2: &Image) -> Result<f64> {
+    mean_product(test, reference1, reference2, |value| value)
+}
+
+/// [`cross_mse`] of display values in [0, 1].
+///
+/// Not exactly unbiased: the display value of a noisy mean is not, on average, the display value of the mean, since clamp and
+/// gamma are not linear. What is left is the squared curvature times variance of the references, far below the plain form's
+/// excess for references that are much better than the test.
+pub fn cross_mse_display(test: &Image, reference1: &Image, reference2: &Image) -> Result<f64> {
+    mean_product(test, reference1, reference2, tone_map::display)
+}
+
+/// The root of a cross mean squared error, to be drawn last: average over seeds first. `None` for a negative one, which says
+/// that the references are too noisy to tell the error, and for NaN.
+pub fn root(mse: f64) -> Option<f64> {
+    (mse >= 0.0).then(|| mse.sqrt())
+}
+
+fn mean_product(test: &Image, reference1: &Image, reference2: &Image, map: fn(f64) -> f64) -> Result<f64> {
+    check_sizes(test, reference1)?;
+    check_sizes(test, reference2)?;
+    let (t, r1, r2) = (&test.pixels, &reference1.pixels, &reference2.pixels);
+    let products = t.as_flattened().iter().zip(r1.as_flattened()).zip(r2.as_flattened()).map(|((&t, &r1), &r2)| {
+        let t = map(t);
+        (t - map(r1)) * (t - map(r2))
+    });
+    Ok(products.sum::<f64>() / (3 * t.len()) as f64)
+}

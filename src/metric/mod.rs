@@ -1,0 +1,94 @@
+//! How far a picture is from a reference: one number each, listed in [`METRICS`]; against two references without their noise
+//! ([`cross_mse`]); and as a picture ([`heatmap`]).
+//!
+//! The error of a Monte Carlo estimate is the one of linear radiance: `linear` metrics fall as spp grows along the law that
+//! theory gives. The others compare what a display shows (clamp and gamma, [`crate::image_io::tone_map`]), which bends the curve
+//! wherever pixels saturate, and are there for comparison with reports that measured pictures.
+//!
+//! A NaN in either picture makes every number that it enters NaN. Pictures of different sizes are an [`InputError`].
+
+mod cross;
+mod heatmap;
+mod pointwise;
+mod ssim;
+
+pub use cross::{cross_mse, cross_mse_display, root};
+pub use heatmap::{Heatmap, heatmap};
+pub use pointwise::REL_MSE_EPSILON;
+
+use crate::error::{InputError, Result};
+use crate::image_io::Image;
+
+/// A number that compares two pictures.
+#[derive(Debug)]
+pub struct Entry {
+    /// Its name on the command line and in tables.
+    pub name: &'static str,
+    /// One line for a list.
+    pub about: &'static str,
+    /// Whether it measures linear radiance; otherwise what a display shows.
+    pub linear: bool,
+    /// Picture, reference, which are of one size.
+    formula: fn(&Image, &Image) -> f64,
+}
+
+impl Entry {
+    /// The number for `test` against `reference`.
+    pub fn compute(&self, test: &Image, reference: &Image) -> Result<f64> {
+        check_sizes(test, reference)?;
+        Ok((self.formula)(test, reference))
+    }
+}
+
+/// Every metric.
+pub const METRICS: &[Entry] = &[
+    Entry {
+        name: "rmse",
+        about: "root of the mean squared error over pixels and channels",
+        linear: true,
+        formula: pointwise::rmse,
+    },
+    Entry {
+        name: "rel-mse",
+        about: "mean of the squared error over (squared reference + 0.01)",
+        linear: true,
+        formula: pointwise::rel_mse,
+    },
+    Entry { name: "mae", about: "mean absolute error over pixels and channels", linear: true, formula: pointwise::mae },
+    Entry {
+        name: "rmse-display",
+        about: "rmse of display values in [0, 1]",
+        linear: false,
+        formula: pointwise::rmse_display,
+    },
+    Entry {
+        name: "psnr",
+        about: "peak signal-to-noise ratio of display values, in dB",
+        linear: false,
+        formula: pointwise::psnr,
+    },
+    Entry {
+        name: "ssim",
+        about: "structural similarity of display luma; 1 is equal, NaN below 11 x 11 pixels",
+        linear: false,
+        formula: ssim::ssim,
+    },
+];
+
+/// The metric called `name`.
+pub fn find(name: &str) -> Result<&'static Entry> {
+    METRICS.iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let names: Vec<_> = METRICS.iter().map(|entry| entry.name).collect();
+        InputError::new("metric", name, "there is no such metric").allowed(names.join(", ")).into()
+    })
+}
+
+/// Pictures are compared pixel by pixel, so their sizes must agree.
+fn check_sizes(test: &Image, reference: &Image) -> Result<()> {
+    let size = |image: &Image| format!("{}x{}", image.width, image.height);
+    if size(test) != size(reference) {
+        let problem = format!("the reference is {}", size(reference));
+        return Err(InputError::new("size", size(test), problem).allowed("pictures of one size").into());
+    }
+    Ok(())
+}

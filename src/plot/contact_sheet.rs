@@ -1,0 +1,163 @@
+//! Images beside each other: renders at growing spp beside their reference, with maps of their error below.
+//!
+//! PNG only: the pixels are what is looked at.
+
+use std::path::Path;
+
+use image::RgbImage;
+use image::imageops;
+
+use super::drawing::{Align, Drawing};
+use super::style::{GRID, HAIRLINE, INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE, TITLE_SIZE};
+use super::{font, heat, number, paint, save_bytes};
+use crate::error::{Error, Result};
+
+/// About how wide each image is shown.
+const SHOWN: u32 = 240;
+/// Space between images.
+const GAP: f64 = 16.0;
+
+/// One image with its caption.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cell {
+    /// Lines above the image: the first is the title.
+    pub caption: Vec<String>,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Red, green and blue of each pixel, rows from the top; `3 * width * height` bytes.
+    pub rgb: Vec<u8>,
+}
+
+/// The scale of the heat maps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColourBar {
+    /// What the colours mean, with the unit.
+    pub label: String,
+    /// The value of the lightest colour; black is 0.
+    pub full: f64,
+}
+
+/// The sheet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSheet {
+    /// What is shown, in one line.
+    pub title: String,
+    /// Scene, size, exposure; may be empty.
+    pub subtitle: String,
+    /// Rows of images. `None` leaves a place empty, as below a reference that has no error.
+    pub rows: Vec<Vec<Option<Cell>>>,
+    /// The scale of the heat maps, if there are any.
+    pub bar: Option<ColourBar>,
+}
+
+impl ContactSheet {
+    /// The sheet as pixels.
+    pub fn pixels(&self) -> Result<RgbImage> {
+        let rows = self.rows.iter().map(|row| row.iter().map(|cell| cell.as_ref().map(shown).transpose()).collect());
+        let images: Vec<Vec<Option<RgbImage>>> = rows.collect::<Result<_>>()?;
+        let all = || images.iter().flatten().flatten();
+        let column = f64::from(all().map(RgbImage::width).max().unwrap_or(SHOWN));
+        let columns = images.iter().map(Vec::len).max().unwrap_or(0).max(2) as f64;
+        let width = 2.0 * MARGIN + columns * (column + GAP) - GAP;
+
+        let mut drawing = Drawing::new(&self.title, width, 0.0);
+        let mut y = MARGIN;
+        for (text, size, colour) in [(&self.title, TITLE_SIZE, INK), (&self.subtitle, TEXT_SIZE, MUTED)] {
+            for line in font::wrap(text, size, width - 2.0 * MARGIN) {
+                drawing.text((MARGIN, y + 0.5 * size * LEADING), &line, size, colour, Align::Left);
+                y += size * LEADING;
+            }
+        }
+        let mut placed = Vec::new();
+        for (cells, row) in self.rows.iter().zip(&images) {
+            y += GAP;
+            let captions: Vec<Vec<(String, usize)>> = cells.iter().map(|cell| caption(cell.as_ref(), column)).collect();
+            let lines = captions.iter().map(Vec::len).max().unwrap_or(0) as f64;
+            for (i, (image, caption)) in row.iter().zip(&captions).enumerate() {
+                let x = MARGIN + i as f64 * (column + GAP);
+                for (j, (line, of)) in caption.iter().enumerate() {
+                    let (size, colour) = if *of == 0 { (TEXT_SIZE, INK) } else { (SMALL_SIZE, MUTED) };
+                    let at = (x, y + (j as f64 + 0.5) * TEXT_SIZE * LEADING);
+                    drawing.text(at, line, size, colour, Align::Left);
+                }
+                let top = y + lines * TEXT_SIZE * LEADING + 4.0;
+                placed.extend(image.iter().map(|image| (image, x, top)));
+            }
+            let tallest = row.iter().flatten().map(RgbImage::height).max().unwrap_or(0);
+            y += lines * TEXT_SIZE * LEADING + 4.0 + f64::from(tallest);
+        }
+        if all().next().is_none() {
+            y += GAP;
+            drawing.text((MARGIN, y + 0.5 * TEXT_SIZE), "no data", TEXT_SIZE, MUTED, Align::Left);
+            y += TEXT_SIZE;
+        }
+        if let Some(bar) = &self.bar {
+            y = draw_bar(&mut drawing, bar, y + 1.5 * GAP, (2.0 * column + GAP).min(width - 2.0 * MARGIN - 40.0));
+        }
+        drawing.height = (y + MARGIN).ceil();
+        let mut sheet = paint::pixels(&drawing, 1.0)?;
+        for (image, x, top) in placed {
+            imageops::replace(&mut sheet, image, x.round() as i64, top.round() as i64);
+        }
+        Ok(sheet)
+    }
+
+    /// The bytes of a PNG file.
+    pub fn png(&self) -> Result<Vec<u8>> {
+        paint::png(&self.pixels()?)
+    }
+
+    /// Writes `stem.png` into `dir`, which is made if need be.
+    pub fn save(&self, dir: &Path, stem: &str) -> Result<()> {
+        save_bytes(dir, &format!("{stem}.png"), &self.png()?)
+    }
+}
+
+/// The lines of a caption, broken to a column's width, each with the number of the line it came from.
+fn caption(cell: Option<&Cell>, column: f64) -> Vec<(String, usize)> {
+    let lines = cell.map_or(&[][..], |cell| &cell.caption).iter().enumerate();
+    lines.flat_map(|(i, line)| font::wrap(line, TEXT_SIZE, column).into_iter().map(move |part| (part, i))).collect()
+}
+
+/// The image at about the usual width, by whole factors: a pixel becomes a square, or one of each square is kept. Averaging would hide
+/// the very noise that is to be seen.
+fn shown(cell: &Cell) -> Result<RgbImage> {
+    let Some(image) = RgbImage::from_raw(cell.width, cell.height, cell.rgb.clone()).filter(|i| i.width() > 0) else {
+        let problem = format!("{} bytes for {} x {} pixels", cell.rgb.len(), cell.width, cell.height);
+        return Err(Error::system("drawing", "an image", std::io::Error::other(problem)));
+    };
+    let nearest = |a: u32, b: u32| ((a + b / 2) / b).max(1);
+    let (up, down) = (nearest(SHOWN, image.width()), nearest(image.width(), SHOWN));
+    let size = |length: u32| (length * up / down).max(1);
+    let source = |place: u32, length: u32| (place * down / up + down / 2).min(length - 1);
+    Ok(RgbImage::from_fn(size(image.width()), size(image.height()), |x, y| {
+        *image.get_pixel(source(x, image.width()), source(y, image.height()))
+    }))
+}
+
+/// Draws the scale below `y` and returns where it ends.
+fn draw_bar(drawing: &mut Drawing, bar: &ColourBar, y: f64, width: f64) -> f64 {
+    const HEIGHT: f64 = 14.0;
+    const STEPS: u32 = 128;
+    drawing.text((MARGIN, y + 0.5 * TEXT_SIZE), &bar.label, TEXT_SIZE, INK, Align::Left);
+    let top = y + TEXT_SIZE * LEADING + 2.0;
+    let x = |share: f64| MARGIN + share * width;
+    for i in 0..STEPS {
+        let edge = |j: u32| x(f64::from(j) / f64::from(STEPS)).round();
+        let (left, right) = (edge(i), edge(i + 1));
+        let corners = vec![(left, top), (right, top), (right, top + HEIGHT), (left, top + HEIGHT)];
+        drawing.area(corners, heat::colour((f64::from(i) + 0.5) / f64::from(STEPS)), 1.0);
+    }
+    for quarter in 0..=4 {
+        let share = f64::from(quarter) / 4.0;
+        drawing.path(vec![(x(share), top + HEIGHT), (x(share), top + HEIGHT + 4.0)], INK, HAIRLINE);
+        let beyond = if quarter == 4 { "≥ " } else { "" };
+        let label = format!("{beyond}{}", number::short(share * bar.full, 3));
+        let align = if quarter == 0 { Align::Left } else { Align::Centre };
+        drawing.text((x(share), top + HEIGHT + 12.0), &label, SMALL_SIZE, INK, align);
+    }
+    drawing.path(vec![(MARGIN, top), (x(1.0), top)], GRID, HAIRLINE);
+    top + HEIGHT + 12.0 + SMALL_SIZE
+}

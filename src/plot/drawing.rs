@@ -1,0 +1,210 @@
+//! A drawing: marks in pixels, x to the right and y down, painted in order.
+
+use super::font;
+use super::style::{Colour, Dash};
+
+/// A place in a drawing, in pixels.
+pub type Place = (f64, f64);
+
+/// Which part of a text stands at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// The left end.
+    Left,
+    /// The middle.
+    Centre,
+    /// The right end.
+    Right,
+}
+
+/// Text of one line. Vertically the middle of its capital letters stands at the place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Text {
+    /// Where it stands.
+    pub at: Place,
+    /// What it says.
+    pub text: String,
+    /// Pixels an em.
+    pub size: f64,
+    /// Its colour.
+    pub colour: Colour,
+    /// What of it stands at `at`.
+    pub align: Align,
+    /// Reading upwards, as the title of a vertical axis does.
+    pub upwards: bool,
+}
+
+impl Text {
+    /// Left, top, right and bottom of the space it takes.
+    pub fn bounds(&self) -> [f64; 4] {
+        let (width, half) = (font::width(&self.text, self.size), 0.5 * self.size);
+        let before = match self.align {
+            Align::Left => 0.0,
+            Align::Centre => 0.5 * width,
+            Align::Right => width,
+        };
+        let (x, y) = self.at;
+        if self.upwards {
+            [x - half, y + before - width, x + half, y + before]
+        } else {
+            [x - before, y - half, x - before + width, y + half]
+        }
+    }
+}
+
+/// One thing to paint.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mark {
+    /// A line through places.
+    Path {
+        /// Where it goes.
+        places: Vec<Place>,
+        /// Its colour.
+        colour: Colour,
+        /// Its width.
+        width: f64,
+    },
+    /// A filled polygon.
+    Area {
+        /// Its corners.
+        places: Vec<Place>,
+        /// Its colour.
+        colour: Colour,
+        /// 0 is invisible, 1 covers what is below.
+        opacity: f64,
+    },
+    /// A filled circle.
+    Disc {
+        /// Its centre.
+        at: Place,
+        /// Its radius.
+        radius: f64,
+        /// Its colour.
+        colour: Colour,
+    },
+    /// Text.
+    Text(Text),
+}
+
+/// A picture of a given size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    /// Width in pixels.
+    pub width: f64,
+    /// Height in pixels.
+    pub height: f64,
+    /// What it shows, for readers who can't see it.
+    pub title: String,
+    /// What to paint, the lowest first.
+    pub marks: Vec<Mark>,
+}
+
+impl Drawing {
+    /// An empty drawing.
+    pub fn new(title: &str, width: f64, height: f64) -> Self {
+        Self { width, height, title: title.to_string(), marks: Vec::new() }
+    }
+
+    /// A line; nothing for fewer than two places.
+    pub fn path(&mut self, places: Vec<Place>, colour: Colour, width: f64) {
+        if places.len() > 1 {
+            self.marks.push(Mark::Path { places, colour, width });
+        }
+    }
+
+    /// A broken line.
+    pub fn dashed(&mut self, places: &[Place], colour: Colour, width: f64, dash: Dash) {
+        for stroke in strokes(places, dash) {
+            self.path(stroke, colour, width);
+        }
+    }
+
+    /// A filled polygon.
+    pub fn area(&mut self, places: Vec<Place>, colour: Colour, opacity: f64) {
+        self.marks.push(Mark::Area { places, colour, opacity });
+    }
+
+    /// A filled circle.
+    pub fn disc(&mut self, at: Place, radius: f64, colour: Colour) {
+        self.marks.push(Mark::Disc { at, radius, colour });
+    }
+
+    /// A line of text.
+    pub fn text(&mut self, at: Place, text: &str, size: f64, colour: Colour, align: Align) {
+        self.marks.push(Mark::Text(Text { at, text: text.to_string(), size, colour, align, upwards: false }));
+    }
+
+    /// A line of text that reads upwards, centred at its place.
+    pub fn text_upwards(&mut self, at: Place, text: &str, size: f64, colour: Colour) {
+        let align = Align::Centre;
+        self.marks.push(Mark::Text(Text { at, text: text.to_string(), size, colour, align, upwards: true }));
+    }
+
+    /// All text in it.
+    pub fn texts(&self) -> impl Iterator<Item = &Text> {
+        self.marks.iter().filter_map(|mark| if let Mark::Text(text) = mark { Some(text) } else { None })
+    }
+}
+
+/// Cuts a line into the strokes of a dash pattern.
+fn strokes(places: &[Place], dash: Dash) -> Vec<Vec<Place>> {
+    let Some((&first, rest)) = places.split_first() else { return Vec::new() };
+    if dash.is_empty() {
+        return vec![places.to_vec()];
+    }
+    let mut done = Vec::new();
+    let (mut from, mut stroke) = (first, vec![first]);
+    let (mut phase, mut left) = (0, dash[0]);
+    for &to in rest {
+        let length = libm::hypot(to.0 - from.0, to.1 - from.1);
+        let mut covered = 0.0;
+        while length - covered > left {
+            covered += left;
+            let share = covered / length;
+            let cut = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
+            if phase % 2 == 0 {
+                stroke.push(cut);
+                done.push(std::mem::take(&mut stroke));
+            } else {
+                stroke = vec![cut];
+            }
+            phase += 1;
+            left = dash[phase % dash.len()];
+        }
+        left -= length - covered;
+        if phase % 2 == 0 {
+            stroke.push(to);
+        }
+        from = to;
+    }
+    if phase % 2 == 0 {
+        done.push(stroke);
+    }
+    done
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_follow_the_pattern_round_corners() {
+        let places = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0)];
+        let cut = strokes(&places, &[8.0, 4.0]);
+        assert_eq!(cut, [vec![(0.0, 0.0), (8.0, 0.0)], vec![(10.0, 2.0), (10.0, 10.0)]]);
+        let corner = strokes(&places, &[12.0, 4.0]);
+        assert_eq!(corner[0], [(0.0, 0.0), (10.0, 0.0), (10.0, 2.0)]);
+        assert_eq!(strokes(&places, &[]), [places.to_vec()]);
+        assert!(strokes(&[], &[8.0, 4.0]).is_empty());
+    }
+
+    #[test]
+    fn bounds_of_text_follow_its_alignment() {
+        let mut drawing = Drawing::new("t", 100.0, 100.0);
+        drawing.text((50.0, 50.0), "888", 10.0, [0; 3], Align::Right);
+        drawing.text_upwards((50.0, 50.0), "888", 10.0, [0; 3]);
+        let bounds: Vec<_> = drawing.texts().map(Text::bounds).collect();
+        assert!((bounds[0][2] - 50.0).abs() < 1e-9 && bounds[0][0] < 35.0);
+        assert!((bounds[1][1] + bounds[1][3] - 100.0).abs() < 1e-9 && bounds[1][3] - bounds[1][1] > 15.0);
+    }
+}

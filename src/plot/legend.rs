@@ -1,0 +1,104 @@
+//! The column beside a chart that says what its lines are. It never lies over data.
+
+use super::drawing::{Align, Drawing, Place};
+use super::font;
+use super::marker;
+use super::style::{Colour, Dash, INK, LEADING, LINE, Look, SMALL_SIZE};
+
+/// Width of the piece of line that stands before each text.
+const SAMPLE: f64 = 30.0;
+/// Space between sample and text.
+const GAP: f64 = 8.0;
+/// The widest text before it is broken.
+const WIDEST: f64 = 190.0;
+/// Viewers' fonts differ, so the column is wider than measured by this factor.
+const SLACK: f64 = 1.06;
+/// Free space between entries.
+const SPACING: f64 = 5.0;
+
+/// What stands before a text.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sample {
+    /// A series: its marker, and its line if it has one.
+    Series {
+        /// Colour, marker and dashes.
+        look: Look,
+        /// Whether the points are joined.
+        line: bool,
+    },
+    /// A line without points.
+    Line {
+        /// Its colour.
+        colour: Colour,
+        /// Its dashes.
+        dash: Dash,
+        /// Its width.
+        width: f64,
+    },
+}
+
+/// One entry of a legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    sample: Sample,
+    lines: Vec<String>,
+}
+
+impl Entry {
+    /// An entry whose text is broken to fit the column.
+    pub fn new(sample: Sample, text: &str) -> Self {
+        Self { sample, lines: font::wrap(text, SMALL_SIZE, WIDEST) }
+    }
+}
+
+/// Width and height of the column; nothing at all for no entries.
+pub fn size(entries: &[Entry]) -> (f64, f64) {
+    let widest = entries.iter().flat_map(|entry| &entry.lines).map(|line| font::width(line, SMALL_SIZE));
+    let Some(text) = widest.reduce(f64::max) else { return (0.0, 0.0) };
+    (SAMPLE + GAP + SLACK * text, entries.iter().map(entry_height).sum())
+}
+
+fn entry_height(entry: &Entry) -> f64 {
+    entry.lines.len() as f64 * SMALL_SIZE * LEADING + SPACING
+}
+
+/// Draws the column with its upper left corner at a place.
+pub fn draw(drawing: &mut Drawing, entries: &[Entry], (x, mut y): Place) {
+    for entry in entries {
+        let middle = y + 0.5 * SMALL_SIZE * LEADING;
+        let ends = [(x, middle), (x + SAMPLE, middle)];
+        match entry.sample {
+            Sample::Line { colour, dash, width } => drawing.dashed(&ends, colour, width, dash),
+            Sample::Series { look, line } => {
+                if line {
+                    drawing.dashed(&ends, look.colour, LINE, look.dash);
+                }
+                marker::draw(drawing, (x + 0.5 * SAMPLE, middle), look.marker, look.colour);
+            }
+        }
+        for (i, line) in entry.lines.iter().enumerate() {
+            let at = (x + SAMPLE + GAP, middle + i as f64 * SMALL_SIZE * LEADING);
+            drawing.text(at, line, SMALL_SIZE, INK, Align::Left);
+        }
+        y += entry_height(entry);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn column_holds_its_entries() {
+        let sample = Sample::Series { look: Look::nth(0), line: true };
+        let entries = [Entry::new(sample, "rayon"), Entry::new(sample, &"many words ".repeat(12))];
+        let (width, height) = size(&entries);
+        let mut drawing = Drawing::new("t", 500.0, 500.0);
+        draw(&mut drawing, &entries, (100.0, 50.0));
+        for text in drawing.texts() {
+            let [left, top, right, bottom] = text.bounds();
+            assert!(left >= 100.0 && right <= 100.0 + width && top >= 50.0 && bottom <= 50.0 + height);
+        }
+        assert_eq!(size(&[]), (0.0, 0.0));
+    }
+}

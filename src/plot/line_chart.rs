@@ -1,0 +1,232 @@
+//! Lines and points over two axes: error against samples, speedup against threads, time against samples.
+
+use super::Figure;
+use super::axis::{Axis, Range};
+use super::drawing::{Align, Drawing, Place};
+use super::frame::{self, Frame, Words};
+use super::legend::{self, Entry, Sample};
+use super::marker;
+use super::overlay::{Overlay, OverlayKind, inside};
+use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
+
+/// Width of a fitted line: thinner than the data it belongs to.
+const FIT_LINE: f64 = 1.5;
+
+/// One value over another, and how far each can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Point {
+    /// Along the horizontal axis.
+    pub x: f64,
+    /// Along the vertical axis.
+    pub y: f64,
+    /// Low and high end of x.
+    pub x_interval: Option<(f64, f64)>,
+    /// Low and high end of y.
+    pub y_interval: Option<(f64, f64)>,
+}
+
+impl Point {
+    /// A point without intervals.
+    pub fn new(x: f64, y: f64) -> Self {
+        Self { x, y, x_interval: None, y_interval: None }
+    }
+
+    /// Adds the interval of y; `None` leaves the point bare.
+    #[must_use]
+    pub fn with_y(mut self, interval: Option<(f64, f64)>) -> Self {
+        self.y_interval = interval;
+        self
+    }
+
+    /// Adds the interval of x; `None` leaves the point bare.
+    #[must_use]
+    pub fn with_x(mut self, interval: Option<(f64, f64)>) -> Self {
+        self.x_interval = interval;
+        self
+    }
+}
+
+/// How the intervals of a series are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spread {
+    /// A bar at each point.
+    Bars,
+    /// A band behind the line, for intervals of y only.
+    Band,
+}
+
+/// Points that belong together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// What the legend calls it.
+    pub name: String,
+    /// Its points, in the order in which a line joins them.
+    pub points: Vec<Point>,
+    /// Colour, marker and dashes.
+    pub look: Look,
+    /// How its intervals are shown.
+    pub spread: Spread,
+    /// Whether a line joins its points.
+    pub line: bool,
+}
+
+impl Series {
+    /// A series with a line and error bars.
+    pub fn new(name: impl Into<String>, look: Look, points: Vec<Point>) -> Self {
+        Self { name: name.into(), points, look, spread: Spread::Bars, line: true }
+    }
+
+    /// Shows the intervals as a band.
+    #[must_use]
+    pub fn banded(mut self) -> Self {
+        self.spread = Spread::Band;
+        self
+    }
+
+    /// Leaves the points unjoined.
+    #[must_use]
+    pub fn scattered(mut self) -> Self {
+        self.line = false;
+        self
+    }
+}
+
+/// The chart. Points without a place on its axes (not finite, or not positive on a logarithmic axis) are left out, and it says so.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineChart {
+    /// What is shown, in one line.
+    pub title: String,
+    /// Workload, machine, what the bars are; may be empty.
+    pub subtitle: String,
+    /// Remarks below the chart; may be empty.
+    pub caption: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// The data.
+    pub series: Vec<Series>,
+    /// Guides and fits.
+    pub overlays: Vec<Overlay>,
+    /// Pixels by which neighbouring series are moved apart sideways, so that points at one x stay visible; 0 for none.
+    pub dodge: f64,
+}
+
+impl LineChart {
+    /// A chart of `series`, without guides.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
+        let (subtitle, caption) = (String::new(), String::new());
+        Self { title: title.into(), subtitle, caption, x, y, series, overlays: Vec::new(), dodge: 0.0 }
+    }
+
+    /// The ranges of both axes; `None` if no point can be drawn.
+    fn ranges(&self) -> Option<(Range, Range)> {
+        // Each axis must know of a value to judge its partner by; points that lack one of them count for neither.
+        let alone = |axis: &Axis, value: f64| Range::of(axis, [value]).is_some();
+        let drawable = |point: &&Point| alone(&self.x, point.x) && alone(&self.y, point.y);
+        let points: Vec<&Point> = self.series.iter().flat_map(|series| &series.points).filter(drawable).collect();
+        let ends = |interval: Option<(f64, f64)>| interval.into_iter().flat_map(|(low, high)| [low, high]);
+        let x = Range::of(&self.x, points.iter().flat_map(|p| ends(p.x_interval).chain([p.x])))?;
+        let y = Range::of(&self.y, points.iter().flat_map(|p| ends(p.y_interval).chain([p.y])))?;
+        Some((x, y))
+    }
+
+    fn entries(&self) -> Vec<Entry> {
+        let series = self.series.iter().map(|series| {
+            let sample = Sample::Series { look: series.look, line: series.line };
+            let note = if series.points.is_empty() { " (no data)" } else { "" };
+            Entry::new(sample, &format!("{}{note}", series.name))
+        });
+        let overlays = self.overlays.iter().enumerate().map(|(index, overlay)| {
+            let (colour, dash) = self.stroke(index, overlay.kind);
+            Entry::new(Sample::Line { colour, dash, width: FIT_LINE }, &overlay.label)
+        });
+        series.chain(overlays).collect()
+    }
+
+    /// Colour and dashes of overlay number `index`; neighbouring guides differ in their dashes.
+    fn stroke(&self, index: usize, kind: OverlayKind) -> (Colour, Dash) {
+        match kind {
+            OverlayKind::Guide => (MUTED, DASHES[1 + index % 2]),
+            OverlayKind::Fit(series) => (self.series.get(series).map_or(MUTED, |series| series.look.colour), DASHES[3]),
+        }
+    }
+
+    /// Draws a series into the frame; returns how many of its points have no place.
+    fn draw_series(&self, drawing: &mut Drawing, frame: &Frame, index: usize) -> usize {
+        let series = &self.series[index];
+        let shift = self.dodge * (index as f64 - 0.5 * (self.series.len() as f64 - 1.0));
+        let moved = |place: Place| (place.0 + shift, place.1);
+        let spots: Vec<Option<Place>> = series.points.iter().map(|p| frame.spot(p.x, p.y).map(moved)).collect();
+        if series.line {
+            // A point without a place is a gap: nothing is known there.
+            for run in spots.split(Option::is_none) {
+                let places: Vec<Place> = run.iter().flatten().copied().collect();
+                drawing.dashed(&places, series.look.colour, LINE, series.look.dash);
+            }
+        }
+        for (point, &spot) in series.points.iter().zip(&spots) {
+            let Some((x, y)) = spot else { continue };
+            if let Some((low, high)) = point.y_interval.filter(|_| series.spread == Spread::Bars)
+                && let Some((low, high)) = frame.upright(low).zip(frame.upright(high))
+            {
+                marker::bar(drawing, (x, low), (x, high), series.look.colour);
+            }
+            if let Some((low, high)) = point.x_interval
+                && let Some((low, high)) = frame.across(low).zip(frame.across(high))
+            {
+                marker::bar(drawing, (low + shift, y), (high + shift, y), series.look.colour);
+            }
+        }
+        for &spot in spots.iter().flatten() {
+            marker::draw(drawing, spot, series.look.marker, series.look.colour);
+        }
+        spots.iter().filter(|spot| spot.is_none()).count()
+    }
+
+    /// The band of a series, which lies below every line.
+    fn draw_band(drawing: &mut Drawing, frame: &Frame, series: &Series) {
+        let edge = |point: &Point| {
+            let (low, high) = point.y_interval?;
+            let x = frame.spot(point.x, point.y)?.0;
+            Some(((x, frame.upright(low)?), (x, frame.upright(high)?)))
+        };
+        let edges: Vec<Option<(Place, Place)>> = series.points.iter().map(edge).collect();
+        for run in edges.split(Option::is_none).filter(|run| run.len() > 1) {
+            let low = run.iter().flatten().map(|edge| edge.0);
+            let high = run.iter().rev().flatten().map(|edge| edge.1);
+            drawing.area(low.chain(high).collect(), series.look.colour, 0.18);
+        }
+    }
+}
+
+impl Figure for LineChart {
+    fn drawing(&self) -> Drawing {
+        let entries = self.entries();
+        let ranges = self.ranges();
+        let words = Words { title: &self.title, subtitle: &self.subtitle, caption: &self.caption };
+        let (mut drawing, frame) = Frame::begin(&words, (&self.x, &self.y), ranges, legend::size(&entries));
+        let mut lost = 0;
+        if ranges.is_some() {
+            for series in self.series.iter().filter(|series| series.spread == Spread::Band) {
+                Self::draw_band(&mut drawing, &frame, series);
+            }
+            for (index, overlay) in self.overlays.iter().enumerate() {
+                let (colour, dash) = self.stroke(index, overlay.kind);
+                for part in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
+                    drawing.dashed(&part, colour, FIT_LINE, dash);
+                }
+            }
+            lost = (0..self.series.len()).map(|index| self.draw_series(&mut drawing, &frame, index)).sum();
+        } else {
+            lost += self.series.iter().map(|series| series.points.len()).sum::<usize>();
+            drawing.text(frame.centre(), "no data", TEXT_SIZE, MUTED, Align::Centre);
+        }
+        if lost > 0 {
+            let plural = if lost == 1 { "point has" } else { "points have" };
+            frame::remark(&mut drawing, &format!("{lost} {plural} no place on these axes"));
+        }
+        legend::draw(&mut drawing, &entries, frame.legend());
+        drawing
+    }
+}

@@ -1,0 +1,55 @@
+//! The shapes of markers and error bars.
+
+use super::drawing::{Drawing, Place};
+use super::style::{Colour, HAIRLINE, LINE, Marker, PAPER};
+
+/// Half the size of a marker in pixels.
+const RADIUS: f64 = 4.5;
+/// Half the width of the end of an error bar.
+const CAP: f64 = 3.0;
+
+/// Draws a marker, with a thin rim of paper around it that parts it from lines below.
+pub(super) fn draw(drawing: &mut Drawing, at: Place, marker: Marker, colour: Colour) {
+    match marker {
+        Marker::Disc => {
+            drawing.disc(at, RADIUS + 1.0, PAPER);
+            drawing.disc(at, RADIUS, colour);
+        }
+        Marker::Ring => {
+            drawing.disc(at, RADIUS + 1.0, PAPER);
+            drawing.disc(at, RADIUS, colour);
+            drawing.disc(at, RADIUS - 2.0, PAPER);
+        }
+        Marker::Plus => cross(drawing, at, colour, &[((-1.0, 0.0), (1.0, 0.0)), ((0.0, -1.0), (0.0, 1.0))]),
+        Marker::Cross => cross(drawing, at, colour, &[((-0.8, -0.8), (0.8, 0.8)), ((-0.8, 0.8), (0.8, -0.8))]),
+        Marker::Square => filled(drawing, at, colour, &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
+        Marker::Diamond => filled(drawing, at, colour, &[(0.0, -1.25), (1.25, 0.0), (0.0, 1.25), (-1.25, 0.0)]),
+        Marker::Triangle => filled(drawing, at, colour, &[(0.0, -1.2), (1.15, 0.85), (-1.15, 0.85)]),
+        Marker::Nabla => filled(drawing, at, colour, &[(0.0, 1.2), (-1.15, -0.85), (1.15, -0.85)]),
+    }
+}
+
+fn filled(drawing: &mut Drawing, at: Place, colour: Colour, corners: &[Place]) {
+    let outline = |radius: f64| corners.iter().map(|c| (at.0 + radius * c.0, at.1 + radius * c.1)).collect();
+    drawing.area(outline(RADIUS + 1.3), PAPER, 1.0);
+    drawing.area(outline(RADIUS), colour, 1.0);
+}
+
+fn cross(drawing: &mut Drawing, at: Place, colour: Colour, arms: &[(Place, Place)]) {
+    for (paint, width, radius) in [(PAPER, LINE + 2.0, RADIUS + 1.5), (colour, LINE + 0.5, RADIUS + 0.5)] {
+        for (from, to) in arms {
+            let end = |e: &Place| (at.0 + radius * e.0, at.1 + radius * e.1);
+            drawing.path(vec![end(from), end(to)], paint, width);
+        }
+    }
+}
+
+/// Draws an error bar from `a` to `b`, which lie one above or beside the other, with an end across each.
+pub(super) fn bar(drawing: &mut Drawing, a: Place, b: Place, colour: Colour) {
+    let upright = (a.0 - b.0).abs() < (a.1 - b.1).abs();
+    let (dx, dy) = if upright { (CAP, 0.0) } else { (0.0, CAP) };
+    drawing.path(vec![a, b], colour, HAIRLINE);
+    for (x, y) in [a, b] {
+        drawing.path(vec![(x - dx, y - dy), (x + dx, y + dy)], colour, HAIRLINE);
+    }
+}

@@ -1,0 +1,63 @@
+//! Figures: plain data in, SVG and PNG out.
+//!
+//! A chart is turned into a [`Drawing`], a list of marks in pixels, by code that can't fail and that tests can look into. One generic
+//! function then paints the marks on either of plotters' backends. Text is set in an embedded font, so no font has to be
+//! installed, and equal data gives equal bytes.
+
+pub mod axis;
+pub mod contact_sheet;
+pub mod drawing;
+pub mod font;
+mod frame;
+pub mod heat;
+pub mod legend;
+mod lettering;
+pub mod line_chart;
+mod marker;
+pub mod number;
+pub mod overlay;
+mod paint;
+pub mod style;
+#[cfg(test)]
+mod tests;
+
+use std::io::Write;
+use std::path::Path;
+
+use crate::atomic_file;
+use crate::error::{Error, Result};
+
+pub use axis::{Axis, Scale, Ticks};
+pub use contact_sheet::{Cell, ColourBar, ContactSheet};
+pub use drawing::Drawing;
+pub use line_chart::{LineChart, Point, Series, Spread};
+pub use overlay::{Curve, Overlay, OverlayKind};
+
+/// Something that can be drawn as vectors and as pixels.
+pub trait Figure {
+    /// The marks it consists of.
+    fn drawing(&self) -> Drawing;
+
+    /// The figure as a complete SVG document, which can stand in an HTML page as it is.
+    fn svg(&self) -> Result<String> {
+        paint::svg(&self.drawing())
+    }
+
+    /// The figure as a PNG file, at twice the pixels that the SVG asks for.
+    fn png(&self) -> Result<Vec<u8>> {
+        paint::png(&paint::pixels(&self.drawing(), paint::SCALE)?)
+    }
+
+    /// Writes `stem.svg` and `stem.png` into `dir`, which is made if need be.
+    fn save(&self, dir: &Path, stem: &str) -> Result<()> {
+        let (svg, png) = (self.svg()?, self.png()?);
+        save_bytes(dir, &format!("{stem}.svg"), svg.as_bytes())?;
+        save_bytes(dir, &format!("{stem}.png"), &png)
+    }
+}
+
+/// Writes a file that appears whole or not at all.
+fn save_bytes(dir: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    std::fs::create_dir_all(dir).map_err(|error| Error::system("creating", dir, error))?;
+    atomic_file::write(&dir.join(name), |file: &mut dyn Write| file.write_all(bytes))
+}

@@ -1,0 +1,160 @@
+//! Lines that are formulas: what would be ideal, and what was fitted.
+
+use super::axis::Range;
+
+/// y as a function of x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Curve {
+    /// y = intercept + slope x.
+    Line {
+        /// y at x = 0.
+        intercept: f64,
+        /// Rise a unit of x.
+        slope: f64,
+    },
+    /// y = scale x^exponent: straight on two logarithmic axes.
+    Power {
+        /// y at x = 1.
+        scale: f64,
+        /// Its slope there.
+        exponent: f64,
+    },
+}
+
+impl Curve {
+    /// The power law of this exponent through a point; `None` if there is none, as for x = 0.
+    pub fn power_through((x, y): (f64, f64), exponent: f64) -> Option<Self> {
+        let scale = y / libm::pow(x, exponent);
+        (x > 0.0 && scale.is_finite()).then_some(Self::Power { scale, exponent })
+    }
+
+    /// y at `x`.
+    pub fn at(&self, x: f64) -> f64 {
+        match *self {
+            Self::Line { intercept, slope } => intercept + slope * x,
+            Self::Power { scale, exponent } => scale * libm::pow(x, exponent),
+        }
+    }
+}
+
+/// What an overlay means, which decides how it looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OverlayKind {
+    /// A theoretical line to compare with: dashed grey.
+    Guide,
+    /// A line fitted to the series of this number: thin, in that series' colour.
+    Fit(usize),
+}
+
+/// A curve over the points, with its line in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overlay {
+    /// What the legend says; may have several lines.
+    pub label: String,
+    /// Its formula.
+    pub curve: Curve,
+    /// Guide or fit.
+    pub kind: OverlayKind,
+}
+
+impl Overlay {
+    /// A theoretical line.
+    pub fn guide(label: impl Into<String>, curve: Curve) -> Self {
+        Self { label: label.into(), curve, kind: OverlayKind::Guide }
+    }
+
+    /// A line fitted to series number `series`.
+    pub fn fit(label: impl Into<String>, curve: Curve, series: usize) -> Self {
+        Self { label: label.into(), curve, kind: OverlayKind::Fit(series) }
+    }
+}
+
+/// The parts of a curve that lie inside the ranges, as places (0 to 1 each way, y up).
+pub(super) fn inside(curve: &Curve, x: &Range, y: &Range) -> Vec<Vec<(f64, f64)>> {
+    const STEPS: u32 = 128;
+    let places = (0..=STEPS).map(|i| {
+        let at = f64::from(i) / f64::from(STEPS);
+        y.place(curve.at(x.value(at))).map(|height| (at, height))
+    });
+    let mut parts: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+    let mut before: Option<(f64, f64)> = None;
+    for place in places {
+        let piece = before.zip(place).and_then(|(a, b)| clip(a, b));
+        if let (Some((a, b)), Some(part)) = (piece, parts.last_mut()) {
+            // Cut again from the other side, the shared end can differ in its last bit.
+            if part.last().is_some_and(|end| (end.0 - a.0).abs() + (end.1 - a.1).abs() < 1e-12) {
+                part.push(b);
+            } else {
+                parts.push(vec![a, b]);
+            }
+        }
+        before = place;
+    }
+    parts.retain(|part| part.len() > 1);
+    parts.iter().map(|part| corners(part)).collect()
+}
+
+/// A line without the places that lie on the straight way between their neighbours: rounded to pixels they would make it wobble.
+fn corners(places: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    for (i, &here) in places.iter().enumerate() {
+        let straight = kept.last().zip(places.get(i + 1)).is_some_and(|(&before, &next)| {
+            let cross = (here.0 - before.0) * (next.1 - before.1) - (here.1 - before.1) * (next.0 - before.0);
+            cross.abs() < 1e-9
+        });
+        if !straight {
+            kept.push(here);
+        }
+    }
+    kept
+}
+
+/// The part of a straight piece whose heights are in 0 to 1.
+fn clip(a: (f64, f64), b: (f64, f64)) -> Option<((f64, f64), (f64, f64))> {
+    if a.1.max(b.1) < 0.0 || a.1.min(b.1) > 1.0 {
+        return None;
+    }
+    let cut = |from: (f64, f64), to: (f64, f64)| {
+        let height = from.1.clamp(0.0, 1.0);
+        let share = if (height - from.1).abs() > 0.0 { (height - from.1) / (to.1 - from.1) } else { 0.0 };
+        (from.0 + share * (to.0 - from.0), height)
+    };
+    Some((cut(a, b), cut(b, a)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::axis::Axis;
+
+    fn ranges() -> (Range, Range) {
+        let axis = |high: f64| Range::of(&Axis::linear("v"), [0.0, high]).unwrap();
+        (axis(8.0), axis(4.0))
+    }
+
+    #[test]
+    fn curves_go_through_their_point() {
+        let half = Curve::power_through((16.0, 0.25), -0.5).unwrap();
+        assert!((half.at(64.0) - 0.125).abs() < 1e-12);
+        assert!((Curve::Line { intercept: 1.0, slope: 2.0 }.at(3.0) - 7.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ideal_line_is_cut_at_the_frame() {
+        let (x, y) = ranges();
+        let parts = inside(&Curve::Line { intercept: 0.0, slope: 1.0 }, &x, &y);
+        assert_eq!((parts.len(), parts[0].len()), (1, 2));
+        let (first, last) = (parts[0][0], parts[0][parts[0].len() - 1]);
+        assert_eq!(first, (0.0, 0.0));
+        assert!((last.0 - 0.5).abs() < 1e-9 && (last.1 - 1.0).abs() < 1e-12, "{last:?}");
+    }
+
+    #[test]
+    fn curves_elsewhere_or_without_value_leave_nothing() {
+        let (x, y) = ranges();
+        assert!(inside(&Curve::Line { intercept: 9.0, slope: 0.0 }, &x, &y).is_empty());
+        assert!(inside(&Curve::Line { intercept: f64::NAN, slope: 0.0 }, &x, &y).is_empty());
+        assert!(inside(&Curve::Power { scale: 1e300, exponent: 9.0 }, &x, &y).len() <= 1);
+        assert_eq!(Curve::power_through((0.0, 1.0), -0.5), None);
+    }
+}

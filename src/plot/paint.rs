@@ -1,0 +1,138 @@
+//! Marks onto plotters' backends, which is where fonts and file formats come in.
+
+use std::io::{Cursor, Error as IoError};
+
+use image::RgbImage;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use plotters::coord::Shift;
+use plotters::prelude::{
+    BitMapBackend, Circle, DrawingArea, DrawingAreaErrorKind, DrawingBackend, IntoDrawingArea, PathElement, Polygon,
+    RGBAColor, RGBColor, SVGBackend, ShapeStyle, Text as Label,
+};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, FontTransform, TextStyle};
+
+use super::drawing::{Align, Drawing, Mark, Place, Text};
+use super::style::{Colour, PAPER};
+use super::{font, lettering};
+use crate::error::{Error, Result};
+
+/// Backends have whole pixels only; twice as many of them keep lines and letters in place.
+pub(super) const SCALE: f64 = 2.0;
+
+/// plotters' SVG backend writes font-size = size / 1.24.
+const SVG_SIZE: f64 = 1.24;
+/// It puts the base line half the height of a small x below the place, in ems: 0.27 for `DejaVu` Sans and much the same elsewhere.
+const SVG_BASE_LINE: f64 = 0.27;
+
+/// A complete SVG document.
+pub(super) fn svg(drawing: &Drawing) -> Result<String> {
+    let mut text = String::new();
+    let size = device_size(drawing, SCALE);
+    paint(drawing, &SVGBackend::with_string(&mut text, size).into_drawing_area(), SCALE, true)?;
+    // plotters' own first tag fixes the size at the finer pixels and says nothing to a reader who can't see.
+    let body = text.split_once('>').map_or(text.as_str(), |(_, body)| body);
+    let mut head = format!(
+        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\">\n<title>",
+        drawing.width, drawing.height, size.0, size.1
+    );
+    for c in drawing.title.chars() {
+        match c {
+            '<' => head.push_str("&lt;"),
+            '>' => head.push_str("&gt;"),
+            '&' => head.push_str("&amp;"),
+            other => head.push(other),
+        }
+    }
+    Ok(head + "</title>" + body)
+}
+
+/// The drawing as pixels, `scale` of them to one of its own.
+pub(super) fn pixels(drawing: &Drawing, scale: f64) -> Result<RgbImage> {
+    let (width, height) = device_size(drawing, scale);
+    let mut image = RgbImage::new(width, height);
+    paint(drawing, &BitMapBackend::with_buffer(&mut image, (width, height)).into_drawing_area(), scale, false)?;
+    for text in drawing.texts() {
+        lettering::write(&mut image, text, scale)?;
+    }
+    Ok(image)
+}
+
+/// The bytes of a PNG file.
+pub(super) fn png(image: &RgbImage) -> Result<Vec<u8>> {
+    let mut bytes = Cursor::new(Vec::new());
+    // Large even areas pack best without a filter; noise does not pack at all.
+    let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Best, FilterType::NoFilter);
+    image.write_with_encoder(encoder).map_err(|error| failure(&error))?;
+    Ok(bytes.into_inner())
+}
+
+fn device_size(drawing: &Drawing, scale: f64) -> (u32, u32) {
+    ((drawing.width * scale).ceil() as u32, (drawing.height * scale).ceil() as u32)
+}
+
+fn failure(error: &dyn std::error::Error) -> Error {
+    Error::system("drawing", "a figure", IoError::other(error.to_string()))
+}
+
+/// Paints every mark; text only if the backend is to set it.
+fn paint<B: DrawingBackend>(
+    drawing: &Drawing,
+    area: &DrawingArea<B, Shift>,
+    scale: f64,
+    with_text: bool,
+) -> Result<()> {
+    font::face()?;
+    let painted = || -> std::result::Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+        area.fill(&opaque(PAPER))?;
+        for mark in &drawing.marks {
+            match mark {
+                Mark::Path { places, colour, width } => {
+                    let style = opaque(*colour).stroke_width((width * scale).round().max(1.0) as u32);
+                    area.draw(&PathElement::new(device(places, scale), style))?;
+                }
+                Mark::Area { places, colour, opacity } => {
+                    let style = RGBAColor(colour[0], colour[1], colour[2], *opacity).filled();
+                    area.draw(&Polygon::new(device(places, scale), style))?;
+                }
+                Mark::Disc { at, radius, colour } => {
+                    let style: ShapeStyle = opaque(*colour).filled();
+                    area.draw(&Circle::new(point(*at, scale), (radius * scale).round() as u32, style))?;
+                }
+                Mark::Text(text) if with_text => area.draw(&label(text, &opaque(text.colour), scale))?,
+                Mark::Text(_) => {}
+            }
+        }
+        area.present()
+    };
+    painted().map_err(|error| failure(&error))
+}
+
+fn label<'a>(text: &Text, colour: &'a RGBColor, scale: f64) -> Label<'a, (i32, i32), String> {
+    let drop = (lettering::HALF_CAPITAL - SVG_BASE_LINE) * text.size;
+    let (x, y) = text.at;
+    // Turned upwards, what was below is to the right.
+    let at = if text.upwards { (x + drop, y) } else { (x, y + drop) };
+    let horizontal = match text.align {
+        Align::Left => HPos::Left,
+        Align::Centre => HPos::Center,
+        Align::Right => HPos::Right,
+    };
+    let turn = if text.upwards { FontTransform::Rotate270 } else { FontTransform::None };
+    let style = TextStyle::from(font::describe(text.size * scale * SVG_SIZE).transform(turn))
+        .color(colour)
+        .pos(Pos::new(horizontal, VPos::Center));
+    Label::new(text.text.clone(), point(at, scale), style)
+}
+
+fn opaque(colour: Colour) -> RGBColor {
+    RGBColor(colour[0], colour[1], colour[2])
+}
+
+fn device(places: &[Place], scale: f64) -> Vec<(i32, i32)> {
+    places.iter().map(|&place| point(place, scale)).collect()
+}
+
+fn point(place: Place, scale: f64) -> (i32, i32) {
+    ((place.0 * scale).round() as i32, (place.1 * scale).round() as i32)
+}

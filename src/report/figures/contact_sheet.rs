@@ -1,0 +1,92 @@
+//! The renders at growing spp beside their reference, and where they are wrong.
+
+use crate::error::Result;
+use crate::film::read_film;
+use crate::image_io::tone_map::quantise_image;
+use crate::image_io::{self, Image};
+use crate::measure::Record;
+use crate::metric::heatmap;
+use crate::plot::{Cell, ColourBar, ContactSheet};
+use crate::report::block::Block;
+use crate::report::results::Results;
+use std::path::{Path, PathBuf};
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let Some(reference) = reference(results)? else { return Ok(Vec::new()) };
+    let images = renders(results)?;
+    let Some((_, noisiest)) = images.first() else { return Ok(Vec::new()) };
+    // One scale for all maps: a level at which the noisiest one is not yet saturated.
+    let scale = heatmap(noisiest, &reference, None)?.scale;
+    let (mut pictures, mut maps) = (Vec::new(), Vec::new());
+    for (record, image) in &images {
+        let rmse = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {rmse:.4}"));
+        pictures.push(Some(cell(image, vec![format!("{} spp", record.spp), rmse])?));
+        let map = heatmap(image, &reference, Some(scale))?;
+        let caption = vec!["error".to_string(), record.makespan_s.map_or_else(String::new, |s| format!("{s:.2} s"))];
+        let rgb = map.pixels.concat();
+        maps.push(Some(Cell { caption, width: map.width, height: map.height, rgb }));
+    }
+    pictures.push(Some(cell(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
+    maps.push(None);
+    let estimator = images.first().map_or("", |(record, _)| record.estimator.as_str());
+    let title = format!("Renders at growing samples per pixel ({estimator})");
+    let sheet = ContactSheet {
+        title: title.clone(),
+        subtitle: results.workload(),
+        rows: vec![pictures, maps],
+        bar: Some(ColourBar { label: "error of a pixel, linear radiance".to_string(), full: scale }),
+    };
+    Ok(vec![Block::Picture { stem: "contact-sheet", title, png: sheet.png()? }])
+}
+
+fn cell(image: &Image, caption: Vec<String>) -> Result<Cell> {
+    Ok(Cell { caption, width: image.width, height: image.height, rgb: quantise_image(image)? })
+}
+
+/// The kept image of each spp, of the first estimator and the lowest seed, with its record.
+fn renders(results: &Results) -> Result<Vec<(&Record, Image)>> {
+    let mut images = Vec::new();
+    let first = results.definition.first_estimator();
+    let cells = results.definition.cells(results.profile())?;
+    for (_, records) in results.by(|record| record.spp) {
+        let kept = records.into_iter().filter(|record| record.repetition == 0 && record.estimator == first);
+        if let Some(record) = kept.min_by_key(|record| record.seed) {
+            let cell = cells.iter().find(|cell| cell.id == record.cell);
+            let path = cell.map(|cell| results.folder.join("images").join(cell.image_file()));
+            if let Some(path) = path.filter(|path| path.is_file()) {
+                images.push((record, image_io::read(&path)?));
+            }
+        }
+    }
+    Ok(images)
+}
+
+/// The mean of the two half-references; `None` if they are not there, as in a copied folder.
+fn reference(results: &Results) -> Result<Option<Image>> {
+    let Some(record) = results.records.first() else { return Ok(None) };
+    let folder = results.out.join("references");
+    let start = format!("{}-{}-", record.scene, record.scene_hash);
+    let size = format!("-{}x{}-", record.width, record.height);
+    let spp = results.definition.reference(results.profile())?.map_or_else(String::new, |(_, spp)| format!("-{spp}spp-"));
+    let halves: Vec<PathBuf> = films(&folder)
+        .into_iter()
+        .filter(|path| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            name.starts_with(&start) && name.contains(&size) && name.contains(&spp)
+        })
+        .collect();
+    let [first, second] = halves.as_slice() else { return Ok(None) };
+    let ((_, first), (_, second)) = (read_film(first)?, read_film(second)?);
+    let mut image = first.image();
+    for (pixel, other) in image.pixels.iter_mut().zip(second.image().pixels) {
+        *pixel = std::array::from_fn(|channel| 0.5 * (pixel[channel] + other[channel]));
+    }
+    Ok(Some(image))
+}
+
+fn films(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut films: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|p| p.extension().is_some_and(|e| e == "film")).collect();
+    films.sort();
+    films
+}

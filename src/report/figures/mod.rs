@@ -1,0 +1,66 @@
+//! What a report can show: one figure a file; this file is their table.
+//!
+//! To add one: write its file with a function from results to blocks, and give it a line in `figures!` below. An experiment names the
+//! figures that it wants.
+
+use super::block::Block;
+use super::results::Results;
+use crate::error::{InputError, Result};
+use crate::experiment::Definition;
+
+/// One line of the table of figures.
+pub struct FigureEntry {
+    /// Its name in experiment files.
+    pub name: &'static str,
+    /// What it shows, in a line.
+    pub about: &'static str,
+    make: fn(&Results) -> Result<Vec<Block>>,
+}
+
+macro_rules! figures {
+    ($($module:ident, $name:literal, $about:literal;)*) => {
+        $(mod $module;)*
+
+        /// The figures, in the order in which they are listed.
+        pub const FIGURES: &[FigureEntry] =
+            &[$(FigureEntry { name: $name, about: $about, make: $module::blocks }),*];
+    };
+}
+
+figures! {
+    contact_sheet, "contact-sheet", "renders at growing spp beside the reference, with maps of their error";
+    rmse_against_spp, "rmse-against-spp", "error against samples per pixel, with the fitted slope";
+    rmse_against_time, "rmse-against-time", "what accuracy costs: error against seconds, a line per schedule";
+    time_against_spp, "time-against-spp", "seconds against samples per pixel, with the linear fit";
+    speedup, "speedup", "speedup, efficiency and Karp-Flatt serial fraction against threads";
+    schedules, "schedules", "time, load imbalance and context switches of each schedule";
+}
+
+fn find(name: &str) -> Option<&'static FigureEntry> {
+    FIGURES.iter().find(|entry| entry.name == name)
+}
+
+/// Refuses a definition that names a figure that there is not: better before a sweep than after it.
+pub fn check_figures(definition: &Definition) -> Result<()> {
+    match definition.figures.iter().find(|name| find(name).is_none()) {
+        None => Ok(()),
+        Some(name) => {
+            let names: Vec<&str> = FIGURES.iter().map(|entry| entry.name).collect();
+            let at = crate::input::locate(&definition.text, "figures", name);
+            Err(InputError::new("figures", name, "there is no figure of that name")
+                .allowed(names.join(", "))
+                .in_file(&definition.file, at)
+                .into())
+        }
+    }
+}
+
+/// Everything that the experiment's figures show.
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    check_figures(&results.definition)?;
+    let mut blocks = Vec::new();
+    for entry in results.definition.figures.iter().filter_map(|name| find(name)) {
+        blocks.extend((entry.make)(results)?);
+    }
+    Ok(blocks)
+}

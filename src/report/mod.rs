@@ -1,0 +1,54 @@
+//! From records to figures, tables, findings and one self-contained page.
+
+mod block;
+mod figures;
+mod page;
+mod results;
+
+pub use block::{Block, Table};
+pub use figures::{FIGURES, FigureEntry, check_figures};
+pub use results::Results;
+
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use std::path::{Path, PathBuf};
+
+/// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path.
+pub fn write(out: &Path) -> Result<PathBuf> {
+    let mut sections = Vec::new();
+    for folder in experiment_folders(out)? {
+        let results = Results::read(out, &folder)?;
+        let blocks = figures::blocks(&results)?;
+        for block in &blocks {
+            block.save(&folder.join("figures"))?;
+        }
+        sections.push((results, blocks));
+    }
+    if sections.is_empty() {
+        let problem = "holds no experiment: no folder in it has a records.csv";
+        return Err(InputError::new("folder", out.display().to_string(), problem).into());
+    }
+    let page = out.join("report.html");
+    let html = page::html(&sections)?;
+    atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
+    Ok(page)
+}
+
+/// The folders with records, by name.
+fn experiment_folders(out: &Path) -> Result<Vec<PathBuf>> {
+    let entries = std::fs::read_dir(out).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
+            InputError::new("folder", out.display().to_string(), "there is no such folder").into()
+        }
+        _ => Error::system("reading", out, e),
+    })?;
+    let mut folders = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(|e| Error::system("reading", out, e))?.path();
+        if path.join("records.csv").is_file() {
+            folders.push(path);
+        }
+    }
+    folders.sort();
+    Ok(folders)
+}

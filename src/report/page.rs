@@ -1,0 +1,119 @@
+//! `report.html`: one file with everything in it, readable without a network.
+
+use super::block::{Block, Table};
+use super::results::Results;
+use crate::error::Result;
+use crate::experiment::RunFile;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = "
+body { font: 16px/1.55 system-ui, sans-serif; color: #222; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1.5rem; }
+h1 { font-size: 1.9rem; margin-bottom: .2rem; } h2 { margin-top: 3.2rem; border-top: 2px solid #222; padding-top: 1rem; }
+p { max-width: 46rem; } figure { margin: 1.6rem 0; overflow-x: auto; } svg, img { max-width: 100%; height: auto; }
+table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; } caption { text-align: left; font-weight: 600; padding: .4rem 0; }
+.wide { overflow-x: auto; margin: 1.4rem 0; } th, td { padding: .22rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
+th { border-bottom: 2px solid #222; white-space: normal; vertical-align: bottom; } th:first-child, td:first-child { text-align: left; }
+.finding { border-left: 4px solid #0072b2; padding: .1rem 0 .1rem 1rem; } .failed { border-left: 4px solid #d55e00; padding-left: 1rem; }
+code, pre { background: #f3f3f3; padding: .1rem .3rem; } pre { padding: .7rem 1rem; overflow-x: auto; } nav a { margin-right: 1.2rem; }
+details { margin: 1rem 0; } td.text { text-align: left; white-space: normal; }
+";
+
+/// The page.
+pub(super) fn html(sections: &[(Results, Vec<Block>)]) -> Result<String> {
+    let mut body = Vec::new();
+    for (results, blocks) in sections {
+        body.push(section(results, blocks)?);
+    }
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "Pathmark: report" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { "Pathmark: report" }
+                p { "How should unequal pieces of work be scheduled on many cores, and what does accuracy cost in time? "
+                    "Every number below comes from the rows in " code { "records.csv" } " beside this page; " code { "METHODOLOGY.md" } " says how." }
+                nav { @for (results, _) in sections { a href={ "#" (results.definition.name) } { (results.definition.title) } } }
+                @for part in &body { (part) }
+            }
+        }
+    };
+    Ok(page.into_string())
+}
+
+fn section(results: &Results, blocks: &[Block]) -> Result<Markup> {
+    let definition = &results.definition;
+    let parts = blocks.iter().map(part).collect::<Result<Vec<Markup>>>()?;
+    Ok(html! {
+        section id=(definition.name) {
+            h2 { (definition.title) }
+            p { strong { "Question. " } (definition.question) }
+            @if !results.failed.is_empty() {
+                div.failed {
+                    p { strong { (results.failed.len()) " rows failed." } " They are left out of figures and tables." }
+                    ul { @for record in results.failed.iter().take(10) { li { code { (record.cell) } ": " (record.error) } } }
+                }
+            }
+            @for part in &parts { (part) }
+            @for paragraph in definition.analysis.split("\n\n") { p { (paragraph) } }
+            (provenance(results))
+        }
+    })
+}
+
+fn part(block: &Block) -> Result<Markup> {
+    Ok(match block {
+        Block::Finding(text) => html! { p.finding { (text) } },
+        Block::Figure { figure, .. } => html! { figure { (PreEscaped(figure.svg()?)) } },
+        Block::Picture { title, png, .. } => html! {
+            figure { img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) }; }
+        },
+        Block::Table { table, .. } => table_markup(table),
+    })
+}
+
+fn table_markup(table: &Table) -> Markup {
+    html! {
+        div.wide {
+            table {
+                caption { (table.title) }
+                thead { tr { @for column in &table.columns { th { (column) } } } }
+                tbody { @for row in &table.rows { tr { @for cell in row { td { (cell) } } } } }
+            }
+        }
+    }
+}
+
+fn provenance(results: &Results) -> Markup {
+    let RunFile { command, profile, machine, .. } = &results.run;
+    let memory_gib = machine.memory_bytes as f64 / f64::from(1 << 30);
+    let facts = [
+        ("processor", machine.cpu.clone()),
+        ("processors", format!("{} ({} physical cores)", machine.processors, machine.physical_cores)),
+        ("governor", machine.governor.clone()),
+        ("memory", format!("{memory_gib:.1} GiB")),
+        ("system", machine.system.clone()),
+        ("load when the sweep began", machine.load_average.clone()),
+        ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
+        ("sources", format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" })),
+        ("rows", format!("{} done, {} failed", results.records.len(), results.failed.len())),
+    ];
+    html! {
+        details open[false] {
+            summary { "Command and machine" }
+            pre { (command) }
+            p { "Profile " (profile) "." }
+            table { @for (name, value) in facts { tr { th { (name) } td.text { (value) } } } }
+        }
+    }
+}
+
+fn or_none(text: &str) -> &str {
+    if text.is_empty() { "none" } else { text }
+}

@@ -1,0 +1,188 @@
+//! Who runs which job, and when.
+//!
+//! A strategy schedules integers: it is given a number of jobs and a function of the job's index, and never learns what a job
+//! does. So every strategy can be compared on every workload, and tested without one (`tests/strategy_contract`).
+//!
+//! ```
+//! use std::num::NonZeroUsize;
+//! use std::sync::Arc;
+//! use std::sync::atomic::{AtomicUsize, Ordering};
+//! use pathmark::strategy::{Config, find};
+//!
+//! let entry = find("shared-counter").expect("it is in the table");
+//! let mut strategy = (entry.new)(Config::new(NonZeroUsize::MIN))?;
+//! let sum = Arc::new(AtomicUsize::new(0));
+//! let total = Arc::clone(&sum);
+//! strategy.run(10, Arc::new(move |index| { total.fetch_add(index, Ordering::Relaxed); }))?;
+//! assert_eq!(sum.load(Ordering::Relaxed), 45);
+//! # Ok::<(), pathmark::strategy::StrategyError>(())
+//! ```
+//!
+//! # What all strategies share
+//!
+//! * **Workers.** Jobs run on exactly the workers that were asked for. The calling thread only waits, so p threads mean p
+//!   workers and p jobs at a time. `serial` alone uses the calling thread, because it is the baseline that pays for nothing.
+//!   A strategy that starts its threads for each run starts no more of them than there are jobs.
+//! * **A worker that can't be started** makes the whole run (or the construction) an error. Going on with fewer workers would
+//!   put a time in the records that belongs to another number of threads.
+//! * **A panic** stops every worker after the job it is in; then the first payload is raised again in the caller. The strategy
+//!   can be used again.
+//!
+//! # Adding one
+//!
+//! A file with its `ENTRY`, and its line in [`STRATEGIES`]. Everything else, the contract tests included, loops over the table.
+
+mod fixed_pool;
+mod rayon;
+mod serial;
+mod shared_counter;
+mod static_blocks;
+mod static_cyclic;
+mod team;
+mod thread_per_job;
+mod work_stealing;
+
+use std::io;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+/// Every strategy there is, in the order in which people meet them.
+pub static STRATEGIES: &[Entry] = &[
+    serial::ENTRY,
+    thread_per_job::ENTRY,
+    static_blocks::ENTRY,
+    static_cyclic::ENTRY,
+    shared_counter::ENTRY,
+    fixed_pool::ENTRY,
+    work_stealing::ENTRY,
+    rayon::ENTRY,
+];
+
+/// The strategy called `name`.
+pub fn find(name: &str) -> Option<&'static Entry> {
+    STRATEGIES.iter().find(|entry| entry.name == name)
+}
+
+/// What there is to run: a function of the job's index. Owned, so that workers may have been there before it.
+pub type Job = Arc<dyn Fn(usize) + Send + Sync>;
+
+/// A way to spread jobs over workers.
+pub trait Strategy: Send {
+    /// Calls `job(i)` exactly once for each `i` in `0..jobs` and returns when all have returned.
+    /// A panic in a job is re-raised here after the other workers have stopped.
+    ///
+    /// After an error or a panic some jobs have not been run; none has been run twice. In every case no clone of `job` is left.
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError>;
+}
+
+/// A strategy's line in the table.
+pub struct Entry {
+    /// Its name on the command line and in records.
+    pub name: &'static str,
+    /// What it does, in one line.
+    pub about: &'static str,
+    /// Where its jobs run.
+    pub workers: Workers,
+    /// Makes one that is ready to run; pools start their threads here.
+    pub new: fn(Config) -> Result<Box<dyn Strategy>, StrategyError>,
+}
+
+/// Where a strategy's jobs run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Workers {
+    /// On the thread that calls [`Strategy::run`]; [`Config::threads`] has no meaning.
+    Caller,
+    /// On a thread for each job; [`Config::threads`] has no meaning.
+    PerJob,
+    /// On as many threads as [`Config::threads`] says.
+    Threads,
+}
+
+impl Workers {
+    /// How many jobs can run at the same time when `threads` are asked for and there are `jobs`.
+    pub fn at_once(self, threads: usize, jobs: usize) -> usize {
+        match self {
+            Self::Caller => jobs.min(1),
+            Self::PerJob => jobs,
+            Self::Threads => jobs.min(threads),
+        }
+    }
+}
+
+/// What a strategy is made from.
+#[derive(Clone)]
+pub struct Config {
+    /// How many workers, where the strategy asks.
+    pub threads: NonZeroUsize,
+    /// What follows the colon in `--strategy name:parameter`.
+    pub parameter: Option<String>,
+    /// Where threads come from.
+    pub spawner: Arc<dyn Spawner>,
+}
+
+impl Config {
+    /// `threads` real threads and no parameter.
+    pub fn new(threads: NonZeroUsize) -> Self {
+        Self { threads, parameter: None, spawner: Arc::new(SystemThreads) }
+    }
+
+    /// For a strategy that has nothing to set: the same, unless a parameter was given.
+    fn without_parameter(self, strategy: &'static str) -> Result<Self, StrategyError> {
+        match self.parameter {
+            Some(value) => Err(StrategyError::Parameter { strategy, value, allowed: "none".to_owned() }),
+            None => Ok(self),
+        }
+    }
+}
+
+/// Where threads come from; a test puts one here that runs out of them.
+pub trait Spawner: Send + Sync {
+    /// Starts a thread called `name` that runs `body`.
+    fn spawn(&self, name: String, body: Box<dyn FnOnce() + Send + 'static>) -> io::Result<JoinHandle<()>>;
+}
+
+/// Threads of the operating system.
+#[derive(Debug, Clone, Copy)]
+pub struct SystemThreads;
+
+impl Spawner for SystemThreads {
+    fn spawn(&self, name: String, body: Box<dyn FnOnce() + Send + 'static>) -> io::Result<JoinHandle<()>> {
+        thread::Builder::new().name(name).spawn(body)
+    }
+}
+
+/// Why a strategy could not be made, or could not run.
+#[derive(Debug, thiserror::Error)]
+pub enum StrategyError {
+    /// The system gave no thread. The workers that had been started have stopped.
+    #[error("starting worker {worker} of {workers}: {source}")]
+    Spawn {
+        /// Which one, counted from 1.
+        worker: usize,
+        /// How many there should have been.
+        workers: usize,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The text behind the strategy's name means nothing to it.
+    #[error("strategy {strategy} = {value}: unusable parameter (allowed: {allowed})")]
+    Parameter {
+        /// The strategy's name.
+        strategy: &'static str,
+        /// The parameter as the user wrote it.
+        value: String,
+        /// What would be right.
+        allowed: String,
+    },
+    /// The library behind the strategy would quietly use fewer.
+    #[error("strategy {strategy}: {threads} threads are too many (allowed: 1 to {most})")]
+    TooManyThreads {
+        /// The strategy's name.
+        strategy: &'static str,
+        /// How many were asked for.
+        threads: usize,
+        /// How many it can have.
+        most: usize,
+    },
+}

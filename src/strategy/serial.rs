@@ -1,0 +1,33 @@
+//! Serial: one job after the other on the calling thread.
+//!
+//! `pathmark render cornell --strategy serial`
+//!
+//! The baseline T1 of every speedup: the best that one thread can do. It starts nothing and synchronises nothing, so a parallel
+//! strategy on one thread is measured *against* it, not instead of it.
+//!
+//! Cost: an indirect call a job.
+
+use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "serial",
+    about: "one job after the other on the calling thread: the baseline of speedups (ignores --threads)",
+    workers: Workers::Caller,
+    new,
+};
+
+fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
+    config.without_parameter(ENTRY.name)?;
+    Ok(Box::new(Serial))
+}
+
+struct Serial;
+
+impl Strategy for Serial {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        for index in 0..jobs {
+            job(index);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,51 @@
+//! Shared counter: whoever is free takes the next index from one atomic counter.
+//!
+//! `pathmark render cornell --strategy shared-counter --threads 4`
+//!
+//! Processor self-scheduling in its purest form, a chunk of one job: Tang and Yew, "Processor self-scheduling for multiple-nested
+//! parallel loops", ICPP 1986. OpenMP calls it `schedule(dynamic, 1)`.
+//!
+//! Cost: one thread's start for each worker, and for each job one atomic addition on a cache line that all workers want. No
+//! worker idles while a job is left, so the imbalance is one job at most; with very small jobs the line is the bottleneck.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crossbeam::utils::CachePadded;
+
+use super::team::{self, Panics};
+use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "shared-counter",
+    about: "whoever is free takes the next index from an atomic counter",
+    workers: Workers::Threads,
+    new,
+};
+
+fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
+    Ok(Box::new(SharedCounter(config.without_parameter(ENTRY.name)?)))
+}
+
+struct SharedCounter(Config);
+
+impl Strategy for SharedCounter {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        // Padded, so that taking a job doesn't slow down whoever reads the neighbours, the counts of the `Arc` among them.
+        let next = Arc::new(CachePadded::new(AtomicUsize::new(0)));
+        let bodies = (0..self.0.threads.get().min(jobs)).map(|_| {
+            let (job, next) = (Arc::clone(&job), Arc::clone(&next));
+            move |panics: &Panics| {
+                while !panics.stop_asked() {
+                    // Relaxed: the indices alone are shared out here; what jobs write is published by joining the threads.
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    if index >= jobs {
+                        break;
+                    }
+                    job(index);
+                }
+            }
+        });
+        team::run(&*self.0.spawner, bodies)
+    }
+}

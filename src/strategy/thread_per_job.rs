@@ -1,0 +1,43 @@
+//! Thread per job: a new thread for each job, all at once, and the operating system does the scheduling.
+//!
+//! `pathmark render cornell --strategy thread-per-job --decomposition rows`, or `--strategy thread-per-row` for short
+//!
+//! The plan of the first report (`reports/`), which starts 768 threads for the 768 rows of its picture. It ignores `--threads`.
+//!
+//! Cost: a thread's start and end for each job (tens of microseconds), a stack for each, and time slices shared among far more
+//! threads than cores. Balance is left to the kernel. With tens of thousands of jobs the system refuses, and the run is an error.
+
+use std::sync::Arc;
+
+use super::team::{self, Panics};
+use super::{Config, Entry, Job, Spawner, Strategy, StrategyError, Workers};
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "thread-per-job",
+    about: "a new thread for each job, all at once (ignores --threads)",
+    workers: Workers::PerJob,
+    new,
+};
+
+fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
+    let Config { spawner, .. } = config.without_parameter(ENTRY.name)?;
+    Ok(Box::new(ThreadPerJob { spawner }))
+}
+
+struct ThreadPerJob {
+    spawner: Arc<dyn Spawner>,
+}
+
+impl Strategy for ThreadPerJob {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        let bodies = (0..jobs).map(|index| {
+            let job = Arc::clone(&job);
+            move |panics: &Panics| {
+                if !panics.stop_asked() {
+                    job(index);
+                }
+            }
+        });
+        team::run(&*self.spawner, bodies)
+    }
+}
