@@ -3,7 +3,7 @@
 //! Written as a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the thread's stack.
 
 use super::Probe;
-use crate::material::EffectSet;
+use crate::material::{BsdfSample, Density, EffectSet};
 use crate::math::{Frame, Ray, Rgb};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler};
 use crate::scene::{Scene, Standpoint};
@@ -93,8 +93,11 @@ fn advance<const SPLITS: u16, S: Sampler, X: EffectSet, P: Probe>(
     let normal = if hit.inside { -hit.normal } else { hit.normal };
     let frame = Frame::around(normal);
     let wo = frame.to_local(-part.ray.direction);
-    let leave = |sample: crate::material::BsdfSample, branch: u16| {
-        let ray = Ray { origin: hit.point, direction: frame.to_world(sample.wi).normalized() };
+    let leave = |sample: BsdfSample, branch: u16| {
+        let towards = frame.to_world(sample.wi);
+        // A chain of delta bounces would let the length drift; any other direction is made anew.
+        let direction = if sample.density == Density::Delta { towards.normalized() } else { towards };
+        let ray = Ray { origin: hit.point, direction };
         let from = Some(Standpoint { object: hit.object, inside: (sample.wi.z < 0.0) != hit.inside });
         Part { ray, from, throughput: throughput * sample.weight, vertices, branch }
     };

@@ -10,6 +10,8 @@ mod bmp;
 mod codec;
 mod exr;
 mod hdr;
+#[cfg(test)]
+mod hostile;
 mod pfm;
 mod png;
 mod ppm;

@@ -16,6 +16,6 @@ pub use optics::{fresnel_schlick, reflect, refract};
 pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;
-pub use sphere::{approach, first_root, roots};
+pub use sphere::{first_root, roots};
 pub use trig::sin_cos_turns;
 pub use vector::{Vec3, dot};

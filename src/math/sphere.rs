@@ -10,37 +10,32 @@
 
 use super::{Real, Vec3, dot};
 
-/// b and the discriminant r² - l²; below zero the line misses.
+/// c and q, the root of larger magnitude times a, in which nothing cancels. q is NaN if the line misses.
 #[inline(always)]
-pub fn approach<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
+fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
     let b = -dot(f, d);
     let closest = f + d * (b / a);
-    (b, r * r - dot(closest, closest))
-}
-
-/// The root of larger magnitude times a: b and the square root added with the same sign, so that nothing cancels.
-#[inline(always)]
-fn stable_sum<T: Real>(b: T, discriminant: T, a: T) -> T {
-    b + (a * discriminant).sqrt().copysign(b)
+    let discriminant = r * r - dot(closest, closest);
+    let q = b + (a * discriminant).sqrt().copysign(b);
+    (dot(f, f) - r * r, q)
 }
 
 /// Both intersections of the whole line with the sphere, nearer first, in lengths of `d`; NaN if there are none.
 #[inline(always)]
 pub fn roots<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
-    let (b, discriminant) = approach(f, d, a, r);
-    let q = stable_sum(b, discriminant, a);
-    let (by_q, by_c) = (q / a, (dot(f, f) - r * r) / q);
+    let (c, q) = quadratic(f, d, a, r);
+    let (by_q, by_c) = (q / a, c / q);
     let forward = T::splat(0.0).lt(q);
     (T::select(forward, by_c, by_q), T::select(forward, by_q, by_c))
 }
 
 /// The first intersection at t > 0 of a ray with the sphere, in lengths of `d`; zero, negative or NaN if there is none.
 ///
-/// `b` and `discriminant` are those of [`approach`]. A ray that starts exactly on the sphere does not see the point it starts from.
+/// A ray that starts exactly on the sphere does not see the point it starts from. There is no branch, because most rays miss some of the
+/// spheres and hit others in no order that a processor could foresee.
 #[inline(always)]
-pub fn first_root<T: Real>(f: Vec3<T>, a: T, r: T, b: T, discriminant: T) -> T {
-    let q = stable_sum(b, discriminant, a);
-    let c = dot(f, f) - r * r;
+pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T {
+    let (c, q) = quadratic(f, d, a, r);
     let zero = T::splat(0.0);
     // From inside (c <= 0) and forward (q > 0) the far root q/a is the first ahead; in every other case that hits it is c/q.
     T::select(zero.lt(q) & c.le(zero), q / a, c / q)

@@ -14,13 +14,11 @@ pub use sphere::Sphere;
 use crate::material::{Effects, Material};
 use crate::math::{Ray, Rgb, Vec3, dot};
 
-/// A shape in the scene: what a ray can hit.
+/// What is known of a thing in the scene besides its surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
     /// What the scene file calls it.
     pub name: String,
-    /// Its surface.
-    pub shape: Sphere,
     /// What its surface does with light.
     pub material: Material,
     /// The radiance that it gives off in every direction, on both sides.
@@ -64,7 +62,10 @@ pub struct Scene {
     pub default_estimator: Option<String>,
     /// Where it is seen from.
     pub camera: Camera,
-    /// What is in it; the order decides ties.
+    /// The surface of each object, in the same order, which decides ties. Apart from the objects, so that the search for the nearest
+    /// touches nothing else.
+    pub shapes: Vec<Sphere>,
+    /// What is in it.
     pub objects: Vec<Object>,
     /// The effects that its materials call for.
     pub effects: Effects,
@@ -76,19 +77,18 @@ impl Scene {
     #[inline(always)]
     pub fn intersect(&self, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
         let own = from.map_or(u32::MAX, |standpoint| standpoint.object);
+        let leave = from.map_or(f64::NAN, |from| self.shapes[from.object as usize].leave(ray, from.inside));
         let (mut t, mut object) = (f64::INFINITY, u32::MAX);
-        for (index, candidate) in (0u32..).zip(&self.objects) {
-            let distance = if index == own {
-                candidate.shape.leave(ray, from.is_some_and(|standpoint| standpoint.inside))
-            } else {
-                candidate.shape.meet(ray)
-            };
-            // NaN, zero and negative distances are no hits.
-            if distance > 0.0 && distance < t {
-                (t, object) = (distance, index);
-            }
+        for (index, shape) in (0u32..).zip(&self.shapes) {
+            let meet = shape.meet(ray);
+            let distance = if index == own { leave } else { meet };
+            // NaN, zero and negative distances are no hits. Written as selections, because a processor cannot foresee which sphere
+            // will turn out to be nearer: wrong guesses cost about a tenth of the kernel's time.
+            let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
+            object = if ahead < t { index } else { object };
+            t = if ahead < t { ahead } else { t };
         }
-        let shape = &self.objects.get(object as usize)?.shape;
+        let shape = self.shapes.get(object as usize)?;
         let point = ray.at(t);
         let normal = shape.normal(point);
         Some(Hit { t, object, point, normal, inside: dot(normal, ray.direction) > 0.0 })
@@ -111,9 +111,7 @@ impl Scene {
     pub fn scaled(&self, factor: f64) -> Self {
         let mut scene = self.clone();
         scene.camera = scene.camera.scaled(factor);
-        for object in &mut scene.objects {
-            object.shape = object.shape.scaled(factor);
-        }
+        scene.shapes = scene.shapes.iter().map(|shape| shape.scaled(factor)).collect();
         scene
     }
 }

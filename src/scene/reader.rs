@@ -67,14 +67,12 @@ pub(super) fn scene_from_text(name: &str, file: &str, text: &str) -> Result<Scen
         return Err(InputError::new("objects", "[]", "a scene needs at least one object").in_file(file, None).into());
     }
     let CameraFile::Smallpt(camera) = parsed.camera;
-    let objects: Vec<Object> = parsed
-        .objects
-        .into_iter()
-        .map(|object| {
-            let ShapeFile::Sphere(shape) = object.shape;
-            Object { name: object.name, shape, material: object.material, emission: object.emission }
-        })
-        .collect();
+    let (mut shapes, mut objects) = (Vec::new(), Vec::new());
+    for object in parsed.objects {
+        let ShapeFile::Sphere(shape) = object.shape;
+        shapes.push(shape);
+        objects.push(Object { name: object.name, material: object.material, emission: object.emission });
+    }
     let effects = objects.iter().fold(Effects::default(), |all, object| all.and(object.material.effects()));
     let digest = Sha256::digest(text.as_bytes());
     Ok(Scene {
@@ -83,6 +81,7 @@ pub(super) fn scene_from_text(name: &str, file: &str, text: &str) -> Result<Scen
         hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect(),
         default_estimator: parsed.estimator,
         camera,
+        shapes,
         objects,
         effects,
     })

@@ -5,7 +5,7 @@
 //! ```
 
 use crate::input::{length, point};
-use crate::math::{Ray, Vec3, approach, dot, first_root};
+use crate::math::{Ray, Vec3, dot, first_root};
 use serde::Deserialize;
 
 /// A sphere, in scene units.
@@ -24,12 +24,7 @@ impl Sphere {
     /// Distance to the surface for a ray (of unit direction) that starts elsewhere; not above zero, or NaN, if it misses.
     #[inline(always)]
     pub fn meet(&self, ray: &Ray) -> f64 {
-        let from_center = ray.origin - self.center;
-        let (b, discriminant) = approach(from_center, ray.direction, 1.0, self.radius);
-        if discriminant < 0.0 {
-            return f64::NAN;
-        }
-        first_root(from_center, 1.0, self.radius, b, discriminant)
+        first_root(ray.origin - self.center, ray.direction, 1.0, self.radius)
     }
 
     /// Distance to the surface for a ray that starts on it: one root is the start, the other is twice the way to the closest approach.

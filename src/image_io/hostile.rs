@@ -1,0 +1,42 @@
+//! Every file of a small picture with each byte cut off or changed, decoded in memory: thousands of files would take a disk's time.
+
+use super::{FORMATS, Image};
+
+fn sample() -> Image {
+    let mut image = Image::new(9, 4);
+    for (i, value) in image.pixels.as_flattened_mut().iter_mut().enumerate() {
+        *value = (i * 37 % 101) as f64 / 100.0;
+    }
+    image
+}
+
+#[test]
+fn a_file_cut_off_anywhere_or_with_more_behind_it_is_refused() {
+    for format in FORMATS {
+        let bytes = (format.encode)(&sample()).unwrap();
+        (format.decode)(&bytes).unwrap();
+        for length in 0..bytes.len() {
+            assert!((format.decode)(&bytes[..length]).is_err(), "{length} bytes of {} {}", bytes.len(), format.name);
+        }
+        for junk in [&b"\0"[..], b"\n", b"junk behind the last pixel"] {
+            assert!((format.decode)(&[&bytes[..], junk].concat()).is_err(), "{} and {junk:?}", format.name);
+        }
+    }
+}
+
+#[test]
+fn a_damaged_byte_never_panics() {
+    for format in FORMATS {
+        let bytes = (format.encode)(&sample()).unwrap();
+        for at in 0..bytes.len() {
+            for value in [0, 1, 0x7f, 0x80, 0xff, bytes[at] ^ 1, b'-', b'9'] {
+                let mut bytes = bytes.clone();
+                bytes[at] = value;
+                // A picture or an error, both are fine; what is decoded must be of the size that it tells.
+                if let Ok(image) = (format.decode)(&bytes) {
+                    assert_eq!(image.pixels.len(), image.width as usize * image.height as usize, "{}", format.name);
+                }
+            }
+        }
+    }
+}

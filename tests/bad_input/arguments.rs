@@ -1,0 +1,84 @@
+//! Wrong options on the command line.
+
+use super::refused;
+
+/// Options of `render cornell` that are wrong, and what the message must hold besides: field, value, what is allowed.
+const WRONG: &[(&[&str], &[&str])] = &[
+    (&["--strategy", "guided"], &["strategy", "guided", "work-stealing", "thread-per-row"]),
+    (&["--strategy", ""], &["strategy", "work-stealing"]),
+    (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:WxH"]),
+    (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "from 1"]),
+    (&["--decomposition", "tiles:8x8:zigzag"], &["decomposition", "zigzag", "hilbert"]),
+    (&["--decomposition", "bands:-1"], &["decomposition", "bands:-1"]),
+    (&["--decomposition", "grid:99999999999999999999"], &["decomposition", "grid:9999", "grid:N"]),
+    (&["--estimator", "magic"], &["estimator", "magic", "smallpt", "bsdf"]),
+    (&["--sampler", "dice"], &["sampler", "dice", "independent"]),
+    (&["--kernel", "quantum"], &["kernel", "quantum", "scalar"]),
+    (&["--effects", "fog"], &["effects", "fog", "diffuse", "all"]),
+    // A profile that there is, but too small for glass and a mirror.
+    (&["--effects", "diffuse"], &["effects", "diffuse", "all"]),
+    (&["--spp", "0"], &["spp", "0", "1 to"]),
+    (&["--spp", "6"], &["spp", "6", "multiple of 4", "4 or 8"]),
+    (&["--spp", "99999999999"], &["spp", "99999999999"]),
+    (&["--spp", "4294967292"], &["spp", "4294967292", "1 to"]),
+    (&["--spp=-4"], &["spp", "-4"]),
+    (&["--spp", "1e3"], &["spp", "1e3"]),
+    (&["--size", "0x0"], &["size", "0x0", "1x1 to"]),
+    (&["--size", "0x5"], &["size", "0x5", "1x1 to"]),
+    (&["--size", "1000000000x1000000000"], &["size", "1000000000x1000000000", "1x1 to"]),
+    (&["--size", "65536x65536"], &["size", "65536x65536", "pixels"]),
+    (&["--size", "99999999999x1"], &["size", "99999999999x1", "WxH"]),
+    (&["--size=-1x5"], &["size", "-1x5", "WxH"]),
+    (&["--size", "abc"], &["size", "abc", "WxH"]),
+    (&["--size", "8x8x8"], &["size", "8x8x8", "WxH"]),
+    (&["--size", ""], &["size", "WxH"]),
+    (&["--threads", "0"], &["threads", "0", "1 to"]),
+    (&["--threads", "1000000"], &["threads", "1000000", "1 to"]),
+    (&["--threads=-1"], &["threads", "-1"]),
+    (&["--threads", "18446744073709551616"], &["threads", "18446744073709551616"]),
+    (&["--seed", "9223372036854775808"], &["seed", "9223372036854775808", "0 to 9223372036854775807"]),
+    (&["--seed", "18446744073709551616"], &["seed", "18446744073709551616"]),
+    (&["--colour", "red"], &["--colour"]),
+];
+
+#[test]
+fn each_wrong_option_of_render_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, said) in WRONG {
+        println!("{options:?}");
+        let small = ["render", "cornell", "-o", "image.png"];
+        refused(folder.path(), &[small.as_slice(), options].concat(), 2, said);
+    }
+}
+
+#[test]
+fn names_that_there_are_not_are_answered_with_those_that_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["render", "bathroom"], &["scene", "bathroom", "cornell", ".toml"]),
+        (&["reference", "bathroom", "--spp", "4"], &["scene", "bathroom", "cornell"]),
+        (&["reference", "cornell", "--spp", "0"], &["spp", "0", "1 to"]),
+        (&["reference", "cornell", "--spp", "4", "--size", "0x5"], &["size", "0x5"]),
+        (&["reference", "cornell", "--spp", "4", "--estimator", "magic"], &["estimator", "magic", "bsdf"]),
+        (&["run", "cold-fusion"], &["experiment", "cold-fusion", "thread-scaling", ".toml"]),
+        (&["run", "thread-scaling", "--repetitions", "0"], &["repetitions", "0"]),
+        (&["run", "thread-scaling", "--filter", "no-such-cell"], &["filter", "no-such-cell"]),
+        (&["list", "planets"], &["planets", "scenes", "strategies"]),
+        (&["report", "nowhere"], &["folder", "nowhere"]),
+        (&["report", "."], &["folder", "records.csv"]),
+        (&["compare", "a.png", "b.png"], &["image", "a.png", "no such file"]),
+        (&["compare", "a.tga", "b.png"], &["image", "a.tga", "png", "pfm"]),
+        (&["teleport"], &["teleport"]),
+    ];
+    for (arguments, said) in cases {
+        println!("{arguments:?}");
+        refused(folder.path(), arguments, 2, said);
+    }
+}
+
+/// The hidden verb that cells run in: what it reads comes from another process, which may be another version.
+#[test]
+fn a_cell_that_is_no_cell_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    refused(folder.path(), &["cell"], 2, &["standard input", "description of a cell"]);
+}

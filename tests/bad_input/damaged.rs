@@ -1,0 +1,170 @@
+//! Files of the program's own that a crash, a full disk or a second run has left in a state that no run would.
+
+use super::experiment::{TINY, write_tiny};
+use super::program::{finish, pathmark};
+use super::refused;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
+const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
+
+/// A folder with `tiny.toml` and what a run of it leaves in `out`.
+fn after_a_run() -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let records = folder.path().join("out/tiny/records.csv");
+    (folder, records)
+}
+
+fn films(folder: &Path) -> Vec<PathBuf> {
+    let mut films: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    films.sort();
+    films
+}
+
+#[test]
+fn a_damaged_reference_is_refused_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = TINY.replace("[quick]\n", "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n");
+    write_tiny(folder.path(), &text);
+    let reference = ["reference", "cornell", "--size", "24x16", "--spp", "40", "--out", "out/references"];
+    finish(pathmark(folder.path(), &reference)).with_code(0);
+    let films = films(&folder.path().join("out/references"));
+    assert_eq!(films.len(), 2);
+    for film in films {
+        let whole = fs::read(&film).unwrap();
+        let name = film.file_name().unwrap().to_str().unwrap();
+        let mut damaged: Vec<Vec<u8>> =
+            [0, 1, 15, 16, 31, 40, 200, 1000, whole.len() / 2, whole.len() - 33, whole.len() - 1]
+                .map(|length| whole[..length].to_vec())
+                .into();
+        damaged.push([&whole, b"x".as_slice()].concat());
+        let mut flipped = whole.clone();
+        flipped[whole.len() / 2] ^= 1;
+        damaged.push(flipped);
+        for bytes in damaged {
+            println!("{name}: {} of {} bytes", bytes.len(), whole.len());
+            fs::write(&film, &bytes).unwrap();
+            refused(folder.path(), &reference, 2, &["film", name]);
+            refused(folder.path(), &RUN, 2, &["film", name]);
+        }
+        fs::write(&film, &whole).unwrap();
+    }
+    // And whole they are used.
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+}
+
+#[test]
+fn rows_are_never_overwritten() {
+    let (folder, _) = after_a_run();
+    refused(folder.path(), &RUN, 2, &["records", "records.csv", "--resume"]);
+}
+
+#[test]
+fn a_half_written_row_is_refused_by_report_and_dropped_by_resume() {
+    let (folder, records) = after_a_run();
+    let whole = fs::read_to_string(&records).unwrap();
+    let lines: Vec<&str> = whole.lines().collect();
+    let last = lines.len();
+    let keep = whole.len() - lines[last - 1].len() - 1;
+    for length in [keep + 1, keep + lines[last - 1].len() / 2, whole.len() - 1] {
+        fs::write(&records, &whole[..length]).unwrap();
+        let place = format!("records.csv:{last}:");
+        refused(folder.path(), &["report", "out"], 2, &[&place, "half written", "--resume"]);
+    }
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    let resumed = fs::read_to_string(&records).unwrap();
+    assert_eq!(resumed.lines().count(), last);
+    assert_eq!(resumed.lines().take(last - 1).collect::<Vec<_>>(), lines[..last - 1]);
+}
+
+#[test]
+fn rows_that_are_none_are_refused_with_their_line() {
+    let (folder, records) = after_a_run();
+    let whole = fs::read_to_string(&records).unwrap();
+    let mut lines: Vec<&str> = whole.lines().collect();
+    let row = lines[2];
+    let (first, rest) = row.split_once(',').unwrap();
+    let version = format!("99,{rest}");
+    let wordy = format!("one,{rest}");
+    let longer = format!("{first},{rest},surplus");
+    let cut: String = row.chars().take(row.len() / 2).collect();
+    for (junk, said) in [
+        ("junk", "cannot be read"),
+        (",,,,", "cannot be read"),
+        (cut.as_str(), "cannot be read"),
+        (longer.as_str(), "cannot be read"),
+        (wordy.as_str(), "schema"),
+        (version.as_str(), "another version"),
+        ("\0\0\0\0", "cannot be read"),
+        (lines[1], "twice"),
+    ] {
+        println!("{junk:.60}");
+        lines[2] = junk;
+        fs::write(&records, lines.join("\n") + "\n").unwrap();
+        refused(folder.path(), &["report", "out"], 2, &["records.csv:3:", said]);
+        refused(folder.path(), &RESUME, 2, &["records.csv:3:", said]);
+    }
+}
+
+#[test]
+fn a_file_that_is_no_text_is_refused() {
+    let (folder, records) = after_a_run();
+    let mut bytes = fs::read(&records).unwrap();
+    let end = bytes.len();
+    bytes[end - 20] = 0xff;
+    fs::write(&records, &bytes).unwrap();
+    refused(folder.path(), &["report", "out"], 2, &["records.csv"]);
+    refused(folder.path(), &RESUME, 2, &["records.csv"]);
+}
+
+#[test]
+fn a_damaged_machine_or_definition_is_refused_at_its_place() {
+    for name in ["machine.toml", "experiment.toml"] {
+        let (folder, records) = after_a_run();
+        let path = records.with_file_name(name);
+        fs::write(&path, "title = [\n").unwrap();
+        refused(folder.path(), &["report", "out"], 2, &[&format!("{name}:")]);
+        fs::remove_file(&path).unwrap();
+        refused(folder.path(), &["report", "out"], 2, &[name, "no such file"]);
+    }
+}
+
+/// Waits until a running sweep has its file, and insists that a second one stays away from it.
+fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), &TINY.replace("spp = [4]", "spp = [40000]"));
+    let mut sweep = pathmark(folder.path(), first).spawn().unwrap();
+    let records = folder.path().join(records);
+    // `machine.toml` is written after the rows' file is locked.
+    while !records.with_file_name("experiment.toml").exists() {
+        assert!(sweep.try_wait().unwrap().is_none(), "the sweep ended before it began");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let refusals: Vec<_> = second
+        .iter()
+        .map(|arguments| std::panic::catch_unwind(|| finish(pathmark(folder.path(), arguments)).with_code(2).err))
+        .collect();
+    let is_there = records.is_file();
+    sweep.kill().unwrap();
+    sweep.wait().unwrap();
+    assert!(is_there, "{} was moved away", records.display());
+    for refusal in refusals {
+        let message = refusal.unwrap();
+        assert!(message.contains("records.csv"), "{message}");
+    }
+}
+
+#[test]
+fn two_sweeps_at_once_do_not_share_a_folder() {
+    second_is_refused(&RUN, &[&RUN, &RESUME], "out/tiny/records.csv");
+}
+
+#[test]
+fn a_second_reproduction_leaves_the_first_ones_folder() {
+    let reproduce: [&str; 3] = ["reproduce", "--out", "out"];
+    second_is_refused(&reproduce, &[&reproduce], "out/accuracy-cost/records.csv");
+}

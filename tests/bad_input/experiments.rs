@@ -1,0 +1,91 @@
+//! Experiment files that are wrong: refused before the first cell, with nothing in the output folder.
+
+use super::experiment::{TINY, write_tiny};
+use super::{line_of, place, refused};
+
+const REFERENCE: &str = "\n[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n";
+
+/// What is put in the place of what, and what the message must hold.
+const WRONG: &[(&str, &str, &[&str])] = &[
+    ("strategy = [\"serial\"", "strategy = [\"guided\"", &["strategy", "guided", "work-stealing"]),
+    ("estimator = [\"smallpt\"]", "estimator = [\"magic\"]", &["estimator", "magic", "smallpt"]),
+    ("estimator = [\"smallpt\"]", "estimator = [\"smallpt\"]\nsampler = [\"dice\"]", &["sampler", "dice", "independent"]),
+    ("scene = [\"cornell\"]", "scene = [\"bathroom\"]", &["scene", "bathroom", "cornell"]),
+    ("tiles:8x8", "hexagons", &["decomposition", "hexagons", "tiles:WxH"]),
+    ("figures = [\"speedup\", ", "figures = [\"pie-chart\", ", &["figures", "pie-chart", "speedup"]),
+    ("spp = [4]", "spp = [0]", &["spp", "0", "1 to"]),
+    ("spp = [4]", "spp = [6]", &["spp", "6", "multiple of 4"]),
+    ("spp = [4]", "spp = [-4]", &["spp", "-4", "u32"]),
+    ("spp = [4]", "spp = 4", &["spp", "4", "sequence"]),
+    ("spp = [4]", "spp = []", &["spp"]),
+    ("threads = [1, 2]", "threads = []", &["threads"]),
+    ("scene = [\"cornell\"]", "scene = []", &["scene"]),
+    ("threads = [1, 2]", "threads = [0]", &["threads", "0", "1 to"]),
+    ("threads = [1, 2]", "threads = [1000000]", &["threads", "1000000", "1 to"]),
+    ("threads = [1, 2]", "threads = [\"many\"]", &["threads", "many", "all"]),
+    ("threads = [1, 2]", "threads = [-1]", &["threads", "-1"]),
+    ("seed = [1]", "seed = [9223372036854775808]", &["seed", "9223372036854775808"]),
+    ("seed = [1]", "seed = [1]\nseed = [2]", &["seed", "duplicate"]),
+    ("seed = [1]", "seeds = [1]", &["seeds", "seed"]),
+    ("seed = [1]\n", "", &["seed", "missing"]),
+    ("size = [24, 16]", "size = [0, 16]", &["size", "0x16", "1x1 to"]),
+    ("size = [24, 16]", "size = [1000000000, 1000000000]", &["size", "1000000000x1000000000", "1x1 to"]),
+    ("size = [24, 16]", "size = [24]", &["size", "24"]),
+    ("repetitions = 3", "repetitions = 0", &["repetitions", "0", "1"]),
+    ("title = \"Tiny\"", "title = \"Tiny\"\nmood = \"good\"", &["mood", "title"]),
+    ("title = \"Tiny\"", "title = Tiny", &["title"]),
+];
+
+/// Puts `wrong` in the place of `right` and insists on a refusal that points at its lines.
+fn check(base: &str, right: &str, wrong: &str, options: &[&str], said: &[&str]) -> bool {
+    assert!(base.contains(right), "{right:?}");
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), &base.replacen(right, wrong, 1));
+    let changed = line_of(base, right)..=line_of(base, right) + wrong.matches('\n').count();
+    // A missing field is missed where its table begins.
+    let table = line_of(base, "[matrix]");
+    let arguments = [&["run", "tiny.toml", "--out", "new"], options].concat();
+    std::panic::catch_unwind(|| {
+        let message = refused(folder.path(), &arguments, 2, said);
+        let line = place(&message, "tiny.toml").map(|at| at.0);
+        let pointed = line.is_some_and(|line| changed.contains(&line) || (wrong.is_empty() && line == table));
+        assert!(pointed, "{wrong:?} not in lines {changed:?}: {message}");
+    })
+    .is_ok()
+}
+
+#[test]
+fn each_wrong_experiment_is_refused_at_its_place() {
+    let failed = WRONG.iter().filter(|(right, wrong, said)| !check(TINY, right, wrong, &[], said));
+    // All cases are tried before any is told, so that one run shows everything that is wrong.
+    let failed: Vec<_> = failed.map(|(_, wrong, _)| wrong).collect();
+    assert!(failed.is_empty(), "{failed:?}");
+}
+
+/// A fault in one profile is not reported at the same field of the other.
+#[test]
+fn a_fault_in_the_full_profile_is_shown_there() {
+    let base = TINY.replace("repetitions = 3", "repetitions = 30");
+    assert!(check(&base, "repetitions = 10", "repetitions = 0", &["--full"], &["repetitions", "0"]));
+    assert!(check(TINY, "size = [32, 16]", "size = [0, 16]", &["--full"], &["size", "0x16"]));
+}
+
+/// A reference that cannot be, or that is too coarse to measure anything with.
+#[test]
+fn each_wrong_reference_is_refused_at_its_place() {
+    let base = TINY.replace("\n[quick]\n", REFERENCE);
+    let cases: &[(&str, &str, &[&str])] = &[
+        ("reference-spp = 40", "reference-spp = 39", &["reference-spp", "39", "40"]),
+        ("reference-spp = 40", "reference-spp = 0", &["reference-spp", "0", "40"]),
+        ("reference-spp = 40", "reference-spp = 4000000000", &["spp", "4000000000", "1 to"]),
+        ("estimator = \"bsdf\"", "estimator = \"magic\"", &["estimator", "magic", "bsdf"]),
+        ("estimator = \"bsdf\"", "estimater = \"bsdf\"", &["estimater", "estimator"]),
+    ];
+    let failed = cases.iter().filter(|(right, wrong, said)| !check(&base, right, wrong, &[], said));
+    let failed: Vec<_> = failed.map(|(_, wrong, _)| wrong).collect();
+    assert!(failed.is_empty(), "{failed:?}");
+
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), &base.replace("reference-spp = 40\n", ""));
+    refused(folder.path(), &["run", "tiny.toml", "--out", "new"], 2, &["tiny.toml", "reference-spp", "from 40"]);
+}

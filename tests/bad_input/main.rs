@@ -1,0 +1,44 @@
+//! Wrong input is refused with a message that helps: which field, which value, where it stands, what is allowed. The exit code says
+//! whose turn it is (2 the user's, 3 the system's), nothing panics or hangs, and no file has come, gone or changed.
+
+mod arguments;
+mod damaged;
+#[path = "../support/experiment.rs"]
+mod experiment;
+mod experiments;
+mod outputs;
+#[path = "../support/program.rs"]
+mod program;
+mod scenes;
+#[path = "../support/snapshot.rs"]
+mod snapshot;
+
+use program::{finish, pathmark};
+use snapshot::{assert_untouched, snapshot};
+use std::ffi::OsStr;
+use std::path::Path;
+
+/// Runs a command that must be refused and returns what it said. `folder` is where it runs and what it may not touch.
+fn refused(folder: &Path, arguments: &[impl AsRef<OsStr>], code: i32, said: &[&str]) -> String {
+    let before = snapshot(folder);
+    let finished = finish(pathmark(folder, arguments)).with_code(code);
+    for text in said {
+        assert!(finished.err.contains(text), "the message does not say {text:?}:\n{}", finished.err);
+    }
+    assert_eq!(finished.out, "", "a refusal belongs on stderr");
+    assert_untouched(&before, &snapshot(folder));
+    finished.err
+}
+
+/// Line and column that a message gives for a file.
+fn place(message: &str, file: &str) -> Option<(usize, usize)> {
+    let rest = message.split_once(&format!("{file}:"))?.1;
+    let mut numbers = rest.split(':').map_while(|text| text.parse().ok());
+    numbers.next().zip(numbers.next())
+}
+
+/// The line, from 1, on which a text first stands.
+fn line_of(text: &str, part: &str) -> usize {
+    let at = text.find(part).unwrap_or_else(|| panic!("{part:?} is not in the text"));
+    text[..at].matches('\n').count() + 1
+}

@@ -1,0 +1,141 @@
+//! Outputs that cannot be written, known before anything is rendered.
+
+use super::program::{finish, pathmark, wait};
+use super::{refused, snapshot};
+use std::fs::{self, File};
+use std::io::Read;
+use std::process::Stdio;
+
+/// Nobody would wait for this; a refusal that came after the render would reach the time limit.
+const LONG: [&str; 4] = ["render", "cornell", "--spp", "4000000"];
+
+#[test]
+fn an_output_that_cannot_be_is_refused_before_rendering() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("file"), "kept").unwrap();
+    fs::create_dir(folder.path().join("folder.png")).unwrap();
+    let long = format!("{}.png", "x".repeat(300));
+    let mut cases: Vec<(&str, &[&str])> = vec![
+        ("folder.png", &["output", "folder.png", "directory"]),
+        ("nowhere/image.png", &["output", "nowhere/image.png", "does not exist"]),
+        ("file/image.png", &["output", "file/image.png", "not a directory"]),
+        (&long, &["output", "xxx.png", "too long"]),
+        ("image.tga", &["image.tga", "png", "ppm", "bmp", "hdr", "exr", "pfm"]),
+        ("image", &["image", "png", "pfm"]),
+        ("file", &["file", "png", "pfm"]),
+        ("", &["png"]),
+    ];
+    if cfg!(target_os = "linux") {
+        std::os::unix::fs::symlink("/dev/full", folder.path().join("full.png")).unwrap();
+        cases.push(("full.png", &["output", "full.png", "not a regular file"]));
+    }
+    for (output, said) in cases {
+        println!("{output}");
+        refused(folder.path(), &[LONG.as_slice(), &["-o", output]].concat(), 2, said);
+    }
+}
+
+/// /proc refuses new files even from root.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_the_system_refuses_is_the_systems() {
+    let folder = tempfile::tempdir().unwrap();
+    refused(folder.path(), &[LONG.as_slice(), &["-o", "/proc/image.png"]].concat(), 3, &["writing /proc/image.png"]);
+    let cases: &[&[&str]] = &[
+        &["run", "thread-scaling", "--out", "/proc/new"],
+        &["reproduce", "--out", "/proc/new"],
+        &["reference", "cornell", "--spp", "4", "--size", "8x8", "--out", "/proc/new"],
+    ];
+    for arguments in cases {
+        refused(folder.path(), arguments, 3, &["/proc/new"]);
+    }
+}
+
+#[test]
+fn an_output_folder_that_is_a_file_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("file"), "kept").unwrap();
+    let cases: &[&[&str]] = &[
+        &["run", "thread-scaling", "--out", "file"],
+        &["reproduce", "--out", "file"],
+        &["reference", "cornell", "--spp", "4", "--size", "8x8", "--out", "file"],
+    ];
+    for arguments in cases {
+        println!("{arguments:?}");
+        refused(folder.path(), arguments, 3, &["file"]);
+    }
+    refused(folder.path(), &["report", "file"], 2, &["folder", "file"]);
+}
+
+/// A file that was there stays as it was when the command is refused for another reason.
+#[test]
+fn a_refused_render_leaves_the_old_image() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("image.png"), "an old image").unwrap();
+    refused(folder.path(), &["render", "cornell", "-o", "image.png", "--spp", "6"], 2, &["spp"]);
+}
+
+#[test]
+fn images_that_cannot_be_compared_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for (size, image) in [("8x8", "a.pfm"), ("8x4", "b.pfm")] {
+        let arguments = ["render", "cornell", "--size", size, "--spp", "4", "-o", image];
+        finish(pathmark(folder.path(), &arguments)).with_code(0);
+    }
+    let whole = fs::read(folder.path().join("a.pfm")).unwrap();
+    fs::write(folder.path().join("cut.pfm"), &whole[..whole.len() / 2]).unwrap();
+    fs::write(folder.path().join("text.png"), "this is no picture").unwrap();
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["a.pfm", "b.pfm"], &["8x8", "8x4"]),
+        (&["a.pfm", "b.pfm", "--heatmap", "map.png"], &["8x8", "8x4"]),
+        (&["a.pfm", "cut.pfm"], &["image", "cut.pfm"]),
+        (&["text.png", "a.pfm"], &["image", "text.png"]),
+        (&["a.pfm", "a.pfm", "--heatmap", "map.tga"], &["map.tga", "png"]),
+        (&["a.pfm", "a.pfm", "--heatmap", "nowhere/map.png"], &["nowhere/map.png", "does not exist"]),
+        (&["a.pfm", "."], &["png"]),
+    ];
+    for (arguments, said) in cases {
+        println!("{arguments:?}");
+        refused(folder.path(), &[&["compare"], *arguments].concat(), 2, said);
+    }
+}
+
+/// `pathmark list | head -1`.
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: [&[&str]; 4] = [&["list"], &["list", "--json"], &["list", "strategies"], &["--help"]];
+    for arguments in cases {
+        let mut child = pathmark(folder.path(), arguments).spawn().unwrap();
+        let mut first = [0];
+        let mut out = child.stdout.take().unwrap();
+        out.read_exact(&mut first).unwrap();
+        drop(out);
+        wait(child).with_code(0);
+
+        // Closed before the first byte.
+        let mut child = pathmark(folder.path(), arguments).spawn().unwrap();
+        drop(child.stdout.take());
+        wait(child).with_code(0);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_standard_output_is_the_systems() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: [&[&str]; 3] = [
+        &["list"],
+        &["list", "scenes", "--json"],
+        &["render", "cornell", "--size", "8x8", "--spp", "4", "-o", "a.png", "--json"],
+    ];
+    for arguments in cases {
+        let full = File::options().write(true).open("/dev/full").unwrap();
+        let mut command = pathmark(folder.path(), arguments);
+        command.stdout(Stdio::from(full));
+        let finished = finish(command).with_code(3);
+        assert!(finished.err.contains("standard output"), "{}", finished.err);
+    }
+    let names: Vec<_> = snapshot(folder.path()).into_keys().collect();
+    assert_eq!(names, [folder.path().join("a.png")]);
+}

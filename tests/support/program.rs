@@ -1,0 +1,72 @@
+//! The program as a user runs it, with a time limit: a hang is a failure like any other.
+
+use std::ffi::OsStr;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// Far above what any of these runs needs on a loaded machine; only a hang reaches it.
+const LIMIT: Duration = Duration::from_secs(60);
+
+/// What a run left on its streams, and how it ended.
+pub(crate) struct Finished {
+    /// `None` if a signal ended it.
+    code: Option<i32>,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+/// `pathmark ARGUMENTS`, in a folder of its own and with nothing to read.
+pub(crate) fn pathmark(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("pathmark"));
+    command.args(arguments).current_dir(folder);
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+/// Starts the command and waits for its end.
+pub(crate) fn finish(mut command: Command) -> Finished {
+    wait(command.spawn().expect("the program starts"))
+}
+
+/// Waits for the end of a program and collects what it said on the streams that are piped.
+pub(crate) fn wait(mut child: Child) -> Finished {
+    let (out, err) = (reader(child.stdout.take()), reader(child.stderr.take()));
+    let start = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("a child can be waited for") {
+            break status;
+        }
+        if start.elapsed() > LIMIT {
+            child.kill().expect("a child can be killed");
+            child.wait().expect("a killed child ends");
+            panic!("still running after {LIMIT:?}");
+        }
+        thread::sleep(Duration::from_millis(2));
+    };
+    let text = |reader: JoinHandle<String>| reader.join().expect("a stream is read");
+    Finished { code: status.code(), out: text(out), err: text(err) }
+}
+
+/// Pipes are emptied while the program runs, or a long answer would block it.
+fn reader(stream: Option<impl Read + Send + 'static>) -> JoinHandle<String> {
+    thread::spawn(move || {
+        let mut bytes = Vec::new();
+        if let Some(mut stream) = stream {
+            stream.read_to_end(&mut bytes).expect("a pipe can be read");
+        }
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}
+
+impl Finished {
+    /// Insists on the exit code, and that nothing panicked on the way to it.
+    pub(crate) fn with_code(self, code: i32) -> Self {
+        let Self { out, err, .. } = &self;
+        assert_eq!(self.code, Some(code), "exit code\n--- stdout\n{out}\n--- stderr\n{err}");
+        assert!(!err.contains("panicked"), "a panic\n--- stderr\n{err}");
+        self
+    }
+}
