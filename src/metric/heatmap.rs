@@ -51,7 +51,7 @@ pub fn heatmap(test: &Image, reference: &Image, scale: Option<f64>) -> Result<He
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(InputError::new("scale", scale.to_string(), "must be positive and finite").into());
     }
-    let colours: Vec<[u8; 3]> = (0..=u8::MAX).map(|step| colour(f64::from(step) / 255.0)).collect();
+    let colours: Vec<[u8; 3]> = (0..=u8::MAX).map(|step| heat_colour(f64::from(step) / 255.0)).collect();
     let paint = |error: &f64| {
         if error.is_finite() { colours[(error / scale * 255.0).round().min(255.0) as usize] } else { NOT_FINITE }
     };
@@ -68,8 +68,8 @@ fn quantile(errors: &[f64]) -> f64 {
     candidates.into_iter().flatten().copied().find(|&error| error > 0.0).unwrap_or(1.0)
 }
 
-/// The display colour for `t` in [0, 1].
-fn colour(t: f64) -> [u8; 3] {
+/// The display colour for an error of `t` times the scale, `t` in [0, 1].
+pub fn heat_colour(t: f64) -> [u8; 3] {
     // Chosen inside the sRGB gamut for every t, so that no channel needs clipping.
     let lightness = 0.2 + 0.77 * t;
     let chroma = 0.19 * libm::sin(PI * t);

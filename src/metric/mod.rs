@@ -13,7 +13,7 @@ mod pointwise;
 mod ssim;
 
 pub use cross::{cross_mse, cross_mse_display, root};
-pub use heatmap::{Heatmap, heatmap};
+pub use heatmap::{Heatmap, heat_colour, heatmap};
 pub use pointwise::REL_MSE_EPSILON;
 
 use crate::error::{InputError, Result};

@@ -9,8 +9,9 @@ use image::imageops;
 
 use super::drawing::{Align, Drawing};
 use super::style::{GRID, HAIRLINE, INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE, TITLE_SIZE};
-use super::{font, heat, number, paint, save_bytes};
+use super::{font, number, paint, save_bytes};
 use crate::error::{Error, Result};
+use crate::metric::heat_colour;
 
 /// About how wide each image is shown.
 const SHOWN: u32 = 240;
@@ -35,7 +36,7 @@ pub struct Cell {
 pub struct ColourBar {
     /// What the colours mean, with the unit.
     pub label: String,
-    /// The value of the lightest colour; black is 0.
+    /// The value of the lightest colour; the darkest is 0.
     pub full: f64,
 }
 
@@ -148,7 +149,7 @@ fn draw_bar(drawing: &mut Drawing, bar: &ColourBar, y: f64, width: f64) -> f64 {
         let edge = |j: u32| x(f64::from(j) / f64::from(STEPS)).round();
         let (left, right) = (edge(i), edge(i + 1));
         let corners = vec![(left, top), (right, top), (right, top + HEIGHT), (left, top + HEIGHT)];
-        drawing.area(corners, heat::colour((f64::from(i) + 0.5) / f64::from(STEPS)), 1.0);
+        drawing.area(corners, heat_colour((f64::from(i) + 0.5) / f64::from(STEPS)), 1.0);
     }
     for quarter in 0..=4 {
         let share = f64::from(quarter) / 4.0;

@@ -9,7 +9,6 @@ pub mod contact_sheet;
 pub mod drawing;
 pub mod font;
 mod frame;
-pub mod heat;
 pub mod legend;
 mod lettering;
 pub mod line_chart;

@@ -5,7 +5,7 @@ use super::program::{finish, pathmark};
 use super::refused;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
 const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
@@ -136,12 +136,16 @@ fn a_damaged_machine_or_definition_is_refused_at_its_place() {
 /// Waits until a running sweep has its file, and insists that a second one stays away from it.
 fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str) {
     let folder = tempfile::tempdir().unwrap();
-    write_tiny(folder.path(), &TINY.replace("spp = [4]", "spp = [40000]"));
+    write_tiny(folder.path(), &TINY.replace("spp = [4]", "spp = [4000]"));
     let mut sweep = pathmark(folder.path(), first).spawn().unwrap();
     let records = folder.path().join(records);
-    // `machine.toml` is written after the rows' file is locked.
-    while !records.with_file_name("experiment.toml").exists() {
-        assert!(sweep.try_wait().unwrap().is_none(), "the sweep ended before it began");
+    let start = Instant::now();
+    let mut folder_is_ready = || {
+        let ended = sweep.try_wait().unwrap().is_some();
+        assert!(!ended && start.elapsed() < Duration::from_secs(60), "the sweep has not begun");
+        records.is_file() && records.with_file_name("experiment.toml").exists()
+    };
+    while !folder_is_ready() {
         std::thread::sleep(Duration::from_millis(5));
     }
     let refusals: Vec<_> = second
@@ -153,7 +157,7 @@ fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str) {
     sweep.wait().unwrap();
     assert!(is_there, "{} was moved away", records.display());
     for refusal in refusals {
-        let message = refusal.unwrap();
+        let message = refusal.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
         assert!(message.contains("records.csv"), "{message}");
     }
 }

@@ -9,7 +9,11 @@ const REFERENCE: &str = "\n[reference]\nestimator = \"bsdf\"\n\n[quick]\nreferen
 const WRONG: &[(&str, &str, &[&str])] = &[
     ("strategy = [\"serial\"", "strategy = [\"guided\"", &["strategy", "guided", "work-stealing"]),
     ("estimator = [\"smallpt\"]", "estimator = [\"magic\"]", &["estimator", "magic", "smallpt"]),
-    ("estimator = [\"smallpt\"]", "estimator = [\"smallpt\"]\nsampler = [\"dice\"]", &["sampler", "dice", "independent"]),
+    (
+        "estimator = [\"smallpt\"]",
+        "estimator = [\"smallpt\"]\nsampler = [\"dice\"]",
+        &["sampler", "dice", "independent"],
+    ),
     ("scene = [\"cornell\"]", "scene = [\"bathroom\"]", &["scene", "bathroom", "cornell"]),
     ("tiles:8x8", "hexagons", &["decomposition", "hexagons", "tiles:WxH"]),
     ("figures = [\"speedup\", ", "figures = [\"pie-chart\", ", &["figures", "pie-chart", "speedup"]),

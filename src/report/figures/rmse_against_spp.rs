@@ -55,7 +55,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
                 libm::pow(0.5, 1.0 / slope),
             )));
         }
-        series.push(Series::new(estimator, Look::nth(index), points));
+        series.push(Series::new(estimator, Look::nth(index), points).scattered());
     }
     if let Some(curve) = first_point.and_then(|point| Curve::power_through(point, -0.5)) {
         overlays.insert(0, Overlay::guide("slope -1/2", curve));

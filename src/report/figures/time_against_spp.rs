@@ -41,7 +41,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
                 exponent.high,
             )));
         }
-        series.push(Series::new(estimator, Look::nth(index), points));
+        series.push(Series::new(estimator, Look::nth(index), points).scattered());
     }
     let ticks: Vec<f64> = results.by(|record| record.spp).into_keys().map(f64::from).collect();
     let mut chart = LineChart::new(

@@ -1,0 +1,99 @@
+//! `cargo bench --bench scheduling`: every strategy on one fixed small render and on empty jobs.
+//!
+//! Group `scheduling` renders cornell at 96x72, 4 spp, in tiles of 8x8, with 1, 2 and 4 threads, in samples per second; group `empty-jobs`
+//! hands out jobs that do nothing. At the end stands a table of speedups against `serial`. Criterion runs its cases one after the other, so a
+//! drift of the machine's speed falls on some of them; `pathmark run thread-scaling` interleaves them and is what conclusions should
+//! rest on.
+
+mod speedup_table;
+
+use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
+use pathmark::film::{Decomposition, TileBuffer};
+use pathmark::kernel::{Kernel, Spec, build};
+use pathmark::strategy::{Config, Job, STRATEGIES, Workers};
+use std::hint::black_box;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::time::Duration;
+
+const THREADS: [usize; 3] = [1, 2, 4];
+const SPP: u32 = 4;
+const EMPTY_JOBS: usize = 10_000;
+/// A thread for each of ten thousand jobs would measure the system's limits.
+const EMPTY_JOBS_PER_THREAD: usize = 500;
+
+/// A job renders a tile into a buffer of its own and forgets it: nothing is shared but the kernel.
+fn render_job(spec: &Spec) -> (usize, Job) {
+    let scene = Arc::new(pathmark::scene::load("cornell").expect("cornell is embedded"));
+    let kernel: Arc<dyn Kernel> = Arc::from(build(&scene, spec).expect("the default names exist").kernel);
+    let decomposition = Decomposition::parse("tiles:8x8").expect("tiles can be cut");
+    let plan = decomposition.plan(spec.width, spec.height, &(0..SPP));
+    let jobs = plan.len();
+    let job = move |index: usize| {
+        let piece = &plan.pieces()[index];
+        let mut tile = TileBuffer::new(piece.bounds);
+        black_box(kernel.render(piece, &mut tile));
+        black_box(&tile);
+    };
+    (jobs, Arc::new(job))
+}
+
+/// The thread counts that mean something to a strategy.
+fn thread_counts(workers: Workers) -> &'static [usize] {
+    match workers {
+        Workers::Threads => &THREADS,
+        Workers::Caller | Workers::PerJob => &[1],
+    }
+}
+
+/// What the case is called: a thread count, unless the strategy has its own rule.
+fn threads_label(workers: Workers, threads: usize) -> String {
+    if workers == Workers::PerJob { "per-job".to_string() } else { threads.to_string() }
+}
+
+fn scheduling(criterion: &mut Criterion) {
+    let spec = Spec { width: 96, height: 72, ..Spec::default() };
+    let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(SPP);
+    let (jobs, job) = render_job(&spec);
+    let mut group = criterion.benchmark_group("scheduling");
+    group.sample_size(10).sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(samples));
+    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(2));
+    for entry in STRATEGIES {
+        for &threads in thread_counts(entry.workers) {
+            let config = Config::new(NonZeroUsize::new(threads).expect("thread counts are positive"));
+            let mut strategy = (entry.new)(config).expect("threads can be started");
+            group.bench_function(BenchmarkId::new(entry.name, threads_label(entry.workers, threads)), |bencher| {
+                bencher.iter(|| strategy.run(jobs, Arc::clone(&job)).expect("threads can be started"));
+            });
+        }
+    }
+    group.finish();
+}
+
+fn empty_jobs(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("empty-jobs");
+    group.sample_size(10).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(500));
+    let job: Job = Arc::new(|index| {
+        black_box(index);
+    });
+    for entry in STRATEGIES {
+        let jobs = if entry.workers == Workers::PerJob { EMPTY_JOBS_PER_THREAD } else { EMPTY_JOBS };
+        group.throughput(Throughput::Elements(jobs as u64));
+        for &threads in thread_counts(entry.workers).iter().filter(|threads| **threads <= 2) {
+            let config = Config::new(NonZeroUsize::new(threads).expect("thread counts are positive"));
+            let mut strategy = (entry.new)(config).expect("threads can be started");
+            group.bench_function(BenchmarkId::new(entry.name, threads_label(entry.workers, threads)), |bencher| {
+                bencher.iter(|| strategy.run(jobs, Arc::clone(&job)).expect("threads can be started"));
+            });
+        }
+    }
+    group.finish();
+}
+
+fn main() {
+    let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
+    scheduling(&mut criterion);
+    empty_jobs(&mut criterion);
+    criterion.final_summary();
+    speedup_table::print("scheduling");
+}
