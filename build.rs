@@ -1,5 +1,6 @@
 //! Stamps the binary with what it was built from, and embeds every scene and experiment in `experiments/`.
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
@@ -47,7 +48,8 @@ fn embed(folder: &str, target: &Path) -> io::Result<()> {
     let mut code = String::from("&[");
     for file in files {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
-        code.push_str(&format!("({stem:?}, include_str!({:?})),", file.display().to_string()));
+        // Writing to a string cannot fail.
+        let _ = write!(code, "({stem:?}, include_str!({:?})),", file.display().to_string());
     }
     code.push(']');
     fs::write(target, code)

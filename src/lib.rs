@@ -21,13 +21,17 @@
 //! # Ok::<(), pathmark::error::Error>(())
 //! ```
 //!
-//! Layers, each importing only those above it: `error`, `math`, `input`, `atomic_file`; `image_io`, `metric`, `sampling`; `material`;
+//! Layers, each importing only those above it: `error`, `digest`, `math`, `input`, `atomic_file`; `image_io`, `metric`, `sampling`; `material`;
 //! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `experiment`, `analysis`; `plot`, `report`;
 //! `cli`.
+
+// A test may unwrap; the library tells its user what is wrong.
+#![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod analysis;
 pub mod atomic_file;
 pub mod cli;
+pub mod digest;
 pub mod error;
 pub mod estimator;
 pub mod experiment;

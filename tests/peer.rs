@@ -57,7 +57,8 @@ fn build_peer(folder: &Path) -> Option<std::path::PathBuf> {
 fn theirs(program: &Path, folder: &Path, seed: u64) -> Image {
     let out = folder.join("peer.pfm");
     let numbers = [SIZE.0, SIZE.1, SPP].map(|number| number.to_string());
-    let status = Command::new(program).args(numbers).arg(&out).args(["keyed", &seed.to_string()]).output().unwrap().status;
+    let status =
+        Command::new(program).args(numbers).arg(&out).args(["keyed", &seed.to_string()]).output().unwrap().status;
     assert!(status.success());
     image_io::read(&out).unwrap()
 }
@@ -93,5 +94,8 @@ fn block_means_agree_with_the_yardstick() {
     }
     let expected = ChiSquared::new(blocks as f64).unwrap();
     let p = expected.cdf(chi2);
-    assert!((5e-4..1.0 - 5e-4).contains(&p), "the squared deviations add up to {chi2:.1} over {blocks} blocks: p = {p:.5}");
+    assert!(
+        (5e-4..1.0 - 5e-4).contains(&p),
+        "the squared deviations add up to {chi2:.1} over {blocks} blocks: p = {p:.5}"
+    );
 }

@@ -22,8 +22,8 @@ pub(super) struct Arguments {
     /// How often each cell is run [default: what the experiment says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repetitions: Option<u32>,
-    /// Only cells whose name contains this; may be given several times
-    #[arg(long = "filter", value_name = "TEXT")]
+    /// Only cells with this value, as in strategy=rayon; may be given several times
+    #[arg(long = "filter", value_name = "FIELD=VALUE")]
     filters: Vec<String>,
     /// The report's own sizes instead of small images
     #[arg(long)]

@@ -83,8 +83,8 @@ fn advance<const SPLITS: u16, S: Sampler, X: EffectSet, P: Probe>(
     let mut throughput = part.throughput;
     if vertices > ROULETTE_AFTER {
         let survival = object.material.albedo().max_channel();
-        // Strictly below: a black surface ends every path, whatever the number.
-        if !(sampler.pair(address(Purpose::Roulette))[0] < survival) {
+        // A number equal to the chance ends the path, so a black surface ends every path, whatever the number.
+        if sampler.pair(address(Purpose::Roulette))[0] >= survival {
             return None;
         }
         throughput = throughput * (1.0 / survival);

@@ -1,5 +1,6 @@
 //! A cell: settings that are run some number of times.
 
+use crate::error::{InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads};
 
@@ -27,6 +28,29 @@ impl Cell {
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.threads.min(available_threads()) as u64;
         Self { id, settings, image, weight: weight.max(1) }
+    }
+
+    /// Whether it has the value that a filter `field=value` asks for.
+    pub fn matches(&self, filter: &str) -> Result<bool> {
+        let (settings, spec) = (&self.settings, &self.settings.spec);
+        let fields = [
+            ("scene", settings.scene.clone()),
+            ("estimator", spec.estimator.clone()),
+            ("sampler", spec.sampler.clone()),
+            ("spp", settings.spp.to_string()),
+            ("seed", spec.seed.to_string()),
+            ("decomposition", settings.decomposition.clone()),
+            ("strategy", settings.strategy.clone()),
+            ("threads", settings.threads.to_string()),
+        ];
+        let pair = filter.split_once('=');
+        let known = pair.and_then(|(field, value)| Some((fields.iter().find(|(name, _)| *name == field)?, value)));
+        known.map(|((_, own), value)| own == value).ok_or_else(|| {
+            let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
+            InputError::new("filter", filter, "names no field")
+                .allowed(format!("{}=VALUE", names.join("=VALUE, ")))
+                .into()
+        })
     }
 
     /// The file name of its image.

@@ -5,9 +5,9 @@ use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
 use super::{Cell, CellJob, Definition, Profile, Progress, Reference, render_reference};
 use crate::atomic_file;
-use crate::error::{Error, Result};
+use crate::digest;
+use crate::error::{Error, InputError, Result};
 use crate::measure::{Machine, Record};
-use sha2::{Digest, Sha256};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub struct Options {
     pub resume: bool,
     /// Repetitions, if not the definition's.
     pub repetitions: Option<u32>,
-    /// Only cells whose word contains each of these.
+    /// `field=value` pairs: only cells that have all of them.
     pub filters: Vec<String>,
     /// The command as the user gave it.
     pub command: String,
@@ -42,10 +42,13 @@ pub struct Summary {
 /// Runs what is not yet in the folder. Each repetition visits all cells once, in an order of its own.
 pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress) -> Result<Summary> {
     let mut cells = definition.cells(options.profile)?;
-    cells.retain(|cell| options.filters.iter().all(|filter| cell.id.contains(filter.as_str())));
-    if cells.is_empty() {
-        let filters = options.filters.join(" ");
-        return Err(crate::error::InputError::new("filter", filters, "leaves no cell to run").into());
+    for filter in &options.filters {
+        let matches = cells.iter().map(|cell| cell.matches(filter)).collect::<Result<Vec<bool>>>()?;
+        let mut matches = matches.into_iter();
+        cells.retain(|_| matches.next().unwrap_or(false));
+        if cells.is_empty() {
+            return Err(InputError::new("filter", filter, "leaves no cell to run").into());
+        }
     }
     let reference = definition.reference(options.profile)?;
     let folder = options.out.join(&definition.name);
@@ -119,11 +122,10 @@ fn verified(record: Record, cell: &Cell, checksums: &mut HashMap<String, String>
 
 /// The rows' file, and the rows that are there.
 fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(RecordsFile, Vec<Record>)> {
-    let digest = Sha256::digest(definition.text.as_bytes());
     let run = RunFile {
         command: options.command.clone(),
         profile: options.profile.name().to_string(),
-        definition_hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect(),
+        definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
     };
     let (rows, machine) = (folder.join("records.csv"), folder.join("machine.toml"));

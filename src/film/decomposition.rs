@@ -86,17 +86,13 @@ impl Decomposition {
     pub fn parse(text: &str) -> Result<Self> {
         let (name, parameter) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
         let entry = DECOMPOSITIONS.iter().find(|entry| entry.name == name);
-        match entry.and_then(|entry| (entry.parse)(parameter)) {
-            Some(cut) => Ok(Self { text: text.to_string(), cut }),
-            None => {
-                let problem = if entry.is_some() { "cannot be read" } else { "there is no decomposition of that name" };
-                Err(InputError::new("decomposition", text, problem)
-                    .allowed(
-                        "rows, bands:N, grid:N, tiles:WxH, tiles:WxH:hilbert, tiles:WxH:spiral with numbers from 1",
-                    )
-                    .into())
-            }
+        if let Some(cut) = entry.and_then(|entry| (entry.parse)(parameter)) {
+            return Ok(Self { text: text.to_string(), cut });
         }
+        let problem = if entry.is_some() { "cannot be read" } else { "there is no decomposition of that name" };
+        Err(InputError::new("decomposition", text, problem)
+            .allowed("rows, bands:N, grid:N, tiles:WxH, tiles:WxH:hilbert, tiles:WxH:spiral with numbers from 1")
+            .into())
     }
 
     /// The text that it was read from.

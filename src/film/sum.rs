@@ -53,18 +53,12 @@ impl PixelSum {
 }
 
 /// Adds up the samples of one pixel.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct SampleSum {
     block: PixelSum,
     blocks: u32,
     /// Entry k is a finished subtree of 2^k blocks if bit k of `blocks` is set.
     subtrees: [PixelSum; 32],
-}
-
-impl Default for SampleSum {
-    fn default() -> Self {
-        Self { block: PixelSum::default(), blocks: 0, subtrees: [PixelSum::default(); 32] }
-    }
 }
 
 impl SampleSum {

@@ -1,14 +1,14 @@
 //! The whole image as sums.
 
 use super::{PixelSum, TileBuffer};
+use crate::digest::Fingerprint;
 use crate::error::{InputError, Result};
 use crate::image_io::Image;
-use sha2::{Digest, Sha256};
 
 /// Largest width and height.
 pub const LARGEST_SIDE: u32 = 1 << 16;
-/// Largest number of pixels: their sums take 14 GiB at 56 bytes a pixel.
-const LARGEST_AREA: u64 = 1 << 28;
+/// Largest number of pixels: their sums take 3.5 GiB in the film and as much in the pieces.
+const LARGEST_AREA: u64 = 1 << 26;
 
 /// Refuses sizes that no film can have, before anything is allocated.
 pub fn check_size(width: u32, height: u32) -> Result<()> {
@@ -91,15 +91,15 @@ impl Film {
 
     /// SHA-256 over size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero does not count.
     pub fn checksum(&self) -> String {
-        let mut hash = Sha256::new();
-        hash.update(self.width.to_le_bytes());
-        hash.update(self.height.to_le_bytes());
+        let mut hash = Fingerprint::default();
+        hash.update(&self.width.to_le_bytes());
+        hash.update(&self.height.to_le_bytes());
         for pixel in &self.pixels {
-            hash.update(pixel.count.to_le_bytes());
+            hash.update(&pixel.count.to_le_bytes());
             for value in pixel.sum.iter().chain(&pixel.square) {
-                hash.update((value + 0.0).to_bits().to_le_bytes());
+                hash.update(&(value + 0.0).to_bits().to_le_bytes());
             }
         }
-        hash.finalize().iter().take(8).map(|byte| format!("{byte:02x}")).collect()
+        hash.finish()
     }
 }

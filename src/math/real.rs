@@ -15,10 +15,13 @@ pub trait Real:
     /// The same constant in every lane.
     fn splat(value: f64) -> Self;
     /// The correctly rounded square root; NaN below zero.
+    #[must_use]
     fn sqrt(self) -> Self;
     /// The magnitude.
+    #[must_use]
     fn abs(self) -> Self;
     /// The magnitude of `self` with the sign of `sign`, zeros included.
+    #[must_use]
     fn copysign(self, sign: Self) -> Self;
     /// `self < other`; false if either is NaN.
     fn lt(self, other: Self) -> Self::Mask;

@@ -31,12 +31,14 @@ impl<T> Vec3<T> {
 impl<T: Real> Vec3<T> {
     /// The vector product, right-handed.
     #[inline(always)]
+    #[must_use]
     pub fn cross(self, b: Self) -> Self {
         Self::new(self.y * b.z - self.z * b.y, self.z * b.x - self.x * b.z, self.x * b.y - self.y * b.x)
     }
 
     /// The direction of `self` with length 1; NaN for the zero vector.
     #[inline(always)]
+    #[must_use]
     pub fn normalized(self) -> Self {
         self * (T::splat(1.0) / dot(self, self).sqrt())
     }

@@ -70,7 +70,7 @@ impl Machine {
             load_average: or_unknown(load),
             rustc: env!("PATHMARK_RUSTC").to_string(),
             target: env!("PATHMARK_TARGET").to_string(),
-            rustflags: env!("PATHMARK_RUSTFLAGS").to_string(),
+            rustflags: String::from(env!("PATHMARK_RUSTFLAGS")),
             profile: env!("PATHMARK_PROFILE").to_string(),
             commit: env!("PATHMARK_COMMIT").to_string(),
             dirty: env!("PATHMARK_DIRTY") == "true",

@@ -1,6 +1,6 @@
 //! Settings that have been checked, and the run itself.
 
-use super::slots::{Slot, Slots};
+use super::slots::Slots;
 use super::usage::Usage;
 use super::{Settings, Trace, Warning, available_threads};
 use crate::error::{Error, InputError, Result};
@@ -161,16 +161,20 @@ impl Setup {
             Error::Check(format!("strategy {} broke its contract: {problem}", self.settings.strategy))
         })?;
         let mut film = Film::new(self.settings.spec.width, self.settings.spec.height);
-        filled.iter().for_each(|slot| film.add(&slot.tile));
+        for slot in &filled {
+            film.add(&slot.tile);
+        }
         let merge_s = before_merge.elapsed().as_secs_f64();
 
         let mut counts = Counts::default();
-        filled.iter().for_each(|slot| counts.add(&slot.counts));
+        for slot in &filled {
+            counts.add(&slot.counts);
+        }
         let workers_used = slots.workers_used();
         Ok(Outcome {
             checksum: film.checksum(),
             warnings: self.warnings(&counts, workers_used),
-            trace: Trace { jobs: filled.iter().map(|slot: &Box<Slot>| slot.span).collect() },
+            trace: Trace { jobs: filled.iter().map(|slot| slot.span).collect() },
             film,
             counts,
             workers_used,

@@ -18,7 +18,7 @@ pub(super) struct Slot {
 
 /// The slots of a run. A slot is empty while its job runs.
 pub(super) struct Slots {
-    slots: Vec<AtomicCell<Option<Box<Slot>>>>,
+    cells: Vec<AtomicCell<Option<Box<Slot>>>>,
     /// Jobs that found their slot empty: somebody else was running them.
     collisions: AtomicU32,
     workers: AtomicU32,
@@ -43,7 +43,7 @@ impl Slots {
             times_run: 0,
         };
         Self {
-            slots: plan.pieces().iter().map(|piece| AtomicCell::new(Some(Box::new(slot(piece.bounds))))).collect(),
+            cells: plan.pieces().iter().map(|piece| AtomicCell::new(Some(Box::new(slot(piece.bounds))))).collect(),
             collisions: AtomicU32::new(0),
             workers: AtomicU32::new(0),
             run: RUNS.fetch_add(1, Ordering::Relaxed),
@@ -65,7 +65,7 @@ impl Slots {
 
     /// Runs job `index`: the body of every strategy's job.
     pub(super) fn fill(&self, index: usize, plan: &Plan, kernel: &dyn Kernel, start: Instant) {
-        let Some(mut slot) = self.slots[index].take() else {
+        let Some(mut slot) = self.cells[index].take() else {
             self.collisions.fetch_add(1, Ordering::Relaxed);
             return;
         };
@@ -74,7 +74,7 @@ impl Slots {
         slot.counts = kernel.render(&plan.pieces()[index], &mut slot.tile);
         slot.span.stop_s = start.elapsed().as_secs_f64();
         slot.times_run += 1;
-        self.slots[index].store(Some(slot));
+        self.cells[index].store(Some(slot));
         self.done.fetch_add(1, Ordering::Relaxed);
     }
 
@@ -89,15 +89,15 @@ impl Slots {
     }
 
     /// Takes the slots out, in index order; says which job did not run exactly once.
-    pub(super) fn collect(&self) -> Result<Vec<Box<Slot>>, String> {
+    pub(super) fn collect(&self) -> Result<Vec<Slot>, String> {
         let collisions = self.collisions.load(Ordering::Relaxed);
         if collisions > 0 {
             return Err(format!("{collisions} jobs were started while they were already running"));
         }
-        let mut filled = Vec::with_capacity(self.slots.len());
-        for (index, cell) in self.slots.iter().enumerate() {
+        let mut filled = Vec::with_capacity(self.cells.len());
+        for (index, cell) in self.cells.iter().enumerate() {
             match cell.take() {
-                Some(slot) if slot.times_run == 1 => filled.push(slot),
+                Some(slot) if slot.times_run == 1 => filled.push(*slot),
                 Some(slot) => return Err(format!("job {index} ran {} times instead of once", slot.times_run)),
                 None => return Err(format!("job {index} did not finish")),
             }

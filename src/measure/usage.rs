@@ -20,10 +20,10 @@ impl Usage {
         Some(Self {
             user_s: counted.user_time().num_microseconds() as f64 * 1e-6,
             system_s: counted.system_time().num_microseconds() as f64 * 1e-6,
-            voluntary_switches: i64::from(counted.voluntary_context_switches()),
-            involuntary_switches: i64::from(counted.involuntary_context_switches()),
+            voluntary_switches: counted.voluntary_context_switches(),
+            involuntary_switches: counted.involuntary_context_switches(),
             // Linux counts in KiB.
-            peak_rss_bytes: i64::from(counted.max_rss()) * 1024,
+            peak_rss_bytes: counted.max_rss() * 1024,
         })
     }
 

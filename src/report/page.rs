@@ -12,13 +12,16 @@ const STYLE: &str = "
 body { font: 16px/1.55 system-ui, sans-serif; color: #222; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1.5rem; }
 h1 { font-size: 1.9rem; margin-bottom: .2rem; } h2 { margin-top: 3.2rem; border-top: 2px solid #222; padding-top: 1rem; }
 p { max-width: 46rem; } figure { margin: 1.6rem 0; overflow-x: auto; } svg, img { max-width: 100%; height: auto; }
-table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; } caption { text-align: left; font-weight: 600; padding: .4rem 0; }
+table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; } summary { font-weight: 600; padding: .4rem 0; cursor: pointer; }
 .wide { overflow-x: auto; margin: 1.4rem 0; } th, td { padding: .22rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
 th { border-bottom: 2px solid #222; white-space: normal; vertical-align: bottom; } th:first-child, td:first-child { text-align: left; }
 .finding { border-left: 4px solid #0072b2; padding: .1rem 0 .1rem 1rem; } .failed { border-left: 4px solid #d55e00; padding-left: 1rem; }
 code, pre { background: #f3f3f3; padding: .1rem .3rem; } pre { padding: .7rem 1rem; overflow-x: auto; } nav a { margin-right: 1.2rem; }
 details { margin: 1rem 0; } td.text { text-align: left; white-space: normal; }
 ";
+
+/// Longer tables start closed.
+const OPEN_ROWS: usize = 12;
 
 /// The page.
 pub(super) fn html(sections: &[(Results, Vec<Block>)]) -> Result<String> {
@@ -80,9 +83,9 @@ fn part(block: &Block) -> Result<Markup> {
 
 fn table_markup(table: &Table) -> Markup {
     html! {
-        div.wide {
+        details.wide open[table.rows.len() <= OPEN_ROWS] {
+            summary { (table.title) }
             table {
-                caption { (table.title) }
                 thead { tr { @for column in &table.columns { th { (column) } } } }
                 tbody { @for row in &table.rows { tr { @for cell in row { td { (cell) } } } } }
             }

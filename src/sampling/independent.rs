@@ -13,7 +13,7 @@ use rand_pcg::Pcg32;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Independent;
 
-/// SplitMix64's finaliser (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014, variant 13 of Stafford's
+/// The finaliser of `SplitMix64` (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014, variant 13 of Stafford's
 /// mixers), a bijection of 64-bit numbers; the offset keeps zero from being its own image.
 #[inline(always)]
 fn mix(x: u64) -> u64 {

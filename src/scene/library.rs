@@ -20,13 +20,11 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
             path.file_stem().map_or_else(|| name_or_path.to_string(), |stem| stem.to_string_lossy().into_owned());
         return scene_from_text(&stem, name_or_path, &text);
     }
-    match SCENES.iter().find(|(name, _)| *name == name_or_path) {
-        Some((name, text)) => scene_from_text(name, &format!("{name}.toml"), text),
-        None => {
-            let names: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
-            Err(InputError::new("scene", name_or_path, "there is no scene of that name")
-                .allowed(format!("{}, or the path of a .toml file", names.join(", ")))
-                .into())
-        }
+    if let Some((name, text)) = SCENES.iter().find(|(name, _)| *name == name_or_path) {
+        return scene_from_text(name, &format!("{name}.toml"), text);
     }
+    let names: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
+    Err(InputError::new("scene", name_or_path, "there is no scene of that name")
+        .allowed(format!("{}, or the path of a .toml file", names.join(", ")))
+        .into())
 }

@@ -18,12 +18,12 @@
 //! ```
 
 use super::{Camera, Object, Scene, Sphere};
+use crate::digest;
 use crate::error::{InputError, Result};
 use crate::input::{parse, radiance};
 use crate::material::{Effects, Material};
 use crate::math::Rgb;
 use serde::Deserialize;
-use sha2::{Digest, Sha256};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -74,11 +74,10 @@ pub(super) fn scene_from_text(name: &str, file: &str, text: &str) -> Result<Scen
         objects.push(Object { name: object.name, material: object.material, emission: object.emission });
     }
     let effects = objects.iter().fold(Effects::default(), |all, object| all.and(object.material.effects()));
-    let digest = Sha256::digest(text.as_bytes());
     Ok(Scene {
         name: name.to_string(),
         about: parsed.about,
-        hash: digest.iter().take(8).map(|byte| format!("{byte:02x}")).collect(),
+        hash: digest::of_text(text),
         default_estimator: parsed.estimator,
         camera,
         shapes,

@@ -91,7 +91,7 @@ fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineCh
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = "Median of paired ratios; bars: 95 % bootstrap interval. Ideal: as many times faster as processors.".to_string();
+    chart.caption = "Median of ratios within a repetition. Bars: 95 % bootstrap interval.".to_string();
     chart.overlays = vec![
         Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
         Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
