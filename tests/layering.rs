@@ -29,6 +29,7 @@ const fn only(module: &'static str, layer: u8, only: &'static [&'static str]) ->
 const RULES: &[Rule] = &[
     rule("error", 0),
     rule("math", 0),
+    rule("digest", 0),
     beside("input", 0, &["error", "math"]), // errors with a place; numbers that become vectors and colours
     beside("atomic_file", 0, &["error"]),
     rule("image_io", 1),

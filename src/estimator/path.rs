@@ -2,7 +2,7 @@
 //!
 //! Written as a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the thread's stack.
 
-use super::Probe;
+use super::{Estimator, Probe};
 use crate::material::{BsdfSample, Density, EffectSet};
 use crate::math::{Frame, Ray, Rgb};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler};
@@ -14,8 +14,49 @@ pub const MAX_BOUNCES: u16 = u16::MAX;
 /// Roulette starts behind this vertex (smallpt: `if (++depth > 5)`).
 const ROULETTE_AFTER: u16 = 5;
 
-/// Most splits that `SPLITS` may ask for; two splits leave at most three unfinished parts.
+/// Two splits leave at most three unfinished parts.
 const LARGEST_STACK: usize = 3;
+
+/// What tells the estimators of this file apart.
+pub(super) trait Rules: Send + Sync {
+    /// At this many vertices, counted from the first, a surface that reflects and transmits is followed both ways; at most 2.
+    const SPLITS: u16;
+    /// Samples per pixel must be a multiple of this.
+    const SPP_MULTIPLE: u32;
+}
+
+impl<R: Rules> Estimator for R {
+    const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;
+
+    #[inline(always)]
+    fn sample<S: Sampler, X: EffectSet, P: Probe>(
+        &self,
+        scene: &Scene,
+        ray: Ray,
+        key: SampleKey,
+        sampler: &S,
+        probe: &mut P,
+    ) -> Rgb {
+        let mut collected = Rgb::BLACK;
+        let mut part = Part { ray, from: None, throughput: Rgb::WHITE, vertices: 0, branch: 0 };
+        let mut waiting = [part; LARGEST_STACK];
+        let mut depth = 0;
+        loop {
+            while let Some(next) = advance::<R, S, X, P>(scene, part, key, sampler, probe, &mut collected) {
+                part = next.0;
+                if let Some(other) = next.1 {
+                    waiting[depth] = other;
+                    depth += 1;
+                }
+            }
+            if depth == 0 {
+                return collected;
+            }
+            depth -= 1;
+            part = waiting[depth];
+        }
+    }
+}
 
 /// A part of a path that waits to be followed.
 #[derive(Clone, Copy)]
@@ -27,38 +68,9 @@ struct Part {
     branch: u16,
 }
 
-/// The radiance along `ray`. At the first `SPLITS` vertices a surface that reflects and transmits is followed both ways.
-#[inline(always)]
-pub(super) fn radiance<const SPLITS: u16, S: Sampler, X: EffectSet, P: Probe>(
-    scene: &Scene,
-    ray: Ray,
-    key: SampleKey,
-    sampler: &S,
-    probe: &mut P,
-) -> Rgb {
-    let mut collected = Rgb::BLACK;
-    let mut part = Part { ray, from: None, throughput: Rgb::WHITE, vertices: 0, branch: 0 };
-    let mut waiting = [part; LARGEST_STACK];
-    let mut depth = 0;
-    loop {
-        while let Some(next) = advance::<SPLITS, S, X, P>(scene, part, key, sampler, probe, &mut collected) {
-            part = next.0;
-            if let Some(other) = next.1 {
-                waiting[depth] = other;
-                depth += 1;
-            }
-        }
-        if depth == 0 {
-            return collected;
-        }
-        depth -= 1;
-        part = waiting[depth];
-    }
-}
-
 /// Traces a part to its next vertex. What goes on from there, and, after a split, the other way; `None` when the part has ended.
 #[inline(always)]
-fn advance<const SPLITS: u16, S: Sampler, X: EffectSet, P: Probe>(
+fn advance<R: Rules, S: Sampler, X: EffectSet, P: Probe>(
     scene: &Scene,
     part: Part,
     key: SampleKey,
@@ -101,7 +113,7 @@ fn advance<const SPLITS: u16, S: Sampler, X: EffectSet, P: Probe>(
         let from = Some(Standpoint { object: hit.object, inside: (sample.wi.z < 0.0) != hit.inside });
         Part { ray, from, throughput: throughput * sample.weight, vertices, branch }
     };
-    if vertices <= SPLITS
+    if vertices <= R::SPLITS
         && let Some([reflected, refracted]) = object.material.split::<X>(wo, hit.inside)
     {
         return Some((leave(reflected, part.branch), Some(leave(refracted, part.branch | 1 << (vertices - 1)))));

@@ -42,6 +42,11 @@ fn or_unknown(text: Option<String>) -> String {
     text.filter(|text| !text.is_empty()).unwrap_or_else(|| "unknown".to_string())
 }
 
+/// A fact that the build stamped; empty where there is none to tell.
+fn built_with(fact: &str) -> String {
+    fact.to_string()
+}
+
 /// The value of `key: value` lines, one per line that has the key.
 fn values<'a>(text: &'a str, key: &'a str) -> impl Iterator<Item = &'a str> {
     text.lines().filter_map(move |line| {
@@ -68,11 +73,11 @@ impl Machine {
             memory_bytes: kib.unwrap_or(0) * 1024,
             system: or_unknown(read("/proc/sys/kernel/osrelease").map(|release| format!("Linux {release}"))),
             load_average: or_unknown(load),
-            rustc: env!("PATHMARK_RUSTC").to_string(),
-            target: env!("PATHMARK_TARGET").to_string(),
-            rustflags: String::from(env!("PATHMARK_RUSTFLAGS")),
-            profile: env!("PATHMARK_PROFILE").to_string(),
-            commit: env!("PATHMARK_COMMIT").to_string(),
+            rustc: built_with(env!("PATHMARK_RUSTC")),
+            target: built_with(env!("PATHMARK_TARGET")),
+            rustflags: built_with(env!("PATHMARK_RUSTFLAGS")),
+            profile: built_with(env!("PATHMARK_PROFILE")),
+            commit: built_with(env!("PATHMARK_COMMIT")),
             dirty: env!("PATHMARK_DIRTY") == "true",
         }
     }

@@ -63,6 +63,7 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
         (&["run", "cold-fusion"], &["experiment", "cold-fusion", "thread-scaling", ".toml"]),
         (&["run", "thread-scaling", "--repetitions", "0"], &["repetitions", "0"]),
         (&["run", "thread-scaling", "--filter", "no-such-cell"], &["filter", "no-such-cell"]),
+        (&["run", "thread-scaling", "--filter", "strategy=warp"], &["filter", "strategy=warp"]),
         (&["list", "planets"], &["planets", "scenes", "strategies"]),
         (&["report", "nowhere"], &["folder", "nowhere"]),
         (&["report", "."], &["folder", "records.csv"]),
