@@ -1,81 +1,21 @@
 //! Ray against sphere, compared with exact answers: S01-S31 of the catalogue of hard cases.
 //!
-//! Two oracles: `data/sphere-oracle.json` (mpmath, 40 to 60 digits), and for bulk a double-double quadratic written here, which takes its
+//! Two oracles: `data/sphere-oracle.json` (mpmath, 40 to 60 digits), and for bulk a quadratic in double-double numbers, which takes its
 //! discriminant from the cross product, |d|² r² - |f x d|², and so shares no formula with the code that it judges.
 
+#[path = "support/double_double.rs"]
+mod double_double;
 #[path = "support/scene_text.rs"]
 mod scene_text;
 
+use double_double::two_product;
 use pathmark::math::{Ray, Vec3, dot, first_root, roots};
 use pathmark::scene::Sphere;
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 use scene_text::{Ball, load_scene};
-use std::ops::{Add, Mul, Neg, Sub};
 
 const U: f64 = f64::EPSILON / 2.0;
-
-/// A number as an unevaluated sum of two: 106 bits (Dekker, 1971; products split after Veltkamp, no fused operation).
-#[derive(Clone, Copy)]
-struct Dd(f64, f64);
-
-fn two_sum(a: f64, b: f64) -> Dd {
-    let s = a + b;
-    let t = s - a;
-    Dd(s, (a - (s - t)) + (b - t))
-}
-
-fn two_product(a: f64, b: f64) -> Dd {
-    let split = |x: f64| {
-        let c = 134_217_729.0 * x;
-        let high = c - (c - x);
-        (high, x - high)
-    };
-    let (p, (ah, al), (bh, bl)) = (a * b, split(a), split(b));
-    Dd(p, ((ah * bh - p) + ah * bl + al * bh) + al * bl)
-}
-
-impl Add for Dd {
-    type Output = Self;
-    fn add(self, o: Self) -> Self {
-        let (s, t) = (two_sum(self.0, o.0), two_sum(self.1, o.1));
-        let s = two_sum(s.0, s.1 + t.0);
-        two_sum(s.0, s.1 + t.1)
-    }
-}
-
-impl Neg for Dd {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
-}
-
-impl Sub for Dd {
-    type Output = Self;
-    fn sub(self, o: Self) -> Self {
-        self + -o
-    }
-}
-
-impl Mul for Dd {
-    type Output = Self;
-    fn mul(self, o: Self) -> Self {
-        let p = two_product(self.0, o.0);
-        two_sum(p.0, p.1 + (self.0 * o.1 + self.1 * o.0))
-    }
-}
-
-impl Dd {
-    fn over(self, o: Self) -> f64 {
-        let q = self.0 / o.0;
-        q + (self - o * Self(q, 0.0)).0 / o.0
-    }
-    fn sqrt(self) -> Self {
-        let root = self.0.sqrt();
-        if root == 0.0 { self } else { two_sum(root, (self - two_product(root, root)).0 / (2.0 * root)) }
-    }
-}
 
 /// The exact line and sphere: distance of the line from the centre, and the roots if there are any.
 struct Exact {
@@ -99,7 +39,7 @@ fn exact(f: Vec3, d: Vec3, r: f64) -> Exact {
     Exact { line, roots: Some(if by_q < by_c { [by_q, by_c] } else { [by_c, by_q] }) }
 }
 
-/// The bound T_s on the error of root `t`, in lengths of `d`; infinite at tangency, where the roots' slope is.
+/// The bound `T_s` on the error of root `t`, in lengths of `d`; infinite at tangency, where the roots' slope is.
 fn bound(f: Vec3, d: Vec3, r: f64, line: f64, t: f64) -> f64 {
     let (length, distance) = (dot(d, d).sqrt(), dot(f, f).sqrt());
     let s = ((r - line) * (r + line)).max(0.0).sqrt();
@@ -248,7 +188,7 @@ impl Random {
         };
         let target = f.cross(self.direction()).normalized() * (aim * r);
         let towards = (target - f).normalized();
-        (f, if self.0.next_u64() % 8 == 0 { -towards } else { towards }, r)
+        (f, if self.0.next_u64().is_multiple_of(8) { -towards } else { towards }, r)
     }
 }
 

@@ -1,16 +1,19 @@
 //! The options that choose what is rendered, in which pieces and by whom.
 
 use crate::error::{InputError, Result};
+use crate::estimator::ESTIMATORS;
+use crate::input::{locate, read_text};
 use crate::kernel::Spec;
 use crate::measure::{LARGEST_SEED, Settings, available_threads};
 use crate::scene;
 use clap::Args;
+use std::path::Path;
 
 /// The axes of DESIGN: *what*, *pieces*, *who*.
 #[derive(Args)]
 pub(super) struct Axes {
     /// Columns and rows.
-    #[arg(long, value_name = "WxH", default_value = "512x384")]
+    #[arg(long, value_name = "WxH", default_value = "512x384", allow_hyphen_values = true)]
     pub(super) size: String,
     /// Estimator [default: the scene's own]
     #[arg(long, value_name = "NAME")]
@@ -44,6 +47,20 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32)> {
     parsed.ok_or_else(|| InputError::new("size", text, "is no size").allowed("WxH, like 1024x768").into())
 }
 
+/// The estimator that a scene names; `scene` itself is a layer below estimators and cannot know whether there is one.
+fn default_estimator(scene: &str) -> Result<Option<String>> {
+    let name = scene::load(scene)?.default_estimator;
+    match name.as_deref().filter(|name| !ESTIMATORS.iter().any(|entry| entry.name == *name)) {
+        None => Ok(name),
+        Some(unknown) => {
+            let names: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).collect();
+            let at = read_text(Path::new(scene)).ok().and_then(|text| locate(&text, "estimator", unknown));
+            let error = InputError::new("estimator", unknown, "there is none of that name");
+            Err(error.allowed(names.join(", ")).in_file(scene, at).into())
+        }
+    }
+}
+
 impl Axes {
     /// The settings for a scene, samples and a seed that belongs to an image, not to a reference.
     pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
@@ -57,7 +74,7 @@ impl Axes {
         let default = Spec::default();
         let estimator = match &self.estimator {
             Some(estimator) => estimator.clone(),
-            None => scene::load(scene)?.default_estimator.unwrap_or(default.estimator),
+            None => default_estimator(scene)?.unwrap_or(default.estimator),
         };
         Ok(Settings {
             scene: scene.to_string(),

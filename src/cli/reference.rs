@@ -40,6 +40,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         spp: arguments.spp,
     };
     reference.check()?;
+    reference.check_cache(&arguments.out)?;
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
     let [(first, a), (second, b)] = render_reference(&reference, &arguments.out, talk)?;
     // The variance of the average of two independent halves is a quarter of the sum of theirs.

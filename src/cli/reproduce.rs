@@ -3,7 +3,7 @@
 use super::progress::Talk;
 use super::{command_line, output::print};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, EXPERIMENTS, Options, Profile, Progress, sweep};
+use crate::experiment::{Definition, EXPERIMENTS, Options, Profile, Progress, RecordsFile, sweep};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -55,6 +55,12 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
 
 /// Moves what an earlier run left out of the way: measurements are never overwritten.
 fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> {
+    // All are asked before any is moved: a running sweep holds the lock of one of them.
+    for rows in definitions.iter().map(|definition| out.join(&definition.name).join("records.csv")) {
+        if rows.is_file() {
+            RecordsFile::check_idle(&rows)?;
+        }
+    }
     let stamp = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace(':', "-");
     let earlier = out.join("earlier").join(stamp);
     for definition in definitions {

@@ -1,7 +1,9 @@
 //! One repetition of one cell, in a process of its own: memory, caches, CPU time and thread counts of one run are not those of another,
 //! and a crash is a row instead of the end of the sweep.
 //!
-//! The parent writes a [`CellJob`] as JSON to the child's standard input; the child answers with a record as JSON on its standard output.
+//! The parent writes a [`CellJob`] as a line of JSON to the child's standard input and keeps that open; the child answers with a record as
+//! JSON on its standard output. A child whose input ends has lost its parent and stops, so that no orphan disturbs the sweep that goes on
+//! in its place.
 
 use crate::error::{Error, InputError, Result};
 use crate::film::{Film, read_film};
@@ -58,9 +60,11 @@ impl CellJob {
             .spawn()
             .map_err(|e| format!("starting a process for the cell: {e}"))?;
         let text = serde_json::to_string(self).map_err(|e| format!("describing the cell: {e}"))?;
+        let mut input = child.stdin.take();
         // A child that dies early closes its end; its exit status tells more than this write.
-        let written = child.stdin.take().map_or(Ok(()), |mut stdin| stdin.write_all(text.as_bytes()));
+        let written = input.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{text}"));
         let output = child.wait_with_output().map_err(|e| format!("waiting for the cell's process: {e}"))?;
+        drop(input);
         if !output.status.success() {
             let said = String::from_utf8_lossy(&output.stderr);
             return Err(format!("the cell's process ended with {}: {}", output.status, said.trim()));
@@ -98,9 +102,15 @@ impl CellJob {
 
 /// The child's side: reads a job, answers with a record.
 pub fn child_main() -> Result<()> {
-    let text = std::io::read_to_string(std::io::stdin()).map_err(|e| Error::system("reading", "standard input", e))?;
+    let mut text = String::new();
+    std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
     let job: CellJob = serde_json::from_str(&text)
         .map_err(|e| InputError::new("standard input", "", format!("is no description of a cell: {e}")))?;
+    std::thread::spawn(|| {
+        // Nothing more is ever sent: this returns when the parent is gone.
+        let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
+        std::process::exit(3);
+    });
     let record = job.run()?;
     let answer = serde_json::to_string(&record).map_err(|e| Error::system("writing", "standard output", e.into()))?;
     writeln!(std::io::stdout(), "{answer}").map_err(|e| Error::system("writing", "standard output", e))

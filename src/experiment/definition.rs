@@ -29,11 +29,9 @@
 //! reference-spp = 2000
 //! ```
 
-use super::Cell;
+use super::matrix::{Matrix, Scale};
 use crate::error::{Error, InputError, Result};
-use crate::input::{locate, parse, read_text};
-use crate::kernel::Spec;
-use crate::measure::{LARGEST_SEED, Settings, Setup, available_threads};
+use crate::input::{locate, locate_in, parse, read_text};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -88,7 +86,7 @@ pub struct Definition {
     /// Whether each cell's first image is kept.
     #[serde(default)]
     pub images: bool,
-    matrix: Matrix,
+    pub(super) matrix: Matrix,
     reference: Option<ReferenceTable>,
     quick: Scale,
     full: Scale,
@@ -96,61 +94,8 @@ pub struct Definition {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Matrix {
-    scene: Vec<String>,
-    estimator: Vec<String>,
-    #[serde(default = "independent")]
-    sampler: Vec<String>,
-    spp: Vec<u32>,
-    seed: Vec<u64>,
-    strategy: Vec<String>,
-    threads: Vec<Threads>,
-    decomposition: Vec<String>,
-}
-
-fn independent() -> Vec<String> {
-    vec!["independent".to_string()]
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
 struct ReferenceTable {
     estimator: String,
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Scale {
-    size: [u32; 2],
-    repetitions: u32,
-    reference_spp: Option<u32>,
-    spp: Option<Vec<u32>>,
-    seed: Option<Vec<u64>>,
-    strategy: Option<Vec<String>>,
-    threads: Option<Vec<Threads>>,
-    decomposition: Option<Vec<String>>,
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
-enum Threads {
-    Count(usize),
-    Word(ThreadsWord),
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum ThreadsWord {
-    All,
-}
-
-impl Threads {
-    fn count(&self) -> usize {
-        match self {
-            Self::Count(count) => *count,
-            Self::Word(ThreadsWord::All) => available_threads(),
-        }
-    }
 }
 
 impl Definition {
@@ -179,7 +124,7 @@ impl Definition {
         Self::from_text(&stem, name_or_path, &read_text(path)?)
     }
 
-    fn scale(&self, profile: Profile) -> &Scale {
+    pub(super) fn scale(&self, profile: Profile) -> &Scale {
         match profile {
             Profile::Quick => &self.quick,
             Profile::Full => &self.full,
@@ -207,88 +152,33 @@ impl Definition {
             given => {
                 let value = given.map_or_else(String::new, |spp| spp.to_string());
                 let problem = "each half-reference needs ten times the samples of the largest spp";
-                Err(self.located(InputError::new("reference-spp", value, problem).allowed(format!("from {needed}"))))
+                Err(self.located(
+                    profile,
+                    InputError::new("reference-spp", value, problem).allowed(format!("from {needed}")),
+                ))
             }
         }
     }
 
-    /// The cells, each once, in the order of the matrix. Every one has been checked: nothing that the definition says can fail later.
-    pub fn cells(&self, profile: Profile) -> Result<Vec<Cell>> {
-        let scale = self.scale(profile);
-        let matrix = &self.matrix;
-        if scale.repetitions == 0 {
-            return Err(self.located(InputError::new("repetitions", "0", "must be at least 1")));
-        }
-        let mut cells: Vec<Cell> = Vec::new();
-        for scene in &matrix.scene {
-            for estimator in &matrix.estimator {
-                for sampler in &matrix.sampler {
-                    for spp in scale.spp.as_ref().unwrap_or(&matrix.spp) {
-                        for seed in scale.seed.as_ref().unwrap_or(&matrix.seed) {
-                            let spec = Spec {
-                                width: scale.size[0],
-                                height: scale.size[1],
-                                seed: *seed,
-                                estimator: estimator.clone(),
-                                sampler: sampler.clone(),
-                                ..Spec::default()
-                            };
-                            self.add_schedules(scale, scene, *spp, &spec, &mut cells)?;
-                        }
-                    }
-                }
+    /// The error of a reference that cannot be rendered, at the field that asks for it.
+    pub(super) fn reference_error(&self, profile: Profile, error: Error) -> Error {
+        match error {
+            Error::Input(mut input) if input.place.is_none() && input.field == "spp" => {
+                input.field = "reference-spp".to_string();
+                self.located(profile, *input)
             }
-        }
-        if cells.is_empty() {
-            return Err(self.located(InputError::new("matrix", "", "has an empty axis, so there is nothing to run")));
-        }
-        Ok(cells)
-    }
-
-    /// The cells of one image: everything that may not change its checksum.
-    fn add_schedules(&self, scale: &Scale, scene: &str, spp: u32, spec: &Spec, cells: &mut Vec<Cell>) -> Result<()> {
-        for strategy in scale.strategy.as_ref().unwrap_or(&self.matrix.strategy) {
-            for threads in scale.threads.as_ref().unwrap_or(&self.matrix.threads) {
-                for decomposition in scale.decomposition.as_ref().unwrap_or(&self.matrix.decomposition) {
-                    let settings = Settings {
-                        scene: self.scene_path(scene),
-                        spp,
-                        spec: spec.clone(),
-                        decomposition: decomposition.clone(),
-                        strategy: strategy.clone(),
-                        threads: threads.count(),
-                    };
-                    if spec.seed > LARGEST_SEED {
-                        let problem = "belongs to the references";
-                        let error = InputError::new("seed", spec.seed.to_string(), problem);
-                        return Err(self.located(error.allowed(format!("0 to {LARGEST_SEED}"))));
-                    }
-                    let setup = Setup::prepare(settings).map_err(|error| match error {
-                        Error::Input(input) if input.place.is_none() => self.located(*input),
-                        other => other,
-                    })?;
-                    let cell = Cell::new(&setup);
-                    if !cells.iter().any(|known| known.id == cell.id) {
-                        cells.push(cell);
-                    }
-                }
+            Error::Input(input) if input.place.is_none() => {
+                let at = locate_in("reference", &self.text, &input.field, &input.value);
+                input.in_file(&self.file, at).into()
             }
-        }
-        Ok(())
-    }
-
-    /// A scene file is named relative to the experiment that uses it.
-    fn scene_path(&self, scene: &str) -> String {
-        let beside = Path::new(&self.file).parent().map(|folder| folder.join(scene));
-        match beside {
-            Some(path) if path.extension().is_some_and(|e| e == "toml") && path.is_file() => path.display().to_string(),
-            _ => scene.to_string(),
+            other => other,
         }
     }
 
-    /// Adds the place where the field and its value stand in the definition.
-    fn located(&self, error: InputError) -> Error {
-        let at = locate(&self.text, &error.field, &error.value);
+    /// Adds the place where the field and its value stand in the definition: the profile's own table comes before the matrix.
+    pub(super) fn located(&self, profile: Profile, error: InputError) -> Error {
+        let (text, key, value) = (&self.text, &error.field, &error.value);
+        let at = locate_in(profile.name(), text, key, value).or_else(|| locate(text, key, value));
         error.in_file(&self.file, at).into()
     }
 }

@@ -7,6 +7,7 @@ use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {
@@ -16,35 +17,45 @@ pub struct RecordsFile {
 
 /// Reads every row; a row that cannot be read is an error that names its line.
 pub fn read_records(path: &Path) -> Result<Vec<Record>> {
-    let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
+    let bytes = std::fs::read(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => {
             InputError::new("records", path.display().to_string(), "there is no such file").into()
         }
         _ => Error::system("reading", path, e),
     })?;
-    let complete = complete_part(&text);
-    if complete.len() < text.len() {
+    let complete = complete_part(&bytes, path)?;
+    if complete.len() < bytes.len() {
         let line = complete.matches('\n').count() + 1;
         let problem = "the last row is only half written; `pathmark run --resume` drops it and runs it again";
-        let row: String = text[complete.len()..].chars().take(40).collect();
+        let row: String = String::from_utf8_lossy(&bytes[complete.len()..]).chars().take(40).collect();
         return Err(InputError::new("row", row, problem).in_file(path.display().to_string(), Some((line, 1))).into());
     }
     parse(complete, path)
 }
 
-/// The part of a file that ends with a finished line.
-fn complete_part(text: &str) -> &str {
-    text.rfind('\n').map_or("", |end| &text[..=end])
+/// The part of a file that ends with a finished line. What a crash left behind it need not even be text.
+fn complete_part<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str> {
+    let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+    std::str::from_utf8(&bytes[..end]).map_err(|e| {
+        let line = bytes[..e.valid_up_to()].split(|byte| *byte == b'\n').count();
+        InputError::new("row", "", "is not UTF-8 text").in_file(path.display().to_string(), Some((line, 1))).into()
+    })
 }
 
 fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
     let file = path.display().to_string();
     let mut records = Vec::new();
     let mut seen = HashSet::new();
-    for row in csv::Reader::from_reader(text.as_bytes()).deserialize::<Record>() {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let columns = reader.headers().cloned().unwrap_or_default();
+    for row in reader.deserialize::<Record>() {
         let record = row.map_err(|e| {
             let line = e.position().map(|position| (position.line() as usize, 1));
-            InputError::new("row", "", format!("cannot be read: {e}")).in_file(&file, line)
+            let column = match e.kind() {
+                csv::ErrorKind::Deserialize { err, .. } => err.field().and_then(|at| columns.get(at as usize)),
+                _ => None,
+            };
+            InputError::new(column.unwrap_or("row"), "", format!("cannot be read: {e}")).in_file(&file, line)
         })?;
         let line = Some((records.len() + 2, 1));
         if record.schema != SCHEMA {
@@ -81,11 +92,12 @@ impl RecordsFile {
         let file =
             OpenOptions::new().read(true).write(true).open(path).map_err(|e| Error::system("opening", path, e))?;
         let locked = Self::locked(path, file)?;
-        let text = std::fs::read_to_string(path).map_err(|e| Error::system("reading", path, e))?;
-        let mut records = parse(complete_part(&text), path)?;
+        let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
+        let complete = complete_part(&bytes, path)?;
+        let mut records = parse(complete, path)?;
         let rows = records.len();
         records.retain(|record| record.error.is_empty());
-        if rows == records.len() && complete_part(&text).len() == text.len() {
+        if rows == records.len() && complete.len() == bytes.len() {
             return Ok((locked, records));
         }
         // The new file takes the old one's place in one step, so being killed here loses nothing either.
@@ -99,8 +111,29 @@ impl RecordsFile {
         Ok((Self::locked(path, file)?, records))
     }
 
+    /// Whether there is a finished row behind the header.
+    pub fn has_rows(path: &Path) -> Result<bool> {
+        let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
+        Ok(bytes.split(|byte| *byte == b'\n').count() > 2)
+    }
+
+    /// Refuses a file that a sweep is writing.
+    pub fn check_idle(path: &Path) -> Result<()> {
+        let file = File::open(path).map_err(|e| Error::system("opening", path, e))?;
+        Self::locked(path, file).map(|_| ())
+    }
+
     fn locked(path: &Path, file: File) -> Result<Self> {
-        match file.try_lock() {
+        // A killed sweep's child holds the lock between its fork and its exec: that ends by itself.
+        let mut locked = file.try_lock();
+        for _ in 0..20 {
+            if !matches!(locked, Err(std::fs::TryLockError::WouldBlock)) {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+            locked = file.try_lock();
+        }
+        match locked {
             Ok(()) => Ok(Self { path: path.to_path_buf(), file }),
             Err(std::fs::TryLockError::WouldBlock) => {
                 let problem = "is being written by another sweep";

@@ -65,6 +65,17 @@ impl Reference {
     pub fn check(&self) -> Result<()> {
         Setup::prepare(self.half(0)).map(|_| ())
     }
+
+    /// Refuses a damaged film in the cache. It is never quietly replaced: it may be the user's only copy.
+    pub fn check_cache(&self, folder: &Path) -> Result<()> {
+        for index in 0..2 {
+            let path = reference_path(folder, &Setup::prepare(self.half(index))?.film_key());
+            if path.is_file() {
+                read_film(&path)?;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// The two halves, from the cache in `folder` where they are there and whole, rendered otherwise.

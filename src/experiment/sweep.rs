@@ -50,14 +50,18 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
             return Err(InputError::new("filter", filter, "leaves no cell to run").into());
         }
     }
-    let reference = definition.reference(options.profile)?;
+    let wanted = match definition.reference(options.profile)? {
+        None => Vec::new(),
+        Some((estimator, spp)) => wanted_references(&cells, &estimator, spp),
+    };
+    for reference in &wanted {
+        reference.check().map_err(|error| definition.reference_error(options.profile, error))?;
+        reference.check_cache(&options.out.join("references"))?;
+    }
     let folder = options.out.join(&definition.name);
     let (mut file, done) = open(definition, options, &folder)?;
 
-    let references = match reference {
-        None => HashMap::new(),
-        Some((estimator, spp)) => references(&cells, &estimator, spp, options, progress)?,
-    };
+    let references = references(&wanted, options, progress)?;
     let images = folder.join("images");
     if definition.images {
         std::fs::create_dir_all(&images).map_err(|e| Error::system("creating", &images, e))?;
@@ -74,7 +78,9 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
     let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
     let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0 };
-    let (mut units, mut order) = (0, done.len() as u64);
+    let mut units = 0;
+    // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
+    let mut order = done.iter().map(|record| record.order + 1).max().unwrap_or(0);
     progress.begin(&definition.name, total);
     for repetition in 0..repetitions {
         for index in shuffled(cells.len(), &definition.name, repetition) {
@@ -129,41 +135,56 @@ fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(Re
         machine: Machine::look(),
     };
     let (rows, machine) = (folder.join("records.csv"), folder.join("machine.toml"));
+    let describe = || {
+        run.write(&machine)?;
+        atomic_file::write(&folder.join("experiment.toml"), |out| out.write_all(definition.text.as_bytes()))
+    };
     if options.resume && rows.is_file() {
-        read_run_file(&machine)?.check_same(&run, &machine)?;
-        return RecordsFile::resume(&rows);
+        // Killed before its first row, a sweep may have left no machine.toml, and has nothing that must not be mixed.
+        if RecordsFile::has_rows(&rows)? {
+            read_run_file(&machine)?.check_same(&run, &machine)?;
+        }
+        let (file, done) = RecordsFile::resume(&rows)?;
+        if done.is_empty() {
+            describe()?;
+        }
+        return Ok((file, done));
     }
     std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
     let file = RecordsFile::create(&rows)?;
-    run.write(&machine)?;
-    atomic_file::write(&folder.join("experiment.toml"), |out| out.write_all(definition.text.as_bytes()))?;
+    describe()?;
     Ok((file, Vec::new()))
 }
 
-/// The half-references of every scene in the cells.
-fn references(
-    cells: &[Cell],
-    estimator: &str,
-    spp: u32,
-    options: &Options,
-    progress: &dyn Progress,
-) -> Result<HashMap<String, [PathBuf; 2]>> {
-    let folder = options.out.join("references");
-    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-    let mut halves = HashMap::new();
-    for cell in cells {
-        let settings = &cell.settings;
-        if !halves.contains_key(&settings.scene) {
-            let reference = Reference {
+/// The references that the cells call for: one for each scene.
+fn wanted_references(cells: &[Cell], estimator: &str, spp: u32) -> Vec<Reference> {
+    let mut wanted: Vec<Reference> = Vec::new();
+    for settings in cells.iter().map(|cell| &cell.settings) {
+        if !wanted.iter().any(|reference| reference.scene == settings.scene) {
+            wanted.push(Reference {
                 scene: settings.scene.clone(),
                 estimator: estimator.to_string(),
                 sampler: "independent".to_string(),
                 size: [settings.spec.width, settings.spec.height],
                 spp,
-            };
-            let [(first, _), (second, _)] = render_reference(&reference, &folder, progress)?;
-            halves.insert(settings.scene.clone(), [first, second]);
+            });
         }
+    }
+    wanted
+}
+
+/// Their two halves, by scene.
+fn references(
+    wanted: &[Reference],
+    options: &Options,
+    progress: &dyn Progress,
+) -> Result<HashMap<String, [PathBuf; 2]>> {
+    let folder = options.out.join("references");
+    let mut halves = HashMap::new();
+    for reference in wanted {
+        std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+        let [(first, _), (second, _)] = render_reference(reference, &folder, progress)?;
+        halves.insert(reference.scene.clone(), [first, second]);
     }
     Ok(halves)
 }

@@ -68,6 +68,16 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
     if field.is_empty() { ("definition".to_string(), value) } else { (field, value) }
 }
 
+/// [`locate`] within the table of that name, as far as the next table.
+pub fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
+    let head = format!("[{table}]");
+    let is_line = |at: &usize| text[..*at].is_empty() || text[..*at].ends_with('\n');
+    let start = text.match_indices(&head).map(|(at, _)| at).find(is_line)?;
+    let end = text[start..].find("\n[").map_or(text.len(), |at| start + at + 1);
+    let (line, column) = locate(&text[start..end], key, value)?;
+    Some((line + text[..start].matches('\n').count(), column))
+}
+
 /// Line and column of a value that was found wrong after parsing: its first appearance behind the key.
 pub fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
     let at_key = text.match_indices(key).map(|(at, _)| at).find(|at| {

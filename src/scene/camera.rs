@@ -21,7 +21,7 @@ pub struct Camera {
     #[serde(deserialize_with = "point")]
     pub position: Vec3,
     /// The middle of the view; of length 1 once it is read.
-    #[serde(deserialize_with = "direction")]
+    #[serde(deserialize_with = "view_direction")]
     pub direction: Vec3,
     /// Height of the image plane at distance 1.
     #[serde(deserialize_with = "length")]
@@ -29,6 +29,15 @@ pub struct Camera {
     /// How far along its direction a ray starts, so that it can start inside a closed box.
     #[serde(deserialize_with = "positive")]
     pub advance: f64,
+}
+
+/// Rows lie along the x axis, so a camera that looks along it would have no upward direction.
+fn view_direction<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
+    let d = direction(deserializer)?;
+    if d.y.abs().max(d.z.abs()) < 1e-6 {
+        return Err(serde::de::Error::custom("looks along the image's own rows (allowed: a direction off the x axis)"));
+    }
+    Ok(d)
 }
 
 /// A camera set up for an image size.

@@ -20,7 +20,7 @@
 use super::{Camera, Object, Scene, Sphere};
 use crate::digest;
 use crate::error::{InputError, Result};
-use crate::input::{parse, radiance};
+use crate::input::{locate, parse, radiance};
 use crate::material::{Effects, Material};
 use crate::math::Rgb;
 use serde::Deserialize;
@@ -64,7 +64,9 @@ fn black() -> Rgb {
 pub(super) fn scene_from_text(name: &str, file: &str, text: &str) -> Result<Scene> {
     let parsed: SceneFile = parse(text, file)?;
     if parsed.objects.is_empty() {
-        return Err(InputError::new("objects", "[]", "a scene needs at least one object").in_file(file, None).into());
+        return Err(InputError::new("objects", "[]", "a scene needs at least one object")
+            .in_file(file, locate(text, "objects", "[]"))
+            .into());
     }
     let CameraFile::Smallpt(camera) = parsed.camera;
     let (mut shapes, mut objects) = (Vec::new(), Vec::new());

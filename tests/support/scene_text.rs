@@ -14,16 +14,17 @@ pub(crate) struct Ball {
 
 /// Writes the scene to a file, loads it, and takes the file away again. The camera looks along -z from `position`.
 pub(crate) fn load_scene(position: [f64; 3], balls: &[Ball]) -> Result<Scene> {
-    let mut text = format!(
+    let header = format!(
         "about = 'a test'\n[camera.smallpt]\nposition = {position:?}\ndirection = [0.0, 0.0, -1.0]\nfield = 0.5\nadvance = 0.0\n"
     );
-    for (index, Ball { center, radius, material, emission }) in balls.iter().enumerate() {
-        text += &format!(
+    let object = |(index, Ball { center, radius, material, emission }): (usize, &Ball)| {
+        format!(
             "[[objects]]\nname = 'ball {index}'\nshape = {{ sphere = {{ center = {center:?}, radius = {radius:?} }} }}\n\
              material = {material}\nemission = {emission:?}\n"
-        );
-    }
+        )
+    };
+    let objects: Vec<String> = balls.iter().enumerate().map(object).collect();
     let mut file = tempfile::Builder::new().suffix(".toml").tempfile().expect("a temporary file");
-    file.write_all(text.replace("NaN", "nan").as_bytes()).expect("a written file");
+    file.write_all((header + &objects.concat()).as_bytes()).expect("a written file");
     load(file.path().to_str().expect("a path in UTF-8"))
 }
