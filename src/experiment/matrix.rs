@@ -49,7 +49,7 @@ pub(super) enum Threads {
 
 #[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum ThreadsWord {
+pub(super) enum ThreadsWord {
     All,
 }
 

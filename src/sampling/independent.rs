@@ -1,9 +1,10 @@
 //! Independent uniform numbers: `--sampler independent`.
 //!
 //! Each address has a PCG32 generator of its own (O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms
-//! for Random Number Generation", 2014; crate `rand_pcg`). Neighbouring raw states or streams of a PCG are correlated (by 10 to 900
-//! standard deviations when pixel numbers are used as they are), so both are mixed first. Each mix is a bijection: within one seed, no
-//! two (pixel, sample) share a state and no two (bounce, branch, purpose) share a stream key.
+//! for Random Number Generation", 2014; crate `rand_pcg`). Two PCGs are correlated when their states or streams differ in a simple way: by
+//! 10 to 900 standard deviations with raw pixel numbers, and still by 10 to 100 when only the streams differ and the states are the
+//! same well-mixed number. So the stream is a mix of (seed, bounce, branch, purpose), and the state a mix of (pixel, sample) *with the stream*.
+//! Each mix is a bijection: for one seed no two uses share a stream, and within a use no two (pixel, sample) share a state.
 
 use super::{Address, Sampler};
 use rand::Rng;
@@ -35,7 +36,8 @@ impl Sampler for Independent {
     fn pair(&self, at: Address) -> [f64; 2] {
         let place = u64::from(at.key.pixel) << 32 | u64::from(at.key.sample);
         let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
-        let mut pcg = Pcg32::new(mix(place), mix(mix(at.key.seed) ^ dimension));
+        let stream = mix(mix(at.key.seed) ^ dimension);
+        let mut pcg = Pcg32::new(mix(place ^ stream), stream);
         [unit(pcg.next_u64()), unit(pcg.next_u64())]
     }
 }
