@@ -1,4 +1,4 @@
-//! Each module imports only modules above it (DESIGN 3), so that a part can be understood, tested and replaced without those that
+//! Each module imports only modules above it (CONTRIBUTING, Layers), so that a part can be understood, tested and replaced without those that
 //! use it. The compiler does not mind cycles among modules; this test does.
 
 use std::collections::BTreeSet;

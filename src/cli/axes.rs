@@ -9,7 +9,7 @@ use crate::scene;
 use clap::Args;
 use std::path::Path;
 
-/// The axes of DESIGN: *what*, *pieces*, *who*.
+/// The three axes: *what*, *pieces*, *who*.
 #[derive(Args)]
 pub(super) struct Axes {
     /// Columns and rows.

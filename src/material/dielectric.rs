@@ -119,7 +119,7 @@ mod tests {
         }
     }
 
-    /// Schlick's own values at n = 1.5 (hard-cases 3.2), by the light that is split off.
+    /// Schlick's polynomial worked out by hand for n = 1.5, against the light that is split off.
     #[test]
     fn reflectance_by_angle() {
         for (inside, cos, expected) in [

@@ -33,7 +33,7 @@ mod tests {
 
     const R0: f64 = 0.04;
 
-    /// Values of hard-cases section 3.2: Schlick, air to glass and, by the cosine inside the air, glass to air.
+    /// Schlick's polynomial worked out by hand for n = 1.5: air to glass and, by the cosine inside the air, glass to air.
     #[test]
     fn schlick_values() {
         for (cos, expected) in

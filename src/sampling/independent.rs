@@ -3,8 +3,9 @@
 //! Each address has a PCG32 generator of its own (O'Neill, "PCG: A Family of Simple Fast Space-Efficient Statistically Good Algorithms
 //! for Random Number Generation", 2014; crate `rand_pcg`). Two PCGs are correlated when their states or streams differ in a simple way: by
 //! 10 to 900 standard deviations with raw pixel numbers, and still by 10 to 100 when only the streams differ and the states are the
-//! same well-mixed number. So the stream is a mix of (seed, bounce, branch, purpose), and the state a mix of (pixel, sample) *with the stream*.
-//! Each mix is a bijection: for one seed no two uses share a stream, and within a use no two (pixel, sample) share a state.
+//! same well-mixed number. So everything goes into the state: a mix of (seed, pixel, sample) is mixed again with the dimension, which is
+//! (bounce, branch, purpose) and also the stream. Each mix is a bijection: within a seed, two samples never share a state at the same
+//! dimension, and two dimensions never share a stream, so no two addresses share a generator.
 
 use super::{Address, Sampler};
 use rand::Rng;
@@ -36,8 +37,9 @@ impl Sampler for Independent {
     fn pair(&self, at: Address) -> [f64; 2] {
         let place = u64::from(at.key.pixel) << 32 | u64::from(at.key.sample);
         let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
-        let stream = mix(mix(at.key.seed) ^ dimension);
-        let mut pcg = Pcg32::new(mix(place ^ stream), stream);
+        // The same for a whole path, so a compiler takes it out of the loop over bounces.
+        let path = mix(mix(place) ^ mix(at.key.seed));
+        let mut pcg = Pcg32::new(mix(path ^ dimension), dimension);
         [unit(pcg.next_u64()), unit(pcg.next_u64())]
     }
 }
