@@ -2,7 +2,7 @@
 
 use crate::error::{InputError, Result};
 use crate::kernel::Spec;
-use crate::measure::{Settings, Setup, available_threads};
+use crate::measure::{Settings, Setup, available_threads, schedule_name};
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,7 +40,7 @@ impl Cell {
             ("spp", settings.spp.to_string()),
             ("seed", spec.seed.to_string()),
             ("decomposition", settings.decomposition.clone()),
-            ("strategy", settings.strategy.clone()),
+            ("strategy", schedule_name(&settings.strategy, &settings.decomposition).to_string()),
             ("threads", settings.threads.to_string()),
         ];
         let pair = filter.split_once('=');

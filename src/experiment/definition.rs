@@ -11,7 +11,7 @@
 //! estimator = ["smallpt"]
 //! spp = [16]
 //! seed = [1]
-//! strategy = ["serial", "rayon"]
+//! strategy = ["serial", "rayon"]  # or "all"
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
 //!

@@ -4,6 +4,7 @@ use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{LARGEST_SEED, Settings, Setup, available_threads};
+use crate::strategy::STRATEGIES;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -110,7 +111,7 @@ impl Definition {
     /// The cells of one image: everything that may not change its checksum.
     fn add_schedules(&self, profile: Profile, scene: &str, spp: u32, spec: &Spec, cells: &mut Vec<Cell>) -> Result<()> {
         let scale = self.scale(profile);
-        for strategy in scale.strategy.as_ref().unwrap_or(&self.matrix.strategy) {
+        for strategy in all_strategies(scale.strategy.as_ref().unwrap_or(&self.matrix.strategy)) {
             for threads in scale.threads.as_ref().unwrap_or(&self.matrix.threads) {
                 for decomposition in scale.decomposition.as_ref().unwrap_or(&self.matrix.decomposition) {
                     let settings = Settings {
@@ -148,4 +149,10 @@ impl Definition {
             _ => scene.to_string(),
         }
     }
+}
+
+/// The names as they stand, `all` being every strategy in the table.
+fn all_strategies(names: &[String]) -> impl Iterator<Item = String> {
+    let table = || STRATEGIES.iter().map(|entry| entry.name.to_string()).collect();
+    names.iter().flat_map(move |name| if name == "all" { table() } else { vec![name.clone()] })
 }

@@ -14,7 +14,7 @@ mod warning;
 
 pub use machine::Machine;
 pub use record::{Measured, Record, SCHEMA, failure};
-pub use settings::{LARGEST_SEED, Settings, available_threads};
+pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name};
 pub use setup::{Outcome, Setup};
 pub use trace::{JobSpan, Trace};
 pub use warning::Warning;

@@ -33,16 +33,24 @@ pub struct Settings {
     pub threads: usize,
 }
 
+/// Report A's name for the strategy `thread-per-job` on the decomposition `rows`.
+pub const THREAD_PER_ROW: &str = "thread-per-row";
+
+/// What a strategy on a decomposition is called.
+pub fn schedule_name<'a>(strategy: &'a str, decomposition: &str) -> &'a str {
+    if strategy == "thread-per-job" && decomposition == "rows" { THREAD_PER_ROW } else { strategy }
+}
+
 /// Threads that this process may use at once.
 pub fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
 }
 
 impl Settings {
-    /// `thread-per-row`, as report A names it, is the strategy `thread-per-job` on the decomposition `rows`.
+    /// The same with [`THREAD_PER_ROW`] spelled out.
     #[must_use]
     pub fn resolved(mut self) -> Self {
-        if self.strategy == "thread-per-row" {
+        if self.strategy == THREAD_PER_ROW {
             self.strategy = "thread-per-job".to_string();
             self.decomposition = "rows".to_string();
         }

@@ -2,7 +2,7 @@
 
 use super::slots::Slots;
 use super::usage::Usage;
-use super::{Settings, Trace, Warning, available_threads};
+use super::{Settings, THREAD_PER_ROW, Trace, Warning, available_threads};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Decomposition, Film, FilmKey, Plan};
 use crate::kernel::{self, Counts, Kernel};
@@ -68,7 +68,7 @@ impl Setup {
         let Some(strategy) = strategy::find(name) else {
             let names: Vec<&str> = strategy::STRATEGIES.iter().map(|entry| entry.name).collect();
             return Err(InputError::new("strategy", name, "there is no strategy of that name")
-                .allowed(format!("{}, thread-per-row", names.join(", ")))
+                .allowed(format!("{}, {THREAD_PER_ROW}", names.join(", ")))
                 .into());
         };
         let built = kernel::build(&scene, &settings.spec)?;

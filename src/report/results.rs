@@ -6,7 +6,7 @@ use crate::analysis::{Estimate, Interval};
 use crate::error::Result;
 use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file};
 use crate::input::read_text;
-use crate::measure::Record;
+use crate::measure::{Record, schedule_name};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -39,9 +39,8 @@ pub(super) struct Schedule {
 
 impl Schedule {
     pub(super) fn of(record: &Record) -> Self {
-        let per_row = record.strategy == "thread-per-job" && record.decomposition == "rows";
         Self {
-            strategy: if per_row { "thread-per-row".to_string() } else { record.strategy.clone() },
+            strategy: schedule_name(&record.strategy, &record.decomposition).to_string(),
             decomposition: record.decomposition.clone(),
             threads: record.threads,
         }

@@ -3,6 +3,7 @@
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction};
 use crate::analysis::Estimate;
 use crate::error::Result;
+use crate::measure::THREAD_PER_ROW;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::report::block::{Block, Table};
@@ -130,7 +131,7 @@ fn findings(speedups: &[(Schedule, Estimate)], processors: usize) -> Vec<Block> 
             estimate.value / processors as f64,
         )));
     }
-    if let Some((schedule, estimate)) = speedups.iter().find(|(schedule, _)| schedule.strategy == "thread-per-row") {
+    if let Some((schedule, estimate)) = speedups.iter().find(|(schedule, _)| schedule.strategy == THREAD_PER_ROW) {
         findings.push(Block::Finding(format!(
             "A thread for each of {} rows is {:.3} times as fast as serial (95 % {:.3} to {:.3}), not {} times: report A's claim that \
              a thread per row divides the time by the number of rows is refuted here. Threads beyond the {processors} processors only wait.",
