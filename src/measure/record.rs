@@ -176,7 +176,7 @@ impl Record {
         record.busy_sum_s = Some(busy.iter().sum());
         record.busy_max_s = busy.iter().copied().reduce(f64::max);
         record.job_min_s = durations.first().copied();
-        record.job_median_s = durations.get(durations.len() / 2).copied();
+        record.job_median_s = outcome.trace.median_duration_s();
         record.job_max_s = durations.last().copied();
         record.paths = Some(counts.paths);
         record.rays = Some(counts.rays);

@@ -42,6 +42,13 @@ impl Trace {
         durations.sort_by(f64::total_cmp);
         durations
     }
+
+    /// The middle job's time, or the mean of the middle two's; `None` without jobs.
+    pub fn median_duration_s(&self) -> Option<f64> {
+        let durations = self.sorted_durations_s();
+        let (low, high) = (durations.get(durations.len().checked_sub(1)? / 2)?, durations.get(durations.len() / 2)?);
+        Some(0.5 * (low + high))
+    }
 }
 
 #[cfg(test)]
@@ -54,6 +61,9 @@ mod tests {
         let trace = Trace { jobs: vec![span(0, 0.0, 1.0), span(1, 0.0, 3.0), span(0, 1.0, 1.5)] };
         assert_eq!(trace.busy_s(), [1.5, 3.0]);
         assert_eq!(trace.sorted_durations_s(), [0.5, 1.0, 3.0]);
-        assert!(Trace::default().busy_s().is_empty());
+        assert_eq!(trace.median_duration_s(), Some(1.0));
+        let even = Trace { jobs: vec![span(0, 0.0, 1.0), span(0, 1.0, 5.0)] };
+        assert_eq!(even.median_duration_s(), Some(2.5));
+        assert!(Trace::default().busy_s().is_empty() && Trace::default().median_duration_s().is_none());
     }
 }
