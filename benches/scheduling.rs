@@ -14,7 +14,7 @@ use pathmark::strategy::{Config, Job, STRATEGIES, Workers};
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 const THREADS: [usize; 3] = [1, 2, 4];
 const SPP: u32 = 4;
@@ -91,9 +91,10 @@ fn empty_jobs(criterion: &mut Criterion) {
 }
 
 fn main() {
+    let start = SystemTime::now();
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
     scheduling(&mut criterion);
     empty_jobs(&mut criterion);
     criterion.final_summary();
-    speedup_table::print("scheduling");
+    speedup_table::print("scheduling", start);
 }

@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// One case: name, threads, median seconds and its interval.
 struct Case {
@@ -12,10 +13,10 @@ struct Case {
     median_s: [f64; 3],
 }
 
-/// Prints the table of a group, unless there is nothing to print, as under `cargo bench -- --test`.
-pub(crate) fn print(group: &str) {
+/// Prints the table of a group from what was stored since `start`, unless there is nothing to print, as under `cargo bench -- --test`.
+pub(crate) fn print(group: &str, start: SystemTime) {
     let mut cases = Vec::new();
-    collect(&stored().join(group), &mut cases);
+    collect(&stored().join(group), start, &mut cases);
     let Some(serial) = cases.iter().find(|case| case.strategy == "serial").map(|case| case.median_s) else { return };
     let mut rows: BTreeMap<(String, String), [f64; 3]> = BTreeMap::new();
     for case in cases {
@@ -35,13 +36,16 @@ fn stored() -> PathBuf {
     std::env::var_os("CRITERION_HOME").map_or_else(|| target.join("criterion"), PathBuf::from)
 }
 
-fn collect(folder: &Path, cases: &mut Vec<Case>) {
+fn collect(folder: &Path, start: SystemTime, cases: &mut Vec<Case>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();
         if path.ends_with("new") {
-            cases.extend(case(&path));
+            let stored = std::fs::metadata(path.join("estimates.json")).and_then(|data| data.modified());
+            if stored.is_ok_and(|stored| stored >= start) {
+                cases.extend(case(&path));
+            }
         } else if path.is_dir() {
-            collect(&path, cases);
+            collect(&path, start, cases);
         }
     }
 }

@@ -17,7 +17,7 @@ cargo build --release --quiet
 g++ $flags experiments/peers/smallpt_peer.cpp -o "$work/peer"
 
 ours() {
-  target/release/pathmark render cornell --size 256x192 --spp 32 --strategy serial --json --quiet -o "$work/image.pfm" |
+  "${CARGO_TARGET_DIR:-target}/release/pathmark" render cornell --size 256x192 --spp 32 --strategy serial --json --quiet -o "$work/image.pfm" |
     sed -E 's/.*"makespan_s":([0-9.e-]+).*"paths":([0-9]+).*/\1 \2/' | awk '{ print $2 / $1 }'
 }
 theirs() { OMP_NUM_THREADS=1 "$work/peer" 256 192 32 | awk '{ print $6 }'; }

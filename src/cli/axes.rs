@@ -4,7 +4,7 @@ use crate::error::{InputError, Result};
 use crate::estimator::ESTIMATORS;
 use crate::input::{locate, read_text};
 use crate::kernel::Spec;
-use crate::measure::{LARGEST_SEED, Settings, available_threads};
+use crate::measure::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads};
 use crate::scene;
 use clap::Args;
 use std::path::Path;
@@ -33,9 +33,9 @@ pub(super) struct Axes {
     /// Workers [default: one for each processor]
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
-    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral]
-    #[arg(long, value_name = "CUT", default_value = "tiles:32x32")]
-    pub(super) decomposition: String,
+    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral] [default: tiles:32x32]
+    #[arg(long, value_name = "CUT")]
+    pub(super) decomposition: Option<String>,
     /// Clamp each subpixel's mean to 1 before averaging, as smallpt does: biased
     #[arg(long)]
     pub(super) subpixel_clamp: bool,
@@ -62,6 +62,18 @@ fn default_estimator(scene: &str) -> Result<Option<String>> {
 }
 
 impl Axes {
+    /// The decomposition; a strategy whose name says its pieces takes no other.
+    fn cut(&self) -> Result<String> {
+        match &self.decomposition {
+            Some(cut) if self.strategy == THREAD_PER_ROW && cut != "rows" => {
+                let problem = format!("contradicts the strategy {THREAD_PER_ROW}");
+                Err(InputError::new("decomposition", cut, problem).allowed("rows, or none").into())
+            }
+            Some(cut) => Ok(cut.clone()),
+            None => Ok("tiles:32x32".to_string()),
+        }
+    }
+
     /// The settings for a scene, samples and a seed that belongs to an image, not to a reference.
     pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let (width, height) = parse_size(&self.size)?;
@@ -89,7 +101,7 @@ impl Axes {
                 effects: self.effects.clone(),
                 subpixel_clamp: self.subpixel_clamp,
             },
-            decomposition: self.decomposition.clone(),
+            decomposition: self.cut()?,
             strategy: self.strategy.clone(),
             threads: self.threads.unwrap_or_else(available_threads),
         })

@@ -8,7 +8,7 @@ use crate::report::check_figures;
 use clap::Args;
 use std::path::PathBuf;
 
-/// `pathmark run thread-scaling --filter rayon`
+/// `pathmark run thread-scaling --filter strategy=rayon`
 #[derive(Args)]
 pub(super) struct Arguments {
     /// An experiment of `pathmark list experiments`, or the path of a .toml file
@@ -42,10 +42,11 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         command: command_line(),
     };
     let summary = sweep(&definition, &options, talk)?;
-    let page = crate::report::write(&arguments.out)?;
-    print(&format!("{} rows in {}, report in {}", summary.rows, summary.folder.display(), page.display()))?;
-    match summary.failed {
-        0 => Ok(()),
-        failed => Err(Error::Check(format!("{failed} of {} rows failed; their column `error` says why", summary.rows))),
+    let page = crate::report::write(&arguments.out);
+    // Rows that failed are worse news than a page that could not be written.
+    if summary.failed > 0 {
+        let problem = format!("{} of {} rows failed; their column `error` says why", summary.failed, summary.rows);
+        return Err(Error::Check(problem));
     }
+    print(&format!("{} rows in {}, report in {}", summary.rows, summary.folder.display(), page?.display()))
 }

@@ -3,6 +3,7 @@
 use crate::error::{InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads, schedule_name};
+use crate::scene::Scene;
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,7 +23,7 @@ impl Cell {
     pub fn new(setup: &Setup) -> Self {
         let mut settings = setup.settings().clone();
         settings.threads = setup.threads();
-        let image = image_word(&setup.scene().name, &settings.spec, settings.spp);
+        let image = image_word(setup.scene(), &settings.spec, settings.spp);
         let spec = &settings.spec;
         let id = format!("{image}/{}/{}/{}t", settings.decomposition, settings.strategy, settings.threads);
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
@@ -59,7 +60,8 @@ impl Cell {
     }
 }
 
-fn image_word(scene: &str, spec: &Spec, spp: u32) -> String {
-    let what = format!("{scene}/{}/{}", spec.estimator, spec.sampler);
+/// The scene's hash is in it: two scene files may have the same name, and one may be edited between two runs.
+fn image_word(scene: &Scene, spec: &Spec, spp: u32) -> String {
+    let what = format!("{}-{}/{}/{}", scene.name, scene.hash, spec.estimator, spec.sampler);
     format!("{what}/{}x{}/{spp}spp/seed{}", spec.width, spec.height, spec.seed)
 }

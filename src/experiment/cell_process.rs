@@ -95,8 +95,8 @@ impl CellJob {
         }
         let (image, first, second) = (film.image(), first.image(), second.image());
         let mse = metric::cross_mse(&image, &first, &second)?;
-        let display = metric::cross_mse_display(&image, &first, &second)?;
-        Ok(Measured { mse: Some(mse), rmse_display: (display >= 0.0).then(|| display.sqrt()) })
+        let mse_display = metric::cross_mse_display(&image, &first, &second)?;
+        Ok(Measured { mse: Some(mse), mse_display: Some(mse_display) })
     }
 }
 

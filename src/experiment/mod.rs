@@ -16,7 +16,7 @@ pub use cell::Cell;
 pub use cell_process::{CellJob, child_main};
 pub use definition::{Definition, EXPERIMENTS, Profile};
 pub use records_file::{RecordsFile, read_records};
-pub use reference::{Reference, reference_path, reference_seed, render_reference};
+pub use reference::{Reference, reference_seed, render_reference, wanted_references};
 pub use run_file::{RunFile, read_run_file};
 pub use sweep::{Options, Summary, sweep};
 

@@ -6,6 +6,7 @@ use crate::measure::{Record, SCHEMA};
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -134,12 +135,13 @@ impl RecordsFile {
             locked = file.try_lock();
         }
         match locked {
-            Ok(()) => Ok(Self { path: path.to_path_buf(), file }),
-            Err(std::fs::TryLockError::WouldBlock) => {
-                let problem = "is being written by another sweep";
-                Err(InputError::new("records", path.display().to_string(), problem).into())
-            }
+            Ok(()) if is_still_there(&file, path) => Ok(Self { path: path.to_path_buf(), file }),
             Err(std::fs::TryLockError::Error(e)) => Err(Error::system("locking", path, e)),
+            // Locked, or, while we waited for the lock, another sweep put a new file in the place of this one: rows written here
+            // would have no name.
+            _ => {
+                Err(InputError::new("records", path.display().to_string(), "is being written by another sweep").into())
+            }
         }
     }
 
@@ -150,6 +152,12 @@ impl RecordsFile {
         let bytes = row_bytes(record, end == 0).map_err(system)?;
         self.file.write_all(&bytes).and_then(|()| self.file.sync_data()).map_err(system)
     }
+}
+
+/// Whether the path still leads to the open file.
+fn is_still_there(file: &File, path: &Path) -> bool {
+    let same = |a: std::fs::Metadata, b: std::fs::Metadata| a.dev() == b.dev() && a.ino() == b.ino();
+    file.metadata().and_then(|open| Ok(same(open, std::fs::metadata(path)?))).unwrap_or(false)
 }
 
 fn row_bytes(record: &Record, header: bool) -> std::io::Result<Vec<u8>> {

@@ -3,7 +3,7 @@
 //! With two halves R₁ and R₂ the mean of (T - R₁)(T - R₂) is the image's squared error without the references' own noise
 //! (METHODOLOGY: cross form).
 
-use super::Progress;
+use super::{Cell, Definition, Profile, Progress};
 use crate::error::Result;
 use crate::film::{Film, FilmKey, read_film, write_film};
 use crate::kernel::Spec;
@@ -52,7 +52,7 @@ impl Reference {
 }
 
 /// Where a film of that key is cached.
-pub fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
+fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
     let half = key.seed - REFERENCE_SEEDS;
     folder.join(format!(
         "{}-{}-{}-{}-{}x{}-{}spp-r{}-half{half}.film",
@@ -66,10 +66,16 @@ impl Reference {
         Setup::prepare(self.half(0)).map(|_| ())
     }
 
+    /// Where its two halves are cached.
+    pub fn paths(&self, folder: &Path) -> Result<[PathBuf; 2]> {
+        let path =
+            |half| -> Result<PathBuf> { Ok(reference_path(folder, &Setup::prepare(self.half(half))?.film_key())) };
+        Ok([path(0)?, path(1)?])
+    }
+
     /// Refuses a damaged film in the cache. It is never quietly replaced: it may be the user's only copy.
     pub fn check_cache(&self, folder: &Path) -> Result<()> {
-        for index in 0..2 {
-            let path = reference_path(folder, &Setup::prepare(self.half(index))?.film_key());
+        for path in self.paths(folder)? {
             if path.is_file() {
                 read_film(&path)?;
             }
@@ -98,4 +104,22 @@ pub fn render_reference(reference: &Reference, folder: &Path, progress: &dyn Pro
         Ok((path, outcome.film))
     };
     Ok([half(0)?, half(1)?])
+}
+
+/// The references that an experiment's cells call for: one for each scene.
+pub fn wanted_references(definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Vec<Reference>> {
+    let Some((estimator, spp)) = definition.reference(profile)? else { return Ok(Vec::new()) };
+    let mut wanted: Vec<Reference> = Vec::new();
+    for settings in cells.iter().map(|cell| &cell.settings) {
+        if !wanted.iter().any(|reference| reference.scene == settings.scene) {
+            wanted.push(Reference {
+                scene: settings.scene.clone(),
+                estimator: estimator.clone(),
+                sampler: "independent".to_string(),
+                size: [settings.spec.width, settings.spec.height],
+                spp,
+            });
+        }
+    }
+    Ok(wanted)
 }

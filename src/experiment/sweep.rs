@@ -3,7 +3,7 @@
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
-use super::{Cell, CellJob, Definition, Profile, Progress, Reference, render_reference};
+use super::{Cell, CellJob, Definition, Profile, Progress, Reference, render_reference, wanted_references};
 use crate::atomic_file;
 use crate::digest;
 use crate::error::{Error, InputError, Result};
@@ -50,10 +50,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
             return Err(InputError::new("filter", filter, "leaves no cell to run").into());
         }
     }
-    let wanted = match definition.reference(options.profile)? {
-        None => Vec::new(),
-        Some((estimator, spp)) => wanted_references(&cells, &estimator, spp),
-    };
+    let wanted = wanted_references(definition, options.profile, &cells)?;
     for reference in &wanted {
         reference.check().map_err(|error| definition.reference_error(options.profile, error))?;
         reference.check_cache(&options.out.join("references"))?;
@@ -156,24 +153,7 @@ fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(Re
     Ok((file, Vec::new()))
 }
 
-/// The references that the cells call for: one for each scene.
-fn wanted_references(cells: &[Cell], estimator: &str, spp: u32) -> Vec<Reference> {
-    let mut wanted: Vec<Reference> = Vec::new();
-    for settings in cells.iter().map(|cell| &cell.settings) {
-        if !wanted.iter().any(|reference| reference.scene == settings.scene) {
-            wanted.push(Reference {
-                scene: settings.scene.clone(),
-                estimator: estimator.to_string(),
-                sampler: "independent".to_string(),
-                size: [settings.spec.width, settings.spec.height],
-                spp,
-            });
-        }
-    }
-    wanted
-}
-
-/// Their two halves, by scene.
+/// The two halves of each reference, by scene.
 fn references(
     wanted: &[Reference],
     options: &Options,

@@ -36,8 +36,8 @@ pub const DECOMPOSITIONS: &[Entry] = &[
     },
     Entry {
         name: "tiles",
-        about: "tiles of WxH pixels, handed out in scanline, hilbert or spiral order",
-        example: "tiles:32x32:scanline",
+        about: "tiles of WxH pixels, handed out in scanline (if none is named), hilbert or spiral order",
+        example: "tiles:32x32:hilbert",
         parse: parse_tiles,
     },
 ];
@@ -89,9 +89,10 @@ impl Decomposition {
         if let Some(cut) = entry.and_then(|entry| (entry.parse)(parameter)) {
             return Ok(Self { text: text.to_string(), cut });
         }
+        let examples: Vec<&str> = DECOMPOSITIONS.iter().map(|entry| entry.example).collect();
         let problem = if entry.is_some() { "cannot be read" } else { "there is no decomposition of that name" };
         Err(InputError::new("decomposition", text, problem)
-            .allowed("rows, bands:N, grid:N, tiles:WxH, tiles:WxH:hilbert, tiles:WxH:spiral with numbers from 1")
+            .allowed(format!("as in {}; numbers from 1", examples.join(", ")))
             .into())
     }
 

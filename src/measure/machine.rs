@@ -42,7 +42,7 @@ fn or_unknown(text: Option<String>) -> String {
     text.filter(|text| !text.is_empty()).unwrap_or_else(|| "unknown".to_string())
 }
 
-/// A fact that the build stamped; empty where there is none to tell.
+/// A fact that the build stamped. Through a function, because the compiler flags are usually the empty text.
 fn built_with(fact: &str) -> String {
     fact.to_string()
 }
@@ -83,8 +83,11 @@ impl Machine {
     }
 
     /// What must be the same for rows to belong together: rows of another processor or revision are no repetitions.
-    pub fn identity(&self) -> [(&'static str, String); 5] {
+    pub fn identity(&self) -> [(&'static str, String); 8] {
         [
+            ("rustc", self.rustc.clone()),
+            ("target", self.target.clone()),
+            ("rustflags", self.rustflags.clone()),
             ("cpu", self.cpu.clone()),
             ("processors", self.processors.to_string()),
             ("commit", self.commit.clone()),

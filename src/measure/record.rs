@@ -1,6 +1,7 @@
 //! One row of `records.csv`: one repetition of one cell, with everything that is needed to repeat it.
 
 use super::{Outcome, Settings, Setup};
+use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
@@ -96,6 +97,8 @@ pub struct Record {
     /// Its square root, where there is one.
     pub rmse: Option<f64>,
     /// Likewise on display values (clamped, gamma 2.2), in units of the display's range.
+    pub mse_display: Option<f64>,
+    /// Its square root, where there is one.
     pub rmse_display: Option<f64>,
     /// Checksum of the film.
     pub checksum: String,
@@ -116,8 +119,8 @@ pub struct Record {
 pub struct Measured {
     /// See [`Record::mse`].
     pub mse: Option<f64>,
-    /// See [`Record::rmse_display`].
-    pub rmse_display: Option<f64>,
+    /// See [`Record::mse_display`].
+    pub mse_display: Option<f64>,
 }
 
 fn described(settings: &Settings) -> Record {
@@ -171,7 +174,7 @@ impl Record {
             record.cpu_system_s = Some(cpu.system_s);
             record.voluntary_switches = Some(cpu.voluntary_switches);
             record.involuntary_switches = Some(cpu.involuntary_switches);
-            record.peak_rss_bytes = Some(cpu.peak_rss_bytes);
+            record.peak_rss_bytes = cpu.peak_rss_bytes;
         }
         record.busy_sum_s = Some(busy.iter().sum());
         record.busy_max_s = busy.iter().copied().reduce(f64::max);
@@ -184,8 +187,9 @@ impl Record {
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);
         record.mse = errors.mse;
-        record.rmse = errors.mse.filter(|mse| *mse >= 0.0).map(f64::sqrt);
-        record.rmse_display = errors.rmse_display;
+        record.rmse = errors.mse.and_then(metric::root);
+        record.mse_display = errors.mse_display;
+        record.rmse_display = errors.mse_display.and_then(metric::root);
         record.checksum.clone_from(&outcome.checksum);
         record.warnings = outcome.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";");
         record

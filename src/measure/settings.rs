@@ -8,8 +8,9 @@ use crate::sampling::REFERENCE_SEEDS;
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
 
-/// Most workers that can be asked for.
-const LARGEST_THREADS: usize = 4096;
+/// Most workers that can be asked for, and most threads that a strategy may start by its own rule: systems refuse some tens of
+/// thousands, some of them by ending the process.
+pub(super) const LARGEST_THREADS: usize = 1 << 14;
 /// Most samples per pixel.
 const LARGEST_SPP: u32 = 1 << 24;
 /// Largest seed of an image under test: the seeds above belong to references.

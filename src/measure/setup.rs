@@ -1,5 +1,6 @@
 //! Settings that have been checked, and the run itself.
 
+use super::settings::LARGEST_THREADS;
 use super::slots::Slots;
 use super::usage::Usage;
 use super::{Settings, THREAD_PER_ROW, Trace, Warning, available_threads};
@@ -71,8 +72,14 @@ impl Setup {
                 .allowed(format!("{}, {THREAD_PER_ROW}", names.join(", ")))
                 .into());
         };
-        let built = kernel::build(&scene, &settings.spec)?;
         let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
+        if strategy.workers == Workers::PerJob && plan.len() > LARGEST_THREADS {
+            let problem = format!("cuts {} jobs, and {name} starts a thread for each", plan.len());
+            return Err(InputError::new("decomposition", &settings.decomposition, problem)
+                .allowed(format!("at most {LARGEST_THREADS} jobs"))
+                .into());
+        }
+        let built = kernel::build(&scene, &settings.spec)?;
         Ok(Self {
             scene,
             kernel: Arc::from(built.kernel),

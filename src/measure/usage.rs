@@ -1,4 +1,4 @@
-//! What the system counted for this process: CPU time, context switches, peak memory (getrusage).
+//! What the system counted for this process: CPU time and context switches (getrusage), peak memory (/proc).
 
 use nix::sys::resource::{Usage as Counted, UsageWho, getrusage};
 use nix::sys::time::TimeValLike;
@@ -10,7 +10,14 @@ pub(super) struct Usage {
     pub(super) system_s: f64,
     pub(super) voluntary_switches: i64,
     pub(super) involuntary_switches: i64,
-    pub(super) peak_rss_bytes: i64,
+    pub(super) peak_rss_bytes: Option<i64>,
+}
+
+/// The most memory that this program had. Not getrusage's figure, which survives exec and so remembers the parent.
+fn peak_rss_bytes() -> Option<i64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<i64>().ok()? * 1024)
 }
 
 impl Usage {
@@ -22,8 +29,7 @@ impl Usage {
             system_s: counted.system_time().num_microseconds() as f64 * 1e-6,
             voluntary_switches: counted.voluntary_context_switches(),
             involuntary_switches: counted.involuntary_context_switches(),
-            // Linux counts in KiB.
-            peak_rss_bytes: counted.max_rss() * 1024,
+            peak_rss_bytes: peak_rss_bytes(),
         })
     }
 

@@ -1,6 +1,5 @@
 //! What an experiment left in its folder, and the groupings that figures need.
 
-use crate::analysis::bootstrap::paired_ratio;
 use crate::analysis::quantile::{median, median_interval};
 use crate::analysis::{Estimate, Interval};
 use crate::error::Result;
@@ -38,6 +37,14 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
+    /// Strategy and threads, in words.
+    pub(super) fn label(&self) -> String {
+        match self.threads {
+            1 => format!("{}, 1 thread", self.strategy),
+            threads => format!("{}, {threads} threads", self.strategy),
+        }
+    }
+
     pub(super) fn of(record: &Record) -> Self {
         Self {
             strategy: schedule_name(&record.strategy, &record.decomposition).to_string(),
@@ -79,6 +86,13 @@ impl Results {
         format!("{size}{} processors, {}", machine.processors, machine.cpu)
     }
 
+    /// What is rendered, apart from samples and seed, where the experiment compares several; empty where there is only one.
+    pub(super) fn series_name(&self, record: &Record) -> String {
+        let parts: [fn(&Record) -> &str; 3] = [|r| &r.scene, |r| &r.estimator, |r| &r.sampler];
+        let differs = |part: &fn(&Record) -> &str| self.records.iter().any(|other| part(other) != part(record));
+        parts.iter().filter(|part| differs(part)).map(|part| part(record)).collect::<Vec<_>>().join(", ")
+    }
+
     /// Rows by a key, in the order of the key.
     pub(super) fn by<K: Ord>(&self, key: impl Fn(&Record) -> K) -> BTreeMap<K, Vec<&Record>> {
         let mut groups: BTreeMap<K, Vec<&Record>> = BTreeMap::new();
@@ -90,23 +104,58 @@ impl Results {
 
     /// How much faster each schedule is than `serial`: the median of the ratios of runs of the same image in the same repetition.
     pub(super) fn speedups(&self) -> Vec<(Schedule, Estimate)> {
-        let same_run = |record: &Record| (record.spp, record.seed, record.estimator.clone(), record.repetition);
-        let serial: BTreeMap<_, f64> = self
-            .records
-            .iter()
-            .filter(|record| record.strategy == "serial")
-            .filter_map(|record| Some((same_run(record), record.makespan_s?)))
-            .collect();
-        let mut speedups = Vec::new();
-        for (schedule, records) in self.by(Schedule::of) {
-            let pairs = records.iter().filter_map(|record| Some((*serial.get(&same_run(record))?, record.makespan_s?)));
-            let (baseline, times): (Vec<f64>, Vec<f64>) = pairs.unzip();
-            if schedule.strategy != "serial"
-                && let Some(estimate) = paired_ratio(&baseline, &times, LEVEL)
-            {
-                speedups.push((schedule, estimate));
-            }
-        }
-        speedups
+        let serial = self.times(|schedule| schedule.strategy == "serial");
+        let schedules = self.by(Schedule::of).into_keys().filter(|schedule| schedule.strategy != "serial");
+        schedules
+            .filter_map(|schedule| {
+                // On its own pieces where serial ran on them: other pieces change the caches, if nothing else.
+                let on_same_pieces =
+                    self.times(|s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
+                let baseline = if on_same_pieces.is_empty() { &serial } else { &on_same_pieces };
+                let ratio = ratio(baseline, &self.times(|s| *s == schedule))?;
+                Some((schedule, ratio))
+            })
+            .collect()
     }
+
+    /// How many times as long `other` takes as `schedule`, by runs of the same image in the same repetition.
+    pub(super) fn time_ratio(&self, other: &Schedule, schedule: &Schedule) -> Option<Estimate> {
+        ratio(&self.times(|s| s == other), &self.times(|s| s == schedule))
+    }
+
+    /// The makespans of the schedules that are wanted, by image and repetition.
+    fn times(&self, is_wanted: impl Fn(&Schedule) -> bool) -> BTreeMap<(String, u32), f64> {
+        let wanted = self.records.iter().filter(|record| is_wanted(&Schedule::of(record)));
+        wanted.filter_map(|record| Some(((image(record), record.repetition), record.makespan_s?))).collect()
+    }
+}
+
+/// What tells images apart.
+fn image(record: &Record) -> String {
+    let what = format!("{} {} {}", record.scene_hash, record.estimator, record.sampler);
+    format!("{what} {}x{} {} {}", record.width, record.height, record.spp, record.seed)
+}
+
+/// The median of the ratios of values with the same key, with its distribution-free interval.
+fn ratio(numerator: &BTreeMap<(String, u32), f64>, denominator: &BTreeMap<(String, u32), f64>) -> Option<Estimate> {
+    let pairs = denominator.iter().filter_map(|(key, below)| Some(numerator.get(key)? / below));
+    let ratios: Vec<f64> = pairs.collect();
+    let (value, interval) = median_with_interval(&ratios)?;
+    Some(Estimate { value, interval: interval? })
+}
+
+/// An interval with the confidence that it really has: few values cannot reach 95 %.
+pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
+    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
+}
+
+/// The confidence of some intervals of medians, in words for a caption.
+pub(super) fn confidence(intervals: &[Interval]) -> String {
+    let least = intervals.iter().map(|interval| interval.level).reduce(f64::min);
+    least.map_or_else(
+        || "no interval, for want of repetitions".to_string(),
+        |least| {
+            format!("distribution-free interval of the median, {:.1} % confidence", (least * 1000.0).floor() / 10.0)
+        },
+    )
 }

@@ -2,10 +2,11 @@
 //!
 //! `pathmark render cornell --strategy thread-per-job --decomposition rows`, or `--strategy thread-per-row` for short
 //!
-//! The plan of the first report (`reports/`), which starts 768 threads for the 768 rows of its picture. It ignores `--threads`.
+//! The plan of report A (METHODOLOGY), which starts 768 threads for the 768 rows of its picture. It ignores `--threads`.
 //!
 //! Cost: a thread's start and end for each job (tens of microseconds), a stack for each, and time slices shared among far more
-//! threads than cores. Balance is left to the kernel. With tens of thousands of jobs the system refuses, and the run is an error.
+//! threads than cores. Balance is left to the kernel. With tens of thousands of jobs the system refuses or ends the process, so
+//! whoever chooses the jobs keeps below that.
 
 use std::sync::Arc;
 

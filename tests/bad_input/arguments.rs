@@ -6,11 +6,11 @@ use super::refused;
 const WRONG: &[(&[&str], &[&str])] = &[
     (&["--strategy", "guided"], &["strategy", "guided", "work-stealing", "thread-per-row"]),
     (&["--strategy", ""], &["strategy", "work-stealing"]),
-    (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:WxH"]),
+    (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:32x32"]),
     (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "from 1"]),
     (&["--decomposition", "tiles:8x8:zigzag"], &["decomposition", "zigzag", "hilbert"]),
     (&["--decomposition", "bands:-1"], &["decomposition", "bands:-1"]),
-    (&["--decomposition", "grid:99999999999999999999"], &["decomposition", "grid:9999", "grid:N"]),
+    (&["--decomposition", "grid:99999999999999999999"], &["decomposition", "grid:9999", "grid:16"]),
     (&["--estimator", "magic"], &["estimator", "magic", "smallpt", "bsdf"]),
     (&["--sampler", "dice"], &["sampler", "dice", "independent"]),
     (&["--kernel", "quantum"], &["kernel", "quantum", "scalar"]),
@@ -39,6 +39,15 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--seed", "9223372036854775808"], &["seed", "9223372036854775808", "0 to 9223372036854775807"]),
     (&["--seed", "18446744073709551616"], &["seed", "18446744073709551616"]),
     (&["--colour", "red"], &["--colour"]),
+    // A thread for each of 90 000 jobs would end the process on many systems.
+    (
+        &["--size", "300x300", "--strategy", "thread-per-job", "--decomposition", "tiles:1x1"],
+        &["decomposition", "tiles:1x1", "90000 jobs", "at most 16384"],
+    ),
+    (
+        &["--strategy", "thread-per-row", "--decomposition", "tiles:8x8"],
+        &["decomposition", "tiles:8x8", "thread-per-row"],
+    ),
 ];
 
 #[test]

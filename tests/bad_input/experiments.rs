@@ -15,7 +15,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
         &["sampler", "dice", "independent"],
     ),
     ("scene = [\"cornell\"]", "scene = [\"bathroom\"]", &["scene", "bathroom", "cornell"]),
-    ("tiles:8x8", "hexagons", &["decomposition", "hexagons", "tiles:WxH"]),
+    ("tiles:8x8", "hexagons", &["decomposition", "hexagons", "tiles:32x32"]),
     ("figures = [\"speedup\", ", "figures = [\"pie-chart\", ", &["figures", "pie-chart", "speedup"]),
     ("spp = [4]", "spp = [0]", &["spp", "0", "1 to"]),
     ("spp = [4]", "spp = [6]", &["spp", "6", "multiple of 4"]),

@@ -1,6 +1,7 @@
 //! The renders at growing spp beside their reference, and where they are wrong.
 
 use crate::error::Result;
+use crate::experiment::wanted_references;
 use crate::film::read_film;
 use crate::image_io::tone_map::quantise_image;
 use crate::image_io::{self, Image};
@@ -9,10 +10,12 @@ use crate::metric::heatmap;
 use crate::plot::{Cell, ColourBar, ContactSheet};
 use crate::report::block::Block;
 use crate::report::results::Results;
-use std::path::{Path, PathBuf};
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Some(reference) = reference(results)? else { return Ok(Vec::new()) };
+    let Some(reference) = reference(results)? else {
+        let text = "There is no contact sheet: the films of the references are not in the folder beside this experiment.";
+        return Ok(vec![Block::Finding(text.to_string())]);
+    };
     let images = renders(results)?;
     let Some((_, noisiest)) = images.first() else { return Ok(Vec::new()) };
     // One scale for all maps: a level at which the noisiest one is not yet saturated.
@@ -63,30 +66,17 @@ fn renders(results: &Results) -> Result<Vec<(&Record, Image)>> {
 
 /// The mean of the two half-references; `None` if they are not there, as in a copied folder.
 fn reference(results: &Results) -> Result<Option<Image>> {
-    let Some(record) = results.records.first() else { return Ok(None) };
-    let folder = results.out.join("references");
-    let start = format!("{}-{}-", record.scene, record.scene_hash);
-    let size = format!("-{}x{}-", record.width, record.height);
-    let spp = results.definition.reference(results.profile())?.map_or_else(String::new, |(_, spp)| format!("-{spp}spp-"));
-    let halves: Vec<PathBuf> = films(&folder)
-        .into_iter()
-        .filter(|path| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            name.starts_with(&start) && name.contains(&size) && name.contains(&spp)
-        })
-        .collect();
-    let [first, second] = halves.as_slice() else { return Ok(None) };
-    let ((_, first), (_, second)) = (read_film(first)?, read_film(second)?);
+    let profile = results.profile();
+    let cells = results.definition.cells(profile)?;
+    let Some(wanted) = wanted_references(&results.definition, profile, &cells)?.into_iter().next() else { return Ok(None) };
+    let [first, second] = wanted.paths(&results.out.join("references"))?;
+    if !(first.is_file() && second.is_file()) {
+        return Ok(None);
+    }
+    let ((_, first), (_, second)) = (read_film(&first)?, read_film(&second)?);
     let mut image = first.image();
     for (pixel, other) in image.pixels.iter_mut().zip(second.image().pixels) {
         *pixel = std::array::from_fn(|channel| 0.5 * (pixel[channel] + other[channel]));
     }
     Ok(Some(image))
-}
-
-fn films(folder: &Path) -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut films: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|p| p.extension().is_some_and(|e| e == "film")).collect();
-    films.sort();
-    films
 }

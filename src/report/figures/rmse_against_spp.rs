@@ -16,25 +16,25 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut findings = Vec::new();
     let mut rows = Vec::new();
     let mut first_point = None;
-    for (index, (estimator, records)) in results.by(|record| record.estimator.clone()).into_iter().enumerate() {
+    for (index, (name, records)) in results.by(|record| image_name(results, record)).into_iter().enumerate() {
         let mut points = Vec::new();
         for (spp, at_spp) in by_spp(&records) {
             let mse: Vec<f64> = one_per_seed(&at_spp, |record| record.mse).into_values().collect();
-            let display: Vec<f64> = one_per_seed(&at_spp, |record| record.rmse_display).into_values().collect();
+            let display: Vec<f64> = one_per_seed(&at_spp, |record| record.mse_display).into_values().collect();
             let rmse = rmse_interval(&mse, LEVEL);
-            let value = (mse.iter().sum::<f64>() / mse.len() as f64).max(0.0).sqrt();
+            let (value, shown) = (root_of_mean(&mse), root_of_mean(&display));
             let interval = rmse.map(|rmse| (rmse.estimate.interval.low, rmse.estimate.interval.high));
             if mse.is_empty() {
                 continue;
             }
             points.push(Point::new(f64::from(spp), value).with_y(interval));
             rows.push(vec![
-                estimator.clone(),
+                name.clone(),
                 spp.to_string(),
                 mse.len().to_string(),
                 format!("{value:.5}"),
-                interval.map_or_else(|| "too few seeds".to_string(), |(low, high)| format!("{low:.5} to {high:.5}")),
-                format!("{:.5}", display.iter().sum::<f64>() / display.len().max(1) as f64),
+                interval.map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.5} to {high:.5}")),
+                format!("{shown:.5}"),
             ]);
         }
         first_point = first_point.or_else(|| points.first().map(|point| (point.x, point.y)));
@@ -47,15 +47,17 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             ));
             let verdict = if interval.contains(-0.5) { "contains" } else { "does not contain" };
             findings.push(Block::Finding(format!(
-                "{estimator}: RMSE falls as spp to the power {slope:.3}; the 95 % interval over {} seeds, {:.3} to {:.3}, {verdict} -1/2. \
-                 Halving the error takes {:.2} times the samples.",
+                "{name}: RMSE falls as spp to the power {slope:.3}; the 95 % interval over {} seeds, {:.3} to {:.3}, {verdict} -1/2. \
+                 Halving the error so takes {:.2} times the samples ({:.2} to {:.2}).",
                 fit.clusters,
                 interval.low,
                 interval.high,
                 libm::pow(0.5, 1.0 / slope),
+                libm::pow(0.5, 1.0 / interval.low),
+                libm::pow(0.5, 1.0 / interval.high),
             )));
         }
-        series.push(Series::new(estimator, Look::nth(index), points).scattered());
+        series.push(Series::new(name, Look::nth(index), points).scattered());
     }
     if let Some(curve) = first_point.and_then(|point| Curve::power_through(point, -0.5)) {
         overlays.insert(0, Overlay::guide("slope -1/2", curve));
@@ -73,7 +75,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     chart.dodge = 6.0;
     let table = Table {
         title: "Error by samples per pixel".to_string(),
-        columns: ["estimator", "spp", "seeds", "RMSE, linear", "95 % interval", "RMSE, display"].map(String::from).to_vec(),
+        columns: ["image", "spp", "seeds", "RMSE, linear", "95 % interval", "RMSE, display"].map(String::from).to_vec(),
         rows,
     };
     let mut blocks = vec![Block::Figure { stem: "rmse-against-spp", figure: Box::new(chart) }];
@@ -95,13 +97,28 @@ fn one_per_seed(records: &[&Record], value: impl Fn(&Record) -> Option<f64>) -> 
     records.iter().filter_map(|record| Some((record.seed, value(record)?))).collect()
 }
 
-/// (spp, RMSE) of each seed.
+/// The mean first and the root last, as the cross form asks; NaN, which charts leave out, if the mean is below zero.
+fn root_of_mean(mse: &[f64]) -> f64 {
+    (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
+}
+
+/// (spp, RMSE) of each seed. An spp at which some seed's squared error is not positive is left out for all: leaving out that seed alone
+/// would bias the rest upwards.
 fn curves_of_seeds(records: &[&Record]) -> Vec<Vec<(f64, f64)>> {
     let mut curves: BTreeMap<u64, BTreeMap<u32, f64>> = BTreeMap::new();
-    for record in records {
-        if let Some(rmse) = record.rmse {
-            curves.entry(record.seed).or_default().insert(record.spp, rmse);
+    for (spp, at_spp) in by_spp(records) {
+        let mse = one_per_seed(&at_spp, |record| record.mse);
+        if mse.values().all(|mse| *mse > 0.0) {
+            for (seed, mse) in mse {
+                curves.entry(seed).or_default().insert(spp, mse.sqrt());
+            }
         }
     }
     curves.into_values().map(|curve| curve.into_iter().map(|(spp, rmse)| (f64::from(spp), rmse)).collect()).collect()
+}
+
+/// The estimator, and whatever else differs among the images.
+fn image_name(results: &Results, record: &Record) -> String {
+    let series = results.series_name(record);
+    if series.is_empty() { record.estimator.clone() } else { series }
 }

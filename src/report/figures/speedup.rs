@@ -7,7 +7,7 @@ use crate::measure::THREAD_PER_ROW;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::report::block::{Block, Table};
-use crate::report::results::{Results, Schedule};
+use crate::report::results::{Results, Schedule, with_level};
 use std::collections::BTreeMap;
 
 /// More threads than this are no axis any more: a thread for each row is in the table and in the findings.
@@ -19,7 +19,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Table {
         title: "Speedup against serial, efficiency and Karp-Flatt serial fraction".to_string(),
         columns: [
-            "strategy", "pieces", "threads", "speedup", "95 % interval", "efficiency per thread", "efficiency per processor in use",
+            "strategy", "pieces", "threads", "speedup", "interval (confidence)", "efficiency per thread", "efficiency per processor in use",
             "e, p = threads", "e, p = processors in use", "remark",
         ]
         .map(String::from)
@@ -30,7 +30,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         Block::Figure { stem: "speedup", figure: Box::new(speedup_chart(results, &speedups)) },
         Block::Figure { stem: "efficiency", figure: Box::new(efficiency_chart(results, &speedups)) },
     ];
-    blocks.extend(findings(&speedups, processors));
+    blocks.extend(findings(results, &speedups));
     blocks.push(Block::Table { stem: "karp-flatt", table });
     Ok(blocks)
 }
@@ -55,7 +55,7 @@ fn row(schedule: &Schedule, estimate: &Estimate, processors: usize) -> Vec<Strin
         schedule.decomposition.clone(),
         threads.to_string(),
         format!("{speedup:.3}"),
-        format!("{:.3} to {:.3}", interval.low, interval.high),
+        with_level(&interval, 3),
         number(efficiency(speedup, threads)),
         number(efficiency(speedup, used)),
         number(serial_fraction(speedup, threads)),
@@ -92,11 +92,15 @@ fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineCh
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = "Median of ratios within a repetition. Bars: 95 % bootstrap interval.".to_string();
+    chart.caption = "Median of ratios within a repetition. Bars: distribution-free interval of that median, at least 95 % from 6 repetitions on.".to_string();
     chart.overlays = vec![
         Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
         Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
     ];
+    if let Some((schedule, estimate)) = speedups.iter().find(|(schedule, _)| schedule.strategy == THREAD_PER_ROW) {
+        let label = format!("{THREAD_PER_ROW},\n{} threads: {:.2}", schedule.threads, estimate.value);
+        chart.overlays.push(Overlay::guide(label, Curve::Line { intercept: estimate.value, slope: 0.0 }));
+    }
     chart.dodge = 5.0;
     chart
 }
@@ -111,31 +115,45 @@ fn efficiency_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> Lin
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = "Processors in use: the smaller of threads and processors. Bars: 95 % bootstrap interval.".to_string();
+    chart.caption = "Processors in use: the smaller of threads and processors. Bars: distribution-free interval of the median.".to_string();
     chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
     chart.dodge = 5.0;
     chart
 }
 
-fn findings(speedups: &[(Schedule, Estimate)], processors: usize) -> Vec<Block> {
+fn findings(results: &Results, speedups: &[(Schedule, Estimate)]) -> Vec<Block> {
+    let processors = results.run.machine.processors;
     let mut findings = Vec::new();
-    let at_processors = speedups.iter().filter(|(schedule, _)| schedule.threads == processors && processors > 1);
-    if let Some((schedule, estimate)) = at_processors.max_by(|a, b| a.1.value.total_cmp(&b.1.value)) {
+    let candidates: Vec<&(Schedule, Estimate)> =
+        speedups.iter().filter(|(schedule, _)| schedule.threads == processors && processors > 1).collect();
+    if let Some((best, estimate)) = candidates.iter().max_by(|a, b| a.1.value.total_cmp(&b.1.value)) {
+        let (mut slower, mut open) = (Vec::new(), Vec::new());
+        for (other, _) in candidates.iter().filter(|(other, _)| other != best) {
+            if let Some(ratio) = results.time_ratio(other, best) {
+                let text = format!("{} ({:.3}, {})", other.strategy, ratio.value, with_level(&ratio.interval, 3));
+                if ratio.interval.low > 1.0 { slower.push(text) } else { open.push(text) }
+            }
+        }
+        let list = |names: Vec<String>| if names.is_empty() { "none".to_string() } else { names.join("; ") };
         findings.push(Block::Finding(format!(
-            "With {processors} threads on {processors} processors the fastest is {} at {:.3} times serial (95 % {:.3} to {:.3}), an \
-             efficiency of {:.3}. Strategies whose intervals overlap it are not told apart by this run.",
-            schedule.strategy,
+            "With {processors} threads on {processors} processors the highest median speedup is that of {}: {:.3} times serial, {}, an \
+             efficiency of {:.3}. Paired with it, these take longer (ratio of times, interval): {}. These are not told apart from it by this run: {}.",
+            best.strategy,
             estimate.value,
-            estimate.interval.low,
-            estimate.interval.high,
+            with_level(&estimate.interval, 3),
             estimate.value / processors as f64,
+            list(slower),
+            list(open),
         )));
     }
     if let Some((schedule, estimate)) = speedups.iter().find(|(schedule, _)| schedule.strategy == THREAD_PER_ROW) {
+        let rows = schedule.threads;
+        let verdict = if estimate.interval.high < rows as f64 { "is refuted" } else { "is not refuted" };
         findings.push(Block::Finding(format!(
-            "A thread for each of {} rows is {:.3} times as fast as serial (95 % {:.3} to {:.3}), not {} times: report A's claim that \
-             a thread per row divides the time by the number of rows is refuted here. Threads beyond the {processors} processors only wait.",
-            schedule.threads, estimate.value, estimate.interval.low, estimate.interval.high, schedule.threads,
+            "A thread for each of {rows} rows is {:.3} times as fast as serial, {}. Report A's claim that a thread per row divides the time by \
+             the number of rows {verdict} by this run.",
+            estimate.value,
+            with_level(&estimate.interval, 3),
         )));
     }
     findings
