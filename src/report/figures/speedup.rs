@@ -10,8 +10,8 @@ use crate::report::block::{Block, Table};
 use crate::report::results::{Results, Schedule, with_level};
 use std::collections::BTreeMap;
 
-/// More threads than this are no axis any more: a thread for each row is in the table and in the findings.
-const MOST_ON_AXIS: usize = 64;
+/// More threads than this are no axis any more: strategies that start so many by a rule of their own become level lines.
+const MOST_ON_AXIS: usize = 16;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let speedups = results.speedups();
@@ -82,7 +82,13 @@ fn series(speedups: &[(Schedule, Estimate)], value: impl Fn(f64, usize) -> f64) 
 }
 
 fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineChart {
-    let (series, ticks) = series(speedups, |speedup, _| speedup);
+    let (mut series, ticks) = series(speedups, |speedup, _| speedup);
+    for (schedule, estimate) in speedups.iter().filter(|(schedule, _)| schedule.threads > MOST_ON_AXIS) {
+        let interval = (estimate.interval.low, estimate.interval.high);
+        let points = ticks.iter().map(|x| Point::new(*x, estimate.value).with_y(Some(interval))).collect();
+        let name = format!("{}: always {}", schedule.strategy, schedule.threads);
+        series.push(Series::new(name, Look::nth(series.len()), points));
+    }
     let processors = results.run.machine.processors as f64;
     let most = processors.max(1.0) * 1.25;
     let mut chart = LineChart::new(
@@ -92,15 +98,11 @@ fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineCh
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = "Median of ratios within a repetition. Bars: distribution-free interval of that median, at least 95 % from 6 repetitions on.".to_string();
+    chart.caption = "Median of ratios within a repetition. Bars: distribution-free interval. Level: a thread for each job, whatever is asked for.".to_string();
     chart.overlays = vec![
         Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
         Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
     ];
-    if let Some((schedule, estimate)) = speedups.iter().find(|(schedule, _)| schedule.strategy == THREAD_PER_ROW) {
-        let label = format!("{THREAD_PER_ROW},\n{} threads: {:.2}", schedule.threads, estimate.value);
-        chart.overlays.push(Overlay::guide(label, Curve::Line { intercept: estimate.value, slope: 0.0 }));
-    }
     chart.dodge = 5.0;
     chart
 }
