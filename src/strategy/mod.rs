@@ -30,34 +30,34 @@
 //!
 //! # Adding one
 //!
-//! A file with its `ENTRY`, and its line in [`STRATEGIES`]. Everything else, the contract tests included, loops over the table.
+//! A file with its `ENTRY`, and its line in `strategies!` below. Everything else, the contract tests included, loops over the table.
 
-mod fixed_pool;
-mod rayon;
-mod serial;
-mod shared_counter;
-mod static_blocks;
-mod static_cyclic;
 mod team;
-mod thread_per_job;
-mod work_stealing;
 
 use std::io;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
-/// Every strategy there is, in the order in which people meet them.
-pub static STRATEGIES: &[Entry] = &[
-    serial::ENTRY,
-    thread_per_job::ENTRY,
-    static_blocks::ENTRY,
-    static_cyclic::ENTRY,
-    shared_counter::ENTRY,
-    fixed_pool::ENTRY,
-    work_stealing::ENTRY,
-    rayon::ENTRY,
-];
+macro_rules! strategies {
+    ($($module:ident),* $(,)?) => {
+        $(mod $module;)*
+
+        /// Every strategy there is, in the order in which people meet them.
+        pub static STRATEGIES: &[Entry] = &[$($module::ENTRY),*];
+    };
+}
+
+strategies! {
+    serial,
+    thread_per_job,
+    static_blocks,
+    static_cyclic,
+    shared_counter,
+    fixed_pool,
+    work_stealing,
+    rayon,
+}
 
 /// The strategy called `name`.
 pub fn find(name: &str) -> Option<&'static Entry> {

@@ -13,7 +13,8 @@ use crate::report::results::Results;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some(reference) = reference(results)? else {
-        let text = "There is no contact sheet: the films of the references are not in the folder beside this experiment.";
+        let text =
+            "There is no contact sheet: the films of the references are not in the folder beside this experiment.";
         return Ok(vec![Block::Finding(text.to_string())]);
     };
     let images = renders(results)?;
@@ -68,7 +69,9 @@ fn renders(results: &Results) -> Result<Vec<(&Record, Image)>> {
 fn reference(results: &Results) -> Result<Option<Image>> {
     let profile = results.profile();
     let cells = results.definition.cells(profile)?;
-    let Some(wanted) = wanted_references(&results.definition, profile, &cells)?.into_iter().next() else { return Ok(None) };
+    let Some(wanted) = wanted_references(&results.definition, profile, &cells)?.into_iter().next() else {
+        return Ok(None);
+    };
     let [first, second] = wanted.paths(&results.out.join("references"))?;
     if !(first.is_file() && second.is_file()) {
         return Ok(None);

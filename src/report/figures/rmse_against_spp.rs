@@ -70,7 +70,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = "Bars: 95 % interval over seeds. Squared errors are free of the references' noise (cross form).".to_string();
+    chart.caption =
+        "Bars: 95 % interval over seeds. Squared errors are free of the references' noise (cross form).".to_string();
     chart.overlays = overlays;
     chart.dodge = 6.0;
     let table = Table {

@@ -15,8 +15,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut intervals: Vec<Interval> = Vec::new();
     let mut rows = Vec::new();
     let mut prices: BTreeMap<(String, Schedule), Vec<f64>> = BTreeMap::new();
-    for ((key, spp), records) in results.by(|record| ((results.series_name(record), Schedule::of(record)), record.spp)) {
-        let by_seed: BTreeMap<u64, f64> = records.iter().filter_map(|record| Some((record.seed, record.mse?))).collect();
+    for ((key, spp), records) in results.by(|record| ((results.series_name(record), Schedule::of(record)), record.spp))
+    {
+        let by_seed: BTreeMap<u64, f64> =
+            records.iter().filter_map(|record| Some((record.seed, record.mse?))).collect();
         let mse = by_seed.values().sum::<f64>() / by_seed.len().max(1) as f64;
         let times: Vec<f64> = records.iter().filter_map(|record| record.makespan_s).collect();
         let Some((seconds, interval)) = median_with_interval(&times) else { continue };
@@ -36,7 +38,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         prices.entry(key.clone()).or_default().push(mse * seconds);
         lines.entry(key).or_default().push(Point::new(seconds, mse.sqrt()).with_x(bar));
     }
-    let mut strategies: Vec<String> = lines.keys().map(|(series, schedule)| format!("{series}{}", schedule.strategy)).collect();
+    let mut strategies: Vec<String> =
+        lines.keys().map(|(series, schedule)| format!("{series}{}", schedule.strategy)).collect();
     strategies.dedup();
     let mut dashes: Vec<usize> = lines.keys().map(|(_, schedule)| schedule.threads).collect();
     dashes.sort_unstable();
@@ -59,7 +62,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     chart.subtitle = results.workload();
     chart.caption = format!("Points along a line: growing samples per pixel. Bars: {}.", confidence(&intervals));
     let price = price_finding(&prices);
-    let columns = ["schedule", "spp", "median seconds", "interval (confidence)", "RMSE, linear", "MSE x seconds"].map(String::from).to_vec();
+    let columns = ["schedule", "spp", "median seconds", "interval (confidence)", "RMSE, linear", "MSE x seconds"]
+        .map(String::from)
+        .to_vec();
     let table = Table { title: "Price of accuracy by schedule".to_string(), columns, rows };
     let mut blocks = vec![Block::Figure { stem: "rmse-against-time", figure: Box::new(chart) }];
     blocks.extend(price);

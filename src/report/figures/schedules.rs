@@ -8,8 +8,20 @@ use crate::report::results::{Results, Schedule, median_with_interval, with_level
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let columns = [
-        "image", "spp", "strategy", "pieces", "threads", "jobs", "runs", "median seconds", "interval (confidence)", "CPU / wall", "load imbalance", "longest job, ms",
-        "voluntary switches", "forced switches",
+        "image",
+        "spp",
+        "strategy",
+        "pieces",
+        "threads",
+        "jobs",
+        "runs",
+        "median seconds",
+        "interval (confidence)",
+        "CPU / wall",
+        "load imbalance",
+        "longest job, ms",
+        "voluntary switches",
+        "forced switches",
     ];
     let processors = results.run.machine.processors;
     let groups = results.by(|record| (results.series_name(record), record.spp, Schedule::of(record)));
@@ -27,12 +39,15 @@ fn row(schedule: &Schedule, records: &[&Record], processors: usize) -> Option<Ve
     let of = |value: &dyn Fn(&Record) -> Option<f64>| {
         median(&records.iter().filter_map(|record| value(record)).collect::<Vec<_>>())
     };
-    let text = |value: Option<f64>, digits: usize| value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"));
+    let text =
+        |value: Option<f64>, digits: usize| value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"));
     let times: Vec<f64> = records.iter().filter_map(|record| record.makespan_s).collect();
     let (median, interval) = median_with_interval(&times)?;
     // A job's seconds include waiting for a processor: with more workers than processors they say nothing about balance.
     let alone = |record: &Record| (record.workers_used? as usize <= processors).then_some(());
-    let imbalance = |record: &Record| alone(record).and(Some(record.busy_max_s? * f64::from(record.workers_used?) / record.busy_sum_s? - 1.0));
+    let imbalance = |record: &Record| {
+        alone(record).and(Some(record.busy_max_s? * f64::from(record.workers_used?) / record.busy_sum_s? - 1.0))
+    };
     Some(vec![
         schedule.strategy.clone(),
         schedule.decomposition.clone(),

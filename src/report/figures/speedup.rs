@@ -1,7 +1,7 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by which Karp and Flatt explain what is missing.
 
-use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction};
 use crate::analysis::Estimate;
+use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction};
 use crate::error::Result;
 use crate::measure::THREAD_PER_ROW;
 use crate::plot::style::Look;
@@ -19,8 +19,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Table {
         title: "Speedup against serial, efficiency and Karp-Flatt serial fraction".to_string(),
         columns: [
-            "strategy", "pieces", "threads", "speedup", "interval (confidence)", "efficiency per thread", "efficiency per processor in use",
-            "e, p = threads", "e, p = processors in use", "remark",
+            "strategy",
+            "pieces",
+            "threads",
+            "speedup",
+            "interval (confidence)",
+            "efficiency per thread",
+            "efficiency per processor in use",
+            "e, p = threads",
+            "e, p = processors in use",
+            "remark",
         ]
         .map(String::from)
         .to_vec(),
@@ -77,7 +85,8 @@ fn series(speedups: &[(Schedule, Estimate)], value: impl Fn(f64, usize) -> f64) 
     }
     ticks.sort_by(f64::total_cmp);
     ticks.dedup();
-    let series = lines.into_iter().enumerate().map(|(index, (name, points))| Series::new(name, Look::nth(index), points));
+    let series =
+        lines.into_iter().enumerate().map(|(index, (name, points))| Series::new(name, Look::nth(index), points));
     (series.collect(), ticks)
 }
 
@@ -117,7 +126,9 @@ fn efficiency_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> Lin
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = "Processors in use: the smaller of threads and processors. Bars: distribution-free interval of the median.".to_string();
+    chart.caption =
+        "Processors in use: the smaller of threads and processors. Bars: distribution-free interval of the median."
+            .to_string();
     chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
     chart.dodge = 5.0;
     chart

@@ -3,10 +3,10 @@
 use crate::analysis::Interval;
 use crate::analysis::fit::{line, log_log};
 use crate::error::Result;
+use crate::measure::Record;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::report::block::Block;
-use crate::measure::Record;
 use crate::report::results::{LEVEL, Results, Schedule, confidence, median_with_interval};
 use std::collections::BTreeMap;
 
@@ -33,8 +33,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
                 index,
             ));
             let exponent = power.slope.interval;
-            let verdict =
-                if exponent.contains(1.0) { "the interval contains 1: no departure from linear is seen" } else { "the interval does not contain 1" };
+            let verdict = if exponent.contains(1.0) {
+                "the interval contains 1: no departure from linear is seen"
+            } else {
+                "the interval does not contain 1"
+            };
             findings.push(Block::Finding(format!(
                 "{name}: {:.3} ms per sample per pixel (95 % {:.3} to {:.3}) and {:.1} ms besides ({:.1} to {:.1}); the exponent of time \
                  against spp is {:.3} (95 % {:.3} to {:.3}); {verdict}.",
