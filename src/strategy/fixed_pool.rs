@@ -13,18 +13,26 @@ use std::sync::Arc;
 use crossbeam::channel::{self, Receiver, Sender};
 use crossbeam::sync::WaitGroup;
 
+use super::self_scheduling;
 use super::team::{Crew, Panics};
-use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "fixed-pool",
     about: "workers that outlive the run, fed with indices through a channel",
     workers: Workers::Threads,
+    threads: Threads::Spawner,
+    sharing: Sharing::AtOnce,
+    discipline,
     new,
 };
 
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    unless_set(ENTRY.name, parameter, self_scheduling::rule(|_| 1))
+}
+
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    let config = config.without_parameter(ENTRY.name)?;
+    config.discipline(&ENTRY)?;
     let threads = config.threads.get();
     // Declared before the sender and so dropped after it, should a worker be missing: the others then see the end and leave.
     let mut crew = Crew::default();

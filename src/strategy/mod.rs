@@ -32,12 +32,16 @@
 //!
 //! A file with its `ENTRY`, and its line in `strategies!` below. Everything else, the contract tests included, loops over the table.
 
+mod discipline;
+mod self_scheduling;
 mod team;
 
 use std::io;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
+
+pub use discipline::{Amount, ChunkRule, Deal, Discipline, Handout, Start, Stealing, Victim};
 
 macro_rules! strategies {
     ($($module:ident),* $(,)?) => {
@@ -54,6 +58,10 @@ strategies! {
     static_blocks,
     static_cyclic,
     shared_counter,
+    dynamic,
+    guided,
+    trapezoid,
+    factoring,
     fixed_pool,
     work_stealing,
     rayon,
@@ -84,6 +92,12 @@ pub struct Entry {
     pub about: &'static str,
     /// Where its jobs run.
     pub workers: Workers,
+    /// Who starts its threads.
+    pub threads: Threads,
+    /// When a worker that is free finds out about jobs that wait at another one.
+    pub sharing: Sharing,
+    /// How it hands out jobs, given the parameter; refuses a parameter that means nothing.
+    pub discipline: fn(Option<&str>) -> Result<Discipline, StrategyError>,
     /// Makes one that is ready to run; pools start their threads here.
     pub new: fn(Config) -> Result<Box<dyn Strategy>, StrategyError>,
 }
@@ -110,6 +124,25 @@ impl Workers {
     }
 }
 
+/// Who starts a strategy's threads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Threads {
+    /// [`Config::spawner`], all of them.
+    Spawner,
+    /// The library behind the strategy, by its own means and perhaps more of them than there are workers.
+    Library,
+}
+
+/// When a worker that is free finds out about jobs that wait at another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sharing {
+    /// At once, so as many jobs as there are workers can wait for each other.
+    AtOnce,
+    /// When the other one comes between two of its jobs and some time has passed. A job that waits for another one may wait for
+    /// ever.
+    Heartbeat,
+}
+
 /// What a strategy is made from.
 #[derive(Clone)]
 pub struct Config {
@@ -127,12 +160,21 @@ impl Config {
         Self { threads, parameter: None, spawner: Arc::new(SystemThreads) }
     }
 
-    /// For a strategy that has nothing to set: the same, unless a parameter was given.
-    fn without_parameter(self, strategy: &'static str) -> Result<Self, StrategyError> {
-        match self.parameter {
-            Some(value) => Err(StrategyError::Parameter { strategy, value, allowed: "none".to_owned() }),
-            None => Ok(self),
-        }
+    /// The discipline that the parameter asks of a strategy.
+    fn discipline(&self, entry: &Entry) -> Result<Discipline, StrategyError> {
+        (entry.discipline)(self.parameter.as_deref())
+    }
+}
+
+/// For a strategy that has nothing to set: its discipline, unless a parameter was given.
+fn unless_set(
+    strategy: &'static str,
+    parameter: Option<&str>,
+    discipline: Discipline,
+) -> Result<Discipline, StrategyError> {
+    match parameter {
+        Some(value) => Err(StrategyError::Parameter { strategy, value: value.to_owned(), allowed: "none".to_owned() }),
+        None => Ok(discipline),
     }
 }
 

@@ -15,17 +15,24 @@ use ::rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelItera
 use ::rayon::{ThreadPool, ThreadPoolBuilder, max_num_threads};
 
 use super::team::{Crew, Panics};
-use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "rayon",
     about: "rayon's parallel iterator in a pool of its own, split down to single jobs",
     workers: Workers::Threads,
+    threads: Threads::Spawner,
+    sharing: Sharing::AtOnce,
+    discipline,
     new,
 };
 
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    unless_set(ENTRY.name, parameter, Discipline::Halving)
+}
+
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    let config = config.without_parameter(ENTRY.name)?;
+    config.discipline(&ENTRY)?;
     let (threads, most) = (config.threads.get(), max_num_threads());
     if threads > most {
         return Err(StrategyError::TooManyThreads { strategy: ENTRY.name, threads, most });

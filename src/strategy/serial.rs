@@ -7,17 +7,24 @@
 //!
 //! Cost: an indirect call a job.
 
-use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "serial",
     about: "one job after the other on the calling thread: the baseline of speedups (ignores --threads)",
     workers: Workers::Caller,
+    threads: Threads::Spawner,
+    sharing: Sharing::AtOnce,
+    discipline,
     new,
 };
 
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    unless_set(ENTRY.name, parameter, Discipline::InOrder)
+}
+
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    config.without_parameter(ENTRY.name)?;
+    config.discipline(&ENTRY)?;
     Ok(Box::new(Serial))
 }
 

@@ -13,18 +13,27 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crossbeam::utils::CachePadded;
 
+use super::self_scheduling;
 use super::team::{self, Panics};
-use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "shared-counter",
     about: "whoever is free takes the next index from an atomic counter",
     workers: Workers::Threads,
+    threads: Threads::Spawner,
+    sharing: Sharing::AtOnce,
+    discipline,
     new,
 };
 
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    unless_set(ENTRY.name, parameter, self_scheduling::rule(|_| 1))
+}
+
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(SharedCounter(config.without_parameter(ENTRY.name)?)))
+    config.discipline(&ENTRY)?;
+    Ok(Box::new(SharedCounter(config)))
 }
 
 struct SharedCounter(Config);

@@ -8,21 +8,30 @@
 //! Cost: one thread's start for each worker and nothing for a job. Neighbouring jobs stay together, which is good for caches and
 //! bad for balance: where costs vary smoothly, one worker gets all the dear ones.
 
+use std::iter::StepBy;
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::team::{self, Panics};
-use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "static-blocks",
     about: "one contiguous block of jobs for each worker, fixed beforehand",
     workers: Workers::Threads,
+    threads: Threads::Spawner,
+    sharing: Sharing::AtOnce,
+    discipline,
     new,
 };
 
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    unless_set(ENTRY.name, parameter, Discipline::Dealt(block))
+}
+
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(StaticBlocks(config.without_parameter(ENTRY.name)?)))
+    config.discipline(&ENTRY)?;
+    Ok(Box::new(StaticBlocks(config)))
 }
 
 struct StaticBlocks(Config);
@@ -47,11 +56,11 @@ impl Strategy for StaticBlocks {
 }
 
 /// The jobs of `worker`. Block w starts where block w - 1 ends, the first at 0 and the last ends at `jobs`: each index is in one.
-fn block(worker: usize, workers: usize, jobs: usize) -> Range<usize> {
+fn block(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>> {
     // Not worker * jobs / workers, whose product overflows.
     let (size, remainder) = (jobs / workers, jobs % workers);
     let start = |worker: usize| worker * size + worker.min(remainder);
-    start(worker)..start(worker + 1)
+    (start(worker)..start(worker + 1)).step_by(1)
 }
 
 #[cfg(test)]
@@ -60,19 +69,25 @@ mod tests {
 
     #[test]
     fn the_remainder_goes_to_the_first_workers() {
-        let blocks: Vec<_> = (0..4).map(|worker| block(worker, 4, 10)).collect();
-        assert_eq!(blocks, [0..3, 3..6, 6..8, 8..10]);
+        let blocks: Vec<Vec<usize>> = (0..4).map(|worker| block(worker, 4, 10).collect()).collect();
+        assert_eq!(blocks, [vec![0, 1, 2], vec![3, 4, 5], vec![6, 7], vec![8, 9]]);
     }
 
     #[test]
     fn blocks_join_up_and_differ_by_one_at_most() {
         for jobs in [1, 7, 768, (1 << 32) + 1, usize::MAX] {
             for workers in [1, 2, 3, 8, 1000] {
-                let blocks: Vec<_> = (0..workers).map(|worker| block(worker, workers, jobs)).collect();
-                assert_eq!((blocks[0].start, blocks[workers - 1].end), (0, jobs));
-                assert!(blocks.windows(2).all(|pair| pair[0].end == pair[1].start), "{jobs} jobs, {workers} workers");
-                let sizes = blocks.iter().map(ExactSizeIterator::len);
-                assert!(sizes.clone().max().unwrap() - sizes.min().unwrap() <= 1, "{jobs} jobs, {workers} workers");
+                let mut end = 0;
+                for worker in 0..workers {
+                    let mut block = block(worker, workers, jobs);
+                    let size = block.len();
+                    assert!([jobs / workers, jobs.div_ceil(workers)].contains(&size), "{jobs} jobs, {workers} workers");
+                    if size > 0 {
+                        assert_eq!(block.next(), Some(end), "{jobs} jobs, {workers} workers");
+                        end += size;
+                    }
+                }
+                assert_eq!(end, jobs);
             }
         }
     }

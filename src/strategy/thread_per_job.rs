@@ -11,17 +11,25 @@
 use std::sync::Arc;
 
 use super::team::{self, Panics};
-use super::{Config, Entry, Job, Spawner, Strategy, StrategyError, Workers};
+use super::{Config, Discipline, Entry, Job, Sharing, Spawner, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "thread-per-job",
     about: "a new thread for each job, all at once (ignores --threads)",
     workers: Workers::PerJob,
+    threads: Threads::Spawner,
+    sharing: Sharing::AtOnce,
+    discipline,
     new,
 };
 
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    unless_set(ENTRY.name, parameter, Discipline::AllAtOnce)
+}
+
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    let Config { spawner, .. } = config.without_parameter(ENTRY.name)?;
+    config.discipline(&ENTRY)?;
+    let Config { spawner, .. } = config;
     Ok(Box::new(ThreadPerJob { spawner }))
 }
 

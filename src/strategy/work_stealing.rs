@@ -18,17 +18,30 @@ use crossbeam::deque::{Injector, Steal, Stealer, Worker};
 use crossbeam::utils::{Backoff, CachePadded};
 
 use super::team::{self, Panics};
-use super::{Config, Entry, Job, Strategy, StrategyError, Workers};
+use super::{
+    Amount, Config, Discipline, Entry, Job, Sharing, Start, Stealing, Strategy, StrategyError, Threads, Victim,
+    Workers, unless_set,
+};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "work-stealing",
     about: "a deque for each worker; whoever runs dry steals from the others",
     workers: Workers::Threads,
+    threads: Threads::Spawner,
+    sharing: Sharing::AtOnce,
+    discipline,
     new,
 };
 
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    // Crossbeam moves half of a queue at a time, up to 32 jobs.
+    let stealing = Stealing { start: Start::Shared(32), amount: Amount::Half, victim: Victim::Neighbour };
+    unless_set(ENTRY.name, parameter, Discipline::Stealing(stealing))
+}
+
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(WorkStealing(config.without_parameter(ENTRY.name)?)))
+    config.discipline(&ENTRY)?;
+    Ok(Box::new(WorkStealing(config)))
 }
 
 struct WorkStealing(Config);

@@ -1,0 +1,79 @@
+//! What self-scheduling strategies share: a free worker takes the next chunk from one list, whose sizes a [`ChunkRule`] says.
+//!
+//! The sizes depend on the numbers of jobs and workers alone, not on who asks when. So the list is made before the workers start, and
+//! taking a chunk is one atomic addition under every rule.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use crossbeam::utils::CachePadded;
+
+use super::team::{self, Panics};
+use super::{ChunkRule, Config, Discipline, Entry, Job, Strategy, StrategyError};
+
+/// The discipline of a rule that has no parameter.
+pub(super) const fn rule(size: fn(&super::Handout) -> usize) -> Discipline {
+    Discipline::Chunks(ChunkRule { size, parameter: 1 })
+}
+
+/// The strategy of an entry whose discipline is a chunk rule.
+pub(super) fn new(config: Config, entry: &Entry) -> Result<Box<dyn Strategy>, StrategyError> {
+    match config.discipline(entry)? {
+        Discipline::Chunks(rule) => Ok(Box::new(SelfScheduling { config, rule })),
+        other => unreachable!("{} hands out jobs by {other:?}", entry.name),
+    }
+}
+
+struct SelfScheduling {
+    config: Config,
+    rule: ChunkRule,
+}
+
+impl Strategy for SelfScheduling {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        let workers = self.config.threads.get().min(jobs);
+        let chunks: Arc<[_]> = self.rule.chunks(jobs, workers).collect();
+        let next = Arc::new(CachePadded::new(AtomicUsize::new(0)));
+        let bodies = (0..workers).map(|_| {
+            let (job, next, chunks) = (Arc::clone(&job), Arc::clone(&next), Arc::clone(&chunks));
+            move |panics: &Panics| {
+                // Relaxed: the chunks alone are shared out here; what jobs write is published by joining the threads.
+                while let Some(chunk) = chunks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    for index in chunk.clone() {
+                        if panics.stop_asked() {
+                            return;
+                        }
+                        job(index);
+                    }
+                }
+            }
+        });
+        team::run(&*self.config.spawner, bodies)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::strategy::{Discipline, STRATEGIES};
+
+    /// Every chunk rule hands out each job once, whatever the numbers.
+    #[test]
+    fn chunks_join_up_and_cover_all_jobs() {
+        let rules = STRATEGIES.iter().filter_map(|entry| match (entry.discipline)(None) {
+            Ok(Discipline::Chunks(rule)) => Some((entry.name, rule)),
+            _ => None,
+        });
+        for (name, rule) in rules {
+            for jobs in [0, 1, 2, 7, 100, 1000, 20_000] {
+                for workers in [1, 2, 3, 8, 768] {
+                    let mut end = 0;
+                    for chunk in rule.chunks(jobs, workers) {
+                        assert!(chunk.start == end && chunk.end > end, "{name}: {chunk:?} after {end}");
+                        end = chunk.end;
+                    }
+                    assert_eq!(end, jobs, "{name}, {workers} workers");
+                }
+            }
+        }
+    }
+}
