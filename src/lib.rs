@@ -15,6 +15,7 @@
 //!     decomposition: "tiles:8x8".into(),
 //!     strategy: "work-stealing".into(),
 //!     threads: 2,
+//!     ..Settings::default()
 //! };
 //! let outcome = Setup::prepare(settings)?.run(None)?;
 //! assert_eq!(outcome.counts.paths, 16 * 12 * 4);

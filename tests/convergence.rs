@@ -15,6 +15,7 @@ fn render(spp: u32, seed: u64) -> Image {
         decomposition: "tiles:8x8".to_string(),
         strategy: "work-stealing".to_string(),
         threads: available_threads(),
+        ..Settings::default()
     };
     Setup::prepare(settings).unwrap().run(None).unwrap().film.image()
 }

@@ -26,7 +26,7 @@ fn limit(tests: usize) -> f64 {
 
 fn run(scene: &Scene, spec: Spec, spp: u32) -> Outcome {
     let (decomposition, strategy) = ("rows".into(), "shared-counter".into());
-    let settings = Settings { scene: String::new(), spp, spec, decomposition, strategy, threads: 2 };
+    let settings = Settings { spp, spec, decomposition, strategy, threads: 2, ..Settings::default() };
     Setup::for_scene(Arc::new(scene.clone()), settings).unwrap().run(None).unwrap()
 }
 

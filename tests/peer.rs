@@ -36,6 +36,7 @@ fn ours(seed: u64) -> Image {
         decomposition: "tiles:16x16".to_string(),
         strategy: "work-stealing".to_string(),
         threads: available_threads(),
+        ..Settings::default()
     };
     Setup::prepare(settings).unwrap().run(None).unwrap().film.image()
 }

@@ -24,7 +24,7 @@ fn ball(center: [f64; 3], radius: f64, material: &str) -> Ball {
 fn render(scene: Scene, estimator: &str, (width, height): (u32, u32), spp: u32) -> Outcome {
     let spec = Spec { width, height, seed: 7, estimator: estimator.into(), ..Spec::default() };
     let (decomposition, strategy) = ("rows".into(), "shared-counter".into());
-    let settings = Settings { scene: String::new(), spp, spec, decomposition, strategy, threads: 2 };
+    let settings = Settings { spp, spec, decomposition, strategy, threads: 2, ..Settings::default() };
     Setup::for_scene(Arc::new(scene), settings).unwrap().run(None).unwrap()
 }
 

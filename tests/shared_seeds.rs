@@ -35,9 +35,11 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
             decomposition: "rows".to_string(),
             strategy: "serial".to_string(),
             threads: 1,
+            ..Settings::default()
         },
         references: Some(references),
         image: None,
+        trace: None,
     };
     let mut command = pathmark(folder, &["cell"]);
     let mut child = command.stdin(Stdio::piped()).spawn().unwrap();

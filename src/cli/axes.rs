@@ -33,9 +33,12 @@ pub(super) struct Axes {
     /// Workers [default: one for each processor]
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
-    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral] [default: tiles:32x32]
+    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], samples:B[:WxH] [default: tiles:32x32]
     #[arg(long, value_name = "CUT")]
     pub(super) decomposition: Option<String>,
+    /// How pieces get into the film: an output of `pathmark list outputs`
+    #[arg(long, value_name = "NAME", default_value = "slots")]
+    pub(super) output: String,
     /// Clamp each subpixel's mean to 1 before averaging, as smallpt does: biased
     #[arg(long)]
     pub(super) subpixel_clamp: bool,
@@ -102,6 +105,7 @@ impl Axes {
                 subpixel_clamp: self.subpixel_clamp,
             },
             decomposition: self.cut()?,
+            output: self.output.clone(),
             strategy: self.strategy.clone(),
             threads: self.threads.unwrap_or_else(available_threads),
         })

@@ -8,6 +8,7 @@ use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
 use crate::kernel::KERNELS;
 use crate::material::MATERIALS;
+use crate::measure::OUTPUTS;
 use crate::metric::METRICS;
 use crate::sampling::SAMPLERS;
 use crate::scene::{PROFILES, SCENES, load, smallest_profile};
@@ -30,6 +31,7 @@ enum Kind {
     Scenes,
     Strategies,
     Decompositions,
+    Outputs,
     Estimators,
     Samplers,
     Kernels,
@@ -64,6 +66,7 @@ fn items(kind: Kind) -> Result<Vec<Item>> {
         }
         Kind::Strategies => STRATEGIES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Decompositions => DECOMPOSITIONS.iter().map(|entry| item(entry.example, entry.about)).collect(),
+        Kind::Outputs => OUTPUTS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Estimators => ESTIMATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Kernels => KERNELS.iter().map(|entry| item(entry.name, entry.about)).collect(),

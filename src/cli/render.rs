@@ -7,7 +7,7 @@ use crate::atomic_file;
 use crate::error::Result;
 use crate::experiment::Progress;
 use crate::image_io;
-use crate::measure::{Measured, Record, Setup};
+use crate::measure::{Measured, Record, Setup, TraceFile};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -23,10 +23,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
     /// Image file: .png, .ppm and .bmp for looking at, .exr, .pfm and .hdr for linear radiance [default: SCENE.png]
-    #[arg(short, long, value_name = "FILE")]
-    output: Option<PathBuf>,
+    #[arg(short = 'o', long = "image", value_name = "FILE")]
+    image: Option<PathBuf>,
     #[command(flatten)]
     axes: Axes,
+    /// Write who did what when: .csv for `pathmark trace` and `pathmark simulate`
+    #[arg(long, value_name = "FILE")]
+    trace: Option<PathBuf>,
     /// Print the record as one JSON object
     #[arg(long)]
     json: bool,
@@ -34,14 +37,20 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let setup = Setup::prepare(arguments.axes.settings(&arguments.scene, arguments.spp, arguments.seed)?)?;
-    let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.scene().name)));
+    let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.scene().name)));
     image_io::check_format(&path)?;
     atomic_file::check_writable(&path)?;
+    if let Some(trace) = &arguments.trace {
+        atomic_file::check_writable(trace)?;
+    }
 
     talk.begin(&format!("{} at {} spp", setup.scene().name, arguments.spp), setup.jobs() as u64);
     let outcome = setup.run(Some(&|done| talk.advance(done)))?;
     talk.end();
     image_io::write(&path, &outcome.film.image())?;
+    if let Some(trace) = &arguments.trace {
+        TraceFile::new(&setup, &outcome).write(trace)?;
+    }
 
     let record = Record::new(&setup, &outcome, Measured::default());
     for warning in &outcome.warnings {
@@ -52,7 +61,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     }
     let (paths, rays) = (outcome.counts.paths as f64, outcome.counts.rays as f64);
     print(&format!(
-        "{}: {}x{}, {} spp, {}, effects {}\n{} on {}, {} workers: {:.3} s, {:.3} Msamples/s, {:.2} rays per sample\nchecksum {}",
+        "{}: {}x{}, {} spp, {}, effects {}\n{} on {}, {} workers: {:.3} s, {:.3} Msamples/s, {:.2} rays per sample\n{}",
         path.display(),
         record.width,
         record.height,
@@ -65,6 +74,9 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         outcome.makespan_s,
         paths / outcome.makespan_s * 1e-6,
         rays / paths,
-        outcome.checksum,
+        outcome.checksum.as_ref().map_or_else(
+            || format!("no checksum: {} gives other numbers in each run", record.sampler),
+            |checksum| format!("checksum {checksum}")
+        ),
     ))
 }

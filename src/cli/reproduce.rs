@@ -35,7 +35,14 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         filters: Vec::new(),
         command: command_line(),
     };
-    let definitions = EXPERIMENTS.iter().map(|(name, _)| Definition::load(name)).collect::<Result<Vec<_>>>()?;
+    let mut definitions = EXPERIMENTS.iter().map(|(name, _)| Definition::load(name)).collect::<Result<Vec<_>>>()?;
+    definitions.retain(|definition| match definition.missing_feature() {
+        None => true,
+        Some(feature) => {
+            talk.note(&format!("{} is left out: it needs the feature {feature}", definition.name));
+            false
+        }
+    });
     if !arguments.resume {
         put_aside(&arguments.out, &definitions, talk)?;
     }

@@ -25,7 +25,10 @@ impl Cell {
         settings.threads = setup.threads();
         let image = image_word(setup.scene(), &settings.spec, settings.spp);
         let spec = &settings.spec;
-        let id = format!("{image}/{}/{}/{}t", settings.decomposition, settings.strategy, settings.threads);
+        let mut id = format!("{image}/{}/{}/{}t", settings.decomposition, settings.strategy, settings.threads);
+        if settings.output != Settings::default().output {
+            id = format!("{id}/{}", settings.output);
+        }
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.threads.min(available_threads()) as u64;
         Self { id, settings, image, weight: weight.max(1) }
@@ -41,6 +44,7 @@ impl Cell {
             ("spp", settings.spp.to_string()),
             ("seed", spec.seed.to_string()),
             ("decomposition", settings.decomposition.clone()),
+            ("output", settings.output.clone()),
             ("strategy", schedule_name(&settings.strategy, &settings.decomposition).to_string()),
             ("threads", settings.threads.to_string()),
         ];
@@ -52,6 +56,11 @@ impl Cell {
                 .allowed(format!("{}=VALUE", names.join("=VALUE, ")))
                 .into()
         })
+    }
+
+    /// The file name of the trace of one of its repetitions.
+    pub fn trace_file(&self, repetition: u32) -> String {
+        format!("{}-r{repetition}.csv", self.id.replace(['/', ':'], "-"))
     }
 
     /// The file name of its image.

@@ -8,7 +8,7 @@
 use crate::error::{Error, InputError, Result};
 use crate::film::{Film, read_film};
 use crate::image_io;
-use crate::measure::{Measured, Record, Settings, Setup, failure};
+use crate::measure::{Measured, Record, Settings, Setup, TraceFile, failure};
 use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
@@ -32,6 +32,8 @@ pub struct CellJob {
     pub references: Option<[PathBuf; 2]>,
     /// Where to keep the image.
     pub image: Option<PathBuf>,
+    /// Where to keep the trace.
+    pub trace: Option<PathBuf>,
 }
 
 impl CellJob {
@@ -82,6 +84,9 @@ impl CellJob {
         };
         if let Some(path) = &self.image {
             image_io::write(path, &outcome.film.image())?;
+        }
+        if let Some(path) = &self.trace {
+            TraceFile::new(&setup, &outcome).write(path)?;
         }
         Ok(self.label(Record::new(&setup, &outcome, errors)))
     }

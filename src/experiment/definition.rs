@@ -14,6 +14,8 @@
 //! strategy = ["serial", "rayon"]  # or "all"
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
+//! # There may be several, each under [[matrix]]. Optional: sampler, output, size (instead of the profile's), and weak = true, which
+//! # gives each cell spp times its threads.
 //!
 //! [reference]                    # optional: measures errors
 //! estimator = "bsdf"
@@ -29,7 +31,7 @@
 //! reference-spp = 2000
 //! ```
 
-use super::matrix::{Matrix, Scale};
+use super::matrix::{Matrix, Scale, one_or_many};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use serde::Deserialize;
@@ -37,6 +39,9 @@ use std::path::Path;
 
 /// Name and text of the experiments that the binary carries.
 pub const EXPERIMENTS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/experiments.rs"));
+
+/// The features that an experiment may require, and whether this program was built with them.
+pub(super) const FEATURES: &[(&str, bool)] = &[("openmp", cfg!(feature = "openmp"))];
 
 /// How large an experiment is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,7 +91,20 @@ pub struct Definition {
     /// Whether each cell's first image is kept.
     #[serde(default)]
     pub images: bool,
-    pub(super) matrix: Matrix,
+    /// Whether the trace of each run is kept.
+    #[serde(default)]
+    pub traces: bool,
+    /// Whether the cost of handing out empty jobs is measured, for the simulator.
+    #[serde(default)]
+    pub calibration: bool,
+    /// Whether samplers may be used that give other numbers in each run, so that no checksum can be expected.
+    #[serde(default)]
+    pub unverified: bool,
+    /// Features that the program must have been built with; without them the experiment is left out.
+    #[serde(default)]
+    pub requires: Vec<String>,
+    #[serde(deserialize_with = "one_or_many")]
+    pub(super) matrix: Vec<Matrix>,
     reference: Option<ReferenceTable>,
     quick: Scale,
     full: Scale,
@@ -133,7 +151,13 @@ impl Definition {
 
     /// The estimator that is named first.
     pub fn first_estimator(&self) -> &str {
-        self.matrix.estimator.first().map_or("", String::as_str)
+        self.matrix.iter().flat_map(|matrix| &matrix.estimator).next().map_or("", String::as_str)
+    }
+
+    /// The first feature that it needs and that this program was built without.
+    pub fn missing_feature(&self) -> Option<&str> {
+        let built_with = |feature: &str| FEATURES.iter().any(|(name, there)| *name == feature && *there);
+        self.requires.iter().map(String::as_str).find(|feature| !built_with(feature))
     }
 
     /// How often each cell is run.
@@ -145,7 +169,8 @@ impl Definition {
     pub fn reference(&self, profile: Profile) -> Result<Option<(String, u32)>> {
         let Some(table) = &self.reference else { return Ok(None) };
         let scale = self.scale(profile);
-        let largest = scale.spp.as_ref().unwrap_or(&self.matrix.spp).iter().max().copied().unwrap_or(0);
+        let own = || self.matrix.iter().flat_map(|matrix| &matrix.spp).max();
+        let largest = scale.spp.as_ref().map_or_else(own, |spp| spp.iter().max()).copied().unwrap_or(0);
         let needed = largest.saturating_mul(10);
         match scale.reference_spp {
             Some(spp) if spp >= needed => Ok(Some((table.estimator.clone(), spp))),

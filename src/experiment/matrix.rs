@@ -1,11 +1,16 @@
 //! The axes of an experiment and the cells that they span.
 
+use super::definition::FEATURES;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{LARGEST_SEED, Settings, Setup, available_threads};
+use crate::sampling::{SAMPLERS, is_deterministic};
 use crate::strategy::STRATEGIES;
-use serde::Deserialize;
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt;
 use std::path::Path;
 
 /// The axes; cells are all combinations.
@@ -21,10 +26,42 @@ pub(super) struct Matrix {
     pub(super) strategy: Vec<String>,
     pub(super) threads: Vec<Threads>,
     pub(super) decomposition: Vec<String>,
+    #[serde(default = "slots")]
+    pub(super) output: Vec<String>,
+    /// Instead of the profile's.
+    pub(super) size: Option<[u32; 2]>,
+    /// Whether samples per pixel are for each thread.
+    #[serde(default)]
+    pub(super) weak: bool,
 }
 
 fn independent() -> Vec<String> {
     vec!["independent".to_string()]
+}
+
+fn slots() -> Vec<String> {
+    vec!["slots".to_string()]
+}
+
+/// One table, or an array of them.
+pub(super) fn one_or_many<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Vec<Matrix>, D::Error> {
+    struct OneOrMany;
+    impl<'de> Visitor<'de> for OneOrMany {
+        type Value = Vec<Matrix>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table [matrix] or several [[matrix]]")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> std::result::Result<Self::Value, A::Error> {
+            Ok(vec![Matrix::deserialize(MapAccessDeserializer::new(map))?])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, sequence: A) -> std::result::Result<Self::Value, A::Error> {
+            Vec::deserialize(SeqAccessDeserializer::new(sequence))
+        }
+    }
+    deserializer.deserialize_any(OneOrMany)
 }
 
 /// How large a profile is, and the axes that it replaces.
@@ -66,17 +103,39 @@ impl Threads {
 impl Definition {
     /// The cells, each once, in the order of the matrix. Every one has been checked: nothing that the definition says can fail later.
     pub fn cells(&self, profile: Profile) -> Result<Vec<Cell>> {
-        let scale = self.scale(profile);
-        let matrix = &self.matrix;
-        if scale.repetitions == 0 {
+        if self.scale(profile).repetitions == 0 {
             return Err(self.located(profile, InputError::new("repetitions", "0", "must be at least 1")));
         }
+        if let Some(unknown) = self.requires.iter().find(|name| !FEATURES.iter().any(|(known, _)| known == name)) {
+            let names: Vec<&str> = FEATURES.iter().map(|(name, _)| *name).collect();
+            let error = InputError::new("requires", unknown, "there is no feature of that name");
+            return Err(self.located(profile, error.allowed(names.join(", "))));
+        }
+        if let Some(feature) = self.missing_feature() {
+            let error = InputError::new("requires", feature, "is a feature that this program was built without");
+            return Err(
+                self.located(profile, error.allowed(format!("cargo run --release --features {feature} -- ...")))
+            );
+        }
+        let mut cells: Vec<Cell> = Vec::new();
+        for matrix in &self.matrix {
+            self.add_images(profile, matrix, &mut cells)?;
+        }
+        Ok(cells)
+    }
+
+    /// The cells of one matrix.
+    fn add_images(&self, profile: Profile, matrix: &Matrix, cells: &mut Vec<Cell>) -> Result<()> {
+        let scale = self.scale(profile);
+        let size = matrix.size.unwrap_or(scale.size);
+        let (spps, seeds) = (scale.spp.as_ref().unwrap_or(&matrix.spp), scale.seed.as_ref().unwrap_or(&matrix.seed));
         let empty = [
             ("scene", matrix.scene.is_empty()),
             ("estimator", matrix.estimator.is_empty()),
             ("sampler", matrix.sampler.is_empty()),
-            ("spp", scale.spp.as_ref().unwrap_or(&matrix.spp).is_empty()),
-            ("seed", scale.seed.as_ref().unwrap_or(&matrix.seed).is_empty()),
+            ("output", matrix.output.is_empty()),
+            ("spp", spps.is_empty()),
+            ("seed", seeds.is_empty()),
             ("strategy", scale.strategy.as_ref().unwrap_or(&matrix.strategy).is_empty()),
             ("threads", scale.threads.as_ref().unwrap_or(&matrix.threads).is_empty()),
             ("decomposition", scale.decomposition.as_ref().unwrap_or(&matrix.decomposition).is_empty()),
@@ -85,55 +144,70 @@ impl Definition {
             let problem = "is an empty axis, so there is nothing to run";
             return Err(self.located(profile, InputError::new(axis, "[]", problem).allowed("at least one value")));
         }
-        let mut cells: Vec<Cell> = Vec::new();
         for scene in &matrix.scene {
             for estimator in &matrix.estimator {
                 for sampler in &matrix.sampler {
-                    for spp in scale.spp.as_ref().unwrap_or(&matrix.spp) {
-                        for seed in scale.seed.as_ref().unwrap_or(&matrix.seed) {
+                    self.check_sampler(profile, sampler)?;
+                    for spp in spps {
+                        for seed in seeds {
                             let spec = Spec {
-                                width: scale.size[0],
-                                height: scale.size[1],
+                                width: size[0],
+                                height: size[1],
                                 seed: *seed,
                                 estimator: estimator.clone(),
                                 sampler: sampler.clone(),
                                 ..Spec::default()
                             };
-                            self.add_schedules(profile, scene, *spp, &spec, &mut cells)?;
+                            let image =
+                                Settings { scene: self.scene_path(scene), spp: *spp, spec, ..Settings::default() };
+                            self.add_schedules(profile, matrix, &image, cells)?;
                         }
                     }
                 }
             }
         }
-        Ok(cells)
+        Ok(())
+    }
+
+    /// Every row's checksum is compared with the others' of the same image, unless the definition says that there is none.
+    fn check_sampler(&self, profile: Profile, sampler: &str) -> Result<()> {
+        if self.unverified || is_deterministic(sampler) || !SAMPLERS.iter().any(|entry| entry.name == sampler) {
+            return Ok(());
+        }
+        let problem = "gives other numbers in each run, and a checksum is expected here";
+        let names: Vec<&str> = SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
+        let allowed = format!("{}; or unverified = true in the definition", names.join(", "));
+        Err(self.located(profile, InputError::new("sampler", sampler, problem).allowed(allowed)))
     }
 
     /// The cells of one image: everything that may not change its checksum.
-    fn add_schedules(&self, profile: Profile, scene: &str, spp: u32, spec: &Spec, cells: &mut Vec<Cell>) -> Result<()> {
+    fn add_schedules(&self, profile: Profile, matrix: &Matrix, image: &Settings, cells: &mut Vec<Cell>) -> Result<()> {
         let scale = self.scale(profile);
-        for strategy in all_strategies(scale.strategy.as_ref().unwrap_or(&self.matrix.strategy)) {
-            for threads in scale.threads.as_ref().unwrap_or(&self.matrix.threads) {
-                for decomposition in scale.decomposition.as_ref().unwrap_or(&self.matrix.decomposition) {
-                    let settings = Settings {
-                        scene: self.scene_path(scene),
-                        spp,
-                        spec: spec.clone(),
-                        decomposition: decomposition.clone(),
-                        strategy: strategy.clone(),
-                        threads: threads.count(),
-                    };
-                    if spec.seed > LARGEST_SEED {
-                        let problem = "belongs to the references";
-                        let error = InputError::new("seed", spec.seed.to_string(), problem);
-                        return Err(self.located(profile, error.allowed(format!("0 to {LARGEST_SEED}"))));
-                    }
-                    let setup = Setup::prepare(settings).map_err(|error| match error {
-                        Error::Input(input) if input.place.is_none() => self.located(profile, *input),
-                        other => other,
-                    })?;
-                    let cell = Cell::new(&setup);
-                    if !cells.iter().any(|known| known.id == cell.id) {
-                        cells.push(cell);
+        if image.spec.seed > LARGEST_SEED {
+            let error = InputError::new("seed", image.spec.seed.to_string(), "belongs to the references");
+            return Err(self.located(profile, error.allowed(format!("0 to {LARGEST_SEED}"))));
+        }
+        for strategy in all_strategies(scale.strategy.as_ref().unwrap_or(&matrix.strategy)) {
+            for threads in scale.threads.as_ref().unwrap_or(&matrix.threads).iter().map(Threads::count) {
+                for decomposition in scale.decomposition.as_ref().unwrap_or(&matrix.decomposition) {
+                    for output in &matrix.output {
+                        let scaled = u32::try_from(threads).unwrap_or(u32::MAX);
+                        let settings = Settings {
+                            spp: if matrix.weak { image.spp.saturating_mul(scaled) } else { image.spp },
+                            decomposition: decomposition.clone(),
+                            output: output.clone(),
+                            strategy: strategy.clone(),
+                            threads,
+                            ..image.clone()
+                        };
+                        let setup = Setup::prepare(settings).map_err(|error| match error {
+                            Error::Input(input) if input.place.is_none() => self.located(profile, *input),
+                            other => other,
+                        })?;
+                        let cell = Cell::new(&setup);
+                        if !cells.iter().any(|known| known.id == cell.id) {
+                            cells.push(cell);
+                        }
                     }
                 }
             }

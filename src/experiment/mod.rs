@@ -5,6 +5,7 @@
 mod cell;
 mod cell_process;
 mod definition;
+mod drift;
 mod matrix;
 mod records_file;
 mod reference;

@@ -4,11 +4,11 @@
 //! (METHODOLOGY: cross form).
 
 use super::{Cell, Definition, Profile, Progress};
-use crate::error::Result;
+use crate::error::{InputError, Result};
 use crate::film::{Film, FilmKey, read_film, write_film};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads};
-use crate::sampling::REFERENCE_SEEDS;
+use crate::sampling::{REFERENCE_SEEDS, SAMPLERS, is_deterministic};
 use std::path::{Path, PathBuf};
 
 /// The seed of a half: above every seed that an image may have.
@@ -47,6 +47,7 @@ impl Reference {
             decomposition: "tiles:16x16".to_string(),
             strategy: "work-stealing".to_string(),
             threads: available_threads(),
+            ..Settings::default()
         }
     }
 }
@@ -63,6 +64,12 @@ fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
 impl Reference {
     /// Refuses what cannot be rendered, before anything is made.
     pub fn check(&self) -> Result<()> {
+        if !is_deterministic(&self.sampler) {
+            let problem = "gives other numbers in each run, and a reference must be what its name says";
+            let names: Vec<&str> =
+                SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
+            return Err(InputError::new("sampler", &self.sampler, problem).allowed(names.join(", ")).into());
+        }
         Setup::prepare(self.half(0)).map(|_| ())
     }
 

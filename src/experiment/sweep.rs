@@ -1,5 +1,6 @@
 //! Runs the cells of an experiment, a row at a time.
 
+use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
@@ -59,9 +60,11 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let (mut file, done) = open(definition, options, &folder)?;
 
     let references = references(&wanted, options, progress)?;
-    let images = folder.join("images");
-    if definition.images {
-        std::fs::create_dir_all(&images).map_err(|e| Error::system("creating", &images, e))?;
+    let (images, traces) = (folder.join("images"), folder.join("traces"));
+    for (wanted, folder) in [(definition.images, &images), (definition.traces, &traces)] {
+        if wanted {
+            std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
+        }
     }
 
     let mut checksums: HashMap<String, String> = HashMap::new();
@@ -75,6 +78,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
     let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
     let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0 };
+    let mut drift = Drift::of(&done);
     let mut units = 0;
     // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
     let mut order = done.iter().map(|record| record.order + 1).max().unwrap_or(0);
@@ -92,8 +96,10 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
                     settings: cell.settings.clone(),
                     references: references.get(cell.settings.scene.as_str()).cloned(),
                     image: kept,
+                    trace: definition.traces.then(|| traces.join(cell.trace_file(repetition))),
                 };
-                let record = verified(job.run_in_child(), cell, &mut checksums);
+                let mut record = verified(job.run_in_child(), cell, &mut checksums);
+                drift.watch(&mut record);
                 if !record.error.is_empty() {
                     summary.failed += 1;
                     progress.note(&format!("{} repetition {repetition}: {}", cell.id, record.error));
@@ -112,7 +118,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
 
 /// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.
 fn verified(record: Record, cell: &Cell, checksums: &mut HashMap<String, String>) -> Record {
-    if !record.error.is_empty() {
+    if !record.error.is_empty() || record.checksum.is_empty() {
         return record;
     }
     let expected = checksums.entry(cell.image.clone()).or_insert_with(|| record.checksum.clone());

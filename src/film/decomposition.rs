@@ -1,9 +1,9 @@
-//! How a film is cut into jobs: `--decomposition rows | bands:N | grid:N | tiles:WxH[:ORDER]`.
+//! How a film is cut into jobs: `--decomposition rows | bands:N | grid:N | tiles:WxH[:ORDER] | samples:B[:WxH]`.
 //!
 //! To add one: give it a line in `DECOMPOSITIONS` and a function that makes its plan.
 
 use super::order::ORDERS;
-use super::{Plan, TileOrder};
+use super::{Plan, SAMPLE_BLOCK, TileOrder};
 use crate::error::{InputError, Result};
 use std::ops::Range;
 
@@ -36,9 +36,15 @@ pub const DECOMPOSITIONS: &[Entry] = &[
     },
     Entry {
         name: "tiles",
-        about: "tiles of WxH pixels, handed out in scanline (if none is named), hilbert or spiral order",
+        about: "tiles of WxH pixels, handed out in scanline (if none is named), hilbert, spiral or cost order",
         example: "tiles:32x32:hilbert",
         parse: parse_tiles,
+    },
+    Entry {
+        name: "samples",
+        about: "tiles of WxH pixels (32x32 if none is named), each cut into jobs of B = 16, 32, 64, ... samples (report D's wish)",
+        example: "samples:16:32x32",
+        parse: parse_samples,
     },
 ];
 
@@ -48,6 +54,7 @@ enum Cut {
     Bands(u32),
     Grid(u32),
     Tiles { width: u32, height: u32, order: TileOrder },
+    Samples { block: u32, width: u32, height: u32 },
 }
 
 /// A way to cut a film.
@@ -72,9 +79,23 @@ fn parse_grid(parameter: Option<&str>) -> Option<Cut> {
 fn parse_tiles(parameter: Option<&str>) -> Option<Cut> {
     let parameter = parameter.unwrap_or("32x32");
     let (size, order) = parameter.split_once(':').unwrap_or((parameter, "scanline"));
-    let (width, height) = size.split_once('x')?;
+    let (width, height) = tile_size(size)?;
     let order = ORDERS.iter().find(|(name, _)| *name == order)?.1;
-    Some(Cut::Tiles { width: count(width)?, height: count(height)?, order })
+    Some(Cut::Tiles { width, height, order })
+}
+
+fn parse_samples(parameter: Option<&str>) -> Option<Cut> {
+    let parameter = parameter.unwrap_or("16");
+    let (block, size) = parameter.split_once(':').unwrap_or((parameter, "32x32"));
+    // Other numbers of samples are no subtree of a pixel's sum.
+    let block = count(block).filter(|block| block.is_power_of_two() && *block >= SAMPLE_BLOCK)?;
+    let (width, height) = tile_size(size)?;
+    Some(Cut::Samples { block, width, height })
+}
+
+fn tile_size(text: &str) -> Option<(u32, u32)> {
+    let (width, height) = text.split_once('x')?;
+    Some((count(width)?, count(height)?))
 }
 
 fn count(text: &str) -> Option<u32> {
@@ -101,7 +122,17 @@ impl Decomposition {
         &self.text
     }
 
-    /// Cuts a film of `width` x `height` pixels, each job with all the samples in `samples`.
+    /// Whether the jobs should come in the order of [`Plan::longest_first`].
+    pub fn is_by_cost(&self) -> bool {
+        matches!(self.cut, Cut::Tiles { order: TileOrder::Cost, .. })
+    }
+
+    /// Whether a pixel's samples may belong to several jobs.
+    pub fn splits_samples(&self) -> bool {
+        matches!(self.cut, Cut::Samples { .. })
+    }
+
+    /// Cuts a film of `width` x `height` pixels with the samples in `samples`.
     pub fn plan(&self, width: u32, height: u32, samples: &Range<u32>) -> Plan {
         match self.cut {
             Cut::Rows => Plan::from_boundaries(&[0, width], &even(height, height), samples),
@@ -114,6 +145,10 @@ impl Decomposition {
                 let (columns, rows) = (steps(width, tile_width), steps(height, tile_height));
                 let order = order.permutation(columns.len() - 1, rows.len() - 1);
                 Plan::from_boundaries(&columns, &rows, samples).reordered(&order)
+            }
+            Cut::Samples { block, width: tile_width, height: tile_height } => {
+                let (columns, rows) = (steps(width, tile_width), steps(height, tile_height));
+                Plan::from_boundaries(&columns, &rows, samples).split_samples(block)
             }
         }
     }
@@ -148,6 +183,23 @@ mod tests {
             (nearly_square_factors(16), nearly_square_factors(12), nearly_square_factors(7)),
             ((4, 4), (4, 3), (7, 1))
         );
+    }
+
+    #[test]
+    fn samples_are_cut_into_blocks_and_what_is_left() {
+        let plan = Decomposition::parse("samples:32:8x8").unwrap().plan(16, 8, &(0..80));
+        let parts: Vec<(u32, Range<u32>)> =
+            plan.pieces().iter().map(|piece| (piece.bounds.x0, piece.samples.clone())).collect();
+        let of_tile = |x0| [(x0, 0..32), (x0, 32..64), (x0, 64..80)];
+        assert_eq!(parts, [of_tile(0), of_tile(8)].concat());
+    }
+
+    #[test]
+    fn the_dearest_comes_first_and_equal_ones_keep_their_order() {
+        let plan = Decomposition::parse("tiles:1x1:cost").unwrap().plan(4, 1, &(0..1));
+        let columns = |plan: &Plan| plan.pieces().iter().map(|piece| piece.bounds.x0).collect::<Vec<_>>();
+        assert_eq!(columns(&plan), [0, 1, 2, 3]);
+        assert_eq!(columns(&plan.longest_first(&[1.0, 3.0, 2.0, 3.0])), [1, 3, 2, 0]);
     }
 
     /// P15: every pixel exactly once, for awkward sizes and every kind of cut.
@@ -208,6 +260,10 @@ mod tests {
             "tiles:4",
             "tiles:4x4:zigzag",
             "tiles:99999999x1",
+            "samples:8",
+            "samples:24",
+            "samples:16:4",
+            "samples:16:32x32:cost",
         ] {
             assert!(Decomposition::parse(junk).is_err(), "{junk}");
         }

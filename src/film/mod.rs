@@ -2,6 +2,7 @@
 //!
 //! Sums have a fixed shape, so that who rendered what, and in which order, cannot change a bit.
 
+mod assembly;
 mod decomposition;
 mod film_file;
 mod order;
@@ -10,6 +11,7 @@ mod sum;
 mod tile_buffer;
 mod whole;
 
+pub use assembly::Assembly;
 pub use decomposition::{DECOMPOSITIONS, Decomposition, Entry};
 pub use film_file::{FilmKey, read_film, write_film};
 pub use order::TileOrder;

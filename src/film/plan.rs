@@ -66,6 +66,24 @@ impl Plan {
         Self { pieces: order.iter().map(|&index| self.pieces[index].clone()).collect() }
     }
 
+    /// The same pieces, the dearest first; of equal ones the earlier. `costs` has one for each piece.
+    #[must_use]
+    pub fn longest_first(self, costs: &[f64]) -> Self {
+        let mut order: Vec<usize> = (0..self.pieces.len()).collect();
+        order.sort_by(|&a, &b| costs[b].total_cmp(&costs[a]));
+        self.reordered(&order)
+    }
+
+    /// The same pieces, each cut into parts of `block` samples, the last one taking what is left.
+    pub(super) fn split_samples(self, block: u32) -> Self {
+        let parts = |piece: Piece| {
+            let Piece { bounds, samples } = piece;
+            let starts = samples.clone().step_by(block as usize);
+            starts.map(move |start| Piece { bounds, samples: start..samples.end.min(start.saturating_add(block)) })
+        };
+        Self { pieces: self.pieces.into_iter().flat_map(parts).collect() }
+    }
+
     /// The pieces.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces

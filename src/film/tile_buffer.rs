@@ -27,6 +27,15 @@ impl TileBuffer {
         &mut self.pixels[start..start + width]
     }
 
+    /// The sum of two ranges of samples of the same pixels; `self` is the earlier one.
+    #[must_use]
+    pub fn plus(mut self, later: &Self) -> Self {
+        for (pixel, part) in self.pixels.iter_mut().zip(&later.pixels) {
+            *pixel = pixel.plus(part);
+        }
+        self
+    }
+
     /// The rows, from the top.
     pub fn rows(&self) -> impl Iterator<Item = &[PixelSum]> {
         self.pixels.chunks_exact(self.bounds.width() as usize)

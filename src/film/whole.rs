@@ -54,14 +54,12 @@ impl Film {
         &self.pixels
     }
 
-    /// Puts a piece where it belongs. Pieces of one pixel are added in the order of their samples; the caller sees to that order.
-    pub fn add(&mut self, tile: &TileBuffer) {
+    /// Puts the finished pixels of a rectangle where they belong.
+    pub(super) fn place(&mut self, tile: &TileBuffer) {
         let bounds = tile.bounds();
         for (y, row) in (bounds.y0..bounds.y1).zip(tile.rows()) {
             let start = y as usize * self.width as usize + bounds.x0 as usize;
-            for (pixel, part) in self.pixels[start..start + row.len()].iter_mut().zip(row) {
-                *pixel = if pixel.count == 0 { *part } else { pixel.plus(part) };
-            }
+            self.pixels[start..start + row.len()].copy_from_slice(row);
         }
     }
 

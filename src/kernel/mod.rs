@@ -41,9 +41,9 @@ impl Counts {
     }
 }
 
-/// Renders pieces. The same piece gives the same bits, whoever asks.
+/// Renders pieces. The same piece gives the same bits, whoever asks, if the sampler is deterministic.
 pub trait Kernel: Send + Sync {
-    /// Renders the samples of the piece into the buffer, which has the piece's bounds.
+    /// Renders the samples of the piece into the buffer, which has the piece's columns and at least its rows.
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts;
 }
 
@@ -140,8 +140,12 @@ struct ByProfile {
 impl ProfileVisitor for ByProfile {
     type Output = Option<Option<Box<dyn Kernel>>>;
     fn visit<X: EffectSet>(self) -> Self::Output {
-        let name = self.spec.sampler.clone();
-        with_sampler(&name, BySampler::<X> { scene: self.scene, spec: self.spec, profile: std::marker::PhantomData })
+        let (name, seed) = (self.spec.sampler.clone(), self.spec.seed);
+        with_sampler(
+            &name,
+            seed,
+            BySampler::<X> { scene: self.scene, spec: self.spec, profile: std::marker::PhantomData },
+        )
     }
 }
 

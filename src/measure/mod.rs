@@ -3,18 +3,23 @@
 //! [`Settings`] say what to render, in which pieces, and who does it; [`Setup::prepare`] checks them; [`Setup::run`] renders, times and
 //! verifies; the result is a film, a [`Trace`] and a [`Record`].
 
+mod ledger;
 mod machine;
+mod output;
+mod pilot;
 mod record;
 mod settings;
 mod setup;
-mod slots;
 mod trace;
+mod trace_file;
 mod usage;
 mod warning;
 
 pub use machine::Machine;
+pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};
 pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name};
 pub use setup::{Outcome, Setup};
-pub use trace::{JobSpan, Trace};
+pub use trace::{Idle, JobSpan, Trace};
+pub use trace_file::{TraceFile, TraceHeader, TraceRow};
 pub use warning::Warning;

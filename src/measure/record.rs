@@ -1,12 +1,12 @@
 //! One row of `records.csv`: one repetition of one cell, with everything that is needed to repeat it.
 
-use super::{Outcome, Settings, Setup};
+use super::{Outcome, Settings, Setup, Warning};
 use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
@@ -46,6 +46,8 @@ pub struct Record {
     pub decomposition: String,
     /// Strategy.
     pub strategy: String,
+    /// How pieces got into the film.
+    pub output: String,
     /// Workers asked for.
     pub threads: usize,
     /// Number of the repetition, from 0.
@@ -56,6 +58,8 @@ pub struct Record {
     pub jobs: usize,
     /// What was measured; empty if the run failed.
     pub workers_used: Option<u32>,
+    /// Seconds to find out what the pieces will cost, where their order depends on it.
+    pub pilot_s: Option<f64>,
     /// Seconds to make the strategy (its pool, if it keeps one).
     pub setup_s: Option<f64>,
     /// Seconds from handing the jobs to the strategy until it returned.
@@ -70,6 +74,10 @@ pub struct Record {
     pub busy_sum_s: Option<f64>,
     /// Seconds inside jobs of the busiest worker.
     pub busy_max_s: Option<f64>,
+    /// Seconds between jobs of workers that had jobs to come, over all workers, the time before the first included.
+    pub gap_sum_s: Option<f64>,
+    /// Seconds from each worker's last job to the end of the run, over all workers. With busy time and gaps it makes workers x makespan.
+    pub tail_sum_s: Option<f64>,
     /// Shortest job.
     pub job_min_s: Option<f64>,
     /// Median job.
@@ -80,6 +88,8 @@ pub struct Record {
     pub voluntary_switches: Option<i64>,
     /// Times that a thread had to.
     pub involuntary_switches: Option<i64>,
+    /// CPU seconds of everything else on the machine during the makespan.
+    pub foreign_cpu_s: Option<f64>,
     /// Most memory that the process ever had.
     pub peak_rss_bytes: Option<i64>,
     /// Samples.
@@ -100,7 +110,7 @@ pub struct Record {
     pub mse_display: Option<f64>,
     /// Its square root, where there is one.
     pub rmse_display: Option<f64>,
-    /// Checksum of the film.
+    /// Checksum of the film; empty if the sampler gives other numbers in each run.
     pub checksum: String,
     /// Doubts, separated by semicolons.
     pub warnings: String,
@@ -140,6 +150,7 @@ fn described(settings: &Settings) -> Record {
         biased: spec.subpixel_clamp,
         decomposition: settings.decomposition.clone(),
         strategy: settings.strategy.clone(),
+        output: settings.output.clone(),
         threads: settings.threads,
         commit: env!("PATHMARK_COMMIT").to_string(),
         dirty: env!("PATHMARK_DIRTY") == "true",
@@ -154,10 +165,17 @@ pub fn failure(settings: &Settings, error: &str) -> Record {
 }
 
 impl Record {
+    /// Adds a doubt.
+    pub fn warn(&mut self, warning: Warning) {
+        let separator = if self.warnings.is_empty() { "" } else { ";" };
+        self.warnings = format!("{}{separator}{warning}", self.warnings);
+    }
+
     /// The row of a run that was done.
     pub fn new(setup: &Setup, outcome: &Outcome, errors: Measured) -> Self {
         let durations = outcome.trace.sorted_durations_s();
         let busy = outcome.trace.busy_s();
+        let idle = outcome.trace.idle_s(outcome.makespan_s);
         let counts = &outcome.counts;
         let mut record = described(setup.settings());
         record.started_utc.clone_from(&outcome.started_utc);
@@ -166,6 +184,7 @@ impl Record {
         record.effects = setup.effects().to_string();
         record.jobs = durations.len();
         record.workers_used = Some(outcome.workers_used);
+        record.pilot_s = Some(outcome.pilot_s);
         record.setup_s = Some(outcome.setup_s);
         record.makespan_s = Some(outcome.makespan_s);
         record.merge_s = Some(outcome.merge_s);
@@ -174,10 +193,13 @@ impl Record {
             record.cpu_system_s = Some(cpu.system_s);
             record.voluntary_switches = Some(cpu.voluntary_switches);
             record.involuntary_switches = Some(cpu.involuntary_switches);
+            record.foreign_cpu_s = cpu.foreign_s;
             record.peak_rss_bytes = cpu.peak_rss_bytes;
         }
         record.busy_sum_s = Some(busy.iter().sum());
         record.busy_max_s = busy.iter().copied().reduce(f64::max);
+        record.gap_sum_s = Some(idle.gap_s);
+        record.tail_sum_s = Some(idle.tail_s);
         record.job_min_s = durations.first().copied();
         record.job_median_s = outcome.trace.median_duration_s();
         record.job_max_s = durations.last().copied();
@@ -190,7 +212,7 @@ impl Record {
         record.rmse = errors.mse.and_then(metric::root);
         record.mse_display = errors.mse_display;
         record.rmse_display = errors.mse_display.and_then(metric::root);
-        record.checksum.clone_from(&outcome.checksum);
+        record.checksum = outcome.checksum.clone().unwrap_or_default();
         record.warnings = outcome.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";");
         record
     }

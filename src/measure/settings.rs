@@ -28,10 +28,26 @@ pub struct Settings {
     pub spec: Spec,
     /// How the film is cut into jobs.
     pub decomposition: String,
+    /// How pieces get into the film.
+    pub output: String,
     /// Who renders them.
     pub strategy: String,
     /// How many workers.
     pub threads: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            scene: "cornell".to_string(),
+            spp: 16,
+            spec: Spec::default(),
+            decomposition: "tiles:32x32".to_string(),
+            output: "slots".to_string(),
+            strategy: "work-stealing".to_string(),
+            threads: available_threads(),
+        }
+    }
 }
 
 /// Report A's name for the strategy `thread-per-job` on the decomposition `rows`.

@@ -1,12 +1,14 @@
 //! Settings that have been checked, and the run itself.
 
+use super::ledger::Ledger;
+use super::output::{self, Delivery, OUTPUTS, Output};
 use super::settings::LARGEST_THREADS;
-use super::slots::Slots;
 use super::usage::Usage;
-use super::{Settings, THREAD_PER_ROW, Trace, Warning, available_threads};
+use super::{Settings, THREAD_PER_ROW, Trace, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Decomposition, Film, FilmKey, Plan};
 use crate::kernel::{self, Counts, Kernel};
+use crate::sampling::is_deterministic;
 use crate::scene::{SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
@@ -19,7 +21,9 @@ pub struct Setup {
     scene: Arc<Scene>,
     kernel: Arc<dyn Kernel>,
     effects: &'static str,
-    plan: Arc<Plan>,
+    plan: Plan,
+    by_cost: bool,
+    output: &'static output::Entry,
     strategy: &'static strategy::Entry,
     parameter: Option<String>,
 }
@@ -28,20 +32,26 @@ pub struct Setup {
 pub struct Outcome {
     /// The image's sums.
     pub film: Film,
+    /// The pieces, in the order in which they were handed out.
+    pub plan: Arc<Plan>,
     /// Who did what when.
     pub trace: Trace,
+    /// What happened on the paths, job by job.
+    pub job_counts: Vec<Counts>,
     /// What happened on the paths.
     pub counts: Counts,
     /// Threads that ran at least one job.
     pub workers_used: u32,
+    /// Seconds to find out what the pieces will cost, where their order depends on it.
+    pub pilot_s: f64,
     /// Seconds to make the strategy.
     pub setup_s: f64,
     /// Seconds from handing over the jobs until all were done.
     pub makespan_s: f64,
     /// Seconds to put the pieces together.
     pub merge_s: f64,
-    /// The film's checksum.
-    pub checksum: String,
+    /// The film's checksum; none if the sampler gives other numbers in each run.
+    pub checksum: Option<String>,
     /// What a reader should know.
     pub warnings: Vec<Warning>,
     /// When it started.
@@ -72,6 +82,16 @@ impl Setup {
                 .allowed(format!("{}, {THREAD_PER_ROW}", names.join(", ")))
                 .into());
         };
+        let Some(output) = output::find(&settings.output) else {
+            let names: Vec<&str> = OUTPUTS.iter().map(|entry| entry.name).collect();
+            return Err(InputError::new("output", &settings.output, "there is none of that name")
+                .allowed(names.join(", "))
+                .into());
+        };
+        if settings.spec.subpixel_clamp && decomposition.splits_samples() {
+            let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
+            return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
+        }
         let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
         if strategy.workers == Workers::PerJob && plan.len() > LARGEST_THREADS {
             let problem = format!("cuts {} jobs, and {name} starts a thread for each", plan.len());
@@ -84,7 +104,9 @@ impl Setup {
             scene,
             kernel: Arc::from(built.kernel),
             effects: built.effects,
-            plan: Arc::new(plan),
+            plan,
+            by_cost: decomposition.is_by_cost(),
+            output,
             strategy,
             parameter,
             settings,
@@ -136,55 +158,73 @@ impl Setup {
         }
     }
 
+    /// Whether the film's checksum says anything: whether the sampler gives the same numbers each time.
+    pub fn is_deterministic(&self) -> bool {
+        is_deterministic(&self.settings.spec.sampler)
+    }
+
+    /// What the strategy does with its jobs.
+    pub fn strategy(&self) -> &'static strategy::Entry {
+        self.strategy
+    }
+
     /// Renders, times and verifies. `watch` is told the number of jobs done now and then, from another thread.
     pub fn run(&self, watch: Option<&(dyn Fn(u64) + Sync)>) -> Result<Outcome> {
-        let slots = Arc::new(Slots::new(&self.plan));
         let started_utc = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+        let before_pilot = Instant::now();
+        let plan = Arc::new(self.ordered_plan());
+        let pilot_s = if self.by_cost { before_pilot.elapsed().as_secs_f64() } else { 0.0 };
+        let run = Arc::new(Run {
+            kernel: Arc::clone(&self.kernel),
+            ledger: Ledger::new(plan.len()),
+            output: (self.output.new)(self.delivery(&plan)),
+        });
         let before_setup = Instant::now();
         let mut strategy = self.new_strategy()?;
         let setup_s = before_setup.elapsed().as_secs_f64();
 
         let timed = match watch {
-            None => self.timed_run(strategy.as_mut(), &slots)?,
+            None => self.timed_run(strategy.as_mut(), &run)?,
             Some(watch) => std::thread::scope(|scope| {
                 let (stop, stopped) = std::sync::mpsc::channel::<()>();
-                let watched = Arc::clone(&slots);
+                let watched = Arc::clone(&run);
                 scope.spawn(move || {
                     while stopped.recv_timeout(Duration::from_millis(100))
                         == Err(std::sync::mpsc::RecvTimeoutError::Timeout)
                     {
-                        watch(watched.done());
+                        watch(watched.ledger.done());
                     }
                 });
-                let timed = self.timed_run(strategy.as_mut(), &slots);
+                let timed = self.timed_run(strategy.as_mut(), &run);
                 drop(stop);
                 timed
             })?,
         };
         drop(strategy);
 
-        let before_merge = Instant::now();
-        let filled = slots.collect().map_err(|problem| {
+        let entries = run.ledger.close().map_err(|problem| {
             Error::Check(format!("strategy {} broke its contract: {problem}", self.settings.strategy))
         })?;
-        let mut film = Film::new(self.settings.spec.width, self.settings.spec.height);
-        for slot in &filled {
-            film.add(&slot.tile);
-        }
+        let before_merge = Instant::now();
+        let film = run.output.film();
         let merge_s = before_merge.elapsed().as_secs_f64();
 
+        let job_counts: Vec<Counts> = entries.iter().map(|entry| entry.counts).collect();
         let mut counts = Counts::default();
-        for slot in &filled {
-            counts.add(&slot.counts);
-        }
-        let workers_used = slots.workers_used();
+        job_counts.iter().for_each(|job| counts.add(job));
+        let workers_used = run.ledger.workers_used();
+        let mut warnings = self.warnings(&counts, workers_used);
+        warnings.extend(timed.warnings());
         Ok(Outcome {
-            checksum: film.checksum(),
-            warnings: self.warnings(&counts, workers_used),
-            trace: Trace { jobs: filled.iter().map(|slot| slot.span).collect() },
+            checksum: self.is_deterministic().then(|| film.checksum()),
+            warnings,
+            plan,
+            trace: Trace { jobs: entries.iter().map(|entry| entry.span).collect() },
+            job_counts,
             film,
             counts,
             workers_used,
+            pilot_s,
             setup_s,
             makespan_s: timed.makespan_s,
             merge_s,
@@ -193,18 +233,32 @@ impl Setup {
         })
     }
 
+    fn ordered_plan(&self) -> Plan {
+        let plan = self.plan.clone();
+        if self.by_cost { plan.clone().longest_first(&pilot::costs(&plan, &*self.kernel)) } else { plan }
+    }
+
+    fn delivery(&self, plan: &Arc<Plan>) -> Delivery {
+        let spec = &self.settings.spec;
+        Delivery { plan: Arc::clone(plan), width: spec.width, height: spec.height, spp: self.settings.spp }
+    }
+
     fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
         let threads = NonZeroUsize::new(self.settings.threads).unwrap_or(NonZeroUsize::MIN);
         let config = Config { parameter: self.parameter.clone(), ..Config::new(threads) };
         (self.strategy.new)(config).map_err(|error| self.strategy_error(error))
     }
 
-    fn timed_run(&self, strategy: &mut dyn Strategy, slots: &Arc<Slots>) -> Result<Timed> {
-        let (kernel, plan, filled) = (Arc::clone(&self.kernel), Arc::clone(&self.plan), Arc::clone(slots));
+    fn timed_run(&self, strategy: &mut dyn Strategy, run: &Arc<Run>) -> Result<Timed> {
+        let jobs = self.plan.len();
+        let shared = Arc::clone(run);
         let usage = Usage::now();
         let start = Instant::now();
-        let job = Arc::new(move |index: usize| filled.fill(index, &plan, &*kernel, start));
-        strategy.run(self.plan.len(), job).map_err(|error| self.strategy_error(error))?;
+        let job = Arc::new(move |index: usize| {
+            let Run { kernel, ledger, output } = &*shared;
+            ledger.record(index, start, || output.render(index, &**kernel));
+        });
+        strategy.run(jobs, job).map_err(|error| self.strategy_error(error))?;
         let makespan_s = start.elapsed().as_secs_f64();
         Ok(Timed { makespan_s, cpu: usage.zip(Usage::now()).map(|(before, after)| after.since(&before)) })
     }
@@ -249,7 +303,38 @@ impl Setup {
     }
 }
 
+/// What all jobs of a run share.
+struct Run {
+    kernel: Arc<dyn Kernel>,
+    ledger: Ledger,
+    output: Box<dyn Output>,
+}
+
 struct Timed {
     makespan_s: f64,
     cpu: Option<Usage>,
 }
+
+impl Timed {
+    fn warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if self.makespan_s < SHORTEST_S {
+            warnings.push(Warning::TooShort);
+        }
+        let capacity_s = self.makespan_s * available_threads() as f64;
+        if let Some(foreign_s) = self.cpu.and_then(|usage| usage.foreign_s)
+            && foreign_s > FOREIGN_SHARE * capacity_s
+            && foreign_s > FOREIGN_LEAST_S
+        {
+            warnings.push(Warning::ForeignLoad { percent: (100.0 * foreign_s / capacity_s).round() as u32 });
+        }
+        warnings
+    }
+}
+
+/// In shorter runs the start of threads and a single interruption weigh more than the schedule.
+const SHORTEST_S: f64 = 5e-3;
+/// Other programs' share of the processors from which they are mentioned.
+const FOREIGN_SHARE: f64 = 0.05;
+/// The system counts in hundredths of a second, once for each processor: less than this may be rounding.
+const FOREIGN_LEAST_S: f64 = 0.03;

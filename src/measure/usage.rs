@@ -11,6 +11,18 @@ pub(super) struct Usage {
     pub(super) voluntary_switches: i64,
     pub(super) involuntary_switches: i64,
     pub(super) peak_rss_bytes: Option<i64>,
+    /// CPU seconds of everything else on the machine: other programs, and what a virtual machine's host gave to others.
+    pub(super) foreign_s: Option<f64>,
+}
+
+/// CPU seconds that the machine's processors were not idle (proc(5), /proc/stat: user, nice, system, idle, iowait, irq, softirq, steal; guests are
+/// in user already). Read in hundredths of a second, which is what the kernel reports to programs whatever its own tick is.
+fn machine_busy_s() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/stat").ok()?;
+    let ticks: Vec<f64> =
+        text.lines().next()?.split_whitespace().skip(1).filter_map(|field| field.parse().ok()).collect();
+    let [user, nice, system, _, _, irq, softirq, steal, ..] = ticks[..] else { return None };
+    Some((user + nice + system + irq + softirq + steal) * 1e-2)
 }
 
 /// The most memory that this program had. Not getrusage's figure, which survives exec and so remembers the parent.
@@ -24,9 +36,12 @@ impl Usage {
     /// Reads the totals; `None` where the system does not tell.
     pub(super) fn now() -> Option<Self> {
         let counted: Counted = getrusage(UsageWho::RUSAGE_SELF).ok()?;
+        let user_s = counted.user_time().num_microseconds() as f64 * 1e-6;
+        let system_s = counted.system_time().num_microseconds() as f64 * 1e-6;
         Some(Self {
-            user_s: counted.user_time().num_microseconds() as f64 * 1e-6,
-            system_s: counted.system_time().num_microseconds() as f64 * 1e-6,
+            user_s,
+            system_s,
+            foreign_s: machine_busy_s().map(|busy_s| busy_s - user_s - system_s),
             voluntary_switches: counted.voluntary_context_switches(),
             involuntary_switches: counted.involuntary_context_switches(),
             peak_rss_bytes: peak_rss_bytes(),
@@ -41,6 +56,7 @@ impl Usage {
             voluntary_switches: self.voluntary_switches - before.voluntary_switches,
             involuntary_switches: self.involuntary_switches - before.involuntary_switches,
             peak_rss_bytes: self.peak_rss_bytes,
+            foreign_s: self.foreign_s.zip(before.foreign_s).map(|(after, before)| (after - before).max(0.0)),
         }
     }
 }

@@ -19,6 +19,18 @@ pub enum Warning {
         /// Processors.
         processors: usize,
     },
+    /// Other programs used the processors at the same time.
+    ForeignLoad {
+        /// Their share of all processors' time.
+        percent: u32,
+    },
+    /// The same cell took another time before.
+    Drift {
+        /// By how much longer (or shorter, if negative) than the median so far.
+        percent: i32,
+    },
+    /// The run ended before its beginning stopped to matter.
+    TooShort,
     /// The samples do not divide among the four subpixels, so the pixel's filter is lopsided.
     PartialSubpixels,
     /// Subpixels are clamped before averaging.
@@ -38,6 +50,9 @@ impl fmt::Display for Warning {
         match self {
             Self::WorkersUnused { asked, used } => write!(f, "workers-unused({used} of {asked})"),
             Self::Oversubscribed { workers, processors } => write!(f, "oversubscribed({workers} on {processors})"),
+            Self::ForeignLoad { percent } => write!(f, "foreign-load({percent} %)"),
+            Self::Drift { percent } => write!(f, "drift({percent:+} %)"),
+            Self::TooShort => f.write_str("too-short"),
             Self::PartialSubpixels => f.write_str("partial-subpixels"),
             Self::Biased => f.write_str("biased"),
             Self::Escaped(count) => write!(f, "escaped({count})"),

@@ -27,7 +27,7 @@ fn mix(x: u64) -> u64 {
 
 /// The top 53 bits as a multiple of 2^-53 in [0, 1): exact, and never 1.
 #[inline(always)]
-fn unit(bits: u64) -> f64 {
+pub(super) fn unit(bits: u64) -> f64 {
     const STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
     (bits >> 11) as f64 * STEP
 }

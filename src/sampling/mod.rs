@@ -4,9 +4,15 @@
 //! shifts nobody else's. `pathmark list samplers` prints the table; `--sampler independent` chooses.
 
 mod independent;
+mod libc_rand;
+mod locked;
+mod per_thread;
 mod warp;
 
 pub use independent::Independent;
+pub use libc_rand::LibcRand;
+pub use locked::Locked;
+pub use per_thread::PerThread;
 pub use warp::{cosine_hemisphere, tent};
 
 /// Which sample of which pixel of which image.
@@ -50,7 +56,7 @@ pub struct Address {
 
 /// A source of numbers by address.
 pub trait Sampler: Send + Sync {
-    /// Two numbers in [0, 1), the same for the same address.
+    /// Two numbers in [0, 1), the same for the same address unless the table says that the sampler is not deterministic.
     fn pair(&self, at: Address) -> [f64; 2];
 }
 
@@ -68,17 +74,20 @@ pub struct Entry {
     pub name: &'static str,
     /// What it is, in a line.
     pub about: &'static str,
+    /// Whether a number depends on its address alone. Images of other samplers have no checksum.
+    pub deterministic: bool,
 }
 
 macro_rules! samplers {
-    ($($name:literal, $about:literal => $sampler:expr;)*) => {
+    ($($name:literal, $deterministic:literal, $about:literal => $sampler:expr;)*) => {
         /// The samplers, in the order in which they are listed.
-        pub const SAMPLERS: &[Entry] = &[$(Entry { name: $name, about: $about }),*];
+        pub const SAMPLERS: &[Entry] =
+            &[$(Entry { name: $name, about: $about, deterministic: $deterministic }),*];
 
-        /// Calls the visitor with the sampler of that name; `None` if there is none.
-        pub fn with_sampler<V: SamplerVisitor>(name: &str, visitor: V) -> Option<V::Output> {
+        /// Calls the visitor with the sampler of that name, made for an image's seed; `None` if there is none.
+        pub fn with_sampler<V: SamplerVisitor>(name: &str, seed: u64, visitor: V) -> Option<V::Output> {
             match name {
-                $($name => Some(visitor.visit($sampler)),)*
+                $($name => Some(visitor.visit(($sampler)(seed))),)*
                 _ => None,
             }
         }
@@ -86,5 +95,13 @@ macro_rules! samplers {
 }
 
 samplers! {
-    "independent", "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => Independent;
+    "independent", true, "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => |_| Independent;
+    "libc-rand", false, "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;
+    "locked", false, "one PCG32 behind a lock; not deterministic" => Locked::new;
+    "per-thread", false, "a PCG32 for each thread; not deterministic" => PerThread::new;
+}
+
+/// Whether the sampler of that name gives the same numbers in each run.
+pub fn is_deterministic(name: &str) -> bool {
+    SAMPLERS.iter().any(|entry| entry.name == name && entry.deterministic)
 }

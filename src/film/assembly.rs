@@ -1,0 +1,97 @@
+//! Pieces put together in whatever order they come, with one result.
+//!
+//! A pixel's samples are summed along a fixed tree ([`super::SampleSum`]). A piece with only some of its pixels' samples is a subtree; it
+//! waits here for the subtree beside it, and both become their parent. So the film depends on the pieces, not on their order.
+
+use super::{Bounds, Film, TileBuffer};
+use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
+
+/// A film that is being put together.
+#[derive(Debug)]
+pub struct Assembly {
+    film: Film,
+    samples: Range<u32>,
+    /// Subtrees that wait for their neighbours, by rectangle and first sample, with their number of samples.
+    waiting: HashMap<Bounds, BTreeMap<u32, (u32, TileBuffer)>>,
+}
+
+impl Assembly {
+    /// An empty film whose pixels will have the samples in `samples`.
+    pub fn new(width: u32, height: u32, samples: Range<u32>) -> Self {
+        Self { film: Film::new(width, height), samples, waiting: HashMap::new() }
+    }
+
+    /// Adds a piece that was rendered into `tile`. Every piece must come once.
+    pub fn add(&mut self, samples: &Range<u32>, mut tile: TileBuffer) {
+        if *samples == self.samples {
+            self.film.place(&tile);
+            return;
+        }
+        let (mut start, mut length) = (samples.start, samples.end - samples.start);
+        let parts = self.waiting.entry(tile.bounds()).or_default();
+        // A subtree of n samples starts at a multiple of n. It is the left child of its parent if that multiple is even.
+        while start.is_multiple_of(length) {
+            let left = (start / length).is_multiple_of(2);
+            let neighbour = if left { start.checked_add(length) } else { Some(start - length) };
+            let fits = |at: &u32| parts.get(at).is_some_and(|(found, _)| *found == length);
+            let Some((_, other)) = neighbour.filter(fits).and_then(|at| parts.remove(&at)) else { break };
+            tile = if left { tile.plus(&other) } else { other.plus(&tile) };
+            start = if left { start } else { start - length };
+            length *= 2;
+        }
+        parts.insert(start, (length, tile));
+    }
+
+    /// The film, when all pieces have come.
+    pub fn finish(mut self) -> Film {
+        for parts in self.waiting.into_values() {
+            // What has found no neighbour are the digits of a binary number, summed from the smallest up: the last one first.
+            let whole = parts.into_values().map(|(_, tile)| tile).rev().reduce(|later, tile| tile.plus(&later));
+            if let Some(tile) = whole {
+                self.film.place(&tile);
+            }
+        }
+        self.film
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{PixelSum, SAMPLE_BLOCK, SampleSum};
+    use crate::math::Rgb;
+
+    const BOUNDS: Bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
+
+    fn sum(samples: Range<u32>) -> PixelSum {
+        let mut sum = SampleSum::default();
+        samples.for_each(|k| sum.add(Rgb { r: 1.0 / f64::from(k % 97 + 1), g: f64::from(k) * 0.3, b: 0.1 }));
+        sum.total()
+    }
+
+    fn part(samples: Range<u32>) -> TileBuffer {
+        let mut tile = TileBuffer::new(BOUNDS);
+        tile.row_mut(0)[0] = sum(samples);
+        tile
+    }
+
+    /// Every count up to 200 samples, blocks of 16, 32 and 64, in order, backwards and interleaved: the bits of the undivided sum.
+    #[test]
+    fn any_order_gives_the_undivided_sum() {
+        for spp in 1..=200 {
+            for block in [SAMPLE_BLOCK, 2 * SAMPLE_BLOCK, 4 * SAMPLE_BLOCK] {
+                let parts: Vec<Range<u32>> =
+                    (0..spp).step_by(block as usize).map(|start| start..(start + block).min(spp)).collect();
+                let (even, odd): (Vec<_>, Vec<_>) =
+                    parts.iter().cloned().partition(|part| (part.start / block) % 2 == 0);
+                let orders = [parts.clone(), parts.into_iter().rev().collect(), [odd, even].concat()];
+                for order in orders {
+                    let mut assembly = Assembly::new(1, 1, 0..spp);
+                    order.iter().for_each(|samples| assembly.add(samples, part(samples.clone())));
+                    assert_eq!(assembly.finish().pixels(), [sum(0..spp)], "{spp} spp in {order:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! How pieces get from the workers into the film: `--output slots | channel-piece | channel-pixel | locked | row-progress`.
+//!
+//! The schedule is the same under each; what differs is what a worker has to wait for when it delivers. The image is the same to the
+//! last bit: the film is put together by place, never by arrival.
+//!
+//! To add one: a file with its `ENTRY` and a type that is an [`Output`], and its line in `outputs!` below.
+
+use crate::film::{Film, Plan};
+use crate::kernel::{Counts, Kernel};
+use std::sync::Arc;
+
+/// What the workers of one run deliver to.
+pub(super) trait Output: Send + Sync {
+    /// Renders the piece of job `index` and delivers it. No two calls have the same index.
+    fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts;
+
+    /// The film, when all pieces have been delivered. Called once.
+    fn film(&self) -> Film;
+}
+
+/// What an output is made for.
+pub(super) struct Delivery {
+    /// The pieces.
+    pub(super) plan: Arc<Plan>,
+    /// Columns of the film.
+    pub(super) width: u32,
+    /// Rows of the film.
+    pub(super) height: u32,
+    /// Samples of each pixel.
+    pub(super) spp: u32,
+}
+
+/// One line of the table of outputs.
+pub struct Entry {
+    /// Its name on the command line, in CSV and TOML.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+    pub(super) new: fn(Delivery) -> Box<dyn Output>,
+}
+
+macro_rules! outputs {
+    ($($module:ident),* $(,)?) => {
+        $(mod $module;)*
+
+        /// The outputs, in the order in which they are listed; the first is the default.
+        pub static OUTPUTS: &[Entry] = &[$($module::ENTRY),*];
+    };
+}
+
+outputs! {
+    slots,
+    channel_piece,
+    channel_pixel,
+    locked,
+    row_progress,
+}
+
+/// The output of that name.
+pub(super) fn find(name: &str) -> Option<&'static Entry> {
+    OUTPUTS.iter().find(|entry| entry.name == name)
+}

@@ -1,0 +1,41 @@
+//! `--output row-progress`: as `slots`, but after each row of its piece a worker counts it under a lock that all workers share, as report B
+//! (METHODOLOGY) does to show its progress.
+//!
+//! Cost: one lock for each row of each piece. Report B also prints inside the lock, which is left out here.
+
+use super::slots::Slots;
+use super::{Entry, Output};
+use crate::film::{Bounds, Film, Piece};
+use crate::kernel::{Counts, Kernel};
+use std::sync::{Mutex, PoisonError};
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "row-progress",
+    about: "as slots, and a progress counter behind a lock at each row (report B)",
+    new: |delivery| Box::new(RowProgress { slots: Slots::new(delivery), rows: Mutex::new(0) }),
+};
+
+struct RowProgress {
+    slots: Slots,
+    /// Rows of pieces that are done.
+    rows: Mutex<u64>,
+}
+
+impl Output for RowProgress {
+    fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts {
+        let Piece { bounds, samples } = &self.slots.delivery.plan.pieces()[index];
+        self.slots.fill(index, |tile| {
+            let mut counts = Counts::default();
+            for y in bounds.y0..bounds.y1 {
+                let row = Piece { bounds: Bounds { y0: y, y1: y + 1, ..*bounds }, samples: samples.clone() };
+                counts.add(&kernel.render(&row, tile));
+                *self.rows.lock().unwrap_or_else(PoisonError::into_inner) += 1;
+            }
+            counts
+        })
+    }
+
+    fn film(&self) -> Film {
+        self.slots.film()
+    }
+}

@@ -1,0 +1,53 @@
+//! `--output slots`: each job has a buffer of its own, made before the run, and nobody waits for anybody.
+
+use super::{Delivery, Entry, Output};
+use crate::film::{Assembly, Film, TileBuffer};
+use crate::kernel::{Counts, Kernel};
+use crossbeam::atomic::AtomicCell;
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "slots",
+    about: "a buffer for each job, made before the run: no worker waits for another (the default)",
+    new: |delivery| Box::new(Slots::new(delivery)),
+};
+
+/// The buffers. One is missing while its job renders into it.
+pub(super) struct Slots {
+    pub(super) delivery: Delivery,
+    cells: Vec<AtomicCell<Option<Box<TileBuffer>>>>,
+}
+
+impl Slots {
+    /// Empty buffers for every piece: allocated and touched here, so that no job does.
+    pub(super) fn new(delivery: Delivery) -> Self {
+        let buffer = |bounds| AtomicCell::new(Some(Box::new(TileBuffer::new(bounds))));
+        let cells = delivery.plan.pieces().iter().map(|piece| buffer(piece.bounds)).collect();
+        Self { delivery, cells }
+    }
+
+    /// Lets `work` fill the buffer of job `index`.
+    pub(super) fn fill(&self, index: usize, work: impl FnOnce(&mut TileBuffer) -> Counts) -> Counts {
+        let bounds = self.delivery.plan.pieces()[index].bounds;
+        let mut tile = self.cells[index].take().unwrap_or_else(|| Box::new(TileBuffer::new(bounds)));
+        let counts = work(&mut tile);
+        self.cells[index].store(Some(tile));
+        counts
+    }
+}
+
+impl Output for Slots {
+    fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts {
+        self.fill(index, |tile| kernel.render(&self.delivery.plan.pieces()[index], tile))
+    }
+
+    fn film(&self) -> Film {
+        let Delivery { plan, width, height, spp } = &self.delivery;
+        let mut assembly = Assembly::new(*width, *height, 0..*spp);
+        for (piece, cell) in plan.pieces().iter().zip(&self.cells) {
+            if let Some(tile) = cell.take() {
+                assembly.add(&piece.samples, *tile);
+            }
+        }
+        assembly.finish()
+    }
+}

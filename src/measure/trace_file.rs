@@ -1,0 +1,138 @@
+//! The file of a trace: a line of JSON that says what was run, behind a `#`, then a row of CSV for each job.
+//!
+//! ```text
+//! # {"settings":{"scene":"cornell","spp":16,...},"makespan_s":0.18,"workers":2}
+//! job,worker,start_s,stop_s,paths,rays,x0,y0,x1,y1,first_sample,samples
+//! 0,1,0.000041,0.00193,4096,30211,0,0,16,16,0,16
+//! ```
+
+use super::{JobSpan, Outcome, Settings, Setup, Trace};
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use crate::film::{Bounds, Piece};
+use crate::input::read_text;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// What was run and how long it took.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TraceHeader {
+    /// The settings.
+    pub settings: Settings,
+    /// Seconds from handing over the jobs until all were done.
+    pub makespan_s: f64,
+    /// Threads that ran at least one job.
+    pub workers: u32,
+}
+
+/// One job.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TraceRow {
+    /// Its index.
+    pub job: usize,
+    /// The worker, numbered in the order in which workers showed up.
+    pub worker: u32,
+    /// Seconds since the run's start when it started.
+    pub start_s: f64,
+    /// When it stopped.
+    pub stop_s: f64,
+    /// Samples.
+    pub paths: u64,
+    /// Rays.
+    pub rays: u64,
+    /// First column of its piece.
+    pub x0: u32,
+    /// First row.
+    pub y0: u32,
+    /// Column after the last.
+    pub x1: u32,
+    /// Row after the last.
+    pub y1: u32,
+    /// First sample of each pixel.
+    pub first_sample: u32,
+    /// Samples of each pixel.
+    pub samples: u32,
+}
+
+/// A run, job by job.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TraceFile {
+    /// What was run.
+    pub header: TraceHeader,
+    /// The jobs in index order.
+    pub rows: Vec<TraceRow>,
+}
+
+impl TraceFile {
+    /// The file of a run.
+    pub fn new(setup: &Setup, outcome: &Outcome) -> Self {
+        let jobs = outcome.trace.jobs.iter().zip(&outcome.job_counts).zip(outcome.plan.pieces()).enumerate();
+        let rows = jobs.map(|(job, ((span, counts), piece))| {
+            let Piece { bounds: Bounds { x0, y0, x1, y1 }, samples } = piece.clone();
+            let JobSpan { worker, start_s, stop_s } = *span;
+            let (paths, rays, first_sample) = (counts.paths, counts.rays, samples.start);
+            let samples = samples.end - samples.start;
+            TraceRow { job, worker, start_s, stop_s, paths, rays, x0, y0, x1, y1, first_sample, samples }
+        });
+        let settings = setup.settings().clone();
+        let header = TraceHeader { settings, makespan_s: outcome.makespan_s, workers: outcome.workers_used };
+        Self { header, rows: rows.collect() }
+    }
+
+    /// Seconds of each job, in index order.
+    pub fn costs_s(&self) -> Vec<f64> {
+        self.rows.iter().map(|row| row.stop_s - row.start_s).collect()
+    }
+
+    /// Who did what when.
+    pub fn trace(&self) -> Trace {
+        let span = |row: &TraceRow| JobSpan { worker: row.worker, start_s: row.start_s, stop_s: row.stop_s };
+        Trace { jobs: self.rows.iter().map(span).collect() }
+    }
+
+    /// Writes the file, whole or not at all.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let system = |e: std::io::Error| Error::system("writing", path, e);
+        let header = serde_json::to_string(&self.header).map_err(|e| system(e.into()))?;
+        let mut writer = csv::Writer::from_writer(format!("# {header}\n").into_bytes());
+        for row in &self.rows {
+            writer.serialize(row).map_err(|e| system(e.into()))?;
+        }
+        let bytes = writer.into_inner().map_err(|e| system(e.into_error()))?;
+        atomic_file::write(path, |file| file.write_all(&bytes))
+    }
+
+    /// Reads a file that [`TraceFile::write`] wrote.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = read_text(path)?;
+        let wrong = |line: usize, field: &str, value: &str, problem: String| -> Error {
+            InputError::new(field, value, problem).in_file(path.display().to_string(), Some((line, 1))).into()
+        };
+        let (first, table) = text.split_once('\n').unwrap_or((&text, ""));
+        let Some(json) = first.strip_prefix("# ") else {
+            let problem = "is not the first line of a trace, which begins with `# {`".to_string();
+            return Err(wrong(1, "header", first.get(..40).unwrap_or(first), problem));
+        };
+        let header: TraceHeader =
+            serde_json::from_str(json).map_err(|e| wrong(1, "header", "", format!("cannot be read: {e}")))?;
+        let mut rows = Vec::new();
+        for (index, row) in csv::Reader::from_reader(table.as_bytes()).deserialize::<TraceRow>().enumerate() {
+            let line = index + 3;
+            let row = row.map_err(|e| wrong(line, "row", "", format!("cannot be read: {e}")))?;
+            let ordered = row.start_s >= 0.0 && row.stop_s >= row.start_s && row.stop_s.is_finite();
+            if row.job != index {
+                return Err(wrong(line, "job", &row.job.to_string(), format!("should be {index}")));
+            }
+            if !ordered || row.x1 <= row.x0 || row.y1 <= row.y0 {
+                return Err(wrong(line, "row", "", "stops before it starts, or has no pixels".to_string()));
+            }
+            rows.push(row);
+        }
+        if rows.is_empty() {
+            return Err(wrong(2, "rows", "", "there are none".to_string()));
+        }
+        Ok(Self { header, rows })
+    }
+}

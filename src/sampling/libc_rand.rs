@@ -1,0 +1,35 @@
+//! The C library's generator: `--sampler libc-rand`.
+//!
+//! What report A's program (METHODOLOGY) really draws from: `rand()` has one state for the whole process, and glibc guards it with a lock,
+//! so threads take turns at every number. Who gets which number depends on who comes first: no two runs with more than one thread are
+//! alike. Here to be measured, not to be used.
+
+#![expect(unsafe_code, reason = "rand and srand belong to the C library")]
+
+use super::{Address, Sampler};
+
+/// The sampler; its state is the C library's.
+#[derive(Debug)]
+pub struct LibcRand(());
+
+impl LibcRand {
+    /// Starts the process's one generator anew.
+    pub fn new(seed: u64) -> Self {
+        // SAFETY: any number is a seed, and glibc's lock makes it safe to call at any time.
+        unsafe { libc::srand(seed as libc::c_uint) };
+        Self(())
+    }
+}
+
+/// A multiple of 2^-31 in [0, 1). Report A divides by `RAND_MAX` itself, which can give 1.
+fn unit() -> f64 {
+    // SAFETY: takes nothing and has no precondition; glibc's lock makes it safe in several threads.
+    let number = unsafe { libc::rand() };
+    f64::from(number) / (f64::from(libc::RAND_MAX) + 1.0)
+}
+
+impl Sampler for LibcRand {
+    fn pair(&self, _: Address) -> [f64; 2] {
+        [unit(), unit()]
+    }
+}

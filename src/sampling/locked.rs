@@ -1,0 +1,28 @@
+//! One PCG32 generator behind a lock: `--sampler locked`.
+//!
+//! What a program gets that makes its one generator safe for threads in the simplest way. As with the C library's `rand` threads take
+//! turns, and no two runs with more than one thread are alike. Here to be measured, not to be used.
+
+use super::independent::unit;
+use super::{Address, Sampler};
+use rand::Rng;
+use rand_pcg::Pcg32;
+use std::sync::{Mutex, PoisonError};
+
+/// The sampler.
+#[derive(Debug)]
+pub struct Locked(Mutex<Pcg32>);
+
+impl Locked {
+    /// A generator that all threads share.
+    pub fn new(seed: u64) -> Self {
+        Self(Mutex::new(Pcg32::new(seed, 0)))
+    }
+}
+
+impl Sampler for Locked {
+    fn pair(&self, _: Address) -> [f64; 2] {
+        // Each number by itself, as `rand()` is called.
+        [(); 2].map(|()| unit(self.0.lock().unwrap_or_else(PoisonError::into_inner).next_u64()))
+    }
+}

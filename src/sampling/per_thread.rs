@@ -1,0 +1,44 @@
+//! A PCG32 generator for each thread: `--sampler per-thread`.
+//!
+//! The usual cure for a shared generator: nobody waits. But which pixel gets which number depends on which thread renders it, so no two runs
+//! with more than one thread are alike, and an error cannot be looked for by rendering a pixel again. Here to be measured, not to be used.
+
+use super::independent::unit;
+use super::{Address, Sampler};
+use rand::Rng;
+use rand_pcg::Pcg32;
+use std::cell::RefCell;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The sampler.
+#[derive(Debug)]
+pub struct PerThread {
+    seed: u64,
+    /// Tells the generators of one sampler from those that an earlier one left in a pool's threads.
+    id: u64,
+    threads: AtomicU64,
+}
+
+thread_local! {
+    static GENERATOR: RefCell<(u64, Pcg32)> = RefCell::new((0, Pcg32::new(0, 0)));
+}
+
+impl PerThread {
+    /// Generators with this seed, one stream for each thread.
+    pub fn new(seed: u64) -> Self {
+        static SAMPLERS: AtomicU64 = AtomicU64::new(1);
+        Self { seed, id: SAMPLERS.fetch_add(1, Ordering::Relaxed), threads: AtomicU64::new(0) }
+    }
+}
+
+impl Sampler for PerThread {
+    fn pair(&self, _: Address) -> [f64; 2] {
+        GENERATOR.with_borrow_mut(|(owner, generator)| {
+            if *owner != self.id {
+                *owner = self.id;
+                *generator = Pcg32::new(self.seed, self.threads.fetch_add(1, Ordering::Relaxed));
+            }
+            [(); 2].map(|()| unit(generator.next_u64()))
+        })
+    }
+}

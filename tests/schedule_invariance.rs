@@ -1,0 +1,102 @@
+//! Who renders what when, in which pieces and delivered how, changes no bit (METHODOLOGY, Determinism).
+
+use pathmark::kernel::Spec;
+use pathmark::measure::{OUTPUTS, Outcome, Settings, Setup};
+use pathmark::sampling::SAMPLERS;
+use pathmark::scene::{Scene, load};
+use pathmark::strategy::{STRATEGIES, Workers};
+use std::sync::{Arc, LazyLock};
+
+const DECOMPOSITIONS: [&str; 11] = [
+    "rows",
+    "bands:7",
+    "grid:16",
+    "tiles:32x32",
+    "tiles:4x4:hilbert",
+    "tiles:5x3:spiral",
+    "tiles:4x4:cost",
+    "tiles:24x16",
+    "tiles:1x1",
+    "samples:16:8x8",
+    "samples:32:24x16",
+];
+
+/// No multiple of a block of samples, so that the last part of a pixel is shorter than the others.
+const SPP: u32 = 40;
+
+static SCENE: LazyLock<Arc<Scene>> = LazyLock::new(|| Arc::new(load("cornell").unwrap()));
+
+fn settings() -> Settings {
+    let spec = Spec { width: 24, height: 16, seed: 7, ..Spec::default() };
+    let (decomposition, strategy) = ("rows".into(), "serial".into());
+    Settings { spp: SPP, spec, decomposition, strategy, threads: 1, ..Settings::default() }
+}
+
+fn run(settings: Settings) -> Outcome {
+    Setup::for_scene(Arc::clone(&SCENE), settings).unwrap().run(None).unwrap()
+}
+
+fn assert_same(found: &Outcome, expected: &Outcome, what: &str) {
+    assert!(expected.checksum.is_some());
+    assert_eq!((&found.checksum, found.counts), (&expected.checksum, expected.counts), "{what}");
+}
+
+#[test]
+fn strategies_threads_and_decompositions() {
+    let expected = run(settings());
+    for strategy in STRATEGIES {
+        // Where the number of threads has no meaning, one is enough.
+        let threads: &[usize] = if strategy.workers == Workers::Threads { &[1, 2, 3, 5, 8, 64] } else { &[1] };
+        for &threads in threads {
+            for decomposition in DECOMPOSITIONS {
+                let what = format!("{} with {threads} threads on {decomposition}", strategy.name);
+                let (strategy, decomposition) = (strategy.name.into(), decomposition.into());
+                assert_same(&run(Settings { strategy, threads, decomposition, ..settings() }), &expected, &what);
+            }
+        }
+    }
+}
+
+#[test]
+fn outputs() {
+    let expected = run(settings());
+    for output in OUTPUTS {
+        for strategy in ["serial", "shared-counter", "rayon"] {
+            for decomposition in DECOMPOSITIONS {
+                let what = format!("{} from {strategy} on {decomposition}", output.name);
+                let (output, strategy, decomposition) = (output.name.into(), strategy.into(), decomposition.into());
+                let settings = Settings { output, strategy, decomposition, threads: 5, ..settings() };
+                assert_same(&run(settings), &expected, &what);
+            }
+        }
+    }
+}
+
+/// A sampler that is said not to be deterministic gives no checksum, and one that is said to be gives the same twice.
+#[test]
+fn only_deterministic_samplers_have_a_checksum() {
+    for sampler in SAMPLERS {
+        let render = || {
+            let spec = Spec { sampler: sampler.name.into(), ..settings().spec };
+            run(Settings { spec, strategy: "shared-counter".into(), threads: 3, ..settings() })
+        };
+        let (first, second) = (render(), render());
+        assert_eq!(first.checksum, second.checksum, "{}", sampler.name);
+        assert_eq!(first.checksum.is_some(), sampler.deterministic, "{}", sampler.name);
+        assert_eq!(first.film == second.film, sampler.deterministic, "{}", sampler.name);
+    }
+}
+
+/// The order by cost hands out the dearest tile first, as a render of all samples finds it afterwards.
+#[test]
+fn the_order_by_cost_follows_the_rays() {
+    let spec = Spec { width: 96, height: 72, ..settings().spec };
+    let outcome = run(Settings { spec, decomposition: "tiles:16x16:cost".into(), ..settings() });
+    let rays: Vec<f64> = outcome.job_counts.iter().map(|counts| counts.rays as f64).collect();
+    let third = rays.len() / 3;
+    let (first, last): (f64, f64) = (rays[..third].iter().sum(), rays[rays.len() - third..].iter().sum());
+    // 30 tiles, the lower two of which rows are cut: sizes and contents differ by more than a pilot can be wrong.
+    assert!(first > 1.3 * last, "{rays:?}");
+    let largest = rays.iter().copied().fold(0.0, f64::max);
+    assert!(rays[..third].contains(&largest), "{rays:?}");
+}
