@@ -58,15 +58,15 @@ impl Cell {
         })
     }
 
-    /// The file name of the trace of one of its repetitions.
-    pub fn trace_file(&self, repetition: u32) -> String {
-        format!("{}-r{repetition}.csv", self.id.replace(['/', ':'], "-"))
-    }
-
     /// The file name of its image.
     pub fn image_file(&self) -> String {
         format!("{}.pfm", self.image.replace('/', "-"))
     }
+}
+
+/// The file name of the trace of a cell's repetition.
+pub fn trace_file(cell: &str, repetition: u32) -> String {
+    format!("{}-r{repetition}.csv", cell.replace(['/', ':'], "-"))
 }
 
 /// The scene's hash is in it: two scene files may have the same name, and one may be edited between two runs.

@@ -2,6 +2,7 @@
 //!
 //! To add one, write `experiments/NAME.toml`: the build embeds every file there, and `pathmark run path/to/NAME.toml` runs any other.
 
+mod calibration_file;
 mod cell;
 mod cell_process;
 mod definition;
@@ -13,7 +14,8 @@ mod run_file;
 mod shuffle;
 mod sweep;
 
-pub use cell::Cell;
+pub use calibration_file::read_calibration;
+pub use cell::{Cell, trace_file};
 pub use cell_process::{CellJob, child_main};
 pub use definition::{Definition, EXPERIMENTS, Profile};
 pub use records_file::{RecordsFile, read_records};

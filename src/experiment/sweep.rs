@@ -1,5 +1,7 @@
 //! Runs the cells of an experiment, a row at a time.
 
+use super::calibration_file::write_calibration;
+use super::cell::trace_file;
 use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
@@ -59,6 +61,11 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let folder = options.out.join(&definition.name);
     let (mut file, done) = open(definition, options, &folder)?;
 
+    let calibration = folder.join("calibration.csv");
+    if definition.calibration && !calibration.is_file() {
+        progress.note("calibrating: every strategy hands out empty jobs");
+        write_calibration(&calibration)?;
+    }
     let references = references(&wanted, options, progress)?;
     let (images, traces) = (folder.join("images"), folder.join("traces"));
     for (wanted, folder) in [(definition.images, &images), (definition.traces, &traces)] {
@@ -96,7 +103,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
                     settings: cell.settings.clone(),
                     references: references.get(cell.settings.scene.as_str()).cloned(),
                     image: kept,
-                    trace: definition.traces.then(|| traces.join(cell.trace_file(repetition))),
+                    trace: definition.traces.then(|| traces.join(trace_file(&cell.id, repetition))),
                 };
                 let mut record = verified(job.run_in_child(), cell, &mut checksums);
                 drift.watch(&mut record);

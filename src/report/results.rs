@@ -3,9 +3,9 @@
 use crate::analysis::quantile::{median, median_interval};
 use crate::analysis::{Estimate, Interval};
 use crate::error::Result;
-use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file};
+use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file, trace_file};
 use crate::input::read_text;
-use crate::measure::{Record, schedule_name};
+use crate::measure::{Record, TraceFile, schedule_name};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -88,7 +88,7 @@ impl Results {
 
     /// What is rendered, apart from samples and seed, where the experiment compares several; empty where there is only one.
     pub(super) fn series_name(&self, record: &Record) -> String {
-        let parts: [fn(&Record) -> &str; 3] = [|r| &r.scene, |r| &r.estimator, |r| &r.sampler];
+        let parts: [fn(&Record) -> &str; 4] = [|r| &r.scene, |r| &r.estimator, |r| &r.sampler, |r| &r.output];
         let differs = |part: &fn(&Record) -> &str| self.records.iter().any(|other| part(other) != part(record));
         parts.iter().filter(|part| differs(part)).map(|part| part(record)).collect::<Vec<_>>().join(", ")
     }
@@ -123,6 +123,40 @@ impl Results {
         ratio(&self.times(|s| s == other), &self.times(|s| s == schedule))
     }
 
+    /// The speedups of a schedule against `serial` on the same pieces, one for each image and repetition that both have.
+    pub(super) fn paired_speedups(&self, schedule: &Schedule) -> Vec<f64> {
+        let serial = self.times(|s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
+        ratios(&serial, &self.times(|s| s == schedule))
+    }
+
+    /// How many times as long rows of one kind take as rows of another, paired by image but for the sampler, and by repetition.
+    pub(super) fn kind_ratio(
+        &self,
+        other: impl Fn(&Record) -> bool,
+        kind: impl Fn(&Record) -> bool,
+    ) -> Option<Estimate> {
+        let times = |is_wanted: &dyn Fn(&Record) -> bool| {
+            let wanted = self.records.iter().filter(|record| is_wanted(record));
+            let key =
+                |record: &Record| (format!("{} {} {}", record.scene_hash, record.spp, record.seed), record.repetition);
+            wanted.filter_map(|record| Some((key(record), record.makespan_s?))).collect()
+        };
+        ratio(&times(&other), &times(&kind))
+    }
+
+    /// The trace of a row, if it was kept.
+    pub(super) fn trace(&self, record: &Record) -> Result<Option<TraceFile>> {
+        let path = self.folder.join("traces").join(trace_file(&record.cell, record.repetition));
+        if path.is_file() { TraceFile::read(&path).map(Some) } else { Ok(None) }
+    }
+
+    /// The row with the median time, the lower one of two.
+    pub(super) fn typical<'a>(records: &[&'a Record]) -> Option<&'a Record> {
+        let mut timed: Vec<&Record> = records.iter().copied().filter(|record| record.makespan_s.is_some()).collect();
+        timed.sort_by(|a, b| a.makespan_s.unwrap_or(0.0).total_cmp(&b.makespan_s.unwrap_or(0.0)));
+        timed.get(timed.len().checked_sub(1)? / 2).copied()
+    }
+
     /// The makespans of the schedules that are wanted, by image and repetition.
     fn times(&self, is_wanted: impl Fn(&Schedule) -> bool) -> BTreeMap<(String, u32), f64> {
         let wanted = self.records.iter().filter(|record| is_wanted(&Schedule::of(record)));
@@ -136,11 +170,13 @@ fn image(record: &Record) -> String {
     format!("{what} {}x{} {} {}", record.width, record.height, record.spp, record.seed)
 }
 
+fn ratios(numerator: &BTreeMap<(String, u32), f64>, denominator: &BTreeMap<(String, u32), f64>) -> Vec<f64> {
+    denominator.iter().filter_map(|(key, below)| Some(numerator.get(key)? / below)).collect()
+}
+
 /// The median of the ratios of values with the same key, with its distribution-free interval.
 fn ratio(numerator: &BTreeMap<(String, u32), f64>, denominator: &BTreeMap<(String, u32), f64>) -> Option<Estimate> {
-    let pairs = denominator.iter().filter_map(|(key, below)| Some(numerator.get(key)? / below));
-    let ratios: Vec<f64> = pairs.collect();
-    let (value, interval) = median_with_interval(&ratios)?;
+    let (value, interval) = median_with_interval(&ratios(numerator, denominator))?;
     Some(Estimate { value, interval: interval? })
 }
 

@@ -33,6 +33,18 @@ figures! {
     rmse_against_time, "rmse-against-time", "what accuracy costs: error against seconds, a line per schedule";
     time_against_spp, "time-against-spp", "seconds against samples per pixel, with the linear fit";
     speedup, "speedup", "speedup, efficiency and Karp-Flatt serial fraction against threads";
+    scaling_laws, "scaling-laws", "Amdahl's law and the Universal Scalability Law fitted to the speedups";
+    weak_scaling, "weak-scaling", "scaled speedup against threads, with Gustafson's law";
+    clock, "clock", "what CPU time, as clock() counts it, would have claimed";
+    granularity, "granularity", "efficiency against the size of a job, METG(50 %), overhead of a job";
+    oversubscription, "oversubscription", "time against threads and pieces beyond the number of processors";
+    timelines, "timelines", "who did what when, and where workers times makespan went";
+    cost_map, "cost-map", "seconds of each tile over the image";
+    generators, "generators", "time by random number generator and threads, with context switches";
+    outputs, "outputs", "time and memory by the way pieces get into the film";
+    openmp, "openmp", "time of each strategy as a multiple of OpenMP's dynamic schedule";
+    self_test, "self-test", "how often a cell measured twice seems to differ from itself";
+    forecast, "forecast", "simulated speedup on other machines, and how well this one is predicted";
     schedules, "schedules", "time, load imbalance and context switches of each schedule";
 }
 

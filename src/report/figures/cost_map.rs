@@ -1,0 +1,39 @@
+//! What each tile costs, over the image: the unequal pieces that schedules have to deal with.
+
+use crate::error::Result;
+use crate::plot::heat_map::{HeatMap, HeatPanel, Tile};
+use crate::report::block::Block;
+use crate::report::results::{Results, Schedule};
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let groups = results.by(Schedule::of);
+    let serial = groups.iter().find(|(schedule, _)| schedule.strategy == "serial");
+    let Some(record) = serial.and_then(|(_, records)| Results::typical(records)) else { return Ok(Vec::new()) };
+    let Some(trace) = results.trace(record)? else { return Ok(Vec::new()) };
+    let (width, height) = (record.width, record.height);
+    let tile = |row: &crate::measure::TraceRow| Tile {
+        x0: row.x0,
+        y0: row.y0,
+        x1: row.x1,
+        y1: row.y1,
+        value: (row.stop_s - row.start_s) * 1e3,
+    };
+    let tiles: Vec<Tile> = trace.rows.iter().map(tile).collect();
+    let costs = tiles.iter().map(|tile| tile.value);
+    let (least, most) = (costs.clone().fold(f64::INFINITY, f64::min), costs.fold(0.0, f64::max));
+    let title = format!("{}, {} spp", record.decomposition, record.spp);
+    let panel = HeatPanel { title, width, height, tiles };
+    let map = HeatMap {
+        title: "What a tile costs".to_string(),
+        subtitle: results.workload(),
+        caption: "One serial run, the one with the median time.".to_string(),
+        label: "milliseconds per tile".to_string(),
+        scale: None,
+        panels: vec![panel],
+    };
+    let finding = format!(
+        "The dearest tile takes {most:.2} ms, {:.1} times as long as the cheapest ({least:.2} ms).",
+        most / least
+    );
+    Ok(vec![Block::Figure { stem: "cost-map", figure: Box::new(map) }, Block::Finding(finding)])
+}
