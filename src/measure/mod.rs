@@ -3,6 +3,7 @@
 //! [`Settings`] say what to render, in which pieces, and who does it; [`Setup::prepare`] checks them; [`Setup::run`] renders, times and
 //! verifies; the result is a film, a [`Trace`] and a [`Record`].
 
+mod chrome_trace;
 mod ledger;
 mod machine;
 mod output;
@@ -15,6 +16,7 @@ mod trace_file;
 mod usage;
 mod warning;
 
+pub use chrome_trace::chrome_trace;
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};

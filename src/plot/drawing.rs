@@ -1,7 +1,7 @@
 //! A drawing: marks in pixels, x to the right and y down, painted in order.
 
 use super::font;
-use super::style::{Colour, Dash};
+use super::style::{Colour, Dash, HAIRLINE};
 
 /// A place in a drawing, in pixels.
 pub type Place = (f64, f64);
@@ -122,6 +122,19 @@ impl Drawing {
     /// A filled polygon.
     pub fn area(&mut self, places: Vec<Place>, colour: Colour, opacity: f64) {
         self.marks.push(Mark::Area { places, colour, opacity });
+    }
+
+    /// A filled rectangle with upright sides, opaque.
+    pub fn rectangle(&mut self, [left, top, right, bottom]: [f64; 4], colour: Colour) {
+        self.area(vec![(left, top), (right, top), (right, bottom), (left, bottom)], colour, 1.0);
+    }
+
+    /// The hairline around a rectangle.
+    pub fn outline(&mut self, [left, top, right, bottom]: [f64; 4], colour: Colour) {
+        let corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)];
+        for pair in corners.windows(2) {
+            self.path(pair.to_vec(), colour, HAIRLINE);
+        }
     }
 
     /// A filled circle.
