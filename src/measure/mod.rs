@@ -1,8 +1,9 @@
 //! The only place where a strategy meets a kernel, and where a clock is read.
 //!
 //! [`Settings`] say what to render, in which pieces, and who does it; [`Setup::prepare`] checks them; [`Setup::run`] renders, times and
-//! verifies; the result is a film, a [`Trace`] and a [`Record`].
+//! verifies; the result is a film, a [`Trace`] and a [`Record`]. [`calibrate`] times strategies on empty jobs, for the simulator.
 
+mod calibration;
 mod machine;
 mod record;
 mod settings;
@@ -12,9 +13,10 @@ mod trace;
 mod usage;
 mod warning;
 
+pub use calibration::{CalibrationRow, calibrate};
 pub use machine::Machine;
 pub use record::{Measured, Record, SCHEMA, failure};
-pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name};
+pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name, strategy_named};
 pub use setup::{Outcome, Setup};
-pub use trace::{JobSpan, Trace};
+pub use trace::{JobSpan, Trace, median};
 pub use warning::Warning;
