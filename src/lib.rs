@@ -23,8 +23,8 @@
 //! ```
 //!
 //! Layers, each importing only those above it: `error`, `digest`, `math`, `input`, `atomic_file`; `image_io`, `metric`, `sampling`; `material`;
-//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `experiment`, `analysis`; `plot`, `report`;
-//! `cli`.
+//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`, `analysis`; `plot`,
+//! `report`; `cli`.
 
 // A test may unwrap; the library tells its user what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
@@ -48,4 +48,5 @@ pub mod plot;
 pub mod report;
 pub mod sampling;
 pub mod scene;
+pub mod simulate;
 pub mod strategy;

@@ -45,6 +45,7 @@ const RULES: &[Rule] = &[
     // what uses it can bring the two together.
     only("strategy", 5, &[]),
     rule("measure", 6),
+    only("simulate", 7, &["error", "measure", "strategy"]), // numbers in, numbers out: no pixel, no thread, no clock
     rule("experiment", 8),
     rule("analysis", 8),
     only("plot", 9, &["error", "atomic_file", "metric", "image_io"]), // draws numbers, whatever they were measured on

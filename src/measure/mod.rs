@@ -1,8 +1,9 @@
 //! The only place where a strategy meets a kernel, and where a clock is read.
 //!
 //! [`Settings`] say what to render, in which pieces, and who does it; [`Setup::prepare`] checks them; [`Setup::run`] renders, times and
-//! verifies; the result is a film, a [`Trace`] and a [`Record`].
+//! verifies; the result is a film, a [`Trace`] and a [`Record`]. [`calibrate`] times strategies on empty jobs, for the simulator.
 
+mod calibration;
 mod chrome_trace;
 mod ledger;
 mod machine;
@@ -16,12 +17,13 @@ mod trace_file;
 mod usage;
 mod warning;
 
+pub use calibration::{CalibrationRow, calibrate};
 pub use chrome_trace::chrome_trace;
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};
-pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name};
+pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name, strategy_named};
 pub use setup::{Outcome, Setup};
-pub use trace::{Idle, JobSpan, Trace};
+pub use trace::{Idle, JobSpan, Trace, median};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};
 pub use warning::Warning;

@@ -5,6 +5,7 @@ use crate::estimator::ESTIMATORS;
 use crate::film::check_size;
 use crate::kernel::{KERNELS, Spec};
 use crate::sampling::REFERENCE_SEEDS;
+use crate::strategy::{self, Entry, STRATEGIES};
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
 
@@ -56,6 +57,20 @@ pub const THREAD_PER_ROW: &str = "thread-per-row";
 /// What a strategy on a decomposition is called.
 pub fn schedule_name<'a>(strategy: &'a str, decomposition: &str) -> &'a str {
     if strategy == "thread-per-job" && decomposition == "rows" { THREAD_PER_ROW } else { strategy }
+}
+
+/// The strategy that `text` names, and its parameter if a colon follows.
+pub fn strategy_named(text: &str) -> Result<(&'static Entry, Option<String>)> {
+    let (name, parameter) = match text.split_once(':') {
+        Some((name, parameter)) => (name, Some(parameter.to_string())),
+        None => (text, None),
+    };
+    let entry = strategy::find(name).ok_or_else(|| {
+        let names: Vec<&str> = STRATEGIES.iter().map(|entry| entry.name).collect();
+        InputError::new("strategy", name, "there is no strategy of that name")
+            .allowed(format!("{}, {THREAD_PER_ROW}", names.join(", ")))
+    })?;
+    Ok((entry, parameter))
 }
 
 /// Threads that this process may use at once.

@@ -2,9 +2,9 @@
 
 use super::ledger::Ledger;
 use super::output::{self, Delivery, OUTPUTS, Output};
-use super::settings::LARGEST_THREADS;
+use super::settings::{LARGEST_THREADS, strategy_named};
 use super::usage::Usage;
-use super::{Settings, THREAD_PER_ROW, Trace, Warning, available_threads, pilot};
+use super::{Settings, Trace, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Decomposition, Film, FilmKey, Plan};
 use crate::kernel::{self, Counts, Kernel};
@@ -72,16 +72,7 @@ impl Setup {
         let settings = settings.resolved();
         settings.check()?;
         let decomposition = Decomposition::parse(&settings.decomposition)?;
-        let (name, parameter) = match settings.strategy.split_once(':') {
-            Some((name, parameter)) => (name, Some(parameter.to_string())),
-            None => (settings.strategy.as_str(), None),
-        };
-        let Some(strategy) = strategy::find(name) else {
-            let names: Vec<&str> = strategy::STRATEGIES.iter().map(|entry| entry.name).collect();
-            return Err(InputError::new("strategy", name, "there is no strategy of that name")
-                .allowed(format!("{}, {THREAD_PER_ROW}", names.join(", ")))
-                .into());
-        };
+        let (strategy, parameter) = strategy_named(&settings.strategy)?;
         let Some(output) = output::find(&settings.output) else {
             let names: Vec<&str> = OUTPUTS.iter().map(|entry| entry.name).collect();
             return Err(InputError::new("output", &settings.output, "there is none of that name")
@@ -94,7 +85,7 @@ impl Setup {
         }
         let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
         if strategy.workers == Workers::PerJob && plan.len() > LARGEST_THREADS {
-            let problem = format!("cuts {} jobs, and {name} starts a thread for each", plan.len());
+            let problem = format!("cuts {} jobs, and {} starts a thread for each", plan.len(), strategy.name);
             return Err(InputError::new("decomposition", &settings.decomposition, problem)
                 .allowed(format!("at most {LARGEST_THREADS} jobs"))
                 .into());

@@ -67,10 +67,15 @@ impl Trace {
 
     /// The middle job's time, or the mean of the middle two's; `None` without jobs.
     pub fn median_duration_s(&self) -> Option<f64> {
-        let durations = self.sorted_durations_s();
-        let (low, high) = (durations.get(durations.len().checked_sub(1)? / 2)?, durations.get(durations.len() / 2)?);
-        Some(0.5 * (low + high))
+        median(&mut self.sorted_durations_s())
     }
+}
+
+/// The middle value, or the mean of the middle two; `None` without values. Sorts them.
+pub fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let (low, high) = (values.get(values.len().checked_sub(1)? / 2)?, values.get(values.len() / 2)?);
+    Some(0.5 * (low + high))
 }
 
 #[cfg(test)]

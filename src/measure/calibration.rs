@@ -1,0 +1,116 @@
+//! What a strategy's mechanism costs on this machine: empty jobs, timed.
+//!
+//! With nothing to do in a job, a run's time is the mechanism's alone. Each strategy runs two numbers of empty jobs on 1, 2, 4 and so on
+//! threads up to all that this process may use. As in a measured run (`Setup::run`), the strategy is made anew before the clock starts, so
+//! a pool's workers may still be on their way when the jobs come. All strategies take turns; every row is the median of [`ROUNDS`] rounds,
+//! or of as many as fit into [`BUDGET`], and a first round is thrown away.
+//!
+//! What the rows mean is the simulator's business (`simulate::Overheads`).
+
+use super::available_threads;
+use super::settings::strategy_named;
+use super::trace::median;
+use crate::error::{Error, Result};
+use crate::strategy::{Config, Workers};
+use serde::{Deserialize, Serialize};
+use std::hint::black_box;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Most rounds that count.
+const ROUNDS: usize = 25;
+/// No round is begun after that; three are made in any case.
+const BUDGET: Duration = Duration::from_millis(1200);
+/// Jobs of a run: few, for what a run costs, and many, for what a job costs.
+const JOBS: [usize; 2] = [200, 4000];
+/// Likewise where each job is a thread.
+const JOBS_WITH_THREADS: [usize; 2] = [16, 112];
+
+/// Median time of a run of empty jobs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CalibrationRow {
+    /// Strategy, with its parameter if it has one.
+    pub strategy: String,
+    /// Threads asked for; 1 where that has no meaning.
+    pub threads: usize,
+    /// Empty jobs.
+    pub jobs: usize,
+    /// Seconds of the run.
+    pub seconds: f64,
+}
+
+/// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`].
+pub fn calibrate(strategies: &[String]) -> Result<Vec<CalibrationRow>> {
+    let mut rows = Vec::new();
+    for strategy in strategies {
+        let (entry, _) = strategy_named(strategy)?;
+        let (threads, jobs) = match entry.workers {
+            Workers::Caller => (vec![1], JOBS),
+            Workers::PerJob => (vec![1], JOBS_WITH_THREADS),
+            Workers::Threads => (thread_counts(available_threads()), JOBS),
+        };
+        for threads in threads {
+            rows.extend(jobs.map(|jobs| CalibrationRow { strategy: strategy.clone(), threads, jobs, seconds: 0.0 }));
+        }
+    }
+    let mut times = vec![Vec::new(); rows.len()];
+    let start = Instant::now();
+    for round in 0..=ROUNDS {
+        if round > 3 && start.elapsed() > BUDGET {
+            break;
+        }
+        for (row, times) in rows.iter().zip(&mut times) {
+            let seconds = run_empty_jobs(row)?;
+            if round > 0 {
+                times.push(seconds);
+            }
+        }
+    }
+    for (row, times) in rows.iter_mut().zip(&mut times) {
+        row.seconds = median(times).unwrap_or_default();
+    }
+    Ok(rows)
+}
+
+/// 1, 2, 4 and so on below `most`, and `most`.
+fn thread_counts(most: usize) -> Vec<usize> {
+    let doubled = std::iter::successors(Some(1), |threads| Some(2 * threads)).take_while(|threads| *threads < most);
+    doubled.chain([most]).collect()
+}
+
+fn run_empty_jobs(row: &CalibrationRow) -> Result<f64> {
+    let (entry, parameter) = strategy_named(&row.strategy)?;
+    let failed = |error| Error::system("calibrating strategy", entry.name, std::io::Error::other(error));
+    let threads = NonZeroUsize::new(row.threads).unwrap_or(NonZeroUsize::MIN);
+    let mut strategy = (entry.new)(Config { parameter, ..Config::new(threads) }).map_err(failed)?;
+    let start = Instant::now();
+    strategy.run(row.jobs, Arc::new(|index| _ = black_box(index))).map_err(failed)?;
+    Ok(start.elapsed().as_secs_f64())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strategy::STRATEGIES;
+
+    #[test]
+    fn thread_counts_double_and_end_with_all() {
+        assert_eq!(thread_counts(1), [1]);
+        assert_eq!(thread_counts(2), [1, 2]);
+        assert_eq!(thread_counts(6), [1, 2, 4, 6]);
+    }
+
+    /// Each strategy gets a positive time for two numbers of jobs, and a strategy that is none is refused.
+    #[test]
+    fn every_strategy_is_timed() {
+        let names: Vec<String> = STRATEGIES.iter().map(|entry| entry.name.to_owned()).collect();
+        let rows = calibrate(&names).unwrap();
+        for name in &names {
+            let of: Vec<_> = rows.iter().filter(|row| &row.strategy == name).collect();
+            assert!(of.len() >= 2 && of.iter().all(|row| row.seconds > 0.0), "{of:?}");
+        }
+        assert!(calibrate(&["no-such-strategy".to_owned()]).is_err());
+    }
+}

@@ -1,0 +1,132 @@
+//! Who competes in a forecast: strategies of the table with what they cost on this machine, and a yardstick.
+
+use super::bounds::longest_first;
+use super::hardware::Hardware;
+use super::overhead::Overheads;
+use super::replay::{Replay, replay};
+use crate::error::{Error, Result};
+use crate::measure::{CalibrationRow, strategy_named};
+use crate::strategy::{ChunkRule, Discipline};
+
+/// A discipline with a name and its mechanism's cost.
+#[derive(Debug, Clone)]
+pub struct Contender {
+    /// What it is called in tables: a strategy with its parameter if it has one.
+    pub name: String,
+    /// How it hands out jobs.
+    pub discipline: Discipline,
+    /// In which order the jobs are put before it.
+    pub order: Order,
+    /// What its mechanism costs.
+    pub overheads: Overheads,
+}
+
+/// In which order the jobs are put before a discipline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// As they are.
+    ByIndex,
+    /// The longest first, which takes somebody who knows all costs beforehand.
+    LongestFirst,
+}
+
+impl Contender {
+    /// The longest job first, one at a time, at no cost (LPT; Graham 1969). No strategy of the table can do that, since none knows the
+    /// costs: it is what knowing them would be worth.
+    pub fn longest_first() -> Self {
+        Self {
+            name: "longest-first".to_owned(),
+            discipline: Discipline::Chunks(ChunkRule { size: |_| 1, parameter: 1 }),
+            order: Order::LongestFirst,
+            overheads: Overheads::default(),
+        }
+    }
+
+    /// Replays jobs of these costs, in seconds and in index order. The spans are in index order too, whatever the order of work.
+    pub fn replay(&self, costs: &[f64], workers: usize, hardware: &Hardware) -> Replay {
+        let overhead = self.overheads.at(workers);
+        let order = match self.order {
+            Order::ByIndex => return replay(costs, self.discipline, workers, &overhead, hardware),
+            Order::LongestFirst => longest_first(costs),
+        };
+        let sorted: Vec<f64> = order.iter().map(|&job| costs[job]).collect();
+        let mut replayed = replay(&sorted, self.discipline, workers, &overhead, hardware);
+        let mut spans = replayed.trace.jobs.clone();
+        for (span, job) in replayed.trace.jobs.into_iter().zip(order) {
+            spans[job] = span;
+        }
+        replayed.trace.jobs = spans;
+        replayed
+    }
+}
+
+/// The strategies that `rows` are about, in the order of their first row.
+///
+/// What a chunk costs under rules whose chunks are too few to be timed is taken from the cheapest rule that hands out single jobs.
+pub fn contenders(rows: &[CalibrationRow]) -> Result<Vec<Contender>> {
+    let mut contenders: Vec<Contender> = Vec::new();
+    for row in rows {
+        if contenders.iter().any(|contender| contender.name == row.strategy) {
+            continue;
+        }
+        let (entry, parameter) = strategy_named(&row.strategy)?;
+        let discipline = (entry.discipline)(parameter.as_deref())
+            .map_err(|error| Error::system("calibration of", entry.name, std::io::Error::other(error)))?;
+        let overheads = Overheads::fit(rows.iter().filter(|other| other.strategy == row.strategy), discipline);
+        contenders.push(Contender { name: row.strategy.clone(), discipline, order: Order::ByIndex, overheads });
+    }
+    let known = contenders.iter().filter(|contender| matches!(contender.discipline, Discipline::Chunks(_)));
+    let known = known.filter_map(|contender| Some((contender.overheads.take_s()?, &contender.overheads)));
+    if let Some(cheapest) = known.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, overheads)| overheads.clone()) {
+        for contender in contenders.iter_mut().filter(|contender| !contender.overheads.knows_chunks()) {
+            contender.overheads = std::mem::take(&mut contender.overheads).with_chunks_of(&cheapest);
+        }
+    }
+    Ok(contenders)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strategy::STRATEGIES;
+
+    /// Rows of a machine on which every strategy costs the same.
+    fn rows() -> Vec<CalibrationRow> {
+        let row = |strategy: &str, threads: usize, jobs: usize| CalibrationRow {
+            strategy: strategy.to_owned(),
+            threads,
+            jobs,
+            seconds: 1e-5 * threads as f64 + 1e-8 * jobs as f64,
+        };
+        let of = |name| [(1, 200), (1, 4000), (2, 200), (2, 4000)].map(|(threads, jobs)| row(name, threads, jobs));
+        STRATEGIES.iter().flat_map(|entry| of(entry.name)).collect()
+    }
+
+    #[test]
+    fn every_strategy_competes_and_pays_for_its_chunks() {
+        let contenders = contenders(&rows()).unwrap();
+        assert_eq!(contenders.len(), STRATEGIES.len());
+        for contender in &contenders {
+            let at = contender.overheads.at(2);
+            assert!(contender.overheads.knows_chunks() || matches!(contender.discipline, Discipline::AllAtOnce));
+            let pays = at.take_s > 0.0 && at.shared_s > 0.0;
+            assert!(pays || !matches!(contender.discipline, Discipline::Chunks(_)), "{}: {at:?}", contender.name);
+        }
+    }
+
+    #[test]
+    fn a_row_of_no_strategy_is_refused() {
+        let wrong = |strategy: &str| CalibrationRow { strategy: strategy.to_owned(), ..rows()[0].clone() };
+        assert!(contenders(&[wrong("no-such-strategy")]).is_err());
+        assert!(contenders(&[wrong("dynamic:x")]).is_err());
+    }
+
+    #[test]
+    fn longest_first_keeps_the_jobs_spans_apart() {
+        let costs = [1.0, 4.0, 2.0];
+        let replayed = Contender::longest_first().replay(&costs, 2, &Hardware::default());
+        assert_eq!(replayed.makespan_s, 4.0);
+        let durations: Vec<f64> = replayed.trace.jobs.iter().map(crate::measure::JobSpan::duration_s).collect();
+        assert_eq!(durations, costs);
+    }
+}

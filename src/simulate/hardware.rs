@@ -1,0 +1,158 @@
+//! The processors that a replay runs on: how fast each of them is, and what the operating system takes of it.
+//!
+//! Speeds are relative: 1 is the processor that the job costs were measured on. A worker has a processor of its own, so worker w's
+//! speed is processor w's.
+
+use rand::Rng;
+use rand_pcg::Pcg32;
+
+/// What the workers run on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Hardware {
+    /// How fast each processor is.
+    pub speeds: Speeds,
+    /// What interrupts them; `None` for nothing.
+    pub noise: Option<Noise>,
+}
+
+/// How fast each processor is, relative to the one that the costs were measured on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Speeds {
+    /// All alike, as fast as that one.
+    #[default]
+    Identical,
+    /// The first one has this speed, the others 1.
+    OneSlow(f64),
+    /// Performance and efficient cores. The system fills the fast ones first.
+    Mixed {
+        /// How many processors have speed 1.
+        performance: usize,
+        /// The speed of all further ones.
+        efficient: f64,
+    },
+}
+
+/// Interruptions by the operating system: they come to each processor at random times (a Poisson process of its working time) and
+/// all last equally long.
+///
+/// Petrini, Kerbyson and Pakin, "The case of the missing supercomputer performance", SC 2003, is what such noise does to a machine
+/// whose processors wait for each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    fraction: f64,
+    length_s: f64,
+    seed: u64,
+}
+
+impl Noise {
+    /// Interruptions of `length_s` seconds that take `fraction` of the time. `None` unless 0 <= fraction < 1 and length > 0.
+    pub fn new(fraction: f64, length_s: f64, seed: u64) -> Option<Self> {
+        let sensible = (0.0..1.0).contains(&fraction) && length_s > 0.0 && length_s.is_finite();
+        sensible.then_some(Self { fraction, length_s, seed })
+    }
+}
+
+impl Hardware {
+    /// The speed of one processor, counted from 0.
+    pub fn speed(&self, processor: usize) -> f64 {
+        match self.speeds {
+            Speeds::OneSlow(speed) if processor == 0 => speed,
+            Speeds::Mixed { performance, efficient } if processor >= performance => efficient,
+            _ => 1.0,
+        }
+    }
+
+    /// The speeds of the first `processors`, fastest first, less what noise takes on average.
+    pub(super) fn average_speeds(&self, processors: usize) -> Vec<f64> {
+        let share = 1.0 - self.noise.map_or(0.0, |noise| noise.fraction);
+        let mut speeds: Vec<f64> = (0..processors).map(|processor| share * self.speed(processor)).collect();
+        speeds.sort_by(|a, b| b.total_cmp(a));
+        speeds
+    }
+}
+
+/// One processor at work.
+pub(super) struct Processor {
+    speed: f64,
+    interruptions: Option<Interruptions>,
+}
+
+struct Interruptions {
+    length_s: f64,
+    /// Mean working time between two of them, in seconds.
+    mean_s: f64,
+    /// Working time until the next one.
+    next_s: f64,
+    random: Pcg32,
+}
+
+impl Processor {
+    pub(super) fn new(hardware: &Hardware, processor: usize) -> Self {
+        let interruptions = hardware.noise.filter(|noise| noise.fraction > 0.0).map(|noise| {
+            // With r interruptions per second of work, r L / (1 + r L) of the time is lost: solved for 1 / r.
+            let mean_s = noise.length_s * (1.0 - noise.fraction) / noise.fraction;
+            let mut random = Pcg32::new(noise.seed, processor as u64);
+            let next_s = exponential(&mut random, mean_s);
+            Interruptions { length_s: noise.length_s, mean_s, next_s, random }
+        });
+        Self { speed: hardware.speed(processor), interruptions }
+    }
+
+    /// How long it needs for work that takes a processor of speed 1 `work_s` seconds.
+    pub(super) fn elapsed_s(&mut self, work_s: f64) -> f64 {
+        let own_s = work_s / self.speed;
+        self.interruptions.as_mut().map_or(own_s, |interruptions| own_s + interruptions.lost_s(own_s))
+    }
+}
+
+impl Interruptions {
+    fn lost_s(&mut self, mut work_s: f64) -> f64 {
+        let mut lost_s = 0.0;
+        while self.next_s < work_s {
+            work_s -= self.next_s;
+            lost_s += self.length_s;
+            self.next_s = exponential(&mut self.random, self.mean_s);
+        }
+        self.next_s -= work_s;
+        lost_s
+    }
+}
+
+/// A time from the exponential distribution, by inversion; the uniform number is in (0, 1].
+fn exponential(random: &mut Pcg32, mean_s: f64) -> f64 {
+    let uniform = (f64::from(random.next_u32()) + 1.0) / 4_294_967_296.0;
+    -mean_s * libm::log(uniform)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_of_each_kind() {
+        let slow = Hardware { speeds: Speeds::OneSlow(0.5), ..Hardware::default() };
+        assert_eq!((slow.speed(0), slow.speed(1)), (0.5, 1.0));
+        let mixed = Hardware { speeds: Speeds::Mixed { performance: 2, efficient: 0.25 }, ..Hardware::default() };
+        assert_eq!(mixed.average_speeds(4), [1.0, 1.0, 0.25, 0.25]);
+        assert_eq!(Processor::new(&mixed, 3).elapsed_s(2.0), 8.0);
+    }
+
+    /// 10 000 seconds of work in pieces, 100 000 interruptions and so 0.4 % of statistical error in what is lost.
+    #[test]
+    fn noise_takes_its_fraction() {
+        for fraction in [0.05, 0.2, 0.5] {
+            let length_s = 0.1 * fraction / (1.0 - fraction);
+            let hardware = Hardware { noise: Noise::new(fraction, length_s, 1), ..Hardware::default() };
+            let mut processor = Processor::new(&hardware, 0);
+            let elapsed: f64 = (0..10_000).map(|_| processor.elapsed_s(1.0)).sum();
+            let expected = 10_000.0 / (1.0 - fraction);
+            assert!((elapsed / expected - 1.0).abs() < 0.02 * fraction, "{fraction}: {elapsed} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn senseless_noise_is_refused() {
+        let refused = [(1.0, 1.0), (-0.1, 1.0), (0.1, 0.0), (f64::NAN, 1.0), (0.1, f64::INFINITY)];
+        assert!(refused.iter().all(|&(fraction, length_s)| Noise::new(fraction, length_s, 1).is_none()));
+    }
+}
