@@ -31,6 +31,9 @@ fn main() -> io::Result<()> {
         env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\x1f', " ")
     );
 
+    #[cfg(feature = "openmp")]
+    openmp();
+
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     embed("experiments/scenes", &out.join("scenes.rs"))?;
     embed("experiments", &out.join("experiments.rs"))
@@ -39,6 +42,13 @@ fn main() -> io::Result<()> {
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8_lossy(&output.stdout).trim().to_string())
+}
+
+/// Compiles the loops of the OpenMP strategies and links the runtime that comes with GCC.
+#[cfg(feature = "openmp")]
+fn openmp() {
+    cc::Build::new().file("src/strategy/openmp/shim.c").flag("-fopenmp").compile("pathmark_openmp");
+    println!("cargo::rustc-link-lib=gomp");
 }
 
 /// Writes an array of (stem, text) over the TOML files of a folder, sorted by name.

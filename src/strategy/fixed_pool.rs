@@ -13,8 +13,9 @@ use std::sync::Arc;
 use crossbeam::channel::{self, Receiver, Sender};
 use crossbeam::sync::WaitGroup;
 
+use super::panics::Panics;
 use super::self_scheduling;
-use super::team::{Crew, Panics};
+use super::team::Crew;
 use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {

@@ -32,8 +32,19 @@
 //!
 //! A file with its `ENTRY`, and its line in `strategies!` below. Everything else, the contract tests included, loops over the table.
 
+mod counter;
 mod discipline;
+mod host;
+mod locked_queue;
+#[cfg(feature = "openmp")]
+mod openmp;
+mod panics;
+mod range_stealing;
+mod ranges;
+mod rayon_pool;
 mod self_scheduling;
+mod sync;
+mod taken;
 mod team;
 
 use std::io;
@@ -44,11 +55,11 @@ use std::thread::{self, JoinHandle};
 pub use discipline::{Amount, ChunkRule, Deal, Discipline, Handout, Start, Stealing, Victim};
 
 macro_rules! strategies {
-    ($($module:ident),* $(,)?) => {
-        $(mod $module;)*
+    ($($(#[$condition:meta])* $module:ident),* $(,)?) => {
+        $($(#[$condition])* mod $module;)*
 
         /// Every strategy there is, in the order in which people meet them.
-        pub static STRATEGIES: &[Entry] = &[$($module::ENTRY),*];
+        pub static STRATEGIES: &[Entry] = &[$($(#[$condition])* $module::ENTRY),*];
     };
 }
 
@@ -62,9 +73,21 @@ strategies! {
     guided,
     trapezoid,
     factoring,
+    mutex_queue,
     fixed_pool,
     work_stealing,
+    steal_one,
+    steal_half,
     rayon,
+    rayon_join,
+    rayon_scope,
+    chili,
+    #[cfg(feature = "openmp")]
+    openmp_static,
+    #[cfg(feature = "openmp")]
+    openmp_dynamic,
+    #[cfg(feature = "openmp")]
+    openmp_guided,
 }
 
 /// The strategy called `name`.
@@ -129,7 +152,9 @@ impl Workers {
 pub enum Threads {
     /// [`Config::spawner`], all of them.
     Spawner,
-    /// The library behind the strategy, by its own means and perhaps more of them than there are workers.
+    /// One worker's thread comes from [`Config::spawner`], in the construction. The library behind the strategy starts those of the other
+    /// workers by its own means, and perhaps more that run no jobs. What happens if the system refuses one of these is the library's
+    /// affair; it may end the program.
     Library,
 }
 
@@ -216,6 +241,16 @@ pub enum StrategyError {
         value: String,
         /// What would be right.
         allowed: String,
+    },
+    /// The strategy has no numbers for so many.
+    #[error("strategy {strategy}: {jobs} jobs are too many (allowed: 0 to {most})")]
+    TooManyJobs {
+        /// The strategy's name.
+        strategy: &'static str,
+        /// How many there are.
+        jobs: usize,
+        /// How many it can have.
+        most: usize,
     },
     /// The library behind the strategy would quietly use fewer.
     #[error("strategy {strategy}: {threads} threads are too many (allowed: 1 to {most})")]

@@ -4,11 +4,10 @@
 //! taking a chunk is one atomic addition under every rule.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crossbeam::utils::CachePadded;
-
-use super::team::{self, Panics};
+use super::counter::Counter;
+use super::panics::Panics;
+use super::team;
 use super::{ChunkRule, Config, Discipline, Entry, Job, Strategy, StrategyError};
 
 /// The discipline of a rule that has no parameter.
@@ -33,12 +32,11 @@ impl Strategy for SelfScheduling {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
         let workers = self.config.threads.get().min(jobs);
         let chunks: Arc<[_]> = self.rule.chunks(jobs, workers).collect();
-        let next = Arc::new(CachePadded::new(AtomicUsize::new(0)));
+        let next = Arc::new(Counter::default());
         let bodies = (0..workers).map(|_| {
             let (job, next, chunks) = (Arc::clone(&job), Arc::clone(&next), Arc::clone(&chunks));
             move |panics: &Panics| {
-                // Relaxed: the chunks alone are shared out here; what jobs write is published by joining the threads.
-                while let Some(chunk) = chunks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                while let Some(chunk) = chunks.get(next.take()) {
                     for index in chunk.clone() {
                         if panics.stop_asked() {
                             return;

@@ -12,7 +12,8 @@ use std::iter::StepBy;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::team::{self, Panics};
+use super::panics::Panics;
+use super::team;
 use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {
@@ -26,7 +27,7 @@ pub(super) const ENTRY: Entry = Entry {
 };
 
 fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
-    unless_set(ENTRY.name, parameter, Discipline::Dealt(block))
+    unless_set(ENTRY.name, parameter, Discipline::Dealt(deal))
 }
 
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
@@ -56,11 +57,16 @@ impl Strategy for StaticBlocks {
 }
 
 /// The jobs of `worker`. Block w starts where block w - 1 ends, the first at 0 and the last ends at `jobs`: each index is in one.
-fn block(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>> {
+pub(super) fn block(worker: usize, workers: usize, jobs: usize) -> Range<usize> {
     // Not worker * jobs / workers, whose product overflows.
     let (size, remainder) = (jobs / workers, jobs % workers);
     let start = |worker: usize| worker * size + worker.min(remainder);
-    (start(worker)..start(worker + 1)).step_by(1)
+    start(worker)..start(worker + 1)
+}
+
+/// The blocks as a deal, which lets a worker's jobs lie apart.
+pub(super) fn deal(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>> {
+    block(worker, workers, jobs).step_by(1)
 }
 
 #[cfg(test)]

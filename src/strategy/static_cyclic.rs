@@ -11,7 +11,8 @@ use std::iter::StepBy;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::team::{self, Panics};
+use super::panics::Panics;
+use super::team;
 use super::{Config, Discipline, Entry, Job, Sharing, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {

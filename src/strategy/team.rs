@@ -1,12 +1,9 @@
-//! What strategies with threads share: starting workers, waiting for all of them, and carrying a panic home.
+//! What strategies with threads share: starting workers and waiting for all of them.
 
-use std::any::Any;
-use std::mem;
-use std::panic::{self, AssertUnwindSafe};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use std::thread::JoinHandle;
 
+use super::panics::Panics;
 use super::{Spawner, StrategyError};
 
 /// Runs each of `bodies` on a thread of its own and returns when all threads have ended.
@@ -66,49 +63,6 @@ impl Drop for Crew {
         for handle in self.0.drain(..) {
             // Workers catch what their jobs throw, so that the payload is not tied to the thread's end: nothing is lost here.
             let _ = handle.join();
-        }
-    }
-}
-
-/// The first panic of one run, and the wish that everyone stop.
-#[derive(Default)]
-pub(super) struct Panics {
-    stop: AtomicBool,
-    first: Mutex<Option<Box<dyn Any + Send>>>,
-}
-
-impl Panics {
-    /// Whether workers should take no further job.
-    pub(super) fn stop_asked(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-
-    /// Lets no worker take a further job.
-    pub(super) fn ask_to_stop(&self) {
-        self.stop.store(true, Ordering::Relaxed);
-    }
-
-    /// Runs `body`; if it panics, asks everyone to stop, and keeps the payload if it is the first.
-    pub(super) fn catch(&self, body: impl FnOnce()) {
-        // Nobody sees what the job left half done: `raise` passes the panic on to whoever could.
-        if let Err(payload) = panic::catch_unwind(AssertUnwindSafe(body)) {
-            self.ask_to_stop();
-            let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
-            if first.is_none() {
-                *first = Some(payload);
-            } else {
-                // Its `drop` is the job's code and could panic in turn, which would end a pool's worker for good. So it is leaked:
-                // once a worker at most, in a run that has failed.
-                mem::forget(payload);
-            }
-        }
-    }
-
-    /// Goes on with the first panic, if there was one. All workers must have stopped.
-    pub(super) fn raise(&self) {
-        let first = self.first.lock().unwrap_or_else(PoisonError::into_inner).take();
-        if let Some(payload) = first {
-            panic::resume_unwind(payload);
         }
     }
 }

@@ -10,7 +10,8 @@
 
 use std::sync::Arc;
 
-use super::team::{self, Panics};
+use super::panics::Panics;
+use super::team;
 use super::{Config, Discipline, Entry, Job, Sharing, Spawner, Strategy, StrategyError, Threads, Workers, unless_set};
 
 pub(super) const ENTRY: Entry = Entry {

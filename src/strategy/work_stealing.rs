@@ -12,12 +12,12 @@
 
 use std::iter;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crossbeam::deque::{Injector, Steal, Stealer, Worker};
-use crossbeam::utils::{Backoff, CachePadded};
 
-use super::team::{self, Panics};
+use super::panics::Panics;
+use super::taken::Taken;
+use super::team;
 use super::{
     Amount, Config, Discipline, Entry, Job, Sharing, Start, Stealing, Strategy, StrategyError, Threads, Victim,
     Workers, unless_set,
@@ -50,15 +50,17 @@ impl Strategy for WorkStealing {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
         let deques: Vec<_> = (0..self.0.threads.get().min(jobs)).map(|_| Worker::new_lifo()).collect();
         let shared = Arc::new(Shared {
-            jobs,
             injector: Injector::new(),
             stealers: deques.iter().map(Worker::stealer).collect(),
-            taken: deques.iter().map(|_| CachePadded::default()).collect(),
+            taken: Taken::new(jobs, deques.len()),
         });
         (0..jobs).for_each(|index| shared.injector.push(index));
         let bodies = deques.into_iter().enumerate().map(|(worker, deque)| {
             let (job, shared) = (Arc::clone(&job), Arc::clone(&shared));
-            move |panics: &Panics| shared.work(worker, &deque, &job, panics)
+            move |panics: &Panics| {
+                let next = || deque.pop().or_else(|| shared.steal(worker, &deque));
+                shared.taken.work(worker, panics, next, &*job);
+            }
         });
         team::run(&*self.0.spawner, bodies)
     }
@@ -66,64 +68,16 @@ impl Strategy for WorkStealing {
 
 /// What the workers of one run share.
 struct Shared {
-    jobs: usize,
     injector: Injector<usize>,
     stealers: Box<[Stealer<usize>]>,
-    /// How many jobs each worker has taken to run. One counter each, since one for all would be the shared counter again.
-    taken: Box<[CachePadded<AtomicUsize>]>,
+    taken: Taken,
 }
 
 impl Shared {
-    fn work(&self, worker: usize, deque: &Worker<usize>, job: &Job, panics: &Panics) {
-        let mut taken = 0;
-        let backoff = Backoff::new();
-        while !panics.stop_asked() {
-            if let Some(index) = deque.pop().or_else(|| self.steal(worker, deque)) {
-                taken += 1;
-                self.taken[worker].store(taken, Ordering::Relaxed);
-                job(index);
-                backoff.reset();
-            } else if self.all_taken() {
-                break;
-            } else {
-                backoff.snooze();
-            }
-        }
-    }
-
     /// A job from elsewhere; what comes with it goes into `deque`, where others can steal it while this worker is busy.
     fn steal(&self, thief: usize, deque: &Worker<usize>) -> Option<usize> {
         let (before, after) = self.stealers.split_at(thief);
         let victims = after.iter().skip(1).chain(before).map(|victim| victim.steal_batch_and_pop(deque));
         iter::once_with(|| self.injector.steal_batch_and_pop(deque)).chain(victims).find_map(Steal::success)
-    }
-
-    /// Whether there is nothing left to find. That every queue looks empty doesn't say so: a batch on its way from one to another
-    /// is in neither, and a worker that left then would be missing when the thief is held up in its first job. Who has to wait
-    /// here waits for a batch to arrive, never for a job to end.
-    fn all_taken(&self) -> bool {
-        self.taken.iter().map(|taken| taken.load(Ordering::Relaxed)).sum::<usize>() == self.jobs
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{AtomicUsize, CachePadded, Injector, Ordering, Shared, Worker};
-
-    #[test]
-    fn a_batch_on_its_way_keeps_workers_waiting() {
-        let deques: [Worker<usize>; 2] = [Worker::new_lifo(), Worker::new_lifo()];
-        // Two jobs that are in no queue, as between leaving one and arriving in the next.
-        let shared = Shared {
-            jobs: 2,
-            injector: Injector::new(),
-            stealers: deques.iter().map(Worker::stealer).collect(),
-            taken: (0..2).map(|_| CachePadded::new(AtomicUsize::new(0))).collect(),
-        };
-        assert!(!shared.all_taken());
-        shared.taken[0].store(1, Ordering::Relaxed);
-        assert!(!shared.all_taken());
-        shared.taken[1].store(1, Ordering::Relaxed);
-        assert!(shared.all_taken());
     }
 }

@@ -1,0 +1,30 @@
+//! OpenMP, dynamic: whoever is free takes the next C jobs, from a counter of libgomp.
+//!
+//! `pathmark render cornell --strategy openmp-dynamic:8 --threads 4`, in a build with `--features openmp`; without a number C is 1.
+//!
+//! The `schedule(dynamic, C)` of OpenMP: "OpenMP Application Programming Interface", version 5.2, 2021, section 11.5.3. smallpt is parallel by
+//! it, a row of pixels to a chunk. It hands out like `dynamic`.
+//!
+//! Cost: threads start once, at the first run. A run wakes them and ends with a barrier; a chunk is an atomic addition in libgomp, a job a
+//! call through C.
+
+use super::openmp::{self, Schedule};
+use super::{Config, Discipline, Entry, Sharing, Strategy, StrategyError, Threads, Workers, dynamic};
+
+pub(super) const ENTRY: Entry = Entry {
+    name: "openmp-dynamic",
+    about: "OpenMP's schedule(dynamic, C) in libgomp (openmp-dynamic:C; 1 if no number is given)",
+    workers: Workers::Threads,
+    threads: Threads::Library,
+    sharing: Sharing::AtOnce,
+    discipline,
+    new,
+};
+
+fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
+    openmp::chunks(ENTRY.name, dynamic::size, parameter)
+}
+
+fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
+    openmp::new(config, &ENTRY, Schedule::Dynamic)
+}

@@ -1,0 +1,54 @@
+//! What the strategies on rayon share: a pool of their own, whose threads come from the spawner.
+
+use std::io;
+
+use ::rayon::{ThreadPool, ThreadPoolBuilder, max_num_threads};
+
+use super::panics::Panics;
+use super::team::Crew;
+use super::{Config, Entry, StrategyError};
+
+/// Fields are dropped in this order: the end of the pool is what ends the threads that the crew then waits for, which the pool
+/// itself does not do.
+pub(super) struct Pool {
+    pool: ThreadPool,
+    _crew: Crew,
+}
+
+impl Pool {
+    /// Starts the pool of `entry`'s strategy. It has the size asked for; rayon's global pool, which has the machine's size, is never touched.
+    pub(super) fn new(config: &Config, entry: &Entry) -> Result<Self, StrategyError> {
+        config.discipline(entry)?;
+        let (threads, most) = (config.threads.get(), max_num_threads());
+        if threads > most {
+            return Err(StrategyError::TooManyThreads { strategy: entry.name, threads, most });
+        }
+        let mut crew = Crew::default();
+        let mut refusal = None;
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .spawn_handler(|worker| {
+                crew.hire(&*config.spawner, threads, || worker.run()).map_err(|error| {
+                    refusal = Some(error);
+                    io::Error::from(io::ErrorKind::Other)
+                })
+            })
+            .build();
+        match pool {
+            Ok(pool) => Ok(Self { pool, _crew: crew }),
+            Err(error) => Err(refusal.unwrap_or_else(|| StrategyError::Spawn {
+                worker: crew.len() + 1,
+                workers: threads,
+                source: io::Error::other(error),
+            })),
+        }
+    }
+
+    /// Runs `body` on a worker while the caller waits, and passes on what it has caught. Rayon alone would pass a panic on too, but run
+    /// all other jobs first.
+    pub(super) fn run(&self, body: impl FnOnce(&Panics) + Send) {
+        let panics = Panics::default();
+        self.pool.install(|| body(&panics));
+        panics.raise();
+    }
+}
