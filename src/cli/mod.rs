@@ -12,6 +12,8 @@ mod render;
 mod report;
 mod reproduce;
 mod run;
+mod simulate;
+mod trace;
 
 use crate::error::Result;
 use clap::{Parser, Subcommand};
@@ -43,6 +45,10 @@ enum Verb {
     Reference(reference::Arguments),
     /// Draw the figures and the page again from the records in a folder.
     Report(report::Arguments),
+    /// Replay the jobs of a run on workers that this machine does not have.
+    Simulate(simulate::Arguments),
+    /// Show one run job by job.
+    Trace(trace::Arguments),
     /// Show what there is to choose from.
     List(list::Arguments),
     /// One cell of a sweep, read from standard input.
@@ -61,6 +67,8 @@ pub fn main() -> ExitCode {
         Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Reference(arguments) => reference::run(&arguments, &talk),
         Verb::Report(arguments) => report::run(&arguments),
+        Verb::Simulate(arguments) => simulate::run(&arguments, &talk),
+        Verb::Trace(arguments) => trace::run(&arguments),
         Verb::List(arguments) => list::run(&arguments),
         Verb::Cell => crate::experiment::child_main(),
     };

@@ -3,7 +3,7 @@
 use super::axis::{Axis, Range, Tick};
 use super::drawing::{Align, Drawing, Place};
 use super::ruler::{GAP, TICK};
-use super::style::{HAIRLINE, INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
 use super::{font, heading, ruler};
 
 /// Width of a chart.

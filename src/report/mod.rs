@@ -2,8 +2,10 @@
 
 mod block;
 mod figures;
+pub mod forecasts;
 mod page;
 mod results;
+pub mod timeline;
 
 pub use block::{Block, Table};
 pub use figures::{FIGURES, FigureEntry, check_figures};
@@ -32,6 +34,11 @@ pub fn write(out: &Path) -> Result<PathBuf> {
     let html = page::html(&sections)?;
     atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
     Ok(page)
+}
+
+/// Writes one block's figure or table into a folder.
+pub fn save(block: &Block, folder: &Path) -> Result<()> {
+    block.save(folder)
 }
 
 /// The folders with records, by name.

@@ -71,6 +71,20 @@ impl Results {
         Ok(Self { definition, run, records, failed, folder: folder.to_path_buf(), out: out.to_path_buf() })
     }
 
+    /// Reads an experiment's folder by itself.
+    pub fn open(folder: &Path) -> Result<Self> {
+        let out = folder.parent().unwrap_or(Path::new(""));
+        Self::read(out, folder)
+    }
+
+    /// Of the serial runs whose trace was kept, the one of the most jobs, and of its repetitions the one with the median time.
+    pub fn largest_serial_trace(&self) -> Result<Option<TraceFile>> {
+        let serial = || self.records.iter().filter(|record| record.strategy == "serial");
+        let most = serial().map(|record| record.jobs).max();
+        let records: Vec<&Record> = serial().filter(|record| Some(record.jobs) == most).collect();
+        Self::typical(&records).map_or(Ok(None), |record| self.trace(record))
+    }
+
     /// Quick or full.
     pub fn profile(&self) -> Profile {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)

@@ -42,6 +42,11 @@ impl Contender {
         }
     }
 
+    /// Whether each job has a thread of its own, so that its workers are no processors.
+    pub fn has_a_thread_per_job(&self) -> bool {
+        matches!(self.discipline, Discipline::AllAtOnce)
+    }
+
     /// Replays jobs of these costs, in seconds and in index order. The spans are in index order too, whatever the order of work.
     pub fn replay(&self, costs: &[f64], workers: usize, hardware: &Hardware) -> Replay {
         let overhead = self.overheads.at(workers);

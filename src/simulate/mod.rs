@@ -32,6 +32,7 @@ mod contender;
 mod forecast;
 mod hardware;
 mod overhead;
+mod prediction;
 mod replay;
 
 pub use agreement::{Agreement, agreement};
@@ -40,4 +41,5 @@ pub use contender::{Contender, Order, contenders};
 pub use forecast::{Forecast, forecast};
 pub use hardware::{Hardware, Noise, Speeds};
 pub use overhead::{Overhead, Overheads};
+pub use prediction::{Observed, Prediction, predict};
 pub use replay::{Replay, replay};

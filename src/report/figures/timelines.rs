@@ -1,48 +1,11 @@
 //! Who did what when: a lane for each worker, and where workers times makespan went.
 
-use crate::analysis::balance::{Balance, of_spans};
+use crate::analysis::balance::Balance;
 use crate::error::Result;
-use crate::measure::{Record, TraceFile};
-use crate::plot::gantt::{GanttChart, JobBar, Schedule as Lanes, Shade};
+use crate::measure::Record;
 use crate::report::block::{Block, Table};
 use crate::report::results::{Results, Schedule};
-
-/// The balance of a traced run.
-pub(crate) fn balance(trace: &TraceFile) -> Option<Balance> {
-    let spans = trace.rows.iter().map(|row| (row.worker as usize, row.start_s, row.stop_s));
-    of_spans(spans, trace.header.makespan_s, trace.header.workers as usize)
-}
-
-/// The lanes of a traced run.
-pub(crate) fn lanes(trace: &TraceFile, name: &str, balance: &Balance) -> Lanes {
-    let bar = |row: &crate::measure::TraceRow| JobBar {
-        worker: row.worker as usize,
-        start_s: row.start_s,
-        stop_s: row.stop_s,
-        value: (row.stop_s - row.start_s) * 1e3,
-    };
-    let (makespan_s, workers) = (trace.header.makespan_s, trace.header.workers as usize);
-    let used = 100.0 * balance.utilisation();
-    Lanes {
-        title: format!("{name}: {:.1} ms, utilisation {used:.0} %", makespan_s * 1e3),
-        workers,
-        makespan_s,
-        jobs: trace.rows.iter().map(bar).collect(),
-    }
-}
-
-/// The chart of some runs below each other.
-pub(crate) fn chart(schedules: Vec<Lanes>, subtitle: String) -> GanttChart {
-    GanttChart {
-        title: "Who did what when".to_string(),
-        subtitle,
-        caption: "Of each schedule the run with the median time. White is waiting; a frame ends at the makespan."
-            .to_string(),
-        label: "milliseconds of the job".to_string(),
-        shade: Shade::Quantile,
-        schedules,
-    }
-}
+use crate::report::timeline;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let processors = results.run.machine.processors;
@@ -52,15 +15,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     for (schedule, records) in groups {
         let Some(record) = Results::typical(&records) else { continue };
         let Some(trace) = results.trace(record)? else { continue };
-        let Some(balance) = balance(&trace) else { continue };
-        let name = format!("{}, {}", schedule.label(), schedule.decomposition);
-        schedules.push(lanes(&trace, &name, &balance));
-        rows.push(row(&name, &balance, schedule.threads <= processors));
+        let Some(balance) = timeline::balance(&trace) else { continue };
+        schedules.push(timeline::lanes(&trace, &balance));
+        rows.push(row(&timeline::name(&trace), &balance, schedule.threads <= processors));
     }
     let columns = ["schedule", "jobs", "makespan, ms", "busy", "gaps", "tail", "load imbalance", "gap per job, µs"];
     let title = "Where workers times makespan went".to_string();
+    let mut chart = timeline::charts(schedules, results.workload());
+    chart.caption = format!("Of each schedule the run with the median time. {}", chart.caption);
     Ok(vec![
-        Block::Figure { stem: "timelines", figure: Box::new(chart(schedules, results.workload())) },
+        Block::Figure { stem: "timelines", figure: Box::new(chart) },
         Block::Table { stem: "balance", table: Table { title, columns: columns.map(String::from).to_vec(), rows } },
     ])
 }

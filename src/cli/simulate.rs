@@ -1,0 +1,246 @@
+//! `pathmark simulate TRACE`: the jobs of a run on workers that this machine does not have.
+
+use super::output::print;
+use super::progress::Talk;
+use crate::error::{InputError, Result};
+use crate::experiment::Progress;
+use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate};
+use crate::report::{Block, Results, forecasts, save};
+use crate::simulate::{
+    Contender, Forecast, Hardware, Noise, Observed, Prediction, Speeds, contenders, forecast, predict,
+};
+use crate::strategy::STRATEGIES;
+use clap::Args;
+use std::path::PathBuf;
+
+/// `pathmark simulate run.csv --workers 1..4096`, after `pathmark render cornell --strategy serial --trace run.csv`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A trace that `render --trace` wrote, best of the strategy serial; or an experiment's folder with traces, whose measured runs
+    /// are then predicted
+    trace: PathBuf,
+    /// Numbers of workers: a list, or A..B for A, twice A and so on up to B
+    #[arg(long, value_name = "LIST", default_value = "1..4096")]
+    workers: String,
+    /// Only these strategies of `pathmark list strategies`, with a parameter if wanted [default: all]
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    strategies: Vec<String>,
+    /// One core of this speed, the others having 1
+    #[arg(long, value_name = "SPEED", conflicts_with = "efficiency_cores")]
+    slow_core: Option<f64>,
+    /// N fast cores, and all others of the given speed
+    #[arg(long, value_name = "N:SPEED")]
+    efficiency_cores: Option<String>,
+    /// Share of the time that the system takes in interruptions, and how long one lasts
+    #[arg(long, value_name = "SHARE[:MILLISECONDS]")]
+    noise: Option<String>,
+    /// Do not predict this machine first
+    #[arg(long)]
+    no_check: bool,
+    /// Folder for the table and the figures
+    #[arg(long, value_name = "DIR", default_value = "out/simulation")]
+    out: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+    let workers = parse_workers(&arguments.workers)?;
+    let hardware = hardware(arguments)?;
+    let measured = if arguments.trace.is_dir() { Some(Results::open(&arguments.trace)?) } else { None };
+    let trace = match &measured {
+        Some(results) => results.largest_serial_trace()?.ok_or_else(|| {
+            let problem = "holds no trace of the strategy serial";
+            InputError::new("trace", arguments.trace.display().to_string(), problem)
+        })?,
+        None => TraceFile::read(&arguments.trace)?,
+    };
+    let names = match &arguments.strategies[..] {
+        [] => STRATEGIES.iter().map(|entry| entry.name.to_string()).collect(),
+        names => names.to_vec(),
+    };
+    talk.note("calibrating: every strategy hands out empty jobs");
+    let mut contenders = contenders(&calibrate(&names)?)?;
+    let costs = trace.costs_s();
+
+    if !arguments.no_check {
+        let predictions = match &measured {
+            Some(results) => forecasts::predictions(results, &contenders)?,
+            None => predict_live(&trace, &contenders, talk)?,
+        };
+        show(&forecasts::prediction_blocks(&predictions))?;
+    }
+    contenders.push(Contender::longest_first());
+    let rows = forecast(&costs, &contenders, &workers, &hardware);
+    let settings = &trace.header.settings;
+    let spec = &settings.spec;
+    let workload = format!(
+        "{}, {}x{}, {} spp, {}, simulated",
+        settings.scene, spec.width, spec.height, settings.spp, settings.decomposition
+    );
+    print(&table(&rows))?;
+    for block in forecasts::forecast_blocks(&rows, &workload) {
+        save(&block, &arguments.out)?;
+    }
+    print(&format!("figures and forecast.csv in {}", arguments.out.display()))
+}
+
+/// 1..4096, or 1,2,768.
+fn parse_workers(text: &str) -> Result<Vec<usize>> {
+    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|workers| (1..=MOST_WORKERS).contains(workers));
+    let list = match text.split_once("..") {
+        Some((first, last)) => {
+            number(first).zip(number(last)).filter(|(first, last)| first <= last).map(|(first, last)| {
+                let doubled = std::iter::successors(Some(first), |workers| Some(2 * workers));
+                doubled.take_while(|workers| *workers < last).chain([last]).collect()
+            })
+        }
+        None => text.split(',').map(number).collect::<Option<Vec<usize>>>(),
+    };
+    list.ok_or_else(|| {
+        InputError::new("workers", text, "cannot be read")
+            .allowed(format!("1..{MOST_WORKERS}, or a list like 1,2,768"))
+            .into()
+    })
+}
+
+/// Beyond that a simulation says nothing about any machine, and takes long to say it.
+const MOST_WORKERS: usize = 1 << 16;
+
+fn hardware(arguments: &Arguments) -> Result<Hardware> {
+    let speed = |field: &str, text: &str, value: Option<f64>| {
+        value.filter(|speed| *speed > 0.0 && speed.is_finite()).ok_or_else(|| {
+            InputError::new(field, text, "is no speed").allowed("numbers above 0, 1 being a core like this one")
+        })
+    };
+    let speeds = match (&arguments.slow_core, &arguments.efficiency_cores) {
+        (Some(slow), _) => Speeds::OneSlow(speed("slow-core", &slow.to_string(), Some(*slow))?),
+        (None, Some(text)) => {
+            let (performance, efficient) = text.split_once(':').unwrap_or((text, ""));
+            let unreadable =
+                || InputError::new("efficiency-cores", text, "cannot be read").allowed("N:SPEED, like 8:0.5");
+            let performance = performance.parse().map_err(|_| unreadable())?;
+            Speeds::Mixed { performance, efficient: speed("efficiency-cores", text, efficient.parse().ok())? }
+        }
+        (None, None) => Speeds::Identical,
+    };
+    let noise = arguments.noise.as_deref().map(parse_noise).transpose()?;
+    Ok(Hardware { speeds, noise })
+}
+
+fn parse_noise(text: &str) -> Result<Noise> {
+    let (share, length) = text.split_once(':').unwrap_or((text, "0.1"));
+    let noise = share.parse().ok().zip(length.parse::<f64>().ok());
+    let noise = noise.and_then(|(share, milliseconds)| Noise::new(share, milliseconds * 1e-3, 1));
+    noise.ok_or_else(|| {
+        InputError::new("noise", text, "cannot be read")
+            .allowed("SHARE[:MILLISECONDS], a share below 1, like 0.02:0.5")
+            .into()
+    })
+}
+
+/// Seconds that may be spent on predicting this machine.
+const CHECK_S: f64 = 30.0;
+
+/// Runs the trace's own workload on 1 to all processors of this machine, each round beginning with a serial run for the costs.
+fn predict_live(trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Result<Vec<Prediction>> {
+    let processors = available_threads();
+    let base = &trace.header.settings;
+    let work_s: f64 = trace.costs_s().iter().sum();
+    let schedules: Vec<Settings> = contenders
+        .iter()
+        .filter(|contender| contender.name != "serial")
+        .flat_map(|contender| {
+            let threads = if contender.has_a_thread_per_job() { vec![1] } else { (1..=processors).collect() };
+            let name = &contender.name;
+            threads.into_iter().map(move |threads| Settings { strategy: name.clone(), threads, ..base.clone() })
+        })
+        .collect();
+    let round_s: f64 = schedules.iter().map(|settings| work_s / settings.threads as f64).sum::<f64>() + work_s;
+    let rounds = (CHECK_S / round_s).clamp(1.0, 5.0) as u64;
+    let mut runs = Vec::new();
+    talk.begin("predicting this machine", rounds * schedules.len() as u64);
+    for round in 0..rounds {
+        let serial = Setup::prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;
+        let costs = TraceFile::new(&serial, &serial.run(None)?).costs_s();
+        for (index, settings) in schedules.iter().enumerate() {
+            let setup = Setup::prepare(settings.clone())?;
+            let observed = Observed {
+                decomposition: settings.decomposition.clone(),
+                strategy: settings.strategy.clone(),
+                workers: setup.threads(),
+                makespan_s: setup.run(None)?.makespan_s,
+            };
+            runs.push((observed, costs.clone()));
+            talk.advance(round * schedules.len() as u64 + index as u64 + 1);
+        }
+    }
+    talk.end();
+    Ok(predict(runs.iter().map(|(observed, costs)| (observed.clone(), costs.as_slice())), contenders, processors))
+}
+
+/// Prints findings and tables.
+fn show(blocks: &[Block]) -> Result<()> {
+    for block in blocks {
+        match block {
+            Block::Finding(text) => print(&format!("{text}\n"))?,
+            Block::Table { table, .. } => print(&format!("{}\n{}", table.title, aligned(&table.columns, &table.rows)))?,
+            Block::Figure { .. } | Block::Picture { .. } => {}
+        }
+    }
+    Ok(())
+}
+
+fn table(rows: &[Forecast]) -> String {
+    let columns =
+        ["strategy", "workers", "makespan ms", "speedup", "efficiency", "work/P ms", "longest ms", "Graham ms"];
+    let row = |row: &Forecast| {
+        let ms = |seconds: f64| format!("{:.3}", seconds * 1e3);
+        vec![
+            row.strategy.clone(),
+            row.workers.to_string(),
+            ms(row.makespan_s),
+            format!("{:.2}", row.speedup),
+            format!("{:.3}", row.efficiency),
+            ms(row.share_s),
+            ms(row.longest_s),
+            ms(row.greedy_s),
+        ]
+    };
+    aligned(&columns.map(String::from), &rows.iter().map(row).collect::<Vec<_>>())
+}
+
+/// Columns under their heads, the first to the left and the others to the right.
+fn aligned(columns: &[String], rows: &[Vec<String>]) -> String {
+    let width = |column: usize| {
+        rows.iter().map(|row| row[column].chars().count()).chain([columns[column].chars().count()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
+    let line = |cells: &[String]| {
+        let cell = |(column, text): (usize, &String)| {
+            let width = widths[column];
+            if column == 0 { format!("{text:width$}") } else { format!("{text:>width$}") }
+        };
+        cells.iter().enumerate().map(cell).collect::<Vec<_>>().join("  ")
+    };
+    std::iter::once(line(columns)).chain(rows.iter().map(|row| line(row))).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn workers_are_doubled_or_listed() {
+        assert_eq!(parse_workers("1..10").unwrap(), [1, 2, 4, 8, 10]);
+        assert_eq!(parse_workers("3..3").unwrap(), [3]);
+        assert_eq!(parse_workers("1, 2,768").unwrap(), [1, 2, 768]);
+        for wrong in ["", "0", "4..2", "1..", "x", "1,,2", "1..99999999"] {
+            assert!(parse_workers(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn noise_is_a_share_and_a_length() {
+        assert!(parse_noise("0.02").is_ok() && parse_noise("0.02:0.5").is_ok());
+        assert!(["", "1", "-0.1", "0.1:0", "x:1"].iter().all(|wrong| parse_noise(wrong).is_err()));
+    }
+}

@@ -1,0 +1,59 @@
+//! One run drawn with a lane for each worker: for the figure of many runs and for the verb that shows one.
+
+use crate::analysis::balance::{Balance, of_spans};
+use crate::measure::{TraceFile, TraceRow, schedule_name};
+use crate::plot::gantt::{GanttChart, JobBar, Schedule, Shade};
+
+/// The balance of a traced run; `None` if its workers or times cannot be.
+pub fn balance(trace: &TraceFile) -> Option<Balance> {
+    let spans = trace.rows.iter().map(|row| (row.worker as usize, row.start_s, row.stop_s));
+    of_spans(spans, trace.header.makespan_s, trace.header.workers as usize)
+}
+
+/// What was run, in words.
+pub fn name(trace: &TraceFile) -> String {
+    let settings = &trace.header.settings;
+    let strategy = schedule_name(&settings.strategy, &settings.decomposition);
+    let threads = if settings.threads == 1 { "1 thread".to_string() } else { format!("{} threads", settings.threads) };
+    format!("{strategy}, {threads}, {}", settings.decomposition)
+}
+
+/// The lanes of a traced run.
+pub(super) fn lanes(trace: &TraceFile, balance: &Balance) -> Schedule {
+    let bar = |row: &TraceRow| JobBar {
+        worker: row.worker as usize,
+        start_s: row.start_s,
+        stop_s: row.stop_s,
+        value: (row.stop_s - row.start_s) * 1e3,
+    };
+    let makespan_s = trace.header.makespan_s;
+    let used = 100.0 * balance.utilisation();
+    Schedule {
+        title: format!("{}: {:.1} ms, utilisation {used:.0} %", name(trace), makespan_s * 1e3),
+        workers: trace.header.workers as usize,
+        makespan_s,
+        jobs: trace.rows.iter().map(bar).collect(),
+    }
+}
+
+/// Some runs below each other.
+pub(super) fn charts(schedules: Vec<Schedule>, subtitle: String) -> GanttChart {
+    GanttChart {
+        title: "Who did what when".to_string(),
+        subtitle,
+        caption: "White is waiting; a frame ends at the makespan.".to_string(),
+        label: "milliseconds of the job".to_string(),
+        shade: Shade::Quantile,
+        schedules,
+    }
+}
+
+/// One run.
+pub fn chart(trace: &TraceFile) -> GanttChart {
+    let settings = &trace.header.settings;
+    let spec = &settings.spec;
+    let workload =
+        format!("{}, {}x{}, {} spp, {}", settings.scene, spec.width, spec.height, settings.spp, spec.estimator);
+    let lanes = balance(trace).map(|balance| lanes(trace, &balance));
+    charts(lanes.into_iter().collect(), workload)
+}

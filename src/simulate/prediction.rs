@@ -1,0 +1,95 @@
+//! The real machine predicted: measured makespans beside those that the simulator finds for the same jobs.
+
+use super::contender::Contender;
+use super::hardware::Hardware;
+use crate::measure::median;
+use std::collections::BTreeMap;
+
+/// A measured run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observed {
+    /// How the film was cut.
+    pub decomposition: String,
+    /// Strategy, with its parameter if it has one.
+    pub strategy: String,
+    /// Its workers.
+    pub workers: usize,
+    /// What it took, in seconds.
+    pub makespan_s: f64,
+}
+
+/// The runs of one schedule, predicted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// How the film was cut.
+    pub decomposition: String,
+    /// Strategy.
+    pub strategy: String,
+    /// Its workers.
+    pub workers: usize,
+    /// How many runs there were.
+    pub runs: usize,
+    /// Median of what the simulator finds, in seconds.
+    pub predicted_s: f64,
+    /// Median of what was measured, in seconds.
+    pub measured_s: f64,
+    /// Median of predicted over measured, run by run.
+    pub ratio: f64,
+}
+
+/// Predicts each run from the costs of its jobs, which should come from a serial run made beside it; runs of no contender are left out.
+///
+/// A strategy with a thread for each job runs on all processors of this machine, however many threads it has.
+pub fn predict<'a>(
+    runs: impl IntoIterator<Item = (Observed, &'a [f64])>,
+    contenders: &[Contender],
+    processors: usize,
+) -> Vec<Prediction> {
+    let mut groups: BTreeMap<(String, String, usize), Vec<(f64, f64)>> = BTreeMap::new();
+    for (run, costs) in runs {
+        let Some(contender) = contenders.iter().find(|contender| contender.name == run.strategy) else { continue };
+        let workers = if contender.has_a_thread_per_job() { processors } else { run.workers };
+        let predicted_s = contender.replay(costs, workers, &Hardware::default()).makespan_s;
+        let key = (run.strategy, run.decomposition, run.workers);
+        groups.entry(key).or_default().push((predicted_s, run.makespan_s));
+    }
+    let prediction = |((strategy, decomposition, workers), pairs): ((String, String, usize), Vec<(f64, f64)>)| {
+        let middle = |value: fn(&(f64, f64)) -> f64| median(&mut pairs.iter().map(value).collect::<Vec<f64>>());
+        Some(Prediction {
+            decomposition,
+            strategy,
+            workers,
+            runs: pairs.len(),
+            predicted_s: middle(|pair| pair.0)?,
+            measured_s: middle(|pair| pair.1)?,
+            ratio: middle(|pair| pair.0 / pair.1)?,
+        })
+    };
+    groups.into_iter().filter_map(prediction).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::Order;
+    use crate::simulate::Overheads;
+    use crate::strategy::Discipline;
+
+    #[test]
+    fn runs_are_paired_with_their_own_costs() {
+        let contender = Contender {
+            name: "serial".to_owned(),
+            discipline: Discipline::InOrder,
+            order: Order::ByIndex,
+            overheads: Overheads::default(),
+        };
+        let run =
+            |makespan_s| Observed { decomposition: "rows".into(), strategy: "serial".into(), workers: 1, makespan_s };
+        let other = Observed { strategy: "unknown".into(), ..run(1.0) };
+        let runs = [(run(2.0), &[1.0, 1.0][..]), (run(5.0), &[2.0, 2.0]), (run(8.0), &[3.0, 3.0]), (other, &[1.0])];
+        let found = predict(runs, &[contender], 2);
+        assert_eq!(found.len(), 1);
+        // Predicted 2, 4, 6 against 2, 5, 8: ratios 1, .8, .75.
+        assert_eq!((found[0].runs, found[0].predicted_s, found[0].measured_s, found[0].ratio), (3, 4.0, 5.0, 0.8));
+    }
+}
