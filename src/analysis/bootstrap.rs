@@ -58,6 +58,32 @@ pub fn paired_ratio(numerator: &[f64], denominator: &[f64], level: f64) -> Optio
     of_sample(&ratios, level, median)
 }
 
+/// The intervals of several numbers that are computed together from independent samples, such as the parameters of a curve through
+/// the repetitions at each number of workers: every sample is resampled by itself.
+///
+/// `None` for no group, a value that is not finite, no spread in any group, or numbers that do not exist on one of the resamples.
+pub fn of_groups<const N: usize>(
+    groups: &[Vec<f64>],
+    level: f64,
+    statistic: impl Fn(&[Vec<f64>]) -> Option<[f64; N]>,
+) -> Option<[Estimate; N]> {
+    if !groups.iter().all(|group| all_finite(group)) || !groups.iter().any(|group| can_vary(group)) {
+        return None;
+    }
+    let mut draw = Resampler::new();
+    let mut buffer = groups.to_vec();
+    let replicates = (0..RESAMPLES).map(|_| {
+        for (group, out) in groups.iter().zip(&mut buffer) {
+            draw.fill(group, out);
+        }
+        statistic(&buffer)
+    });
+    let replicates = replicates.collect::<Option<Vec<[f64; N]>>>()?;
+    let values = statistic(groups)?;
+    let each = (0..N).map(|i| estimate(values[i], replicates.iter().map(|numbers| Some(numbers[i])), level));
+    each.collect::<Option<Vec<Estimate>>>()?.try_into().ok()
+}
+
 /// The percentile interval of `replicates` around `value`. A statistic that fails on one resample has no interval.
 fn estimate(value: f64, replicates: impl Iterator<Item = Option<f64>>, level: f64) -> Option<Estimate> {
     if !is_level(level) || !value.is_finite() {
@@ -156,6 +182,20 @@ mod tests {
         let twice: Vec<f64> = drift.iter().enumerate().map(|(i, d)| d * (2.0 + 0.01 * i as f64)).collect();
         let paired = paired_ratio(&twice, &drift, 0.95).unwrap();
         assert!(paired.interval.low >= 2.0 - 1e-12 && paired.interval.high <= 2.03 + 1e-12, "{paired:?}");
+    }
+
+    #[test]
+    fn groups_are_resampled_by_themselves() {
+        let groups = [vec![1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0]];
+        let means = |groups: &[Vec<f64>]| {
+            assert!(groups[0].iter().all(|value| *value <= 3.0) && groups[1].iter().all(|value| *value >= 10.0));
+            Some([median(&groups[0])?, median(&groups[1])?])
+        };
+        let [small, large] = of_groups(&groups, 0.95, means).unwrap();
+        assert_eq!((small.value, small.interval.low, small.interval.high), (2.0, 1.0, 3.0));
+        assert_eq!((large.value, large.interval.low, large.interval.high), (20.0, 10.0, 30.0));
+        assert_eq!(of_groups(&[vec![1.0, 1.0], vec![2.0]], 0.95, means), None);
+        assert_eq!(of_groups(&[], 0.95, means), None);
     }
 
     #[test]

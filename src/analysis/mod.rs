@@ -3,13 +3,18 @@
 //! Nothing here knows what a record is, draws a figure or reads a clock. Input for which an answer does not exist (too few values,
 //! a value that is not finite, no spread where a spread is what is divided by) gives `None`, never NaN.
 
+pub mod aa_test;
+pub mod balance;
 pub mod bootstrap;
 pub mod fit;
 pub mod interval;
 pub mod mean;
+pub mod metg;
 pub mod quantile;
+pub mod scaling_law;
 pub mod slope;
 pub mod speedup;
+pub mod superlinear;
 pub mod z_test;
 
 pub use interval::{Estimate, Interval};

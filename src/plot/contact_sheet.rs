@@ -8,10 +8,9 @@ use image::RgbImage;
 use image::imageops;
 
 use super::drawing::{Align, Drawing};
-use super::style::{GRID, HAIRLINE, INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE, TITLE_SIZE};
-use super::{font, number, paint, save_bytes};
+use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::{colour_bar, font, heading, number, paint, save_bytes};
 use crate::error::{Error, Result};
-use crate::metric::heat_colour;
 
 /// About how wide each image is shown.
 const SHOWN: u32 = 240;
@@ -64,13 +63,7 @@ impl ContactSheet {
         let width = 2.0 * MARGIN + columns * (column + GAP) - GAP;
 
         let mut drawing = Drawing::new(&self.title, width, 0.0);
-        let mut y = MARGIN;
-        for (text, size, colour) in [(&self.title, TITLE_SIZE, INK), (&self.subtitle, TEXT_SIZE, MUTED)] {
-            for line in font::wrap(text, size, width - 2.0 * MARGIN) {
-                drawing.text((MARGIN, y + 0.5 * size * LEADING), &line, size, colour, Align::Left);
-                y += size * LEADING;
-            }
-        }
+        let mut y = heading::above(&mut drawing, &self.title, &self.subtitle);
         let mut placed = Vec::new();
         for (cells, row) in self.rows.iter().zip(&images) {
             y += GAP;
@@ -95,7 +88,11 @@ impl ContactSheet {
             y += TEXT_SIZE;
         }
         if let Some(bar) = &self.bar {
-            y = draw_bar(&mut drawing, bar, y + 1.5 * GAP, (2.0 * column + GAP).min(width - 2.0 * MARGIN - 40.0));
+            let width = (2.0 * column + GAP).min(width - 2.0 * MARGIN - 40.0);
+            let quarters = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| number::short(share * bar.full, 3));
+            let [zero, first, half, third, full] = quarters;
+            let labels = [zero, first, half, third, format!("≥ {full}")];
+            y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, (0.0, 1.0), &bar.label, &labels);
         }
         drawing.height = (y + MARGIN).ceil();
         let mut sheet = paint::pixels(&drawing, 1.0)?;
@@ -136,29 +133,4 @@ fn shown(cell: &Cell) -> Result<RgbImage> {
     Ok(RgbImage::from_fn(size(image.width()), size(image.height()), |x, y| {
         *image.get_pixel(source(x, image.width()), source(y, image.height()))
     }))
-}
-
-/// Draws the scale below `y` and returns where it ends.
-fn draw_bar(drawing: &mut Drawing, bar: &ColourBar, y: f64, width: f64) -> f64 {
-    const HEIGHT: f64 = 14.0;
-    const STEPS: u32 = 128;
-    drawing.text((MARGIN, y + 0.5 * TEXT_SIZE), &bar.label, TEXT_SIZE, INK, Align::Left);
-    let top = y + TEXT_SIZE * LEADING + 2.0;
-    let x = |share: f64| MARGIN + share * width;
-    for i in 0..STEPS {
-        let edge = |j: u32| x(f64::from(j) / f64::from(STEPS)).round();
-        let (left, right) = (edge(i), edge(i + 1));
-        let corners = vec![(left, top), (right, top), (right, top + HEIGHT), (left, top + HEIGHT)];
-        drawing.area(corners, heat_colour((f64::from(i) + 0.5) / f64::from(STEPS)), 1.0);
-    }
-    for quarter in 0..=4 {
-        let share = f64::from(quarter) / 4.0;
-        drawing.path(vec![(x(share), top + HEIGHT), (x(share), top + HEIGHT + 4.0)], INK, HAIRLINE);
-        let beyond = if quarter == 4 { "≥ " } else { "" };
-        let label = format!("{beyond}{}", number::short(share * bar.full, 3));
-        let align = if quarter == 0 { Align::Left } else { Align::Centre };
-        drawing.text((x(share), top + HEIGHT + 12.0), &label, SMALL_SIZE, INK, align);
-    }
-    drawing.path(vec![(MARGIN, top), (x(1.0), top)], GRID, HAIRLINE);
-    top + HEIGHT + 12.0 + SMALL_SIZE
 }

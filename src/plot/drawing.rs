@@ -1,7 +1,7 @@
 //! A drawing: marks in pixels, x to the right and y down, painted in order.
 
 use super::font;
-use super::style::{Colour, Dash};
+use super::style::{Colour, Dash, HAIRLINE};
 
 /// A place in a drawing, in pixels.
 pub type Place = (f64, f64);
@@ -73,6 +73,13 @@ pub enum Mark {
         /// 0 is invisible, 1 covers what is below.
         opacity: f64,
     },
+    /// A filled rectangle with upright sides. Neighbours that share a side neither overlap nor leave a gap.
+    Rectangle {
+        /// Left, top, right and bottom.
+        sides: [f64; 4],
+        /// Its colour.
+        colour: Colour,
+    },
     /// A filled circle.
     Disc {
         /// Its centre.
@@ -122,6 +129,19 @@ impl Drawing {
     /// A filled polygon.
     pub fn area(&mut self, places: Vec<Place>, colour: Colour, opacity: f64) {
         self.marks.push(Mark::Area { places, colour, opacity });
+    }
+
+    /// A filled rectangle, given by its left, top, right and bottom.
+    pub fn rectangle(&mut self, sides: [f64; 4], colour: Colour) {
+        self.marks.push(Mark::Rectangle { sides, colour });
+    }
+
+    /// The hairline around a rectangle.
+    pub fn outline(&mut self, [left, top, right, bottom]: [f64; 4], colour: Colour) {
+        let corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)];
+        for pair in corners.windows(2) {
+            self.path(pair.to_vec(), colour, HAIRLINE);
+        }
     }
 
     /// A filled circle.

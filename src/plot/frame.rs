@@ -2,20 +2,14 @@
 
 use super::axis::{Axis, Range, Tick};
 use super::drawing::{Align, Drawing, Place};
-use super::font;
-use super::style::{FAINT, GRID, HAIRLINE, INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE, TITLE_SIZE};
+use super::ruler::{GAP, TICK};
+use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::{font, heading, ruler};
 
 /// Width of a chart.
-const WIDTH: f64 = 960.0;
+pub(super) const WIDTH: f64 = 960.0;
 /// Height of the area in which data is drawn, if the legend does not need more.
 const DATA_HEIGHT: f64 = 400.0;
-/// Length of a tick.
-const TICK: f64 = 5.0;
-/// Space between an axis and its labels.
-const GAP: f64 = 8.0;
-/// Labels nearer than this to each other are left out.
-const APART: f64 = 6.0;
-
 /// What is written around a chart.
 pub(super) struct Words<'a> {
     pub(super) title: &'a str,
@@ -40,15 +34,10 @@ impl Frame {
         ranges: Option<(Range, Range)>,
         legend: (f64, f64),
     ) -> (Drawing, Self) {
-        let text_width = WIDTH - 2.0 * MARGIN;
-        let title = font::wrap(words.title, TITLE_SIZE, text_width);
-        let subtitle = font::wrap(words.subtitle, TEXT_SIZE, text_width);
-        let caption = font::wrap(words.caption, SMALL_SIZE, text_width);
-        let lines = |lines: &[String], size: f64| lines.len() as f64 * size * LEADING;
-
         let y_ticks = ranges.map_or_else(Vec::new, |(_, y)| y.ticks(&axes.1.ticks, 8));
         let y_labels = y_ticks.iter().map(|tick| font::width(&tick.label, SMALL_SIZE)).fold(0.0, f64::max);
-        let top = MARGIN + lines(&title, TITLE_SIZE) + lines(&subtitle, TEXT_SIZE) + 12.0;
+        let mut drawing = Drawing::new(words.title, WIDTH, 0.0);
+        let top = heading::above(&mut drawing, words.title, words.subtitle) + 12.0;
         let frame = Self {
             left: MARGIN + TEXT_SIZE + 12.0 + y_labels + GAP + TICK,
             top,
@@ -57,21 +46,15 @@ impl Frame {
             ranges,
         };
         let below = frame.bottom + TICK + GAP + SMALL_SIZE + 14.0 + TEXT_SIZE;
+        let end = heading::below(&mut drawing, words.caption, below + 14.0);
         // The last line is kept free for a remark about points that could not be drawn.
-        let height = below + 14.0 + lines(&caption, SMALL_SIZE) + SMALL_SIZE * LEADING + 8.0;
-
-        let mut drawing = Drawing::new(words.title, WIDTH, height.ceil());
-        let mut y = MARGIN;
-        for (lines, size, colour) in [(&title, TITLE_SIZE, INK), (&subtitle, TEXT_SIZE, MUTED)] {
-            write_lines(&mut drawing, lines, &mut y, size, colour);
-        }
-        y = below + 14.0;
-        write_lines(&mut drawing, &caption, &mut y, SMALL_SIZE, MUTED);
+        drawing.height = (end + SMALL_SIZE * LEADING + 8.0).ceil();
         if let Some((x, _)) = ranges {
-            frame.horizontal_axis(&mut drawing, &x.ticks(&axes.0.ticks, 9));
+            let area = [frame.left, frame.top, frame.right, frame.bottom];
+            ruler::below(&mut drawing, &x.ticks(&axes.0.ticks, 9), area);
             frame.vertical_axis(&mut drawing, &y_ticks);
         }
-        frame.outline(&mut drawing);
+        drawing.outline([frame.left, frame.top, frame.right, frame.bottom], INK);
         let (centre, below) = (frame.centre(), frame.bottom + TICK + GAP + SMALL_SIZE + 14.0);
         drawing.text((centre.0, below), &axes.0.label, TEXT_SIZE, INK, Align::Centre);
         drawing.text_upwards((MARGIN + 0.5 * TEXT_SIZE, centre.1), &axes.1.label, TEXT_SIZE, INK);
@@ -117,32 +100,11 @@ impl Frame {
         (self.left + x * (self.right - self.left), self.bottom - y * (self.bottom - self.top))
     }
 
-    fn outline(&self, drawing: &mut Drawing) {
-        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)];
-        for pair in corners.windows(2) {
-            drawing.path(pair.iter().map(|&(x, y)| self.at(x, y)).collect(), INK, HAIRLINE);
-        }
-    }
-
-    fn horizontal_axis(&self, drawing: &mut Drawing, ticks: &[Tick]) {
-        let mut free_from = f64::MIN;
-        for tick in ticks {
-            let (x, foot) = self.at(tick.place, 0.0);
-            grid_line(drawing, tick, (x, foot), (x, self.top), (x, foot + TICK));
-            let half = 0.5 * font::width(&tick.label, SMALL_SIZE);
-            if !tick.label.is_empty() && x - half >= free_from {
-                let at = (x, foot + TICK + GAP + 0.5 * SMALL_SIZE - 2.0);
-                drawing.text(at, &tick.label, SMALL_SIZE, INK, Align::Centre);
-                free_from = x + half + APART;
-            }
-        }
-    }
-
     fn vertical_axis(&self, drawing: &mut Drawing, ticks: &[Tick]) {
         let mut free_below = f64::MAX;
         for tick in ticks {
             let (foot, y) = self.at(0.0, tick.place);
-            grid_line(drawing, tick, (foot, y), (self.right, y), (foot - TICK, y));
+            ruler::grid_line(drawing, tick, (foot, y), (self.right, y), (foot - TICK, y));
             let half = 0.5 * SMALL_SIZE;
             if !tick.label.is_empty() && y + half <= free_below {
                 drawing.text((foot - TICK - GAP + 3.0, y), &tick.label, SMALL_SIZE, INK, Align::Right);
@@ -152,26 +114,8 @@ impl Frame {
     }
 }
 
-/// Writes lines one below the other from `y` on, which is moved below them.
-fn write_lines(drawing: &mut Drawing, lines: &[String], y: &mut f64, size: f64, colour: super::style::Colour) {
-    for line in lines {
-        drawing.text((MARGIN, *y + 0.5 * size * LEADING), line, size, colour, Align::Left);
-        *y += size * LEADING;
-    }
-}
-
 /// Writes a remark into the last line of the chart.
 pub(super) fn remark(drawing: &mut Drawing, text: &str) {
     let y = drawing.height - 8.0 - 0.5 * SMALL_SIZE * LEADING;
     drawing.text((MARGIN, y), text, SMALL_SIZE, MUTED, Align::Left);
-}
-
-/// A line through the data area and the tick outside it; minor ticks have a fainter line and no tick.
-fn grid_line(drawing: &mut Drawing, tick: &Tick, foot: Place, end: Place, outside: Place) {
-    if tick.label.is_empty() {
-        drawing.path(vec![foot, end], FAINT, HAIRLINE);
-    } else {
-        drawing.path(vec![foot, end], GRID, HAIRLINE);
-        drawing.path(vec![foot, outside], INK, HAIRLINE);
-    }
 }

@@ -5,10 +5,15 @@
 //! installed, and equal data gives equal bytes.
 
 pub mod axis;
+mod colour_bar;
 pub mod contact_sheet;
+pub mod dot_plot;
 pub mod drawing;
 pub mod font;
 mod frame;
+pub mod gantt;
+mod heading;
+pub mod heat_map;
 pub mod legend;
 mod lettering;
 pub mod line_chart;
@@ -16,6 +21,9 @@ mod marker;
 pub mod number;
 pub mod overlay;
 mod paint;
+mod ruler;
+#[cfg(test)]
+mod schedule_tests;
 pub mod style;
 #[cfg(test)]
 mod tests;
@@ -28,7 +36,10 @@ use crate::error::{Error, Result};
 
 pub use axis::{Axis, Scale, Ticks};
 pub use contact_sheet::{Cell, ColourBar, ContactSheet};
+pub use dot_plot::{Dot, DotPlot, Group, Row};
 pub use drawing::Drawing;
+pub use gantt::{GanttChart, JobBar, Schedule, Shade};
+pub use heat_map::{HeatMap, HeatPanel, Tile};
 pub use line_chart::{LineChart, Point, Series, Spread};
 pub use overlay::{Curve, Overlay, OverlayKind};
 

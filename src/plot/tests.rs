@@ -29,12 +29,12 @@ fn chart_of(points: Vec<Point>, scale: Scale) -> LineChart {
     LineChart::new("t", axis("x"), axis("y"), vec![Series::new("s", Look::nth(0), points)])
 }
 
-fn says(drawing: &Drawing, what: &str) -> bool {
+pub(super) fn says(drawing: &Drawing, what: &str) -> bool {
     drawing.texts().any(|text| text.text.contains(what))
 }
 
 /// Every text lies inside the drawing, and no two lie over each other.
-fn assert_legible(drawing: &Drawing) {
+pub(super) fn assert_legible(drawing: &Drawing) {
     let bounds: Vec<(&Text, [f64; 4])> = drawing.texts().map(|text| (text, text.bounds())).collect();
     for (i, (text, [left, top, right, bottom])) in bounds.iter().enumerate() {
         let inside = *left >= 0.0 && *top >= 0.0 && *right <= drawing.width && *bottom <= drawing.height;

@@ -1,0 +1,187 @@
+//! METG(50 %): how small jobs may get before half of the machine is lost to handing them out.
+//!
+//! E. Slaughter and others, "Task Bench: a parameterized benchmark for evaluating parallel runtime performance", SC 2020: the minimum effective
+//! task granularity is the smallest duration of a job, in seconds, at which a scheduler still reaches a given efficiency. Between two measured
+//! granularities it is interpolated, efficiency over the logarithm of the duration. Efficiency should rise with the granularity; where noise
+//! or imbalance lets it cross the target several times, the largest granularity at which it rises through the target counts, which is the
+//! cautious answer, and the result says how often it crossed.
+
+use serde::Serialize;
+
+use super::bootstrap;
+use super::interval::Interval;
+use super::quantile::median;
+
+/// The efficiency that METG is about unless another is asked for.
+pub const HALF: f64 = 0.5;
+
+/// Seconds a job, and the efficiency of each repetition; their median counts.
+pub type Grain = (f64, Vec<f64>);
+
+/// The minimum effective granularity.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Metg {
+    /// The efficiency rises through the target.
+    Value {
+        /// Seconds a job at which it does.
+        seconds: f64,
+        /// The bootstrap interval over the repetitions; `None` without repetitions, or if on some resample nothing crosses.
+        interval: Option<Interval>,
+        /// The measured granularities to either side.
+        between: (f64, f64),
+        /// How often the efficiency crosses the target, either way. More than 1 needs saying beside the number.
+        crossings: usize,
+    },
+    /// Even the smallest jobs measured, of this many seconds, reach the target.
+    Below(f64),
+    /// Even the largest jobs measured, of this many seconds, do not reach it.
+    Above(f64),
+    /// There is no answer.
+    Undefined(Undefined),
+}
+
+/// Why there is no answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Undefined {
+    /// No granularity with an efficiency, or a number that is not finite or a duration that is not positive.
+    NoData,
+    /// Small jobs reach the target and large ones do not, as if there were too few of them to go round.
+    Falling,
+}
+
+impl std::fmt::Display for Undefined {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NoData => "no usable measurement",
+            Self::Falling => {
+                "efficiency only falls with the size of the jobs: there may be too few large ones to go round"
+            }
+        })
+    }
+}
+
+/// The METG of one strategy for efficiency `target`, from granularities in any order.
+pub fn metg(grains: &[Grain], target: f64, level: f64) -> Metg {
+    let Some((seconds, groups)) = prepared(grains) else { return Metg::Undefined(Undefined::NoData) };
+    let found = crossing(&seconds, &groups, target);
+    if let Some(Metg::Value { seconds: at, between, crossings, .. }) = found {
+        // On a logarithmic scale, as the interpolation is.
+        let resampled = bootstrap::of_groups(&groups, level, |groups| match crossing(&seconds, groups, target)? {
+            Metg::Value { seconds, .. } => Some([libm::log(seconds)]),
+            _ => None,
+        });
+        let ends = resampled.map(|[log]| (libm::exp(log.interval.low), libm::exp(log.interval.high)));
+        let interval = ends.and_then(|(low, high)| Interval::between(low, high, level));
+        return Metg::Value { seconds: at, interval, between, crossings };
+    }
+    found.unwrap_or(Metg::Undefined(Undefined::NoData))
+}
+
+/// Granularities in ascending order, equal ones made one, and their efficiencies.
+fn prepared(grains: &[Grain]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+    let usable = |grain: &Grain| grain.0 > 0.0 && grain.0.is_finite() && median(&grain.1).is_some();
+    if grains.is_empty() || !grains.iter().all(usable) {
+        return None;
+    }
+    let mut ordered: Vec<Grain> = grains.to_vec();
+    ordered.sort_by(|a, b| a.0.total_cmp(&b.0));
+    ordered.dedup_by(|later, kept| {
+        let same = later.0 == kept.0;
+        if same {
+            kept.1.append(&mut later.1);
+        }
+        same
+    });
+    Some(ordered.into_iter().unzip())
+}
+
+/// METG of granularities in ascending order, without an interval.
+fn crossing(seconds: &[f64], groups: &[Vec<f64>], target: f64) -> Option<Metg> {
+    let efficiency = groups.iter().map(|group| median(group)).collect::<Option<Vec<f64>>>()?;
+    let reached: Vec<bool> = efficiency.iter().map(|&value| value >= target).collect();
+    let crossings = reached.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let Some(below) = reached.windows(2).rposition(|pair| !pair[0] && pair[1]) else {
+        return Some(match (crossings, reached.first()?) {
+            (0, true) => Metg::Below(*seconds.first()?),
+            (0, false) => Metg::Above(*seconds.last()?),
+            _ => Metg::Undefined(Undefined::Falling),
+        });
+    };
+    let between = (seconds[below], seconds[below + 1]);
+    let share = (target - efficiency[below]) / (efficiency[below + 1] - efficiency[below]);
+    let log = libm::log(between.0) + share * (libm::log(between.1) - libm::log(between.0));
+    Some(Metg::Value { seconds: libm::exp(log), interval: None, between, crossings })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Granularities with one efficiency each.
+    fn bare(points: &[(f64, f64)]) -> Vec<Grain> {
+        points.iter().map(|&(seconds, efficiency)| (seconds, vec![efficiency])).collect()
+    }
+
+    #[test]
+    fn interpolated_on_the_logarithm() {
+        // 0.3 at 1 us and 0.7 at 100 us: half way on the logarithm is 10 us. The order of the points does not matter.
+        let points = bare(&[(1e-2, 0.99), (1e-6, 0.3), (1e-4, 0.7)]);
+        let Metg::Value { seconds, interval, between, crossings } = metg(&points, HALF, 0.95) else { panic!() };
+        assert!((seconds - 1e-5).abs() < 1e-12);
+        assert_eq!((interval, between, crossings), (None, (1e-6, 1e-4), 1));
+    }
+
+    #[test]
+    fn overhead_model_gives_its_overhead_back() {
+        // A job of g seconds with an overhead of o seconds has efficiency g / (g + o): one half at g = o.
+        let overhead = 3e-6;
+        let grid = (0..60).map(|i| 1e-7 * libm::pow(10.0, f64::from(i) / 12.0));
+        let points: Vec<Grain> =
+            grid.map(|g| (g, [0.99, 1.0, 1.01].map(|f| f * g / (g + overhead)).to_vec())).collect();
+        let Metg::Value { seconds, interval, .. } = metg(&points, HALF, 0.95) else { panic!() };
+        assert!((seconds / overhead - 1.0).abs() < 0.01, "{seconds}");
+        let interval = interval.unwrap();
+        assert!(interval.contains(overhead) && interval.high / interval.low < 1.2, "{interval:?}");
+    }
+
+    #[test]
+    fn ends_of_what_was_measured() {
+        assert_eq!(metg(&bare(&[(1e-6, 0.6), (1e-3, 0.9)]), HALF, 0.95), Metg::Below(1e-6));
+        assert_eq!(metg(&bare(&[(1e-6, 0.1), (1e-3, 0.4)]), HALF, 0.95), Metg::Above(1e-3));
+        assert_eq!(metg(&bare(&[(1e-6, 0.5)]), HALF, 0.95), Metg::Below(1e-6));
+    }
+
+    #[test]
+    fn of_several_crossings_the_largest_rise_counts() {
+        let points = bare(&[(1.0, 0.4), (2.0, 0.6), (4.0, 0.4), (16.0, 0.6), (32.0, 0.45)]);
+        let Metg::Value { seconds, between, crossings, .. } = metg(&points, HALF, 0.95) else { panic!() };
+        assert!((seconds - 8.0).abs() < 1e-12);
+        assert_eq!((between, crossings), ((4.0, 16.0), 4));
+    }
+
+    #[test]
+    fn resamples_that_do_not_cross_leave_no_interval() {
+        let points = vec![(1.0, vec![0.45, 0.45, 0.55]), (2.0, vec![0.9, 0.8, 0.85])];
+        let Metg::Value { interval, .. } = metg(&points, HALF, 0.95) else { panic!() };
+        assert_eq!(interval, None);
+    }
+
+    #[test]
+    fn equal_granularities_are_one() {
+        let points = bare(&[(1.0, 0.2), (1.0, 0.4), (4.0, 0.7), (1.0, 0.3)]);
+        let Metg::Value { seconds, .. } = metg(&points, HALF, 0.95) else { panic!() };
+        assert!((seconds - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn degenerate_input_has_no_answer() {
+        let none = Metg::Undefined(Undefined::NoData);
+        assert_eq!(metg(&[], HALF, 0.95), none);
+        assert_eq!(metg(&[(1.0, vec![])], HALF, 0.95), none);
+        assert_eq!(metg(&bare(&[(0.0, 0.5), (1.0, 0.6)]), HALF, 0.95), none);
+        assert_eq!(metg(&bare(&[(1.0, f64::NAN)]), HALF, 0.95), none);
+        assert_eq!(metg(&bare(&[(1.0, 0.6), (2.0, 0.4)]), HALF, 0.95), Metg::Undefined(Undefined::Falling));
+    }
+}

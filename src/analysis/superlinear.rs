@@ -1,0 +1,107 @@
+//! Why a speedup may exceed the number of workers: the likely cause, as far as the evidence beside the number tells.
+//!
+//! A work-conserving schedule on p equal cores can't be more than p times as fast as the best serial program (V. Faber, O. M. Lubeck and
+//! A. B. White, "Superlinear speedup of an efficient sequential algorithm is not possible", Parallel Computing 3, 1986), so a speedup above
+//! p says that something else differed between the two runs. The first cause for which there is evidence is named; none is guessed.
+
+use std::fmt;
+
+use serde::Serialize;
+
+use super::interval::Interval;
+
+/// What is known beside the speedup.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Evidence {
+    /// Time of the serial baseline over the strategy's own time at one worker.
+    pub at_one_worker: Option<Interval>,
+    /// Warnings about load of others, changing clocks and the like that the runs carry.
+    pub warnings: usize,
+    /// Logical processors of the machine.
+    pub processors: Option<usize>,
+    /// Physical cores of the machine.
+    pub physical_cores: Option<usize>,
+    /// Whether one worker's share of the data fits a cache that the whole does not fit.
+    pub share_fits_cache: Option<bool>,
+}
+
+/// The likely cause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// The strategy is faster than the baseline with one worker already.
+    SlowBaseline,
+    /// The runs carry warnings.
+    Disturbance,
+    /// Logical processors share cores.
+    SharedCores,
+    /// The shares fit a cache, the whole does not.
+    Cache,
+    /// Nothing that is known explains it.
+    Unexplained,
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::SlowBaseline => "likely cause: the baseline is slower than the strategy at one worker",
+            Self::Disturbance => "likely cause: load of others or a changing clock, of which the runs carry warnings",
+            Self::SharedCores => {
+                "likely cause: processors share cores (SMT), so that the baseline may have had less than a core to itself"
+            }
+            Self::Cache => "likely cause: a worker's share of the data fits a cache, the whole does not",
+            Self::Unexplained => "unexplained: nothing that was recorded tells why",
+        })
+    }
+}
+
+/// The first cause for which there is evidence, the strongest evidence first.
+pub fn cause(evidence: &Evidence) -> Cause {
+    let shared = evidence.processors.zip(evidence.physical_cores).is_some_and(|(logical, cores)| logical > cores);
+    if evidence.at_one_worker.is_some_and(|speedup| speedup.low > 1.0) {
+        Cause::SlowBaseline
+    } else if evidence.warnings > 0 {
+        Cause::Disturbance
+    } else if evidence.share_fits_cache == Some(true) {
+        Cause::Cache
+    } else if shared {
+        Cause::SharedCores
+    } else {
+        Cause::Unexplained
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_cause_needs_its_evidence() {
+        let one = |low, high| Some(Interval { low, high, level: 0.95 });
+        let none = Evidence::default();
+        let table = [
+            (none, Cause::Unexplained),
+            (Evidence { at_one_worker: one(0.97, 1.02), ..none }, Cause::Unexplained),
+            (Evidence { at_one_worker: one(1.01, 1.05), warnings: 3, ..none }, Cause::SlowBaseline),
+            (Evidence { warnings: 1, share_fits_cache: Some(true), ..none }, Cause::Disturbance),
+            (
+                Evidence { share_fits_cache: Some(true), processors: Some(4), physical_cores: Some(2), ..none },
+                Cause::Cache,
+            ),
+            (Evidence { processors: Some(4), physical_cores: Some(2), ..none }, Cause::SharedCores),
+            (Evidence { processors: Some(2), physical_cores: Some(2), ..none }, Cause::Unexplained),
+            (Evidence { processors: Some(4), ..none }, Cause::Unexplained),
+        ];
+        for (evidence, expected) in table {
+            assert_eq!(cause(&evidence), expected, "{evidence:?}");
+        }
+    }
+
+    #[test]
+    fn only_evidence_is_called_a_cause() {
+        for cause in [Cause::SlowBaseline, Cause::Disturbance, Cause::SharedCores, Cause::Cache] {
+            assert!(cause.to_string().starts_with("likely cause: "));
+        }
+        assert!(Cause::Unexplained.to_string().starts_with("unexplained"));
+    }
+}

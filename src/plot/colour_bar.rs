@@ -1,0 +1,40 @@
+//! Numbers as colours, and the bar that says which is which.
+
+use super::drawing::{Align, Drawing, Place};
+use super::style::{GRID, HAIRLINE, INK, LEADING, SMALL_SIZE, TEXT_SIZE};
+use crate::metric::heat_colour;
+
+/// Height of a bar.
+const HEIGHT: f64 = 14.0;
+/// Colours in a bar.
+const STEPS: u32 = 128;
+
+/// Draws a bar with its name above and labels at its quarters below, the upper left corner at a place; returns where it ends.
+///
+/// Its ends have the colours that `ends`, in [0, 1], have on the whole scale.
+pub(super) fn draw(
+    drawing: &mut Drawing,
+    (left, y): Place,
+    width: f64,
+    ends: (f64, f64),
+    name: &str,
+    labels: &[String; 5],
+) -> f64 {
+    drawing.text((left, y + 0.5 * TEXT_SIZE), name, TEXT_SIZE, INK, Align::Left);
+    let top = y + TEXT_SIZE * LEADING + 2.0;
+    let x = |share: f64| left + share * width;
+    for i in 0..STEPS {
+        let edge = |j: u32| x(f64::from(j) / f64::from(STEPS)).round();
+        let share = (f64::from(i) + 0.5) / f64::from(STEPS);
+        let colour = heat_colour(ends.0 + share * (ends.1 - ends.0));
+        drawing.rectangle([edge(i), top, edge(i + 1), top + HEIGHT], colour);
+    }
+    for (quarter, label) in labels.iter().enumerate() {
+        let share = quarter as f64 / 4.0;
+        drawing.path(vec![(x(share), top + HEIGHT), (x(share), top + HEIGHT + 4.0)], INK, HAIRLINE);
+        let align = if quarter == 0 { Align::Left } else { Align::Centre };
+        drawing.text((x(share), top + HEIGHT + 12.0), label, SMALL_SIZE, INK, align);
+    }
+    drawing.path(vec![(left, top), (x(1.0), top)], GRID, HAIRLINE);
+    top + HEIGHT + 12.0 + SMALL_SIZE
+}

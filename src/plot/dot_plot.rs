@@ -1,0 +1,185 @@
+//! Named rows with a dot and an interval each (W. S. Cleveland, "The Elements of Graphing Data", 1985): overhead by strategy, time by output.
+//!
+//! A row may have a dot for each group, such as one for each number of threads; groups differ in colour and marker.
+
+use super::Figure;
+use super::axis::{Axis, Range};
+use super::drawing::{Align, Drawing};
+use super::frame::WIDTH;
+use super::legend::{self, Entry, Sample};
+use super::ruler::{self, GAP, TICK};
+use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::{font, heading, marker};
+
+/// The widest name of a row before it is broken.
+const WIDEST: f64 = 260.0;
+/// Height of a row with one group.
+const ROW: f64 = 25.0;
+/// Distance of the groups' dots in a row.
+const GROUP: f64 = 11.0;
+/// Width of a guide's line.
+const GUIDE: f64 = 1.5;
+
+/// A value and how far it can be trusted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dot {
+    /// The value, in the axis' unit.
+    pub value: f64,
+    /// Its low and high end.
+    pub interval: Option<(f64, f64)>,
+}
+
+/// A row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// What stands to its left.
+    pub name: String,
+    /// Its dots, in the order of the groups; `None` where nothing was measured.
+    pub dots: Vec<Option<Dot>>,
+}
+
+/// What tells the dots of a row apart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Group {
+    /// What the legend calls it.
+    pub name: String,
+    /// Colour and marker.
+    pub look: Look,
+}
+
+/// The plot. Dots without a place on its axis are left out, and it says so.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DotPlot {
+    /// What is shown, in one line.
+    pub title: String,
+    /// Workload, machine, what the bars are; may be empty.
+    pub subtitle: String,
+    /// Remarks below the plot; may be empty.
+    pub caption: String,
+    /// The horizontal axis.
+    pub axis: Axis,
+    /// The groups. A single one needs no legend and gets none.
+    pub groups: Vec<Group>,
+    /// The rows, the first at the top.
+    pub rows: Vec<Row>,
+    /// Upright lines, such as one at a ratio of 1, with what the legend calls each.
+    pub guides: Vec<(f64, String)>,
+}
+
+impl DotPlot {
+    /// A plot of `rows` with one group.
+    pub fn new(title: impl Into<String>, axis: Axis, rows: Vec<Row>) -> Self {
+        let groups = vec![Group { name: String::new(), look: Look::nth(0) }];
+        let (subtitle, caption) = (String::new(), String::new());
+        Self { title: title.into(), subtitle, caption, axis, groups, rows, guides: Vec::new() }
+    }
+
+    /// The dots that belong to a group.
+    fn dots<'a>(&self, row: &'a Row) -> impl Iterator<Item = (usize, &'a Dot)> + use<'a> {
+        row.dots.iter().take(self.groups.len()).enumerate().filter_map(|(group, dot)| Some((group, dot.as_ref()?)))
+    }
+
+    /// The range of all dots and their intervals; `None` if no dot can be drawn.
+    fn range(&self) -> Option<Range> {
+        let dots = self.rows.iter().flat_map(|row| self.dots(row)).map(|(_, dot)| dot);
+        let drawable: Vec<&Dot> = dots.filter(|dot| Range::of(&self.axis, [dot.value]).is_some()).collect();
+        let ends = drawable.iter().filter_map(|dot| dot.interval).flat_map(|(low, high)| [low, high]);
+        let values: Vec<f64> = drawable.iter().map(|dot| dot.value).chain(ends).collect();
+        let guided = self.axis.clone().including(self.guides.iter().map(|guide| guide.0));
+        Range::of(&guided, values)
+    }
+
+    fn entries(&self) -> Vec<Entry> {
+        let groups = self.groups.iter().filter(|_| self.groups.len() > 1);
+        let dots = groups.map(|group| Entry::new(Sample::Series { look: group.look, line: false }, &group.name));
+        let guides = self.guides.iter().enumerate().map(|(index, (_, name))| {
+            Entry::new(Sample::Line { colour: MUTED, dash: DASHES[1 + index % 2], width: GUIDE }, name)
+        });
+        dots.chain(guides).collect()
+    }
+
+    /// Draws a row around `middle`; returns how many of its dots have no place.
+    fn draw_row(
+        &self,
+        drawing: &mut Drawing,
+        row: &Row,
+        range: &Range,
+        (left, right): (f64, f64),
+        middle: f64,
+    ) -> usize {
+        let x = |place: f64| left + place * (right - left);
+        let mut lost = 0;
+        for (group, dot) in self.dots(row) {
+            let look = self.groups[group].look;
+            let y = middle + GROUP * (group as f64 - 0.5 * (self.groups.len() as f64 - 1.0));
+            let Some(place) = range.place(dot.value) else {
+                lost += 1;
+                continue;
+            };
+            // An end that has no place because it is too low stands at the edge.
+            let end = |value: f64| Some(x(range.place(value).or((value <= 0.0).then_some(0.0))?.clamp(0.0, 1.0)));
+            if let Some((low, high)) = dot.interval.and_then(|(low, high)| end(low).zip(end(high))) {
+                marker::bar(drawing, (low, y), (high, y), look.colour);
+            }
+            marker::draw(drawing, (x(place), y), look.marker, look.colour);
+        }
+        lost
+    }
+}
+
+impl Figure for DotPlot {
+    fn drawing(&self) -> Drawing {
+        let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
+        let top = heading::above(&mut drawing, &self.title, &self.subtitle) + 12.0;
+        let names: Vec<Vec<String>> = self.rows.iter().map(|row| font::wrap(&row.name, SMALL_SIZE, WIDEST)).collect();
+        let widest = names.iter().flatten().map(|line| font::width(line, SMALL_SIZE)).fold(0.0, f64::max);
+        let entries = self.entries();
+        let legend = legend::size(&entries);
+        let left = MARGIN + widest + GAP;
+        let right = WIDTH - MARGIN - if legend.0 > 0.0 { legend.0 + 20.0 } else { 0.0 };
+        let groups = ROW + GROUP * self.groups.len().saturating_sub(1) as f64;
+        let heights: Vec<f64> =
+            names.iter().map(|name| groups.max(name.len() as f64 * SMALL_SIZE * LEADING + 6.0)).collect();
+        let bottom = top + heights.iter().sum::<f64>().max(legend.1).max(2.0 * ROW);
+        let area = [left, top, right, bottom];
+
+        let mut lost = 0;
+        if let Some(range) = self.range() {
+            ruler::below(&mut drawing, &range.ticks(&self.axis.ticks, 9), area);
+            let below = |y: &mut f64, height: &f64| {
+                *y += height;
+                Some(*y - 0.5 * height)
+            };
+            let middles: Vec<f64> = heights.iter().scan(top, below).collect();
+            for &middle in &middles {
+                drawing.path(vec![(left, middle), (right, middle)], FAINT, HAIRLINE);
+            }
+            for (index, (value, _)) in self.guides.iter().enumerate() {
+                if let Some(x) = range.place(*value).map(|place| left + place * (right - left)) {
+                    drawing.dashed(&[(x, top), (x, bottom)], MUTED, GUIDE, DASHES[1 + index % 2]);
+                }
+            }
+            for ((row, name), &middle) in self.rows.iter().zip(&names).zip(&middles) {
+                for (i, line) in name.iter().enumerate() {
+                    let offset = (i as f64 - 0.5 * (name.len() as f64 - 1.0)) * SMALL_SIZE * LEADING;
+                    drawing.text((left - GAP, middle + offset), line, SMALL_SIZE, INK, Align::Right);
+                }
+                lost += self.draw_row(&mut drawing, row, &range, (left, right), middle);
+            }
+        } else {
+            lost += self.rows.iter().map(|row| self.dots(row).count()).sum::<usize>();
+            drawing.text((0.5 * (left + right), 0.5 * (top + bottom)), "no data", TEXT_SIZE, MUTED, Align::Centre);
+        }
+        drawing.outline(area, INK);
+        legend::draw(&mut drawing, &entries, (right + 20.0, top));
+        let mut y = bottom + TICK + GAP + SMALL_SIZE + 14.0;
+        drawing.text((0.5 * (left + right), y), &self.axis.label, TEXT_SIZE, INK, Align::Centre);
+        y = heading::below(&mut drawing, &self.caption, y + TEXT_SIZE + 14.0);
+        if lost > 0 {
+            let plural = if lost == 1 { "dot has" } else { "dots have" };
+            y = heading::below(&mut drawing, &format!("{lost} {plural} no place on this axis"), y);
+        }
+        drawing.height = (y + 8.0).ceil();
+        drawing
+    }
+}

@@ -1,0 +1,246 @@
+//! Schedules as they were: a lane for each worker, a box for each job, time to the right (H. L. Gantt, "Work, Wages and Profits", 1913).
+//!
+//! Several schedules stand below each other on one time axis, so that their lengths can be compared. What is white inside a schedule's frame
+//! is idle; the frame ends at the makespan. Jobs thinner than half a pixel are drawn together with their neighbours, in the mean of their
+//! colours, and never vanish; of very many lanes a part is shown, and it says which.
+
+mod lane;
+
+use super::Figure;
+use super::axis::{Axis, Range, Ticks};
+use super::drawing::{Align, Drawing};
+use super::frame::WIDTH;
+use super::ruler::{self, GAP, TICK};
+use super::style::{INK, LEADING, LINE, MARGIN, MUTED, PAPER, SMALL_SIZE, TEXT_SIZE};
+use super::{colour_bar, font, heading, number};
+use crate::metric::heat_colour;
+
+/// The tallest schedule.
+const TALLEST: f64 = 260.0;
+/// The tallest lane.
+const LANE: f64 = 18.0;
+/// The most lanes of one schedule: three pixels each.
+const MOST_LANES: usize = 86;
+/// Space between schedules.
+const SPACE: f64 = 14.0;
+/// Distance of the numbers of workers, at least.
+const NUMBERS: f64 = 15.0;
+/// Width of the colour bar.
+const BAR: f64 = 480.0;
+/// The ends of the colours used, as shares of the scale: lighter ones look idle, and darker ones hide where a job begins.
+const COLOURS: (f64, f64) = (0.15, 0.85);
+/// Boxes from this width on have an edge where the job begins.
+const EDGED: f64 = 4.0;
+/// Width of that edge.
+const EDGE: f64 = 0.5;
+
+/// One job in a schedule.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JobBar {
+    /// Its worker, from 0.
+    pub worker: usize,
+    /// Seconds from the schedule's start to the job's.
+    pub start_s: f64,
+    /// Seconds from the schedule's start to the job's end.
+    pub stop_s: f64,
+    /// What its colour says, in the unit of the chart's label.
+    pub value: f64,
+}
+
+/// One schedule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Schedule {
+    /// Strategy, threads, seconds and whatever else stands above it.
+    pub title: String,
+    /// How many workers there were, with or without a job.
+    pub workers: usize,
+    /// Seconds from start to end.
+    pub makespan_s: f64,
+    /// The jobs, in any order.
+    pub jobs: Vec<JobBar>,
+}
+
+/// How values become colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shade {
+    /// In proportion.
+    Value,
+    /// By their rank among all jobs of the chart, which shows structure where a few jobs cost far more than the rest.
+    Quantile,
+}
+
+/// The chart. Jobs that can't be (of no worker, or with times or values that make no sense) are left out, and it says so.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GanttChart {
+    /// What is shown, in one line.
+    pub title: String,
+    /// Workload, machine; may be empty.
+    pub subtitle: String,
+    /// Remarks below the chart; may be empty.
+    pub caption: String,
+    /// What the colours mean, with the unit.
+    pub label: String,
+    /// How values become colours.
+    pub shade: Shade,
+    /// The schedules, the first at the top.
+    pub schedules: Vec<Schedule>,
+}
+
+impl Schedule {
+    fn holds(&self, job: &JobBar) -> bool {
+        let timed = job.start_s >= 0.0 && job.stop_s >= job.start_s && job.stop_s.is_finite();
+        job.worker < self.workers && timed && job.value.is_finite()
+    }
+
+    /// The workers whose lanes are shown, and each how many-th of all they are.
+    fn shown(&self) -> (Vec<usize>, usize) {
+        let stride = self.workers.div_ceil(MOST_LANES).max(1);
+        ((0..self.workers).step_by(stride).collect(), stride)
+    }
+}
+
+/// The values of all jobs in ascending order, which is what colours are given by.
+struct Palette {
+    shade: Shade,
+    values: Vec<f64>,
+}
+
+impl Palette {
+    fn of(chart: &GanttChart) -> Self {
+        let jobs = chart.schedules.iter().flat_map(|schedule| schedule.jobs.iter().filter(|job| schedule.holds(job)));
+        let mut values: Vec<f64> = jobs.map(|job| job.value).collect();
+        values.sort_by(f64::total_cmp);
+        Self { shade: chart.shade, values }
+    }
+
+    /// Where a value stands on the colour bar, in [0, 1].
+    fn share(&self, value: f64) -> f64 {
+        let (Some(low), Some(high)) = (self.values.first(), self.values.last()) else { return 0.5 };
+        let count = |below: &dyn Fn(f64) -> bool| self.values.partition_point(|&other| below(other)) as f64;
+        match self.shade {
+            _ if low == high => 0.5,
+            Shade::Value => (value - low) / (high - low),
+            // Equal values share the middle of their ranks.
+            Shade::Quantile => {
+                0.5 * (count(&|other| other < value) + count(&|other| other <= value)) / self.values.len() as f64
+            }
+        }
+    }
+
+    /// The value at a place of the colour bar; `None` without jobs.
+    fn value(&self, share: f64) -> Option<f64> {
+        let (low, high) = (self.values.first()?, self.values.last()?);
+        let rank = (share * (self.values.len() - 1) as f64).round() as usize;
+        Some(if self.shade == Shade::Value { low + share * (high - low) } else { self.values[rank] })
+    }
+}
+
+impl GanttChart {
+    /// The unit of the time axis, its seconds, and the range of times; `None` if no schedule has an end.
+    fn time(&self) -> Option<(Axis, f64, Range)> {
+        let ends =
+            self.schedules.iter().map(|schedule| schedule.makespan_s).filter(|end| *end > 0.0 && end.is_finite());
+        let longest = ends.reduce(f64::max)?;
+        let units = [(1.0, "s"), (1e-3, "ms"), (1e-6, "µs")];
+        let (seconds, unit) = units.into_iter().find(|(seconds, _)| longest >= *seconds).unwrap_or((1e-6, "µs"));
+        let axis = Axis::linear(format!("time from start, {unit}")).including([0.0]);
+        let range = Range::of(&axis, [longest / seconds])?;
+        Some((axis, seconds, range))
+    }
+}
+
+/// The numbers of the workers beside their lanes, as many as fit.
+fn number_lanes(drawing: &mut Drawing, shown: &[usize], left: f64, top: f64, lane: f64) {
+    let every = (NUMBERS / lane).ceil().max(1.0) as usize;
+    for (i, worker) in shown.iter().enumerate().step_by(every) {
+        let at = (left - GAP, top + (i as f64 + 0.5) * lane);
+        drawing.text(at, &worker.to_string(), SMALL_SIZE, INK, Align::Right);
+    }
+}
+
+impl Figure for GanttChart {
+    fn drawing(&self) -> Drawing {
+        let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
+        let mut y = heading::above(&mut drawing, &self.title, &self.subtitle);
+        let first = y;
+        let palette = Palette::of(self);
+        let last_worker = self.schedules.iter().map(|schedule| schedule.workers).max().unwrap_or(0).saturating_sub(1);
+        let left = MARGIN + TEXT_SIZE + 10.0 + font::width(&last_worker.to_string(), SMALL_SIZE) + GAP;
+        let right = WIDTH - MARGIN;
+        let Some((axis, seconds, range)) = self.time() else {
+            drawing.text((MARGIN, y + TEXT_SIZE), "no data", TEXT_SIZE, MUTED, Align::Left);
+            y = heading::below(&mut drawing, &self.caption, y + 2.0 * TEXT_SIZE * LEADING);
+            drawing.height = (y + MARGIN).ceil();
+            return drawing;
+        };
+        let ticks = range.ticks(&Ticks::Auto, 9);
+        let x = |time_s: f64| left + range.place(time_s / seconds).unwrap_or(0.0).clamp(0.0, 1.0) * (right - left);
+        for (index, schedule) in self.schedules.iter().enumerate() {
+            let (shown, stride) = schedule.shown();
+            let note = format!("; every {} of {} workers is shown", ordinal(stride), schedule.workers);
+            let title = format!("{}{}", schedule.title, if stride > 1 { &note } else { "" });
+            y += SPACE;
+            for line in font::wrap(&title, TEXT_SIZE, right - left) {
+                drawing.text((left, y + 0.5 * TEXT_SIZE), &line, TEXT_SIZE, INK, Align::Left);
+                y += TEXT_SIZE * LEADING;
+            }
+            let lane = LANE.min(TALLEST / shown.len().max(1) as f64);
+            let bottom = y + lane * shown.len().max(1) as f64;
+            let area = [left, y, right, bottom];
+            if index + 1 == self.schedules.len() {
+                ruler::below(&mut drawing, &ticks, area);
+            } else {
+                ruler::grid(&mut drawing, &ticks, area);
+            }
+            let end = x(schedule.makespan_s);
+            drawing.rectangle([left, y, end, bottom], PAPER);
+            let jobs = |worker| schedule.jobs.iter().filter(move |job| job.worker == worker && schedule.holds(job));
+            for (i, &worker) in shown.iter().enumerate() {
+                let bars = jobs(worker).map(|job| (x(job.start_s), x(job.stop_s), palette.share(job.value)));
+                let (top, rim) = (y + i as f64 * lane, if lane >= 8.0 { 1.5 } else { 0.0 });
+                for bar in lane::merged(bars.collect()) {
+                    let colour = heat_colour(COLOURS.0 + bar.2 * (COLOURS.1 - COLOURS.0));
+                    drawing.rectangle([bar.0, top + rim, bar.1, top + lane - rim], colour);
+                    if bar.1 - bar.0 >= EDGED {
+                        drawing.rectangle([bar.0, top + rim, bar.0 + EDGE, top + lane - rim], INK);
+                    }
+                }
+            }
+            number_lanes(&mut drawing, &shown, left, y, lane);
+            drawing.outline([left, y, end, bottom], MUTED);
+            drawing.path(vec![(end, y - 3.0), (end, bottom + 3.0)], INK, LINE);
+            y = bottom;
+        }
+        drawing.text_upwards((MARGIN + 0.5 * TEXT_SIZE, 0.5 * (first + SPACE + y)), "worker", TEXT_SIZE, INK);
+        y += TICK + GAP + SMALL_SIZE + 14.0;
+        drawing.text((0.5 * (left + right), y), &axis.label, TEXT_SIZE, INK, Align::Centre);
+        y += TEXT_SIZE + 10.0;
+        let labels = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| palette.value(share));
+        if let [Some(a), Some(b), Some(c), Some(d), Some(e)] = labels {
+            let labels = [a, b, c, d, e].map(|value| number::short(value, 3));
+            let by_rank = if self.shade == Shade::Quantile { " (a quarter of the jobs between labels)" } else { "" };
+            let name = format!("{}{by_rank}", self.label);
+            y = colour_bar::draw(&mut drawing, (left, y), BAR, COLOURS, &name, &labels) + 10.0;
+        }
+        y = heading::below(&mut drawing, &self.caption, y);
+        let held = |schedule: &Schedule| schedule.jobs.iter().filter(|job| !schedule.holds(job)).count();
+        let lost: usize = self.schedules.iter().map(held).sum();
+        if lost > 0 {
+            y = heading::below(&mut drawing, &format!("left out, as they can't be: {lost} of the jobs"), y);
+        }
+        drawing.height = (y + 12.0).ceil();
+        drawing
+    }
+}
+
+/// 2nd, 3rd, 4th.
+fn ordinal(n: usize) -> String {
+    let ending = match (n % 10, n % 100) {
+        (_, 11..=13) => "th",
+        (1, _) => "st",
+        (2, _) => "nd",
+        (3, _) => "rd",
+        _ => "th",
+    };
+    format!("{n}{ending}")
+}
