@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn interval_of_the_fraction_is_that_of_the_speedup_turned_round() {
         // e falls with S, so the ends of its interval are the fractions of the extremes, which five values reach at 95 %.
-        let speedups = [1.8, 1.7, 1.9, 1.75, 1.85];
+        let speedups = [1.7, 1.8, 1.9, 1.75, 1.85];
         let fraction = serial_fraction_estimate(&speedups, 2, 0.95).unwrap();
         assert!((fraction.value - serial_fraction(1.8, 2).unwrap()).abs() < 1e-12);
         assert!(fraction.interval.low >= serial_fraction(1.9, 2).unwrap() - 1e-12);

@@ -11,12 +11,12 @@ const STEPS: u32 = 128;
 
 /// Draws a bar with its name above and labels at its quarters below, the upper left corner at a place; returns where it ends.
 ///
-/// Its right end has the colour that `lightest`, in [0, 1], has on the whole scale.
+/// Its ends have the colours that `ends`, in [0, 1], have on the whole scale.
 pub(super) fn draw(
     drawing: &mut Drawing,
     (left, y): Place,
     width: f64,
-    lightest: f64,
+    ends: (f64, f64),
     name: &str,
     labels: &[String; 5],
 ) -> f64 {
@@ -25,7 +25,8 @@ pub(super) fn draw(
     let x = |share: f64| left + share * width;
     for i in 0..STEPS {
         let edge = |j: u32| x(f64::from(j) / f64::from(STEPS)).round();
-        let colour = heat_colour(lightest * (f64::from(i) + 0.5) / f64::from(STEPS));
+        let share = (f64::from(i) + 0.5) / f64::from(STEPS);
+        let colour = heat_colour(ends.0 + share * (ends.1 - ends.0));
         drawing.rectangle([edge(i), top, edge(i + 1), top + HEIGHT], colour);
     }
     for (quarter, label) in labels.iter().enumerate() {

@@ -92,7 +92,7 @@ impl ContactSheet {
             let quarters = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| number::short(share * bar.full, 3));
             let [zero, first, half, third, full] = quarters;
             let labels = [zero, first, half, third, format!("≥ {full}")];
-            y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, 1.0, &bar.label, &labels);
+            y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, (0.0, 1.0), &bar.label, &labels);
         }
         drawing.height = (y + MARGIN).ceil();
         let mut sheet = paint::pixels(&drawing, 1.0)?;

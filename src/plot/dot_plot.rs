@@ -8,7 +8,7 @@ use super::drawing::{Align, Drawing};
 use super::frame::WIDTH;
 use super::legend::{self, Entry, Sample};
 use super::ruler::{self, GAP, TICK};
-use super::style::{DASHES, FAINT, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
+use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
 use super::{font, heading, marker};
 
 /// The widest name of a row before it is broken.
@@ -146,21 +146,25 @@ impl Figure for DotPlot {
         let mut lost = 0;
         if let Some(range) = self.range() {
             ruler::below(&mut drawing, &range.ticks(&self.axis.ticks, 9), area);
+            let below = |y: &mut f64, height: &f64| {
+                *y += height;
+                Some(*y - 0.5 * height)
+            };
+            let middles: Vec<f64> = heights.iter().scan(top, below).collect();
+            for &middle in &middles {
+                drawing.path(vec![(left, middle), (right, middle)], FAINT, HAIRLINE);
+            }
             for (index, (value, _)) in self.guides.iter().enumerate() {
                 if let Some(x) = range.place(*value).map(|place| left + place * (right - left)) {
                     drawing.dashed(&[(x, top), (x, bottom)], MUTED, GUIDE, DASHES[1 + index % 2]);
                 }
             }
-            let mut y = top;
-            for ((row, name), height) in self.rows.iter().zip(&names).zip(&heights) {
-                let middle = y + 0.5 * height;
-                drawing.path(vec![(left, middle), (right, middle)], FAINT, 1.0);
+            for ((row, name), &middle) in self.rows.iter().zip(&names).zip(&middles) {
                 for (i, line) in name.iter().enumerate() {
                     let offset = (i as f64 - 0.5 * (name.len() as f64 - 1.0)) * SMALL_SIZE * LEADING;
                     drawing.text((left - GAP, middle + offset), line, SMALL_SIZE, INK, Align::Right);
                 }
                 lost += self.draw_row(&mut drawing, row, &range, (left, right), middle);
-                y += height;
             }
         } else {
             lost += self.rows.iter().map(|row| self.dots(row).count()).sum::<usize>();

@@ -73,6 +73,13 @@ pub enum Mark {
         /// 0 is invisible, 1 covers what is below.
         opacity: f64,
     },
+    /// A filled rectangle with upright sides. Neighbours that share a side neither overlap nor leave a gap.
+    Rectangle {
+        /// Left, top, right and bottom.
+        sides: [f64; 4],
+        /// Its colour.
+        colour: Colour,
+    },
     /// A filled circle.
     Disc {
         /// Its centre.
@@ -124,9 +131,9 @@ impl Drawing {
         self.marks.push(Mark::Area { places, colour, opacity });
     }
 
-    /// A filled rectangle with upright sides, opaque.
-    pub fn rectangle(&mut self, [left, top, right, bottom]: [f64; 4], colour: Colour) {
-        self.area(vec![(left, top), (right, top), (right, bottom), (left, bottom)], colour, 1.0);
+    /// A filled rectangle, given by its left, top, right and bottom.
+    pub fn rectangle(&mut self, sides: [f64; 4], colour: Colour) {
+        self.marks.push(Mark::Rectangle { sides, colour });
     }
 
     /// The hairline around a rectangle.

@@ -27,8 +27,12 @@ const SPACE: f64 = 14.0;
 const NUMBERS: f64 = 15.0;
 /// Width of the colour bar.
 const BAR: f64 = 480.0;
-/// The lightest colour used, as a share of the scale: lighter ones look idle.
-const LIGHTEST: f64 = 0.85;
+/// The ends of the colours used, as shares of the scale: lighter ones look idle, and darker ones hide where a job begins.
+const COLOURS: (f64, f64) = (0.15, 0.85);
+/// Boxes from this width on have an edge where the job begins.
+const EDGED: f64 = 4.0;
+/// Width of that edge.
+const EDGE: f64 = 0.5;
 
 /// One job in a schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -195,8 +199,11 @@ impl Figure for GanttChart {
                 let bars = jobs(worker).map(|job| (x(job.start_s), x(job.stop_s), palette.share(job.value)));
                 let (top, rim) = (y + i as f64 * lane, if lane >= 8.0 { 1.5 } else { 0.0 });
                 for bar in lane::merged(bars.collect()) {
-                    let colour = heat_colour(LIGHTEST * bar.2);
+                    let colour = heat_colour(COLOURS.0 + bar.2 * (COLOURS.1 - COLOURS.0));
                     drawing.rectangle([bar.0, top + rim, bar.1, top + lane - rim], colour);
+                    if bar.1 - bar.0 >= EDGED {
+                        drawing.rectangle([bar.0, top + rim, bar.0 + EDGE, top + lane - rim], INK);
+                    }
                 }
             }
             number_lanes(&mut drawing, &shown, left, y, lane);
@@ -213,7 +220,7 @@ impl Figure for GanttChart {
             let labels = [a, b, c, d, e].map(|value| number::short(value, 3));
             let by_rank = if self.shade == Shade::Quantile { " (a quarter of the jobs between labels)" } else { "" };
             let name = format!("{}{by_rank}", self.label);
-            y = colour_bar::draw(&mut drawing, (left, y), BAR, LIGHTEST, &name, &labels) + 10.0;
+            y = colour_bar::draw(&mut drawing, (left, y), BAR, COLOURS, &name, &labels) + 10.0;
         }
         y = heading::below(&mut drawing, &self.caption, y);
         let held = |schedule: &Schedule| schedule.jobs.iter().filter(|job| !schedule.holds(job)).count();

@@ -117,7 +117,7 @@ impl Figure for HeatMap {
         if let Some((low, high)) = ends {
             let label = |share: f64| number::short(low + share * (high - low), 3);
             let labels = [0.0, 0.25, 0.5, 0.75, 1.0].map(label);
-            y = colour_bar::draw(&mut drawing, (MARGIN, y), BAR, 1.0, &self.label, &labels) + 10.0;
+            y = colour_bar::draw(&mut drawing, (MARGIN, y), BAR, (0.0, 1.0), &self.label, &labels) + 10.0;
         } else {
             drawing.text((MARGIN, y + TEXT_SIZE), "no data", TEXT_SIZE, MUTED, Align::Left);
             y += 2.0 * TEXT_SIZE * LEADING;

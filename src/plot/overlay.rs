@@ -19,6 +19,14 @@ pub enum Curve {
         /// Its slope there.
         exponent: f64,
     },
+    /// y = x / (1 + contention (x - 1) + coherence x (x - 1)): speedup over workers by the Universal Scalability Law, and by Amdahl's law
+    /// if the coherence is 0. Gustafson's law is a line.
+    Scaling {
+        /// sigma, or Amdahl's serial fraction.
+        contention: f64,
+        /// kappa.
+        coherence: f64,
+    },
 }
 
 impl Curve {
@@ -33,6 +41,7 @@ impl Curve {
         match *self {
             Self::Line { intercept, slope } => intercept + slope * x,
             Self::Power { scale, exponent } => scale * libm::pow(x, exponent),
+            Self::Scaling { contention, coherence } => x / (1.0 + contention * (x - 1.0) + coherence * x * (x - 1.0)),
         }
     }
 }
@@ -137,6 +146,9 @@ mod tests {
         let half = Curve::power_through((16.0, 0.25), -0.5).unwrap();
         assert!((half.at(64.0) - 0.125).abs() < 1e-12);
         assert!((Curve::Line { intercept: 1.0, slope: 2.0 }.at(3.0) - 7.0).abs() < 1e-12);
+        // Amdahl: 1 / (0.25 + 0.75 / 3) = 2. With a coherence of 1/6 the divisor grows by 1, from 1.5 to 2.5.
+        assert!((Curve::Scaling { contention: 0.25, coherence: 0.0 }.at(3.0) - 2.0).abs() < 1e-12);
+        assert!((Curve::Scaling { contention: 0.25, coherence: 1.0 / 6.0 }.at(3.0) - 1.2).abs() < 1e-12);
     }
 
     #[test]

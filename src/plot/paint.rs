@@ -7,7 +7,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use plotters::coord::Shift;
 use plotters::prelude::{
     BitMapBackend, Circle, DrawingArea, DrawingAreaErrorKind, DrawingBackend, IntoDrawingArea, PathElement, Polygon,
-    RGBAColor, RGBColor, SVGBackend, ShapeStyle, Text as Label,
+    RGBAColor, RGBColor, Rectangle, SVGBackend, ShapeStyle, Text as Label,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, TextStyle};
@@ -94,6 +94,10 @@ fn paint<B: DrawingBackend>(
                 Mark::Area { places, colour, opacity } => {
                     let style = RGBAColor(colour[0], colour[1], colour[2], *opacity).filled();
                     area.draw(&Polygon::new(device(places, scale), style))?;
+                }
+                Mark::Rectangle { sides: [left, top, right, bottom], colour } => {
+                    let corners = [point((*left, *top), scale), point((*right, *bottom), scale)];
+                    area.draw(&Rectangle::new(corners, opaque(*colour).filled()))?;
                 }
                 Mark::Disc { at, radius, colour } => {
                     let style: ShapeStyle = opaque(*colour).filled();

@@ -66,9 +66,9 @@ fn dots(rows: usize, groups: usize, axis: Axis) -> DotPlot {
     plot
 }
 
-/// Filled areas, without those of colour bars.
-fn areas(drawing: &Drawing) -> usize {
-    drawing.marks.iter().filter(|mark| matches!(mark, Mark::Area { .. })).count()
+/// Filled rectangles.
+fn rectangles(drawing: &Drawing) -> usize {
+    drawing.marks.iter().filter(|mark| matches!(mark, Mark::Rectangle { .. })).count()
 }
 
 #[test]
@@ -76,8 +76,8 @@ fn every_job_has_its_box_while_there_is_room() {
     let chart = gantt(vec![schedule(2, 20), schedule(4, 21)]);
     let drawing = chart.drawing();
     assert_legible(&drawing);
-    // A ground each, and the 128 steps of the colour bar.
-    assert_eq!(areas(&drawing), 20 + 21 + 2 + 128);
+    // A box and an edge each, a ground for each schedule, and the 128 steps of the colour bar.
+    assert_eq!(rectangles(&drawing), 2 * (20 + 21) + 2 + 128);
     assert!(says(&drawing, "time from start, s") && says(&drawing, "a quarter of the jobs between labels"));
     assert_eq!(chart.svg().unwrap(), gantt(vec![schedule(2, 20), schedule(4, 21)]).svg().unwrap());
 }
@@ -128,7 +128,7 @@ fn maps_show_every_tile_on_one_scale() {
     for panels in [1, 2, 3, 5] {
         let drawing = map(panels, f64::from).drawing();
         assert_legible(&drawing);
-        assert_eq!(areas(&drawing), 48 * panels + 128);
+        assert_eq!(rectangles(&drawing), 48 * panels + 128);
         assert!(says(&drawing, "47") && says(&drawing, "ms a tile"));
     }
     let mut wide = map(1, |_| 3.0);

@@ -92,11 +92,6 @@ impl Law {
         }
     }
 
-    /// The smallest and the largest value that parameter number `index` can have.
-    fn range(self, index: usize) -> (f64, f64) {
-        if index == 0 { (0.0, 1.0) } else { (0.0, f64::INFINITY) }
-    }
-
     /// How many worker counts above 1 a fit needs.
     pub fn least_worker_counts(self) -> usize {
         if self == Self::Universal { 3 } else { 1 }
@@ -148,8 +143,8 @@ fn try_fit(law: Law, points: &[Point], level: f64) -> Result<Fitted, Reason> {
     let names = law.parameters();
     let parameters: Vec<Parameter> =
         names.iter().zip(estimates).map(|(&name, estimate)| Parameter { name, estimate }).collect();
-    for (index, &parameter) in parameters.iter().enumerate() {
-        judge(parameter, law.range(index))?;
+    for (&parameter, range) in parameters.iter().zip(RANGES) {
+        judge(parameter, range)?;
     }
     let values = estimates.map(|estimate| estimate.value);
     Ok(Fitted {
@@ -173,6 +168,9 @@ fn prepared(points: &[Point]) -> Result<(Vec<f64>, Vec<Vec<f64>>), Reason> {
     pooled.retain(|&workers, speedups| workers > 1 && !speedups.is_empty());
     Ok(pooled.into_iter().map(|(workers, speedups)| (workers as f64, speedups)).unzip())
 }
+
+/// The smallest and the largest value that each parameter can have: the first is a share, the second a cost.
+const RANGES: [(f64, f64); 2] = [(0.0, 1.0), (0.0, f64::INFINITY)];
 
 /// Refuses a parameter that the data leave open and one that the law does not allow.
 fn judge(parameter: Parameter, (low, high): (f64, f64)) -> Result<(), Reason> {

@@ -55,12 +55,8 @@ impl fmt::Display for Reason {
                 write!(f, "{} is open: its interval covers everything that {} can be", Shown(parameter), parameter.name)
             }
             Self::OutOfRange { parameter, low, high } => {
-                write!(f, "the estimate {} is ", Shown(parameter))?;
-                if high.is_finite() {
-                    write!(f, "outside {low} to {high}")?
-                } else {
-                    write!(f, "below {low}")?
-                }
+                let range = if high.is_finite() { format!("outside {low} to {high}") } else { format!("below {low}") };
+                write!(f, "the estimate {} is {range}", Shown(parameter))?;
                 let interval = parameter.estimate.interval;
                 let edge = parameter.estimate.value.clamp(low, high);
                 if interval.contains(edge) {
