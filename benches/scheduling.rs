@@ -1,16 +1,18 @@
 //! `cargo bench --bench scheduling`: every strategy on one fixed small render and on empty jobs.
 //!
 //! Group `scheduling` renders cornell at 96x72, 4 spp, in tiles of 8x8, with 1, 2 and 4 threads, in samples per second; group `empty-jobs`
-//! hands out jobs that do nothing. At the end stands a table of speedups against `serial`. Criterion runs its cases one after the other, so a
-//! drift of the machine's speed falls on some of them; `pathmark run thread-scaling` interleaves them and is what conclusions should
-//! rest on.
+//! hands out jobs that do nothing. Group `seam` sets strategies beside their bare mechanisms, which says what the interface between
+//! scheduling and work costs for each job (`cargo bench --bench scheduling -- seam`). At the end stands a table of speedups against
+//! `serial`. Criterion runs its cases one after the other, so a drift of the machine's speed falls on some of them; `pathmark run
+//! thread-scaling` interleaves them and is what conclusions should rest on.
 
+mod bare;
 mod speedup_table;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::film::{Decomposition, TileBuffer};
 use pathmark::kernel::{Kernel, Spec, build};
-use pathmark::strategy::{Config, Job, STRATEGIES, Workers};
+use pathmark::strategy::{Config, Entry, Job, STRATEGIES, Strategy, Workers, find};
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -51,17 +53,21 @@ fn threads_label(workers: Workers, threads: usize) -> String {
     if workers == Workers::PerJob { "per-job".to_string() } else { threads.to_string() }
 }
 
+fn strategy(entry: &Entry, threads: usize) -> Box<dyn Strategy> {
+    let config = Config::new(NonZeroUsize::new(threads).expect("thread counts are positive"));
+    (entry.new)(config).expect("threads can be started")
+}
+
 fn scheduling(criterion: &mut Criterion) {
     let spec = Spec { width: 96, height: 72, ..Spec::default() };
     let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(SPP);
     let (jobs, job) = render_job(&spec);
     let mut group = criterion.benchmark_group("scheduling");
     group.sample_size(10).sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(samples));
-    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(2));
+    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));
     for entry in STRATEGIES {
         for &threads in thread_counts(entry.workers) {
-            let config = Config::new(NonZeroUsize::new(threads).expect("thread counts are positive"));
-            let mut strategy = (entry.new)(config).expect("threads can be started");
+            let mut strategy = strategy(entry, threads);
             group.bench_function(BenchmarkId::new(entry.name, threads_label(entry.workers, threads)), |bencher| {
                 bencher.iter(|| strategy.run(jobs, Arc::clone(&job)).expect("threads can be started"));
             });
@@ -80,10 +86,30 @@ fn empty_jobs(criterion: &mut Criterion) {
         let jobs = if entry.workers == Workers::PerJob { EMPTY_JOBS_PER_THREAD } else { EMPTY_JOBS };
         group.throughput(Throughput::Elements(jobs as u64));
         for &threads in thread_counts(entry.workers).iter().filter(|threads| **threads <= 2) {
-            let config = Config::new(NonZeroUsize::new(threads).expect("thread counts are positive"));
-            let mut strategy = (entry.new)(config).expect("threads can be started");
+            let mut strategy = strategy(entry, threads);
             group.bench_function(BenchmarkId::new(entry.name, threads_label(entry.workers, threads)), |bencher| {
                 bencher.iter(|| strategy.run(jobs, Arc::clone(&job)).expect("threads can be started"));
+            });
+        }
+    }
+    group.finish();
+}
+
+fn seam(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("seam");
+    group.sample_size(20).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_millis(600));
+    group.throughput(Throughput::Elements(EMPTY_JOBS as u64));
+    let job: Job = Arc::new(bare::empty);
+    for (name, bare) in bare::PAIRS {
+        let entry = find(name).expect("every mechanism has its strategy");
+        for &threads in thread_counts(entry.workers).iter().filter(|threads| **threads <= 2) {
+            let mut bare = bare(threads);
+            group.bench_function(BenchmarkId::new(format!("{name}-bare"), threads), |bencher| {
+                bencher.iter(|| bare(EMPTY_JOBS));
+            });
+            let mut strategy = strategy(entry, threads);
+            group.bench_function(BenchmarkId::new(name, threads), |bencher| {
+                bencher.iter(|| strategy.run(EMPTY_JOBS, Arc::clone(&job)).expect("threads can be started"));
             });
         }
     }
@@ -95,6 +121,7 @@ fn main() {
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
     scheduling(&mut criterion);
     empty_jobs(&mut criterion);
+    seam(&mut criterion);
     criterion.final_summary();
     speedup_table::print("scheduling", start);
 }

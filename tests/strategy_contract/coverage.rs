@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use pathmark::strategy::{Config, Job, STRATEGIES};
+use pathmark::strategy::{Config, Job, STRATEGIES, find};
 
 use crate::support::{Runs, TestSpawner, guarded, threads};
 
@@ -17,6 +17,39 @@ fn each_index_runs_exactly_once() {
                     let runs = Runs::new(jobs);
                     (entry.new)(Config::new(threads(workers))).unwrap().run(jobs, runs.job()).unwrap();
                     assert!(runs.each_once(), "{case}: {:?}", runs.counts());
+                });
+            }
+        }
+    }
+}
+
+/// Every parameter that a strategy's documentation names.
+const PARAMETERS: &[(&str, &[&str])] = &[
+    ("dynamic", &["1", "2", "7", "5000"]),
+    ("steal-one", &["neighbour", "random", "richest"]),
+    ("steal-half", &["neighbour", "random", "richest"]),
+    #[cfg(feature = "openmp")]
+    ("openmp-dynamic", &["1", "2", "7", "5000"]),
+    #[cfg(feature = "openmp")]
+    ("openmp-guided", &["1", "2", "7", "5000"]),
+];
+
+#[test]
+fn each_index_runs_exactly_once_whatever_the_parameter() {
+    for &(name, parameters) in PARAMETERS {
+        for &parameter in parameters {
+            for (workers, jobs) in [(1, 100), (2, 1000), (3, 2), (3, 1000), (8, 1000)] {
+                let what = format!("{name}:{parameter}, {workers} threads, {jobs} jobs");
+                let case = what.clone();
+                guarded(&what, move || {
+                    let parameter = Some(parameter.to_owned());
+                    let config = Config { parameter, ..Config::new(threads(workers)) };
+                    let mut strategy = (find(name).unwrap().new)(config).unwrap();
+                    for _ in 0..10 {
+                        let runs = Runs::new(jobs);
+                        strategy.run(jobs, runs.job()).unwrap();
+                        assert!(runs.each_once(), "{case}: {:?}", runs.counts());
+                    }
                 });
             }
         }

@@ -1,6 +1,10 @@
 //! What every strategy promises, checked for every line of the table: a new entry is covered without a change here.
 
 mod coverage;
+mod discipline;
+mod meeting;
+#[cfg(feature = "openmp")]
+mod openmp;
 mod panics;
 mod parallelism;
 mod spawn_failure;
@@ -38,11 +42,13 @@ fn a_parameter_that_means_nothing_is_refused() {
 
 #[test]
 fn rayon_refuses_more_threads_than_it_would_start() {
-    guarded("rayon", || {
-        let spawner = TestSpawner::unlimited();
-        let asked = threads(rayon::max_num_threads() + 1);
-        let error = (find("rayon").unwrap().new)(spawner.config(asked)).err().unwrap();
-        assert!(matches!(error, StrategyError::TooManyThreads { .. }), "{error}");
-        assert_eq!(spawner.asked(), 0);
-    });
+    for name in ["rayon", "rayon-join", "rayon-scope"] {
+        guarded(name, move || {
+            let spawner = TestSpawner::unlimited();
+            let asked = threads(rayon::max_num_threads() + 1);
+            let error = (find(name).unwrap().new)(spawner.config(asked)).err().unwrap();
+            assert!(matches!(error, StrategyError::TooManyThreads { strategy, .. } if strategy == name), "{error}");
+            assert_eq!(spawner.asked(), 0);
+        });
+    }
 }

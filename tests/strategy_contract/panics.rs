@@ -3,13 +3,14 @@
 use std::any::Any;
 use std::mem;
 use std::panic::{self, AssertUnwindSafe};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Barrier};
 use std::thread;
 use std::time::Duration;
 
 use pathmark::strategy::{Config, Job, STRATEGIES, Strategy, Workers};
 
+use crate::meeting::Meeting;
 use crate::support::{Runs, TestSpawner, guarded, threads};
 
 fn thrown_by(strategy: &mut dyn Strategy, jobs: usize, job: Job) -> Box<dyn Any + Send> {
@@ -87,9 +88,9 @@ fn when_all_workers_panic_one_payload_arrives_and_the_object_works_again() {
             let mut strategy = (entry.new)(Config::new(threads(3))).unwrap();
             for _ in 0..20 {
                 let workers = entry.workers.at_once(3, 3);
-                let barrier = Barrier::new(workers);
+                let meeting = Meeting::new(entry, workers);
                 let job = move |_| {
-                    barrier.wait();
+                    meeting.wait();
                     panic::resume_unwind(Box::new(Spiteful));
                 };
                 let payload = thrown_by(&mut *strategy, workers, Arc::new(job));

@@ -1,6 +1,6 @@
 //! When the system gives no more threads: an error that says which, or fewer workers; never a hang, a lost job, or a job twice.
 
-use pathmark::strategy::{STRATEGIES, StrategyError, Workers};
+use pathmark::strategy::{Entry, STRATEGIES, StrategyError, Threads, Workers};
 
 use crate::support::{Runs, TestSpawner, guarded, threads};
 
@@ -21,6 +21,10 @@ fn an_error_or_fewer_workers() {
                         let runs = Runs::new(jobs);
                         let outcome = (entry.new)(spawner.config(threads(THREADS)))
                             .and_then(|mut strategy| strategy.run(jobs, runs.job()));
+                        // Of a library's strategy one thread comes from here; the others can't be refused here.
+                        if entry.threads == Threads::Library {
+                            assert_eq!(outcome.is_err(), refused == 0, "{case}");
+                        }
                         match outcome {
                             Ok(()) => assert!(runs.each_once(), "{case}: {:?}", runs.counts()),
                             Err(error) => {
@@ -44,7 +48,9 @@ fn assert_names_the_worker(error: &StrategyError, number: usize, of: usize) {
 
 #[test]
 fn a_strategy_that_starts_threads_in_each_run_recovers() {
-    for entry in STRATEGIES.iter().filter(|entry| entry.workers != Workers::Caller) {
+    // A library's strategy asks for one thread only, and in the construction.
+    let several = |entry: &&Entry| entry.workers != Workers::Caller && entry.threads == Threads::Spawner;
+    for entry in STRATEGIES.iter().filter(several) {
         guarded(entry.name, || {
             let spawner = TestSpawner::failing(1, 2);
             // A pool has failed already.
