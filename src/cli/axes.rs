@@ -33,7 +33,7 @@ pub(super) struct Axes {
     /// Workers [default: one for each processor]
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
-    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], samples:B[:WxH] [default: tiles:32x32]
+    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], `samples:B[:WxH]` [default: tiles:32x32]
     #[arg(long, value_name = "CUT")]
     pub(super) decomposition: Option<String>,
     /// How pieces get into the film: an output of `pathmark list outputs`

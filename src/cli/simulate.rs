@@ -2,7 +2,7 @@
 
 use super::output::print;
 use super::progress::Talk;
-use crate::error::{InputError, Result};
+use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress;
 use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate};
 use crate::report::{Block, Results, forecasts, save};
@@ -108,7 +108,8 @@ const MOST_WORKERS: usize = 1 << 16;
 fn hardware(arguments: &Arguments) -> Result<Hardware> {
     let speed = |field: &str, text: &str, value: Option<f64>| {
         value.filter(|speed| *speed > 0.0 && speed.is_finite()).ok_or_else(|| {
-            InputError::new(field, text, "is no speed").allowed("numbers above 0, 1 being a core like this one")
+            let error = InputError::new(field, text, "is no speed");
+            Error::from(error.allowed("numbers above 0, 1 being a core like this one"))
         })
     };
     let speeds = match (&arguments.slow_core, &arguments.efficiency_cores) {

@@ -5,6 +5,7 @@
 //! question = "How much faster do more threads make it?"
 //! analysis = "How to read the figures."
 //! figures = ["speedup"]
+//! keep = ["traces"]               # optional: images, traces, calibration
 //!
 //! [matrix]                       # cells are all combinations
 //! scene = ["cornell"]
@@ -67,6 +68,18 @@ impl Profile {
     }
 }
 
+/// What a sweep may keep beside its rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Keep {
+    /// The image of each cell's first repetition.
+    Images,
+    /// The trace of each run.
+    Traces,
+    /// What handing out empty jobs costs, which the simulator needs.
+    Calibration,
+}
+
 /// An experiment as it is written.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -88,15 +101,9 @@ pub struct Definition {
     pub analysis: String,
     /// Names of the figures that the report draws.
     pub figures: Vec<String>,
-    /// Whether each cell's first image is kept.
+    /// What is kept beside the rows.
     #[serde(default)]
-    pub images: bool,
-    /// Whether the trace of each run is kept.
-    #[serde(default)]
-    pub traces: bool,
-    /// Whether the cost of handing out empty jobs is measured, for the simulator.
-    #[serde(default)]
-    pub calibration: bool,
+    pub keep: Vec<Keep>,
     /// Whether samplers may be used that give other numbers in each run, so that no checksum can be expected.
     #[serde(default)]
     pub unverified: bool,
@@ -158,6 +165,11 @@ impl Definition {
     pub fn missing_feature(&self) -> Option<&str> {
         let built_with = |feature: &str| FEATURES.iter().any(|(name, there)| *name == feature && *there);
         self.requires.iter().map(String::as_str).find(|feature| !built_with(feature))
+    }
+
+    /// Whether that is kept beside the rows.
+    pub fn keeps(&self, what: Keep) -> bool {
+        self.keep.contains(&what)
     }
 
     /// How often each cell is run.

@@ -16,7 +16,9 @@ impl Drift {
     /// Knows the rows of an earlier part of the sweep.
     pub(super) fn of(done: &[Record]) -> Self {
         let mut drift = Self(HashMap::new());
-        done.iter().for_each(|record| drift.note(record));
+        for record in done {
+            drift.note(record);
+        }
         drift
     }
 

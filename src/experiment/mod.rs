@@ -17,7 +17,7 @@ mod sweep;
 pub use calibration_file::read_calibration;
 pub use cell::{Cell, trace_file};
 pub use cell_process::{CellJob, child_main};
-pub use definition::{Definition, EXPERIMENTS, Profile};
+pub use definition::{Definition, EXPERIMENTS, Keep, Profile};
 pub use records_file::{RecordsFile, read_records};
 pub use reference::{Reference, reference_seed, render_reference, wanted_references};
 pub use run_file::{RunFile, read_run_file};

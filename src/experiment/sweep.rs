@@ -6,7 +6,7 @@ use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
-use super::{Cell, CellJob, Definition, Profile, Progress, Reference, render_reference, wanted_references};
+use super::{Cell, CellJob, Definition, Keep, Profile, Progress, Reference, render_reference, wanted_references};
 use crate::atomic_file;
 use crate::digest;
 use crate::error::{Error, InputError, Result};
@@ -62,14 +62,14 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let (mut file, done) = open(definition, options, &folder)?;
 
     let calibration = folder.join("calibration.csv");
-    if definition.calibration && !calibration.is_file() {
+    if definition.keeps(Keep::Calibration) && !calibration.is_file() {
         progress.note("calibrating: every strategy hands out empty jobs");
         write_calibration(&calibration)?;
     }
     let references = references(&wanted, options, progress)?;
     let (images, traces) = (folder.join("images"), folder.join("traces"));
-    for (wanted, folder) in [(definition.images, &images), (definition.traces, &traces)] {
-        if wanted {
+    for (wanted, folder) in [(Keep::Images, &images), (Keep::Traces, &traces)] {
+        if definition.keeps(wanted) {
             std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
         }
     }
@@ -94,7 +94,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
         for index in shuffled(cells.len(), &definition.name, repetition) {
             let cell = &cells[index];
             if !finished.contains(&(cell.id.as_str(), repetition)) {
-                let kept = (definition.images && repetition == 0).then(|| images.join(cell.image_file()));
+                let kept = (definition.keeps(Keep::Images) && repetition == 0).then(|| images.join(cell.image_file()));
                 let job = CellJob {
                     experiment: definition.name.clone(),
                     cell: cell.id.clone(),
@@ -103,7 +103,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
                     settings: cell.settings.clone(),
                     references: references.get(cell.settings.scene.as_str()).cloned(),
                     image: kept,
-                    trace: definition.traces.then(|| traces.join(trace_file(&cell.id, repetition))),
+                    trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
                 };
                 let mut record = verified(job.run_in_child(), cell, &mut checksums);
                 drift.watch(&mut record);

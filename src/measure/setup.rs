@@ -202,7 +202,9 @@ impl Setup {
 
         let job_counts: Vec<Counts> = entries.iter().map(|entry| entry.counts).collect();
         let mut counts = Counts::default();
-        job_counts.iter().for_each(|job| counts.add(job));
+        for job in &job_counts {
+            counts.add(job);
+        }
         let workers_used = run.ledger.workers_used();
         let mut warnings = self.warnings(&counts, workers_used);
         warnings.extend(timed.warnings());

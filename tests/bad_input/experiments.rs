@@ -7,7 +7,17 @@ const REFERENCE: &str = "\n[reference]\nestimator = \"bsdf\"\n\n[quick]\nreferen
 
 /// What is put in the place of what, and what the message must hold.
 const WRONG: &[(&str, &str, &[&str])] = &[
-    ("strategy = [\"serial\"", "strategy = [\"guided\"", &["strategy", "guided", "work-stealing"]),
+    ("strategy = [\"serial\"", "strategy = [\"stealth\"", &["strategy", "stealth", "work-stealing"]),
+    ("strategy = [\"serial\"", "strategy = [\"dynamic:0\"", &["strategy", "dynamic:0", "from 1"]),
+    (
+        "estimator = [\"smallpt\"]",
+        "estimator = [\"smallpt\"]\nsampler = [\"libc-rand\"]",
+        &["sampler", "libc-rand", "checksum", "independent"],
+    ),
+    ("spp = [4]", "spp = [4]\noutput = [\"pigeon\"]", &["output", "pigeon", "slots"]),
+    ("spp = [4]", "spp = [4]\noutput = []", &["output"]),
+    ("title = \"Tiny\"", "title = \"Tiny\"\nrequires = [\"gpu\"]", &["requires", "gpu", "openmp"]),
+    ("tiles:8x8", "samples:24", &["decomposition", "samples:24", "samples:16"]),
     ("estimator = [\"smallpt\"]", "estimator = [\"magic\"]", &["estimator", "magic", "smallpt"]),
     (
         "estimator = [\"smallpt\"]",

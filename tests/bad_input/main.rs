@@ -12,6 +12,7 @@ mod program;
 mod scenes;
 #[path = "../support/snapshot.rs"]
 mod snapshot;
+mod traces;
 
 use program::{finish, pathmark};
 use snapshot::{assert_untouched, snapshot};

@@ -6,6 +6,7 @@ mod files;
 mod names;
 #[path = "../support/program.rs"]
 mod program;
+mod schedules;
 
 use experiment::{TINY, write_tiny};
 use program::{Finished, finish, pathmark};

@@ -5,10 +5,11 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 11] = [
+const KINDS: [&str; 12] = [
     "scenes",
     "strategies",
     "decompositions",
+    "outputs",
     "estimators",
     "samplers",
     "kernels",
@@ -20,7 +21,7 @@ const KINDS: [&str; 11] = [
 ];
 
 /// Columns of `records.csv` that say what a row is of and what it measured.
-const COLUMNS: [&str; 34] = [
+const COLUMNS: [&str; 39] = [
     "schema",
     "experiment",
     "cell",
@@ -37,16 +38,21 @@ const COLUMNS: [&str; 34] = [
     "biased",
     "decomposition",
     "strategy",
+    "output",
     "threads",
     "repetition",
     "order",
     "jobs",
     "workers_used",
+    "pilot_s",
     "setup_s",
     "makespan_s",
     "merge_s",
     "busy_sum_s",
     "busy_max_s",
+    "gap_sum_s",
+    "tail_sum_s",
+    "foreign_cpu_s",
     "paths",
     "rays",
     "invalid_samples",
@@ -124,6 +130,9 @@ fn every_schedule_gives_the_same_checksum() {
     }
     for decomposition in names("decompositions") {
         assert_eq!(check(&["--decomposition", &decomposition])["decomposition"], decomposition.as_str());
+    }
+    for output in names("outputs") {
+        assert_eq!(check(&["--output", &output])["output"], output.as_str());
     }
     let per_row = check(&["--strategy", "thread-per-row"]);
     assert_eq!((&per_row["jobs"], &per_row["workers_used"]), (&Value::from(16), &Value::from(16)));

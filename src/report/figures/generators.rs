@@ -31,7 +31,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let (mut rows, mut table, mut intervals) = (Vec::new(), Vec::new(), Vec::new());
     for (sampler, records) in results.by(|record| record.sampler.clone()) {
         let mut by_crew: BTreeMap<String, Vec<&Record>> = BTreeMap::new();
-        records.iter().for_each(|record| by_crew.entry(crew(&Schedule::of(record))).or_default().push(record));
+        for record in records {
+            by_crew.entry(crew(&Schedule::of(record))).or_default().push(record);
+        }
         let mut dots = Vec::new();
         for (_, crew) in &crews {
             let records = by_crew.get(crew).map_or(&[][..], Vec::as_slice);

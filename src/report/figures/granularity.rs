@@ -11,27 +11,27 @@ use crate::report::block::{Block, Table};
 use crate::report::results::{LEVEL, Results, Schedule, confidence, median_with_interval};
 use std::collections::BTreeMap;
 
-/// The serial program: seconds of a job by decomposition, and by repetition the fastest run and the seconds of work by decomposition.
+/// The serial program, in seconds: a job by decomposition, the fastest run by repetition, the work by decomposition and repetition.
 struct Baseline {
-    job_s: BTreeMap<String, f64>,
-    best_s: BTreeMap<u32, f64>,
-    work_s: BTreeMap<(String, u32), f64>,
+    per_job: BTreeMap<String, f64>,
+    best: BTreeMap<u32, f64>,
+    work: BTreeMap<(String, u32), f64>,
 }
 
 impl Baseline {
     fn of(results: &Results) -> Self {
         let serial: Vec<&Record> = results.records.iter().filter(|record| record.strategy == "serial").collect();
         let mut jobs: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-        let (mut best_s, mut work_s) = (BTreeMap::new(), BTreeMap::new());
+        let (mut bests, mut work) = (BTreeMap::new(), BTreeMap::new());
         for record in serial {
             let Some((busy_s, makespan_s)) = record.busy_sum_s.zip(record.makespan_s) else { continue };
             jobs.entry(record.decomposition.clone()).or_default().push(busy_s / record.jobs as f64);
-            work_s.insert((record.decomposition.clone(), record.repetition), busy_s);
-            let best: &mut f64 = best_s.entry(record.repetition).or_insert(makespan_s);
+            work.insert((record.decomposition.clone(), record.repetition), busy_s);
+            let best: &mut f64 = bests.entry(record.repetition).or_insert(makespan_s);
             *best = best.min(makespan_s);
         }
-        let job_s = jobs.into_iter().filter_map(|(name, times)| Some((name, median(&times)?))).collect();
-        Self { job_s, best_s, work_s }
+        let per_job = jobs.into_iter().filter_map(|(name, times)| Some((name, median(&times)?))).collect();
+        Self { per_job, best: bests, work }
     }
 }
 
@@ -44,11 +44,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let processors = results.run.machine.processors;
     let baseline = Baseline::of(results);
     let efficiency = |record: &Record| {
-        Some(baseline.best_s.get(&record.repetition)? / (in_use(record, processors) * record.makespan_s?))
+        Some(baseline.best.get(&record.repetition)? / (in_use(record, processors) * record.makespan_s?))
     };
     let mut grains: BTreeMap<String, Vec<Grain>> = BTreeMap::new();
     for (schedule, records) in results.by(Schedule::of) {
-        let Some(job_s) = baseline.job_s.get(&schedule.decomposition) else { continue };
+        let Some(job_s) = baseline.per_job.get(&schedule.decomposition) else { continue };
         let values: Vec<f64> = records.iter().filter_map(|record| efficiency(record)).collect();
         grains.entry(schedule.strategy).or_default().push((*job_s, values));
     }
@@ -108,7 +108,7 @@ fn metg_table(grains: &BTreeMap<String, Vec<Grain>>) -> Block {
 /// Processor seconds that a run took beyond the serial work on the same pieces, for each of its jobs, where jobs are smallest.
 fn overhead(results: &Results, baseline: &Baseline, processors: usize) -> Option<Block> {
     let extra_ns = |record: &Record| {
-        let work_s = baseline.work_s.get(&(record.decomposition.clone(), record.repetition))?;
+        let work_s = baseline.work.get(&(record.decomposition.clone(), record.repetition))?;
         let spent_s = in_use(record, processors) * record.makespan_s?;
         Some((spent_s - work_s) / record.jobs as f64 * 1e9)
     };

@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         name: schedule.strategy.clone(),
         dots: vec![Some(Dot { value: ratio.value, interval: Some((ratio.interval.low, ratio.interval.high)) })],
     };
-    let axis = Axis::linear(&format!("time / time of {YARDSTICK}")).including([0.95, 1.05]);
+    let axis = Axis::linear(format!("time / time of {YARDSTICK}")).including([0.95, 1.05]);
     let mut plot = DotPlot::new("Time against OpenMP's dynamic schedule", axis, ratios.iter().map(row).collect());
     plot.guides = vec![(1.0, YARDSTICK.to_string())];
     plot.subtitle = results.workload();

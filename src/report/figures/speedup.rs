@@ -1,17 +1,21 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by which Karp and Flatt explain what is missing.
 
 use crate::analysis::Estimate;
-use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction};
+use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_estimate};
+use crate::analysis::superlinear::{Evidence, cause};
 use crate::error::Result;
 use crate::measure::THREAD_PER_ROW;
+use crate::plot::dot_plot::{Dot, DotPlot, Group, Row};
 use crate::plot::style::Look;
-use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
+use crate::plot::{Axis, Curve, Figure, LineChart, Overlay, Point, Series};
 use crate::report::block::{Block, Table};
-use crate::report::results::{Results, Schedule, with_level};
-use std::collections::BTreeMap;
+use crate::report::results::{LEVEL, Results, Schedule, median_with_interval, with_level};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// More threads than this are no axis any more: strategies that start so many by a rule of their own become level lines.
 const MOST_ON_AXIS: usize = 16;
+/// More lines than this cannot be told apart in one chart: strategies become named rows instead.
+const MOST_LINES: usize = 8;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let speedups = results.speedups();
@@ -26,18 +30,29 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             "interval (confidence)",
             "efficiency per thread",
             "efficiency per processor in use",
-            "e, p = threads",
-            "e, p = processors in use",
+            "e, p = threads (95 %)",
+            "e, p = processors in use (95 %)",
             "remark",
         ]
         .map(String::from)
         .to_vec(),
-        rows: speedups.iter().map(|(schedule, estimate)| row(schedule, estimate, processors)).collect(),
+        rows: speedups.iter().map(|(schedule, estimate)| row(results, schedule, estimate)).collect(),
     };
-    let mut blocks = vec![
-        Block::Figure { stem: "speedup", figure: Box::new(speedup_chart(results, &speedups)) },
-        Block::Figure { stem: "efficiency", figure: Box::new(efficiency_chart(results, &speedups)) },
-    ];
+    let strategies: BTreeSet<&str> = speedups.iter().map(|(schedule, _)| schedule.strategy.as_str()).collect();
+    let figures: [(&'static str, Box<dyn Figure>); 2] = if strategies.len() > MOST_LINES {
+        let per_processor = |speedup: f64, threads: usize| speedup / in_use(threads, processors) as f64;
+        let of_speedup =
+            dots(results, &speedups, "Speedup by strategy", "speedup against serial", |speedup, _| speedup);
+        let of_efficiency =
+            dots(results, &speedups, "Efficiency by strategy", "speedup per processor in use", per_processor);
+        [("speedup", Box::new(of_speedup)), ("efficiency", Box::new(of_efficiency))]
+    } else {
+        [
+            ("speedup", Box::new(speedup_chart(results, &speedups))),
+            ("efficiency", Box::new(efficiency_chart(results, &speedups))),
+        ]
+    };
+    let mut blocks: Vec<Block> = figures.into_iter().map(|(stem, figure)| Block::Figure { stem, figure }).collect();
     blocks.extend(findings(results, &speedups));
     blocks.push(Block::Table { stem: "karp-flatt", table });
     Ok(blocks)
@@ -48,15 +63,22 @@ fn in_use(threads: usize, processors: usize) -> usize {
     threads.min(processors)
 }
 
-fn row(schedule: &Schedule, estimate: &Estimate, processors: usize) -> Vec<String> {
+fn row(results: &Results, schedule: &Schedule, estimate: &Estimate) -> Vec<String> {
     let (speedup, interval, threads) = (estimate.value, estimate.interval, schedule.threads);
-    let used = in_use(threads, processors);
+    let used = in_use(threads, results.run.machine.processors);
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.3}"));
-    let relative = if threads == 1 { "relative speedup: the strategy's own cost at one worker" } else { "" };
+    let speedups = results.paired_speedups(schedule);
+    let fraction = |workers: usize| {
+        serial_fraction_estimate(&speedups, workers, LEVEL).map_or_else(
+            || "-".to_string(),
+            |e| format!("{:.3}, {:.3} to {:.3}", e.value, e.interval.low, e.interval.high),
+        )
+    };
     let remark = match oddity(&interval, used) {
-        Some(Oddity::Superlinear) => "superlinear: more than the processors in use",
-        Some(Oddity::Slowdown) if threads > 1 => "slower than serial",
-        _ => relative,
+        Some(Oddity::Superlinear) => format!("superlinear; {}", cause(&evidence(results, schedule))),
+        Some(Oddity::Slowdown) if threads > 1 => "slower than serial".to_string(),
+        _ if threads == 1 => "relative speedup: the strategy's own cost at one worker".to_string(),
+        _ => String::new(),
     };
     vec![
         schedule.strategy.clone(),
@@ -66,10 +88,69 @@ fn row(schedule: &Schedule, estimate: &Estimate, processors: usize) -> Vec<Strin
         with_level(&interval, 3),
         number(efficiency(speedup, threads)),
         number(efficiency(speedup, used)),
-        number(serial_fraction(speedup, threads)),
-        number(serial_fraction(speedup, used)),
-        remark.to_string(),
+        fraction(threads),
+        fraction(used),
+        remark,
     ]
+}
+
+/// What is known beside a speedup that is too good.
+fn evidence(results: &Results, schedule: &Schedule) -> Evidence {
+    let alone = Schedule { threads: 1, ..schedule.clone() };
+    let doubts = ["foreign-load", "drift", "too-short"];
+    let warned = |record: &&crate::measure::Record| {
+        Schedule::of(record) == *schedule && doubts.iter().any(|doubt| record.warnings.contains(doubt))
+    };
+    let machine = &results.run.machine;
+    Evidence {
+        at_one_worker: median_with_interval(&results.paired_speedups(&alone)).and_then(|(_, interval)| interval),
+        warnings: results.records.iter().filter(warned).count(),
+        processors: Some(machine.processors),
+        physical_cores: Some(machine.physical_cores).filter(|cores| *cores > 0),
+        share_fits_cache: None,
+    }
+}
+
+/// A row for each strategy, a dot for each number of threads; strategies with a rule of their own have a single dot.
+fn dots(
+    results: &Results,
+    speedups: &[(Schedule, Estimate)],
+    title: &str,
+    axis: &str,
+    value: impl Fn(f64, usize) -> f64,
+) -> DotPlot {
+    let mut threads: Vec<usize> =
+        speedups.iter().map(|(s, _)| s.threads).filter(|threads| *threads <= MOST_ON_AXIS).collect();
+    threads.sort_unstable();
+    threads.dedup();
+    let mut rows: BTreeMap<&str, Vec<Option<Dot>>> = BTreeMap::new();
+    for (schedule, estimate) in speedups {
+        let dots = rows.entry(&schedule.strategy).or_insert_with(|| vec![None; threads.len() + 1]);
+        let group = threads.iter().position(|threads| *threads == schedule.threads).unwrap_or(threads.len());
+        let of = |speedup: f64| value(speedup, schedule.threads);
+        let interval = Some((of(estimate.interval.low), of(estimate.interval.high)));
+        dots[group] = Some(Dot { value: of(estimate.value), interval });
+    }
+    let mut rows: Vec<Row> = rows.into_iter().map(|(name, dots)| Row { name: name.to_string(), dots }).collect();
+    let best = |row: &Row| row.dots.iter().flatten().map(|dot| dot.value).fold(0.0, f64::max);
+    rows.sort_by(|a, b| best(b).total_cmp(&best(a)));
+    let mut names: Vec<String> = threads
+        .iter()
+        .map(|threads| if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") })
+        .collect();
+    if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
+        names.push("a thread per job".to_string());
+    } else {
+        for row in &mut rows {
+            row.dots.truncate(threads.len());
+        }
+    }
+    let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows);
+    plot.groups = names.into_iter().enumerate().map(|(index, name)| Group { name, look: Look::nth(index) }).collect();
+    plot.guides = vec![(1.0, "1".to_string())];
+    plot.subtitle = results.workload();
+    plot.caption = "Median of ratios within a repetition. Bars: distribution-free interval.".to_string();
+    plot
 }
 
 /// One series a strategy, and the thread counts that occur.

@@ -1,0 +1,79 @@
+//! Trace files that are none, and options of `simulate` and `trace` that make no sense.
+
+use super::program::{finish, pathmark};
+use super::refused;
+use std::fs;
+
+const RENDER: [&str; 10] =
+    ["render", "cornell", "--size", "24x16", "--spp", "4", "--decomposition", "tiles:8x8", "--trace", "run.csv"];
+
+#[test]
+fn a_damaged_trace_is_refused_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    finish(pathmark(folder.path(), &RENDER)).with_code(0);
+    let path = folder.path().join("run.csv");
+    let whole = fs::read_to_string(&path).unwrap();
+    let lines: Vec<&str> = whole.lines().collect();
+    let second_job = lines[3];
+    let cases = [
+        (String::new(), "run.csv:1:"),
+        ("job,worker\n0,0\n".to_string(), "run.csv:1:"),
+        (whole.replacen("\"spp\"", "\"ssp\"", 1), "run.csv:1:"),
+        (lines[..2].join("\n"), "run.csv:2:"),
+        (whole.replace(second_job, &second_job.replacen('1', "7", 1)), "run.csv:4:"),
+        (whole.replace(second_job, "1,0,0.5,0.25,1,1,0,0,8,8,0,4"), "run.csv:4:"),
+        (whole.replace(second_job, "1,0,0.5,NaN,1,1,0,0,8,8,0,4"), "run.csv:4:"),
+        (whole.replace(second_job, "1,0,0.5"), "run.csv:4:"),
+    ];
+    for (text, place) in cases {
+        fs::write(&path, &text).unwrap();
+        for arguments in [&["trace", "run.csv", "-o", "run.svg"][..], &["simulate", "run.csv", "--out", "new"]] {
+            refused(folder.path(), arguments, 2, &[place]);
+        }
+    }
+}
+
+#[test]
+fn options_that_make_no_sense_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    finish(pathmark(folder.path(), &RENDER)).with_code(0);
+    let cases: [(&[&str], &[&str]); 9] = [
+        (&["--workers", "0"], &["workers", "0", "1.."]),
+        (&["--workers", "8..2"], &["workers", "8..2"]),
+        (&["--workers", "many"], &["workers", "many"]),
+        (&["--slow-core", "0"], &["slow-core", "0"]),
+        (&["--slow-core", "NaN"], &["slow-core", "NaN"]),
+        (&["--efficiency-cores", "4"], &["efficiency-cores", "4"]),
+        (&["--noise", "1.5"], &["noise", "1.5", "below 1"]),
+        (&["--strategies", "magic"], &["strategy", "magic", "work-stealing"]),
+        (&["--strategies", "dynamic:x"], &["dynamic"]),
+    ];
+    for (options, said) in cases {
+        refused(folder.path(), &[&["simulate", "run.csv", "--out", "new"][..], options].concat(), 2, said);
+    }
+    refused(folder.path(), &["trace", "run.csv", "-o", "run.gif"], 2, &["run.gif", ".svg", ".json"]);
+    refused(folder.path(), &["trace", "none.csv"], 2, &["none.csv"]);
+    refused(folder.path(), &["simulate", "none.csv"], 2, &["none.csv"]);
+}
+
+/// A render that could not write its trace is refused before it is rendered.
+#[test]
+fn a_trace_that_cannot_be_written_is_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["render", "cornell", "--trace", "no/such/folder/run.csv"];
+    refused(folder.path(), &arguments, 3, &["no/such/folder"]);
+}
+
+#[test]
+fn references_need_a_deterministic_sampler() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["reference", "cornell", "--spp", "4", "--sampler", "per-thread"];
+    refused(folder.path(), &arguments, 2, &["sampler", "per-thread", "independent"]);
+}
+
+#[test]
+fn split_samples_and_the_subpixel_clamp_exclude_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["render", "cornell", "--subpixel-clamp", "--decomposition", "samples:16"];
+    refused(folder.path(), &arguments, 2, &["decomposition", "samples:16", "clamp"]);
+}

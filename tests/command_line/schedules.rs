@@ -1,0 +1,75 @@
+//! What a run leaves of its schedule, and what can be made of it: traces, timelines, forecasts.
+
+use super::experiment::{TINY, write_tiny};
+use super::{json, run};
+use std::fs;
+use std::path::Path;
+
+const SIZE: [&str; 6] = ["--size", "24x16", "--spp", "4", "--decomposition", "tiles:8x8"];
+
+/// `cornell` in six tiles, with a trace in `run.csv`.
+fn traced(folder: &Path, strategy: &str, threads: &str) {
+    let who = ["--strategy", strategy, "--threads", threads, "--trace", "run.csv"];
+    run(folder, &[&["render", "cornell"][..], &SIZE, &who].concat());
+}
+
+#[test]
+fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    traced(folder.path(), "static-cyclic", "2");
+    let text = fs::read_to_string(folder.path().join("run.csv")).unwrap();
+    let mut lines = text.lines();
+    let header = json(lines.next().unwrap().trim_start_matches("# "));
+    assert_eq!(header["settings"]["strategy"], "static-cyclic");
+    let rows: Vec<Vec<&str>> = lines.skip(1).map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 6);
+    let column = |index: usize| rows.iter().map(|row| row[index].parse::<f64>().unwrap()).collect::<Vec<_>>();
+    let (workers, paths) = (column(1), column(4));
+    // Dealt out like cards: two workers, turn by turn.
+    assert!(workers.windows(2).all(|pair| pair[0] != pair[1]), "{workers:?}");
+    assert!(paths.iter().all(|paths| *paths == 256.0), "{paths:?}");
+    let makespan = header["makespan_s"].as_f64().unwrap();
+    assert!(column(2).iter().zip(column(3)).all(|(start, stop)| 0.0 <= *start && *start < stop && stop <= makespan));
+
+    let said = run(folder.path(), &["trace", "run.csv", "-o", "run.svg"]).out;
+    assert!(said.contains("6 jobs on 2 workers"), "{said}");
+    assert!(fs::read_to_string(folder.path().join("run.svg")).unwrap().contains("static-cyclic"));
+    run(folder.path(), &["trace", "run.csv", "-o", "run.json"]);
+    let events = json(&fs::read_to_string(folder.path().join("run.json")).unwrap());
+    let complete = events["traceEvents"].as_array().unwrap().iter().filter(|event| event["ph"] == "X").count();
+    assert_eq!(complete, 6);
+    run(folder.path(), &["trace", "run.csv", "-o", "run.png"]);
+}
+
+/// Predicts this machine, then others; the forecast of one worker is the sum of the jobs and what handing them out costs.
+#[test]
+fn a_trace_is_replayed_on_other_machines() {
+    let folder = tempfile::tempdir().unwrap();
+    traced(folder.path(), "serial", "1");
+    let chosen = ["--strategies", "static-blocks,shared-counter,dynamic:2", "--workers", "1,2,1000"];
+    let said = run(folder.path(), &[&["simulate", "run.csv", "--out", "forecast"][..], &chosen].concat()).out;
+    assert!(said.contains("median absolute error"), "{said}");
+    let table = fs::read_to_string(folder.path().join("forecast/forecast.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
+    let expected = ["static-blocks", "shared-counter", "dynamic:2", "longest-first"];
+    assert_eq!(names, expected.map(|name| [name; 3]).concat());
+    assert!(folder.path().join("forecast/forecast-speedup.svg").is_file());
+
+    let slower = ["simulate", "run.csv", "--no-check", "--workers", "2", "--slow-core", "0.5", "--noise", "0.02:0.5"];
+    let said = run(folder.path(), &slower).out;
+    assert!(!said.contains("median absolute error"), "{said}");
+}
+
+/// An experiment that keeps traces is predicted from its own rows.
+#[test]
+fn an_experiment_with_traces_is_predicted_from_its_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        TINY.replace("figures = [\"speedup\", ", "keep = [\"traces\", \"calibration\"]\nfigures = [\"forecast\", ");
+    write_tiny(folder.path(), &text);
+    run(folder.path(), &["run", "tiny.toml", "--out", "out"]);
+    assert_eq!(fs::read_dir(folder.path().join("out/tiny/traces")).unwrap().count(), 15);
+    let said = run(folder.path(), &["simulate", "out/tiny", "--workers", "1..4"]).out;
+    assert!(said.contains("4 schedules of this machine predicted"), "{said}");
+}
