@@ -19,8 +19,11 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterato
 /// Runs so many jobs.
 pub(crate) type Run = Box<dyn FnMut(usize)>;
 
-/// The strategies whose mechanisms are here, and those mechanisms for a number of threads.
-pub(crate) const PAIRS: [(&str, fn(usize) -> Run); 6] = [
+/// A mechanism for a number of threads.
+pub(crate) type Make = fn(usize) -> Run;
+
+/// The strategies whose mechanisms are here.
+pub(crate) const PAIRS: [(&str, Make); 6] = [
     ("serial", plain_loop),
     ("shared-counter", counter),
     ("mutex-queue", mutex_queue),

@@ -33,9 +33,10 @@ fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
 
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
     config.discipline(&ENTRY)?;
-    let host = Host::new(&config)?;
+    let threads = config.threads;
+    let host = Host::new(config)?;
     // Chili counts the thread that uses the pool, here the host, and starts one fewer. Its clock's thread comes on top.
-    let pool = ThreadPool::with_config(PoolConfig { thread_count: Some(config.threads), ..PoolConfig::default() });
+    let pool = ThreadPool::with_config(PoolConfig { thread_count: Some(threads), ..PoolConfig::default() });
     Ok(Box::new(Chili { host, pool: Arc::new(pool) }))
 }
 

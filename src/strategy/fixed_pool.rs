@@ -34,13 +34,14 @@ fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
 
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
     config.discipline(&ENTRY)?;
-    let threads = config.threads.get();
+    let Config { threads, spawner, .. } = config;
+    let threads = threads.get();
     // Declared before the sender and so dropped after it, should a worker be missing: the others then see the end and leave.
     let mut crew = Crew::default();
     let (rounds, calls) = channel::unbounded::<Round>();
     for _ in 0..threads {
         let calls = calls.clone();
-        crew.hire(&*config.spawner, threads, move || calls.into_iter().for_each(Round::work))?;
+        crew.hire(&*spawner, threads, move || calls.into_iter().for_each(Round::work))?;
     }
     Ok(Box::new(FixedPool { rounds, crew }))
 }

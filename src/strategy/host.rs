@@ -20,11 +20,11 @@ pub(super) struct Host {
 }
 
 impl Host {
-    /// Starts the first worker of `config.threads`.
-    pub(super) fn new(config: &Config) -> Result<Self, StrategyError> {
+    /// Starts the first of so many workers.
+    pub(super) fn new(Config { threads, spawner, .. }: Config) -> Result<Self, StrategyError> {
         let (rounds, calls) = channel::unbounded::<Round>();
         let mut crew = Crew::default();
-        crew.hire(&*config.spawner, config.threads.get(), move || calls.into_iter().for_each(|round| round()))?;
+        crew.hire(&*spawner, threads.get(), move || calls.into_iter().for_each(|round| round()))?;
         Ok(Self { rounds, _crew: crew })
     }
 

@@ -28,7 +28,7 @@ fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
 }
 
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(Rayon(Pool::new(&config, &ENTRY)?)))
+    Ok(Box::new(Rayon(Pool::new(config, &ENTRY)?)))
 }
 
 struct Rayon(Pool);

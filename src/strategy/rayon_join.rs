@@ -31,7 +31,7 @@ fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
 }
 
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(RayonJoin(Pool::new(&config, &ENTRY)?)))
+    Ok(Box::new(RayonJoin(Pool::new(config, &ENTRY)?)))
 }
 
 struct RayonJoin(Pool);

@@ -17,9 +17,10 @@ pub(super) struct Pool {
 
 impl Pool {
     /// Starts the pool of `entry`'s strategy. It has the size asked for; rayon's global pool, which has the machine's size, is never touched.
-    pub(super) fn new(config: &Config, entry: &Entry) -> Result<Self, StrategyError> {
+    pub(super) fn new(config: Config, entry: &Entry) -> Result<Self, StrategyError> {
         config.discipline(entry)?;
-        let (threads, most) = (config.threads.get(), max_num_threads());
+        let Config { threads, spawner, .. } = config;
+        let (threads, most) = (threads.get(), max_num_threads());
         if threads > most {
             return Err(StrategyError::TooManyThreads { strategy: entry.name, threads, most });
         }
@@ -28,7 +29,7 @@ impl Pool {
         let pool = ThreadPoolBuilder::new()
             .num_threads(threads)
             .spawn_handler(|worker| {
-                crew.hire(&*config.spawner, threads, || worker.run()).map_err(|error| {
+                crew.hire(&*spawner, threads, || worker.run()).map_err(|error| {
                     refusal = Some(error);
                     io::Error::from(io::ErrorKind::Other)
                 })

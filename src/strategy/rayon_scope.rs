@@ -32,7 +32,7 @@ fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
 }
 
 fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    Ok(Box::new(RayonScope(Pool::new(&config, &ENTRY)?)))
+    Ok(Box::new(RayonScope(Pool::new(config, &ENTRY)?)))
 }
 
 struct RayonScope(Pool);

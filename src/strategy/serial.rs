@@ -23,8 +23,8 @@ fn discipline(parameter: Option<&str>) -> Result<Discipline, StrategyError> {
     unless_set(ENTRY.name, parameter, Discipline::InOrder)
 }
 
-fn new(config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
-    config.discipline(&ENTRY)?;
+fn new(Config { parameter, .. }: Config) -> Result<Box<dyn Strategy>, StrategyError> {
+    discipline(parameter.as_deref())?;
     Ok(Box::new(Serial))
 }
 

@@ -29,14 +29,14 @@ impl Taken {
         job: impl Fn(usize),
     ) {
         let mut taken = 0;
-        let backoff = Backoff::new();
+        let mut backoff = Backoff::new();
         while !panics.stop_asked() {
             if let Some(index) = next() {
                 taken += 1;
                 // Nobody else writes here.
                 self.by_worker[worker].store(taken, Ordering::Relaxed);
                 job(index);
-                backoff.reset();
+                backoff = Backoff::new();
             } else if self.all() {
                 break;
             } else {

@@ -5,16 +5,14 @@ pub(super) use loom::sync::Mutex;
 pub(super) use loom::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// Waiting, of which loom must be told, or it would try an endless loop to its end.
-pub(super) struct Backoff;
+pub(super) struct Backoff(fn());
 
 impl Backoff {
     pub(super) fn new() -> Self {
-        Self
+        Self(loom::thread::yield_now)
     }
 
-    pub(super) fn reset(&self) {}
-
     pub(super) fn snooze(&self) {
-        loom::thread::yield_now();
+        (self.0)();
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn new(config: Config, entry: &Entry, schedule: Schedule) -> Result<B
     if threads > most {
         return Err(StrategyError::TooManyThreads { strategy: entry.name, threads, most });
     }
-    Ok(Box::new(OpenMp { name: entry.name, host: Host::new(&config)?, schedule, chunk, threads }))
+    Ok(Box::new(OpenMp { name: entry.name, host: Host::new(config)?, schedule, chunk, threads }))
 }
 
 struct OpenMp {
