@@ -154,7 +154,13 @@ mod tests {
     fn rows(threads: &[usize], seconds: impl Fn(f64, f64) -> f64) -> Vec<CalibrationRow> {
         let at = |&threads: &usize| {
             let seconds = |jobs: usize| seconds(jobs as f64, threads as f64);
-            [200, 4000].map(|jobs| CalibrationRow { strategy: String::new(), threads, jobs, seconds: seconds(jobs) })
+            [200, 4000].map(|jobs| CalibrationRow {
+                strategy: String::new(),
+                threads,
+                jobs,
+                seconds: seconds(jobs),
+                cpu_s: None,
+            })
         };
         threads.iter().flat_map(at).collect()
     }
