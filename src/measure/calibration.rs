@@ -117,6 +117,20 @@ mod tests {
         assert_eq!(thread_counts(6), [1, 2, 4, 6]);
     }
 
+    #[test]
+    fn rows_survive_a_file() {
+        let row =
+            |cpu_s| CalibrationRow { strategy: "dynamic:4".to_owned(), threads: 2, jobs: 200, seconds: 0.1, cpu_s };
+        let rows = vec![row(None), row(Some(0.3))];
+        let mut file = csv::Writer::from_writer(Vec::new());
+        for row in &rows {
+            file.serialize(row).unwrap();
+        }
+        let bytes = file.into_inner().unwrap();
+        let read: Vec<CalibrationRow> = csv::Reader::from_reader(&*bytes).deserialize().map(Result::unwrap).collect();
+        assert_eq!(read, rows);
+    }
+
     /// Each strategy gets a positive time for two numbers of jobs, and a strategy that is none is refused.
     #[test]
     fn every_strategy_is_timed() {

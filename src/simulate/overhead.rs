@@ -205,7 +205,9 @@ mod tests {
         let at = Overheads::fit(&rows, Discipline::AllAtOnce).at(64);
         assert!(close(at.run_s, RUN) && close(at.start_s, START) && at.job_s == 0.0, "{at:?}");
         // Half as much again is used by the threads themselves.
-        rows.iter_mut().for_each(|row| row.cpu_s = Some(1e-3 + row.jobs as f64 * 1.5 * START));
+        for row in &mut rows {
+            row.cpu_s = Some(1e-3 + row.jobs as f64 * 1.5 * START);
+        }
         let at = Overheads::fit(&rows, Discipline::AllAtOnce).at(64);
         assert!(close(at.start_s, START) && close(at.job_s, 0.5 * START), "{at:?}");
     }
