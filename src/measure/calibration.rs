@@ -10,6 +10,7 @@
 use super::available_threads;
 use super::settings::strategy_named;
 use super::trace::median;
+use super::usage::Usage;
 use crate::error::{Error, Result};
 use crate::strategy::{Config, Workers};
 use serde::{Deserialize, Serialize};
@@ -23,7 +24,7 @@ const ROUNDS: usize = 25;
 /// No round is begun after that; three are made in any case.
 const BUDGET: Duration = Duration::from_millis(1200);
 /// Jobs of a run: few, for what a run costs, and many, for what a job costs.
-const JOBS: [usize; 2] = [200, 4000];
+const JOBS: [usize; 2] = [200, 20_000];
 /// Likewise where each job is a thread.
 const JOBS_WITH_THREADS: [usize; 2] = [16, 112];
 
@@ -39,6 +40,8 @@ pub struct CalibrationRow {
     pub jobs: usize,
     /// Seconds of the run.
     pub seconds: f64,
+    /// Seconds of CPU time that this process used meanwhile, on all processors; empty where the system does not tell.
+    pub cpu_s: Option<f64>,
 }
 
 /// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`].
@@ -52,24 +55,32 @@ pub fn calibrate(strategies: &[String]) -> Result<Vec<CalibrationRow>> {
             Workers::Threads => (thread_counts(available_threads()), JOBS),
         };
         for threads in threads {
-            rows.extend(jobs.map(|jobs| CalibrationRow { strategy: strategy.clone(), threads, jobs, seconds: 0.0 }));
+            rows.extend(jobs.map(|jobs| CalibrationRow {
+                strategy: strategy.clone(),
+                threads,
+                jobs,
+                seconds: 0.0,
+                cpu_s: None,
+            }));
         }
     }
-    let mut times = vec![Vec::new(); rows.len()];
+    let mut times = vec![(Vec::new(), Vec::new()); rows.len()];
     let start = Instant::now();
     for round in 0..=ROUNDS {
         if round > 3 && start.elapsed() > BUDGET {
             break;
         }
         for (row, times) in rows.iter().zip(&mut times) {
-            let seconds = run_empty_jobs(row)?;
+            let (seconds, cpu_s) = run_empty_jobs(row)?;
             if round > 0 {
-                times.push(seconds);
+                times.0.push(seconds);
+                times.1.extend(cpu_s);
             }
         }
     }
-    for (row, times) in rows.iter_mut().zip(&mut times) {
-        row.seconds = median(times).unwrap_or_default();
+    for (row, (seconds, cpu_s)) in rows.iter_mut().zip(&mut times) {
+        row.seconds = median(seconds).unwrap_or_default();
+        row.cpu_s = median(cpu_s);
     }
     Ok(rows)
 }
@@ -80,14 +91,18 @@ fn thread_counts(most: usize) -> Vec<usize> {
     doubled.chain([most]).collect()
 }
 
-fn run_empty_jobs(row: &CalibrationRow) -> Result<f64> {
+/// Wall and CPU time of one run.
+fn run_empty_jobs(row: &CalibrationRow) -> Result<(f64, Option<f64>)> {
     let (entry, parameter) = strategy_named(&row.strategy)?;
     let failed = |error| Error::system("calibrating strategy", entry.name, std::io::Error::other(error));
     let threads = NonZeroUsize::new(row.threads).unwrap_or(NonZeroUsize::MIN);
     let mut strategy = (entry.new)(Config { parameter, ..Config::new(threads) }).map_err(failed)?;
+    let usage = Usage::now();
     let start = Instant::now();
     strategy.run(row.jobs, Arc::new(|index| _ = black_box(index))).map_err(failed)?;
-    Ok(start.elapsed().as_secs_f64())
+    let seconds = start.elapsed().as_secs_f64();
+    let used = usage.zip(Usage::now()).map(|(before, after)| after.since(&before));
+    Ok((seconds, used.map(|used| used.user_s + used.system_s)))
 }
 
 #[cfg(test)]
@@ -100,6 +115,20 @@ mod tests {
         assert_eq!(thread_counts(1), [1]);
         assert_eq!(thread_counts(2), [1, 2]);
         assert_eq!(thread_counts(6), [1, 2, 4, 6]);
+    }
+
+    #[test]
+    fn rows_survive_a_file() {
+        let row =
+            |cpu_s| CalibrationRow { strategy: "dynamic:4".to_owned(), threads: 2, jobs: 200, seconds: 0.1, cpu_s };
+        let rows = vec![row(None), row(Some(0.3))];
+        let mut file = csv::Writer::from_writer(Vec::new());
+        for row in &rows {
+            file.serialize(row).unwrap();
+        }
+        let bytes = file.into_inner().unwrap();
+        let read: Vec<CalibrationRow> = csv::Reader::from_reader(&*bytes).deserialize().map(Result::unwrap).collect();
+        assert_eq!(read, rows);
     }
 
     /// Each strategy gets a positive time for two numbers of jobs, and a strategy that is none is refused.

@@ -47,7 +47,8 @@ struct Place {
 impl Overheads {
     /// From rows of empty jobs run by one strategy, at one number of jobs or (better) several for each number of threads.
     ///
-    /// * Under [`Discipline::AllAtOnce`] the caller pays for each job: its slope is `start`.
+    /// * Under [`Discipline::AllAtOnce`] the caller pays for each job: its slope is `start`. What the slope of the CPU time has above that
+    ///   is the thread's own beginning and end, on another processor: `job`.
     /// * A chunk rule that hands out single jobs, and a queue in which all jobs start, are the place that all share; their slope at
     ///   p threads is taken for its rate, although the place could be faster than p workers are.
     /// * A rule with larger chunks has too few of them to be told from its jobs: [`Overheads::knows_chunks`] is false and chunks are
@@ -57,14 +58,17 @@ impl Overheads {
         let mut threads: Vec<usize> = rows.iter().map(|row| row.threads).collect();
         threads.sort_unstable();
         threads.dedup();
-        let line_at = |threads: usize| {
+        let line_at = |threads: usize, seconds: fn(&CalibrationRow) -> Option<f64>| {
             let of = rows.iter().filter(|row| row.threads == threads);
-            Line::rising(&of.map(|row| (row.jobs as f64, row.seconds)).collect::<Vec<_>>())
+            Line::rising(&of.filter_map(|row| Some((row.jobs as f64, seconds(row)?))).collect::<Vec<_>>())
         };
-        let lines: Vec<(usize, Line)> = threads.into_iter().map(|threads| (threads, line_at(threads))).collect();
-        let Some(&(_, first)) = lines.first() else { return Self::default() };
+        let wall = |row: &CalibrationRow| Some(row.seconds);
+        let lines: Vec<(usize, Line)> = threads.into_iter().map(|threads| (threads, line_at(threads, wall))).collect();
+        let Some(&(fewest, first)) = lines.first() else { return Self::default() };
         if let Discipline::AllAtOnce = discipline {
-            return Self { run_s: first.at_zero, start_s: first.slope, ..Self::default() };
+            let cpu = line_at(fewest, |row| row.cpu_s);
+            let job_s = (cpu.slope - first.slope).max(0.0);
+            return Self { run_s: first.at_zero, start_s: first.slope, job_s, place: Some(Place::default()) };
         }
         let over_threads =
             Line::rising(&lines.iter().map(|(threads, line)| (*threads as f64, line.at_zero)).collect::<Vec<_>>());
@@ -150,7 +154,13 @@ mod tests {
     fn rows(threads: &[usize], seconds: impl Fn(f64, f64) -> f64) -> Vec<CalibrationRow> {
         let at = |&threads: &usize| {
             let seconds = |jobs: usize| seconds(jobs as f64, threads as f64);
-            [200, 4000].map(|jobs| CalibrationRow { strategy: String::new(), threads, jobs, seconds: seconds(jobs) })
+            [200, 4000].map(|jobs| CalibrationRow {
+                strategy: String::new(),
+                threads,
+                jobs,
+                seconds: seconds(jobs),
+                cpu_s: None,
+            })
         };
         threads.iter().flat_map(at).collect()
     }
@@ -191,8 +201,15 @@ mod tests {
 
     #[test]
     fn a_thread_for_each_job_costs_the_caller_a_start() {
-        let at = Overheads::fit(&rows(&[1], |n, _| RUN + n * START), Discipline::AllAtOnce).at(64);
+        let mut rows = rows(&[1], |n, _| RUN + n * START);
+        let at = Overheads::fit(&rows, Discipline::AllAtOnce).at(64);
         assert!(close(at.run_s, RUN) && close(at.start_s, START) && at.job_s == 0.0, "{at:?}");
+        // Half as much again is used by the threads themselves.
+        for row in &mut rows {
+            row.cpu_s = Some(1e-3 + row.jobs as f64 * 1.5 * START);
+        }
+        let at = Overheads::fit(&rows, Discipline::AllAtOnce).at(64);
+        assert!(close(at.start_s, START) && close(at.job_s, 0.5 * START), "{at:?}");
     }
 
     #[test]

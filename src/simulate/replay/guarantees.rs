@@ -26,10 +26,9 @@ fn disciplines() -> Vec<(String, Discipline)> {
 fn greedy(discipline: Discipline, jobs: usize, workers: usize) -> bool {
     match discipline {
         Discipline::Chunks(rule) => rule.chunks(jobs, workers).all(|chunk| chunk.len() == 1),
-        Discipline::Stealing(_) | Discipline::Halving => true,
         Discipline::InOrder | Discipline::Dealt(_) => workers == 1,
-        // No list schedule, but Graham's argument holds: a thread that has less than a processor knows that all processors are busy.
-        Discipline::AllAtOnce => true,
+        // Sharing is no list schedule, but Graham's argument holds: who has less than a processor knows that all of them are busy.
+        Discipline::Stealing(_) | Discipline::Halving | Discipline::AllAtOnce => true,
     }
 }
 
