@@ -88,7 +88,9 @@ mod tests {
                 let orders = [parts.clone(), parts.into_iter().rev().collect(), [odd, even].concat()];
                 for order in orders {
                     let mut assembly = Assembly::new(1, 1, 0..spp);
-                    order.iter().for_each(|samples| assembly.add(samples, part(samples.clone())));
+                    for samples in &order {
+                        assembly.add(samples, part(samples.clone()));
+                    }
                     assert_eq!(assembly.finish().pixels(), [sum(0..spp)], "{spp} spp in {order:?}");
                 }
             }

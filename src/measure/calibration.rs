@@ -127,7 +127,8 @@ mod tests {
             file.serialize(row).unwrap();
         }
         let bytes = file.into_inner().unwrap();
-        let read: Vec<CalibrationRow> = csv::Reader::from_reader(&*bytes).deserialize().map(std::result::Result::unwrap).collect();
+        let read: Vec<CalibrationRow> =
+            csv::Reader::from_reader(&*bytes).deserialize().map(std::result::Result::unwrap).collect();
         assert_eq!(read, rows);
     }
 
