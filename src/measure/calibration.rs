@@ -127,9 +127,9 @@ mod tests {
             file.serialize(row).unwrap();
         }
         let bytes = file.into_inner().unwrap();
-        let read: Vec<CalibrationRow> =
-            csv::Reader::from_reader(&*bytes).deserialize().map(std::result::Result::unwrap).collect();
-        assert_eq!(read, rows);
+        let read: std::result::Result<Vec<CalibrationRow>, _> =
+            csv::Reader::from_reader(&*bytes).deserialize().collect();
+        assert_eq!(read.unwrap(), rows);
     }
 
     /// Each strategy gets a positive time for two numbers of jobs, and a strategy that is none is refused.
