@@ -5,7 +5,7 @@ use crate::estimator::ESTIMATORS;
 use crate::film::check_size;
 use crate::kernel::{KERNELS, Spec};
 use crate::sampling::REFERENCE_SEEDS;
-use crate::strategy::{self, Entry, STRATEGIES};
+use crate::strategy::{self, Entry, STRATEGIES, StrategyError};
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
 
@@ -70,7 +70,12 @@ pub fn strategy_named(text: &str) -> Result<(&'static Entry, Option<String>)> {
         InputError::new("strategy", name, "there is no strategy of that name")
             .allowed(format!("{}, {THREAD_PER_ROW}", names.join(", ")))
     })?;
-    Ok((entry, parameter))
+    match (entry.discipline)(parameter.as_deref()) {
+        Err(StrategyError::Parameter { allowed, .. }) => {
+            Err(InputError::new("strategy", text, "has no such parameter").allowed(allowed).into())
+        }
+        _ => Ok((entry, parameter)),
+    }
 }
 
 /// Threads that this process may use at once.

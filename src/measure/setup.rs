@@ -257,14 +257,7 @@ impl Setup {
     }
 
     fn strategy_error(&self, error: StrategyError) -> Error {
-        match error {
-            StrategyError::Parameter { value, allowed, .. } => {
-                InputError::new("strategy", format!("{}:{value}", self.strategy.name), "has no such parameter")
-                    .allowed(allowed)
-                    .into()
-            }
-            other => Error::system("running strategy", self.strategy.name, std::io::Error::other(other)),
-        }
+        Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
     }
 
     fn warnings(&self, counts: &Counts, workers_used: u32) -> Vec<Warning> {

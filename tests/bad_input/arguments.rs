@@ -4,7 +4,11 @@ use super::refused;
 
 /// Options of `render cornell` that are wrong, and what the message must hold besides: field, value, what is allowed.
 const WRONG: &[(&[&str], &[&str])] = &[
-    (&["--strategy", "guided"], &["strategy", "guided", "work-stealing", "thread-per-row"]),
+    (&["--strategy", "stealth"], &["strategy", "stealth", "work-stealing", "thread-per-row"]),
+    (&["--strategy", "dynamic:0"], &["strategy", "dynamic:0", "from 1"]),
+    (&["--strategy", "rayon:3"], &["strategy", "rayon:3", "none"]),
+    (&["--strategy", "steal-half:poorest"], &["strategy", "steal-half:poorest", "richest"]),
+    (&["--output", "pigeon"], &["output", "pigeon", "slots"]),
     (&["--strategy", ""], &["strategy", "work-stealing"]),
     (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:32x32"]),
     (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "from 1"]),

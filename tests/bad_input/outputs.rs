@@ -23,7 +23,7 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
         ("image.tga", &["image.tga", "png", "ppm", "bmp", "hdr", "exr", "pfm"]),
         ("image", &["image", "png", "pfm"]),
         ("file", &["file", "png", "pfm"]),
-        ("", &["output"]),
+        ("", &["image"]),
     ];
     if cfg!(target_os = "linux") {
         std::os::unix::fs::symlink("/dev/full", folder.path().join("full.png")).unwrap();

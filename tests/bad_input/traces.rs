@@ -61,7 +61,7 @@ fn options_that_make_no_sense_are_refused() {
 fn a_trace_that_cannot_be_written_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["render", "cornell", "--trace", "no/such/folder/run.csv"];
-    refused(folder.path(), &arguments, 3, &["no/such/folder"]);
+    refused(folder.path(), &arguments, 2, &["no/such/folder/run.csv", "does not exist"]);
 }
 
 #[test]
