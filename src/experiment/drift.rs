@@ -1,7 +1,6 @@
 //! A machine that becomes faster or slower while a sweep runs.
 
-use crate::analysis::quantile::median;
-use crate::measure::{Record, Warning};
+use crate::measure::{Record, Warning, median};
 use std::collections::HashMap;
 
 /// Earlier rows of a cell that are enough to say what it usually takes.
@@ -30,7 +29,7 @@ impl Drift {
 
     /// Warns of a row whose time is far from that of its cell's earlier rows.
     pub(super) fn watch(&mut self, record: &mut Record) {
-        let before = self.0.get(&record.cell).filter(|times| times.len() >= ENOUGH).and_then(|times| median(times));
+        let before = self.0.get(&record.cell).filter(|times| times.len() >= ENOUGH).and_then(|times| median(&mut times.clone()));
         if let Some((makespan_s, usual_s)) = record.makespan_s.zip(before) {
             let change = makespan_s / usual_s - 1.0;
             if change.abs() > SUSPICIOUS {
