@@ -2,7 +2,8 @@
 //!
 //! Group `scheduling` renders cornell at 96x72, 4 spp, in tiles of 8x8, with 1, 2 and 4 threads, in samples per second; group `empty-jobs`
 //! hands out jobs that do nothing. Group `seam` sets strategies beside their bare mechanisms, which says what the interface between
-//! scheduling and work costs for each job (`cargo bench --bench scheduling -- seam`). At the end stands a table of speedups against
+//! scheduling and work costs for each job (`cargo bench --bench scheduling -- seam`). Group `trace` sets a measured render beside the same
+//! render unmeasured, which says what the account of who did what when costs. At the end stands a table of speedups against
 //! `serial`. Criterion runs its cases one after the other, so a drift of the machine's speed falls on some of them; `pathmark run
 //! thread-scaling` interleaves them and is what conclusions should rest on.
 
@@ -12,6 +13,7 @@ mod speedup_table;
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::film::{Decomposition, TileBuffer};
 use pathmark::kernel::{Kernel, Spec, build};
+use pathmark::measure::{Settings, Setup};
 use pathmark::strategy::{Config, Entry, Job, STRATEGIES, Strategy, Workers, find};
 use std::hint::black_box;
 use std::num::NonZeroUsize;
@@ -116,12 +118,50 @@ fn seam(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Serial, so that nothing but the measuring differs: the same pieces through a bare loop, and through `measure`.
+fn trace(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("trace");
+    group.sample_size(20).sampling_mode(SamplingMode::Flat);
+    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(2));
+    let spec = Spec { width: 64, height: 48, ..Spec::default() };
+    for pieces in ["tiles:1x1", "tiles:8x8"] {
+        let settings = Settings {
+            spp: SPP,
+            spec: spec.clone(),
+            decomposition: pieces.to_string(),
+            strategy: "serial".to_string(),
+            ..Settings::default()
+        };
+        let scene = Arc::new(pathmark::scene::load("cornell").expect("cornell is embedded"));
+        let kernel = build(&scene, &spec).expect("the default names exist").kernel;
+        let plan = Decomposition::parse(pieces).expect("tiles can be cut").plan(spec.width, spec.height, &(0..SPP));
+        group.throughput(Throughput::Elements(plan.len() as u64));
+        let mut tiles: Vec<TileBuffer> = plan.pieces().iter().map(|piece| TileBuffer::new(piece.bounds)).collect();
+        group.bench_function(BenchmarkId::new("bare", pieces), |bencher| {
+            bencher.iter(|| {
+                for (piece, tile) in plan.pieces().iter().zip(&mut tiles) {
+                    black_box(kernel.render(piece, tile));
+                }
+            });
+        });
+        let setup = Setup::prepare(settings).expect("these settings exist");
+        group.bench_function(BenchmarkId::new("measured", pieces), |bencher| {
+            bencher.iter_custom(|rounds| {
+                let makespan_s = (0..rounds).map(|_| setup.run(None).expect("a render ends").makespan_s);
+                Duration::from_secs_f64(makespan_s.sum())
+            });
+        });
+    }
+    group.finish();
+}
+
 fn main() {
     let start = SystemTime::now();
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
     scheduling(&mut criterion);
     empty_jobs(&mut criterion);
     seam(&mut criterion);
+    trace(&mut criterion);
     criterion.final_summary();
     speedup_table::print("scheduling", start);
 }
