@@ -161,14 +161,18 @@ fn predict_live(trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Res
     talk.begin("predicting this machine", rounds * schedules.len() as u64);
     for round in 0..rounds {
         let serial = Setup::prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;
-        let costs = TraceFile::new(&serial, &serial.run(None)?).costs_s();
+        let alone = serial.run(None)?;
+        let costs = TraceFile::new(&serial, &alone).costs_s();
         for (index, settings) in schedules.iter().enumerate() {
             let setup = Setup::prepare(settings.clone())?;
+            let outcome = setup.run(None)?;
+            let inflation = outcome.cpu_s().zip(alone.cpu_s()).map_or(1.0, |(own, serial)| own / serial);
             let observed = Observed {
+                inflation,
                 decomposition: settings.decomposition.clone(),
                 strategy: settings.strategy.clone(),
                 workers: setup.threads(),
-                makespan_s: setup.run(None)?.makespan_s,
+                makespan_s: outcome.makespan_s,
             };
             runs.push((observed, costs.clone()));
             talk.advance(round * schedules.len() as u64 + index as u64 + 1);

@@ -1,15 +1,36 @@
 //! A machine that becomes faster or slower while a sweep runs.
+//!
+//! Two things are watched for each cell: its time, which anything can lengthen, and its processor time, which waiting cannot. Work that takes
+//! more processor time than before ran on slower processors: on a virtual machine usually because its host has put two of them on one core.
 
 use crate::measure::{Record, Warning, median};
 use std::collections::HashMap;
 
 /// Earlier rows of a cell that are enough to say what it usually takes.
 const ENOUGH: usize = 3;
-/// Relative difference from the median so far from which a row is suspected.
+/// Relative difference of the time from the median so far from which a row is suspected.
 const SUSPICIOUS: f64 = 0.25;
+/// Likewise of the processor time, which is steadier.
+const SLOW: f64 = 0.15;
 
 /// The times of each cell so far.
-pub(super) struct Drift(HashMap<String, Vec<f64>>);
+pub(super) struct Drift(HashMap<String, Times>);
+
+#[derive(Default)]
+struct Times {
+    makespan_s: Vec<f64>,
+    cpu_s: Vec<f64>,
+}
+
+/// By how much a value differs from the median of enough others.
+fn change(value: f64, before: &[f64]) -> Option<f64> {
+    let usual = (before.len() >= ENOUGH).then(|| median(&mut before.to_vec())).flatten()?;
+    Some(value / usual - 1.0)
+}
+
+fn percent(change: f64) -> i32 {
+    (100.0 * change).round() as i32
+}
 
 impl Drift {
     /// Knows the rows of an earlier part of the sweep.
@@ -22,18 +43,21 @@ impl Drift {
     }
 
     fn note(&mut self, record: &Record) {
-        if let Some(makespan_s) = record.makespan_s {
-            self.0.entry(record.cell.clone()).or_default().push(makespan_s);
-        }
+        let times = self.0.entry(record.cell.clone()).or_default();
+        times.makespan_s.extend(record.makespan_s);
+        times.cpu_s.extend(record.cpu_s());
     }
 
-    /// Warns of a row whose time is far from that of its cell's earlier rows.
+    /// Warns of a row whose times are far from those of its cell's earlier rows.
     pub(super) fn watch(&mut self, record: &mut Record) {
-        let before = self.0.get(&record.cell).filter(|times| times.len() >= ENOUGH).and_then(|times| median(&mut times.clone()));
-        if let Some((makespan_s, usual_s)) = record.makespan_s.zip(before) {
-            let change = makespan_s / usual_s - 1.0;
-            if change.abs() > SUSPICIOUS {
-                record.warn(Warning::Drift { percent: (100.0 * change).round() as i32 });
+        if let Some(times) = self.0.get(&record.cell) {
+            let drifted = record.makespan_s.and_then(|time| change(time, &times.makespan_s));
+            if let Some(change) = drifted.filter(|change| change.abs() > SUSPICIOUS) {
+                record.warn(Warning::Drift { percent: percent(change) });
+            }
+            let slowed = record.cpu_s().and_then(|time| change(time, &times.cpu_s));
+            if let Some(change) = slowed.filter(|change| *change > SLOW) {
+                record.warn(Warning::Slowed { percent: percent(change) });
             }
         }
         self.note(record);
@@ -57,5 +81,23 @@ mod tests {
         assert_eq!(warnings(&mut drift, 1.2), "");
         assert_eq!(warnings(&mut drift, 1.725), "drift(+50 %)");
         assert_eq!(warnings(&mut drift, 0.6), "drift(-50 %)");
+    }
+
+    #[test]
+    fn the_same_work_for_more_processor_time_is_marked() {
+        let row = |cpu_s| Record {
+            cell: "a".into(),
+            makespan_s: Some(1.0),
+            cpu_user_s: Some(cpu_s),
+            cpu_system_s: Some(0.0),
+            ..Record::default()
+        };
+        let mut drift = Drift::of(&[row(2.0), row(2.0), row(2.0)]);
+        let mut slow = row(3.0);
+        drift.watch(&mut slow);
+        assert_eq!(slow.warnings, "slowed(+50 % CPU)");
+        let mut fast = row(1.0);
+        drift.watch(&mut fast);
+        assert_eq!(fast.warnings, "");
     }
 }

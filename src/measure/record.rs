@@ -165,6 +165,11 @@ pub fn failure(settings: &Settings, error: &str) -> Record {
 }
 
 impl Record {
+    /// CPU seconds during the makespan, in the program and in the system.
+    pub fn cpu_s(&self) -> Option<f64> {
+        Some(self.cpu_user_s? + self.cpu_system_s?)
+    }
+
     /// Adds a doubt.
     pub fn warn(&mut self, warning: Warning) {
         let separator = if self.warnings.is_empty() { "" } else { ";" };

@@ -60,6 +60,13 @@ pub struct Outcome {
     pub(super) cpu: Option<Usage>,
 }
 
+impl Outcome {
+    /// CPU seconds during the makespan, in the program and in the system.
+    pub fn cpu_s(&self) -> Option<f64> {
+        self.cpu.map(|usage| usage.user_s + usage.system_s)
+    }
+}
+
 impl Setup {
     /// Checks the settings, loads the scene, cuts the film and builds the kernel.
     pub fn prepare(settings: Settings) -> Result<Self> {

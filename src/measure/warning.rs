@@ -29,6 +29,11 @@ pub enum Warning {
         /// By how much longer (or shorter, if negative) than the median so far.
         percent: i32,
     },
+    /// The same cell took less processor time before: processors that share a core, or a lower clock.
+    Slowed {
+        /// By how much more than the median so far.
+        percent: i32,
+    },
     /// The run ended before its beginning stopped to matter.
     TooShort,
     /// The samples do not divide among the four subpixels, so the pixel's filter is lopsided.
@@ -52,6 +57,7 @@ impl fmt::Display for Warning {
             Self::Oversubscribed { workers, processors } => write!(f, "oversubscribed({workers} on {processors})"),
             Self::ForeignLoad { percent } => write!(f, "foreign-load({percent} %)"),
             Self::Drift { percent } => write!(f, "drift({percent:+} %)"),
+            Self::Slowed { percent } => write!(f, "slowed({percent:+} % CPU)"),
             Self::TooShort => f.write_str("too-short"),
             Self::PartialSubpixels => f.write_str("partial-subpixels"),
             Self::Biased => f.write_str("biased"),

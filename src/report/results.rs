@@ -143,6 +143,17 @@ impl Results {
         ratios(&serial, &self.times(|s| s == schedule))
     }
 
+    /// CPU time of a schedule over that of `serial` on the same pieces, in the same repetition: what the same work costs more when several
+    /// processors do it, and what the schedule itself costs. The median of the ratios.
+    pub(super) fn work_inflation(&self, schedule: &Schedule) -> Option<f64> {
+        let cpu = |is_wanted: &dyn Fn(&Schedule) -> bool| -> BTreeMap<(String, u32), f64> {
+            let wanted = self.records.iter().filter(|record| is_wanted(&Schedule::of(record)));
+            wanted.filter_map(|record| Some(((image(record), record.repetition), record.cpu_s()?))).collect()
+        };
+        let serial = cpu(&|s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
+        median(&ratios(&cpu(&|s| s == schedule), &serial))
+    }
+
     /// How many times as long rows of one kind take as rows of another, paired by image but for the sampler, and by repetition.
     pub(super) fn kind_ratio(
         &self,

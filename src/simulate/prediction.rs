@@ -16,6 +16,9 @@ pub struct Observed {
     pub workers: usize,
     /// What it took, in seconds.
     pub makespan_s: f64,
+    /// Its CPU time over that of the serial run beside it; 1 if that is not known. Above 1 the jobs themselves took longer than the serial run
+    /// says, which no schedule can help: processors that share a core, a lower clock.
+    pub inflation: f64,
 }
 
 /// The runs of one schedule, predicted.
@@ -29,12 +32,14 @@ pub struct Prediction {
     pub workers: usize,
     /// How many runs there were.
     pub runs: usize,
-    /// Median of what the simulator finds, in seconds.
+    /// Median of what the simulator finds for the inflated work, in seconds.
     pub predicted_s: f64,
     /// Median of what was measured, in seconds.
     pub measured_s: f64,
     /// Median of predicted over measured, run by run.
     pub ratio: f64,
+    /// The same for a prediction that knows nothing of the inflation.
+    pub plain_ratio: f64,
 }
 
 /// Predicts each run from the costs of its jobs, which should come from a serial run made beside it; runs of no contender are left out.
@@ -45,24 +50,27 @@ pub fn predict<'a>(
     contenders: &[Contender],
     processors: usize,
 ) -> Vec<Prediction> {
-    let mut groups: BTreeMap<(String, String, usize), Vec<(f64, f64)>> = BTreeMap::new();
+    let mut groups: BTreeMap<(String, String, usize), Vec<[f64; 3]>> = BTreeMap::new();
     for (run, costs) in runs {
         let Some(contender) = contenders.iter().find(|contender| contender.name == run.strategy) else { continue };
         let workers = if contender.has_a_thread_per_job() { processors } else { run.workers };
-        let predicted_s = contender.replay(costs, workers, &Hardware::default()).makespan_s;
+        let replayed = |costs: &[f64]| contender.replay(costs, workers, &Hardware::default()).makespan_s;
+        let inflated: Vec<f64> = costs.iter().map(|cost| cost * run.inflation).collect();
+        let (predicted_s, plain_s) = (replayed(&inflated), replayed(costs));
         let key = (run.strategy, run.decomposition, run.workers);
-        groups.entry(key).or_default().push((predicted_s, run.makespan_s));
+        groups.entry(key).or_default().push([predicted_s, run.makespan_s, plain_s]);
     }
-    let prediction = |((strategy, decomposition, workers), pairs): ((String, String, usize), Vec<(f64, f64)>)| {
-        let middle = |value: fn(&(f64, f64)) -> f64| median(&mut pairs.iter().map(value).collect::<Vec<f64>>());
+    let prediction = |((strategy, decomposition, workers), runs): ((String, String, usize), Vec<[f64; 3]>)| {
+        let middle = |value: fn(&[f64; 3]) -> f64| median(&mut runs.iter().map(value).collect::<Vec<f64>>());
         Some(Prediction {
             decomposition,
             strategy,
             workers,
-            runs: pairs.len(),
-            predicted_s: middle(|pair| pair.0)?,
-            measured_s: middle(|pair| pair.1)?,
-            ratio: middle(|pair| pair.0 / pair.1)?,
+            runs: runs.len(),
+            predicted_s: middle(|run| run[0])?,
+            measured_s: middle(|run| run[1])?,
+            ratio: middle(|run| run[0] / run[1])?,
+            plain_ratio: middle(|run| run[2] / run[1])?,
         })
     };
     groups.into_iter().filter_map(prediction).collect()
@@ -83,13 +91,23 @@ mod tests {
             order: Order::ByIndex,
             overheads: Overheads::default(),
         };
-        let run =
-            |makespan_s| Observed { decomposition: "rows".into(), strategy: "serial".into(), workers: 1, makespan_s };
+        let run = |makespan_s| Observed {
+            decomposition: "rows".into(),
+            strategy: "serial".into(),
+            workers: 1,
+            makespan_s,
+            inflation: 1.0,
+        };
         let other = Observed { strategy: "unknown".into(), ..run(1.0) };
         let runs = [(run(2.0), &[1.0, 1.0][..]), (run(5.0), &[2.0, 2.0]), (run(8.0), &[3.0, 3.0]), (other, &[1.0])];
-        let found = predict(runs, &[contender], 2);
+        let found = predict(runs, std::slice::from_ref(&contender), 2);
         assert_eq!(found.len(), 1);
         // Predicted 2, 4, 6 against 2, 5, 8: ratios 1, .8, .75.
         assert_eq!((found[0].runs, found[0].predicted_s, found[0].measured_s, found[0].ratio), (3, 4.0, 5.0, 0.8));
+        assert_eq!(found[0].plain_ratio, 0.8);
+
+        let inflated = Observed { inflation: 1.5, ..run(3.0) };
+        let found = predict([(inflated, &[1.0, 1.0][..])], &[contender], 2);
+        assert_eq!((found[0].predicted_s, found[0].ratio, found[0].plain_ratio), (3.0, 1.0, 2.0 / 3.0));
     }
 }

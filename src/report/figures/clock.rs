@@ -13,7 +13,7 @@ fn times(records: &[&Record]) -> Option<Times> {
     let median_of = |value: fn(&Record) -> Option<f64>| {
         median(&records.iter().filter_map(|record| value(record)).collect::<Vec<_>>())
     };
-    Some((median_of(|r| r.makespan_s)?, median_of(|r| Some(r.cpu_user_s? + r.cpu_system_s?))?))
+    Some((median_of(|r| r.makespan_s)?, median_of(Record::cpu_s)?))
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {

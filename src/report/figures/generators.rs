@@ -86,15 +86,14 @@ fn row(sampler: &str, crew: &str, records: &[&Record], seconds: f64, interval: S
         let values: Vec<f64> = records.iter().filter_map(|record| value(record)).collect();
         median(&values).map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
     };
-    let cpu = |record: &Record| Some(record.cpu_user_s? + record.cpu_system_s?);
     vec![
         sampler.to_string(),
         crew.to_string(),
         format!("{seconds:.4}"),
         interval,
         of(&switches_per_second, 0),
-        of(&|record| Some(cpu(record)? / record.makespan_s?), 2),
-        of(&|record| Some(record.cpu_system_s? / cpu(record)?), 2),
+        of(&|record| Some(record.cpu_s()? / record.makespan_s?), 2),
+        of(&|record| Some(record.cpu_system_s? / record.cpu_s()?), 2),
     ]
 }
 

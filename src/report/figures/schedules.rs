@@ -56,7 +56,7 @@ fn row(schedule: &Schedule, records: &[&Record], processors: usize) -> Option<Ve
         times.len().to_string(),
         format!("{median:.4}"),
         interval.map_or_else(|| "one run".to_string(), |interval| with_level(&interval, 4)),
-        text(of(&|record| Some((record.cpu_user_s? + record.cpu_system_s?) / record.makespan_s?)), 2),
+        text(of(&|record| Some(record.cpu_s()? / record.makespan_s?)), 2),
         text(of(&imbalance), 3),
         text(of(&|record| alone(record).and(Some(record.job_max_s? * 1e3))), 1),
         text(of(&|record| Some(record.voluntary_switches? as f64)), 0),

@@ -30,6 +30,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             "interval (confidence)",
             "efficiency per thread",
             "efficiency per processor in use",
+            "work inflation",
             "e, p = threads (95 %)",
             "e, p = processors in use (95 %)",
             "remark",
@@ -88,6 +89,7 @@ fn row(results: &Results, schedule: &Schedule, estimate: &Estimate) -> Vec<Strin
         with_level(&interval, 3),
         number(efficiency(speedup, threads)),
         number(efficiency(speedup, used)),
+        number(results.work_inflation(schedule)),
         fraction(threads),
         fraction(used),
         remark,
@@ -97,7 +99,7 @@ fn row(results: &Results, schedule: &Schedule, estimate: &Estimate) -> Vec<Strin
 /// What is known beside a speedup that is too good.
 fn evidence(results: &Results, schedule: &Schedule) -> Evidence {
     let alone = Schedule { threads: 1, ..schedule.clone() };
-    let doubts = ["foreign-load", "drift", "too-short"];
+    let doubts = ["foreign-load", "drift", "slowed", "too-short"];
     let warned = |record: &&crate::measure::Record| {
         Schedule::of(record) == *schedule && doubts.iter().any(|doubt| record.warnings.contains(doubt))
     };
