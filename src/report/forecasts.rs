@@ -111,7 +111,7 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
     efficiency.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
     for (stem, mut chart) in [("forecast-speedup", speedup), ("forecast-efficiency", efficiency)] {
         chart.subtitle = workload.to_string();
-        chart.caption = "Simulated from the jobs of one serial run. Of strategies that are within a tenth of each other everywhere only one is drawn; the table has all.".to_string();
+        chart.caption = "Simulated from the jobs of one serial run. Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all.".to_string();
         blocks.push(Block::Figure { stem, figure: Box::new(chart) });
     }
     let columns = [
@@ -146,7 +146,7 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
     blocks
 }
 
-/// The strategies that a chart shows: the first of those whose speedups are alike everywhere, to within a tenth.
+/// The strategies that a chart shows: the first of those whose speedups are alike everywhere, to within a quarter.
 fn representatives(rows: &[Forecast]) -> Vec<String> {
     let mut names: Vec<&str> = rows.iter().map(|row| row.strategy.as_str()).collect();
     names.dedup();
@@ -155,7 +155,7 @@ fn representatives(rows: &[Forecast]) -> Vec<String> {
     let mut shown: Vec<(String, Vec<f64>)> = Vec::new();
     for name in names {
         let own = speedups(name);
-        let alike = |other: &Vec<f64>| other.iter().zip(&own).all(|(a, b)| (a / b - 1.0).abs() < 0.1);
+        let alike = |other: &Vec<f64>| other.iter().zip(&own).all(|(a, b)| (a / b - 1.0).abs() < 0.25);
         // A strategy that has one number of workers whatever is asked, as serial has, is no line.
         if own.len() > 1 && !shown.iter().any(|(_, other)| alike(other)) {
             shown.push((name.to_string(), own));

@@ -73,3 +73,25 @@ fn an_experiment_with_traces_is_predicted_from_its_rows() {
     let said = run(folder.path(), &["simulate", "out/tiny", "--workers", "1..4"]).out;
     assert!(said.contains("4 schedules of this machine predicted"), "{said}");
 }
+
+/// No figure fails for want of what it would like to show: a schedule that was not run, an error that was not measured.
+#[test]
+fn every_figure_makes_do_with_any_rows() {
+    let names: Vec<String> = pathmark::report::FIGURES
+        .iter()
+        .filter(|entry| !["contact-sheet", "rmse-against-spp", "rmse-against-time"].contains(&entry.name))
+        .map(|entry| format!("\"{}\"", entry.name))
+        .collect();
+    let figures = format!("figures = [{}]", names.join(", "));
+    let folder = tempfile::tempdir().unwrap();
+    let bare = TINY.replace("figures = [\"speedup\", \"schedules\"]", &figures);
+    let kept = bare.replace("[matrix]", "keep = [\"traces\", \"calibration\"]\n\n[matrix]");
+    let alone = bare.replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"rayon\"]");
+    for (index, text) in [bare, kept, alone].iter().enumerate() {
+        write_tiny(folder.path(), text);
+        let out = format!("out{index}");
+        run(folder.path(), &["run", "tiny.toml", "--repetitions", "2", "--out", &out]);
+        let page = fs::read_to_string(folder.path().join(&out).join("report.html")).unwrap();
+        assert!(page.contains("Tiny") && !page.contains("NaN"), "{out}");
+    }
+}
