@@ -12,11 +12,14 @@ use super::settings::strategy_named;
 use super::trace::median;
 use super::usage::Usage;
 use crate::error::{Error, Result};
-use crate::strategy::{Config, Workers};
+use crate::strategy::{Config, Spawner, SystemThreads, Workers};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
+use std::io;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Most rounds that count.
@@ -42,6 +45,26 @@ pub struct CalibrationRow {
     pub seconds: f64,
     /// Seconds of CPU time that this process used meanwhile, on all processors; empty where the system does not tell.
     pub cpu_s: Option<f64>,
+    /// Threads of ours that the run itself started; 0 for pools.
+    pub started: usize,
+}
+
+/// The system's threads, counted.
+#[derive(Default)]
+struct Counted(AtomicUsize);
+
+impl Spawner for Counted {
+    fn spawn(&self, name: String, body: Box<dyn FnOnce() + Send + 'static>) -> io::Result<JoinHandle<()>> {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        SystemThreads.spawn(name, body)
+    }
+}
+
+/// One run of empty jobs.
+struct Run {
+    seconds: f64,
+    cpu_s: Option<f64>,
+    started: usize,
 }
 
 /// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`].
@@ -61,6 +84,7 @@ pub fn calibrate(strategies: &[String]) -> Result<Vec<CalibrationRow>> {
                 jobs,
                 seconds: 0.0,
                 cpu_s: None,
+                started: 0,
             }));
         }
     }
@@ -70,11 +94,12 @@ pub fn calibrate(strategies: &[String]) -> Result<Vec<CalibrationRow>> {
         if round > 3 && start.elapsed() > BUDGET {
             break;
         }
-        for (row, times) in rows.iter().zip(&mut times) {
-            let (seconds, cpu_s) = run_empty_jobs(row)?;
+        for (row, times) in rows.iter_mut().zip(&mut times) {
+            let run = run_empty_jobs(row)?;
+            row.started = run.started;
             if round > 0 {
-                times.0.push(seconds);
-                times.1.extend(cpu_s);
+                times.0.push(run.seconds);
+                times.1.extend(run.cpu_s);
             }
         }
     }
@@ -91,18 +116,21 @@ fn thread_counts(most: usize) -> Vec<usize> {
     doubled.chain([most]).collect()
 }
 
-/// Wall and CPU time of one run.
-fn run_empty_jobs(row: &CalibrationRow) -> Result<(f64, Option<f64>)> {
+fn run_empty_jobs(row: &CalibrationRow) -> Result<Run> {
     let (entry, parameter) = strategy_named(&row.strategy)?;
     let failed = |error| Error::system("calibrating strategy", entry.name, std::io::Error::other(error));
     let threads = NonZeroUsize::new(row.threads).unwrap_or(NonZeroUsize::MIN);
-    let mut strategy = (entry.new)(Config { parameter, ..Config::new(threads) }).map_err(failed)?;
+    let spawner = Arc::new(Counted::default());
+    let config = Config { parameter, spawner: spawner.clone(), ..Config::new(threads) };
+    let mut strategy = (entry.new)(config).map_err(failed)?;
+    let before = spawner.0.load(Ordering::Relaxed);
     let usage = Usage::now();
     let start = Instant::now();
     strategy.run(row.jobs, Arc::new(|index| _ = black_box(index))).map_err(failed)?;
     let seconds = start.elapsed().as_secs_f64();
     let used = usage.zip(Usage::now()).map(|(before, after)| after.since(&before));
-    Ok((seconds, used.map(|used| used.user_s + used.system_s)))
+    let started = spawner.0.load(Ordering::Relaxed) - before;
+    Ok(Run { seconds, cpu_s: used.map(|used| used.user_s + used.system_s), started })
 }
 
 #[cfg(test)]
@@ -119,8 +147,14 @@ mod tests {
 
     #[test]
     fn rows_survive_a_file() {
-        let row =
-            |cpu_s| CalibrationRow { strategy: "dynamic:4".to_owned(), threads: 2, jobs: 200, seconds: 0.1, cpu_s };
+        let row = |cpu_s| CalibrationRow {
+            strategy: "dynamic:4".to_owned(),
+            threads: 2,
+            jobs: 200,
+            seconds: 0.1,
+            cpu_s,
+            started: 2,
+        };
         let rows = vec![row(None), row(Some(0.3))];
         let mut file = csv::Writer::from_writer(Vec::new());
         for row in &rows {

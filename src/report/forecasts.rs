@@ -86,7 +86,7 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
     let mut blocks = Vec::new();
     let shown = representatives(rows);
     let bound = rows.iter().map(|row| row.share_s * row.workers as f64 / row.longest_s).reduce(f64::max);
-    let series = |value: fn(&Forecast) -> f64| -> Vec<Series> {
+    let series = |value: Value| -> Vec<Series> {
         let points = |name: &str| {
             let own = rows.iter().filter(|row| row.strategy == name);
             own.map(|row| Point::new(row.workers as f64, value(row))).collect()
@@ -109,7 +109,11 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
     let efficiency_axis = Axis::linear("speedup per core").including([0.0, 1.0]);
     let mut efficiency = LineChart::new("Forecast: efficiency", axis(), efficiency_axis, series(|row| row.efficiency));
     efficiency.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
-    for (stem, mut chart) in [("forecast-speedup", speedup), ("forecast-efficiency", efficiency)] {
+    let mut makespans = series(|row| row.makespan_s);
+    makespans.extend(bounds(rows, makespans.len()));
+    let makespan = LineChart::new("Forecast: makespan and its bounds", axis(), Axis::log("seconds"), makespans);
+    let charts = [("forecast-speedup", speedup), ("forecast-efficiency", efficiency), ("forecast-makespan", makespan)];
+    for (stem, mut chart) in charts {
         chart.subtitle = workload.to_string();
         chart.caption = "Simulated from the jobs of one serial run. Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all.".to_string();
         blocks.push(Block::Figure { stem, figure: Box::new(chart) });
@@ -144,6 +148,27 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
     };
     blocks.push(Block::Table { stem: "forecast", table });
     blocks
+}
+
+/// What a line of a chart shows of a row.
+type Value = fn(&Forecast) -> f64;
+
+/// What no schedule can beat, and what every greedy one keeps to, as lines without intervals.
+fn bounds(rows: &[Forecast], first: usize) -> Vec<Series> {
+    let values: [(&str, Value); 3] = [
+        ("bound: work / cores", |row| row.share_s),
+        ("bound: longest job", |row| row.longest_s),
+        ("Graham: any greedy schedule", |row| row.greedy_s),
+    ];
+    // They are the same for every strategy, so one that ran on all numbers of workers lends its rows.
+    let most = rows.iter().map(|row| row.workers).max();
+    let name = rows.iter().find(|row| Some(row.workers) == most).map(|row| row.strategy.as_str());
+    let own: Vec<&Forecast> = rows.iter().filter(|row| Some(row.strategy.as_str()) == name).collect();
+    let line = |(index, (name, value)): (usize, (&str, Value))| {
+        let points = own.iter().map(|row| Point::new(row.workers as f64, value(row))).collect();
+        Series::new(name, Look::nth(first + index), points)
+    };
+    values.into_iter().enumerate().map(line).collect()
 }
 
 /// The strategies that a chart shows: the first of those whose speedups are alike everywhere, to within a quarter.

@@ -5,7 +5,7 @@ use super::hardware::Hardware;
 use super::overhead::Overheads;
 use super::replay::{Replay, replay};
 use crate::error::{Error, Result};
-use crate::measure::{CalibrationRow, strategy_named};
+use crate::measure::{CalibrationRow, median, strategy_named};
 use crate::strategy::{ChunkRule, Discipline};
 
 /// A discipline with a name and its mechanism's cost.
@@ -67,7 +67,8 @@ impl Contender {
 
 /// The strategies that `rows` are about, in the order of their first row.
 ///
-/// What a chunk costs under rules whose chunks are too few to be timed is taken from the cheapest rule that hands out single jobs.
+/// What a chunk costs under rules whose chunks are too few to be timed is taken from the cheapest rule that hands out single jobs. A thread's
+/// start is the same whoever starts it, so strategies that start their workers in the run share the median of what was fitted to each.
 pub fn contenders(rows: &[CalibrationRow]) -> Result<Vec<Contender>> {
     let mut contenders: Vec<Contender> = Vec::new();
     for row in rows {
@@ -87,7 +88,22 @@ pub fn contenders(rows: &[CalibrationRow]) -> Result<Vec<Contender>> {
             contender.overheads = std::mem::take(&mut contender.overheads).with_chunks_of(&cheapest);
         }
     }
+    share_the_start(&mut contenders, rows);
     Ok(contenders)
+}
+
+fn share_the_start(contenders: &mut [Contender], rows: &[CalibrationRow]) {
+    let starts_workers = |contender: &Contender| {
+        let own = rows.iter().filter(|row| row.strategy == contender.name);
+        !contender.has_a_thread_per_job() && own.clone().all(|row| row.started == row.threads) && own.count() > 0
+    };
+    let (mut starters, _): (Vec<&mut Contender>, Vec<_>) = contenders.iter_mut().partition(|one| starts_workers(one));
+    let mut starts: Vec<f64> = starters.iter().map(|contender| contender.overheads.start_s()).collect();
+    if let Some(start_s) = median(&mut starts) {
+        for contender in &mut starters {
+            contender.overheads = std::mem::take(&mut contender.overheads).with_start(start_s);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -103,6 +119,7 @@ mod tests {
             jobs,
             seconds: 1e-5 * threads as f64 + 1e-8 * jobs as f64,
             cpu_s: None,
+            started: 0,
         };
         let of = |name| [(1, 200), (1, 4000), (2, 200), (2, 4000)].map(|(threads, jobs)| row(name, threads, jobs));
         STRATEGIES.iter().flat_map(|entry| of(entry.name)).collect()
@@ -118,6 +135,31 @@ mod tests {
             let pays = at.take_s > 0.0 && at.shared_s > 0.0;
             assert!(pays || !matches!(contender.discipline, Discipline::Chunks(_)), "{}: {at:?}", contender.name);
         }
+    }
+
+    /// Three strategies whose workers are threads, at 10, 20 and 90 microseconds, and a pool.
+    #[test]
+    fn a_thread_costs_the_same_whoever_starts_it() {
+        let of = |strategy: &str, start_s: f64, pool: bool| {
+            [1, 2].map(|threads| CalibrationRow {
+                strategy: strategy.to_owned(),
+                threads,
+                jobs: 200,
+                seconds: start_s * threads as f64,
+                cpu_s: None,
+                started: if pool { 0 } else { threads },
+            })
+        };
+        let rows = [
+            of("static-blocks", 1e-5, false),
+            of("static-cyclic", 2e-5, false),
+            of("steal-half", 9e-5, false),
+            of("rayon-join", 1e-6, true),
+        ];
+        let contenders = contenders(rows.as_flattened()).unwrap();
+        let starts: Vec<f64> = contenders.iter().map(|contender| contender.overheads.at(2).start_s).collect();
+        assert!(starts[..3].iter().all(|start| (start - 2e-5).abs() < 1e-12), "{starts:?}");
+        assert!((starts[3] - 1e-6).abs() < 1e-12, "{starts:?}");
     }
 
     #[test]

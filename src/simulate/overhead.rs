@@ -98,6 +98,17 @@ impl Overheads {
         Self { place: other.place.clone(), ..self }
     }
 
+    /// What one more worker costs the caller.
+    pub(super) fn start_s(&self) -> f64 {
+        self.start_s
+    }
+
+    /// The same, with workers that cost this much to start.
+    #[must_use]
+    pub(super) fn with_start(self, start_s: f64) -> Self {
+        Self { start_s, ..self }
+    }
+
     /// What one worker pays for a chunk.
     pub(super) fn take_s(&self) -> Option<f64> {
         self.place.as_ref().map(|place| place.take_s)
@@ -160,6 +171,7 @@ mod tests {
                 jobs,
                 seconds: seconds(jobs),
                 cpu_s: None,
+                started: 0,
             })
         };
         threads.iter().flat_map(at).collect()
