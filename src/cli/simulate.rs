@@ -6,9 +6,7 @@ use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress;
 use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate};
 use crate::report::{Block, Results, forecasts, save};
-use crate::simulate::{
-    Contender, Forecast, Hardware, Noise, Observed, Prediction, Speeds, contenders, forecast, predict,
-};
+use crate::simulate::{Contender, Hardware, Noise, Observed, Prediction, Speeds, contenders, forecast, predict};
 use crate::strategy::STRATEGIES;
 use clap::Args;
 use std::path::PathBuf;
@@ -76,9 +74,10 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         "{}, {}x{}, {} spp, {}, simulated",
         settings.scene, spec.width, spec.height, settings.spp, settings.decomposition
     );
-    print(&table(&rows))?;
-    for block in forecasts::forecast_blocks(&rows, &workload) {
-        save(&block, &arguments.out)?;
+    let blocks = forecasts::forecast_blocks(&rows, &workload);
+    show(&blocks)?;
+    for block in &blocks {
+        save(block, &arguments.out)?;
     }
     print(&format!("figures and forecast.csv in {}", arguments.out.display()))
 }
@@ -192,25 +191,6 @@ fn show(blocks: &[Block]) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn table(rows: &[Forecast]) -> String {
-    let columns =
-        ["strategy", "workers", "makespan ms", "speedup", "efficiency", "work/P ms", "longest ms", "Graham ms"];
-    let row = |row: &Forecast| {
-        let ms = |seconds: f64| format!("{:.3}", seconds * 1e3);
-        vec![
-            row.strategy.clone(),
-            row.workers.to_string(),
-            ms(row.makespan_s),
-            format!("{:.2}", row.speedup),
-            format!("{:.3}", row.efficiency),
-            ms(row.share_s),
-            ms(row.longest_s),
-            ms(row.greedy_s),
-        ]
-    };
-    aligned(&columns.map(String::from), &rows.iter().map(row).collect::<Vec<_>>())
 }
 
 /// Columns under their heads, the first to the left and the others to the right.
