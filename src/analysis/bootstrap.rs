@@ -8,7 +8,7 @@ use rand::Rng;
 use rand_pcg::Pcg64Dxsm;
 
 use super::interval::{Estimate, Interval, all_finite, is_level};
-use super::quantile::{median, quantile_of_sorted, sorted};
+use super::quantile::{quantile_of_sorted, sorted};
 
 /// Resamples per interval: the ends then move by about a tenth of the interval's width at most if the seed is changed.
 pub const RESAMPLES: usize = 4000;
@@ -27,35 +27,6 @@ pub fn of_sample(values: &[f64], level: f64, statistic: impl Fn(&[f64]) -> Optio
         statistic(&buffer)
     });
     estimate(statistic(values)?, replicates, level)
-}
-
-/// median(`numerator`) / median(`denominator`) of two independent samples, such as T1 / Tp from separate repetitions.
-///
-/// `None` if a sample has fewer than two values, neither has any spread, or one holds a value that is not positive and finite.
-pub fn median_ratio(numerator: &[f64], denominator: &[f64], level: f64) -> Option<Estimate> {
-    let usable = numerator.len() >= 2 && denominator.len() >= 2 && all_positive(numerator) && all_positive(denominator);
-    if !usable || !(can_vary(numerator) || can_vary(denominator)) {
-        return None;
-    }
-    let mut draw = Resampler::new();
-    let (mut top, mut bottom) = (Vec::with_capacity(numerator.len()), Vec::with_capacity(denominator.len()));
-    let replicates = (0..RESAMPLES).map(|_| {
-        draw.fill(numerator, &mut top);
-        draw.fill(denominator, &mut bottom);
-        Some(median(&top)? / median(&bottom)?)
-    });
-    estimate(median(numerator)? / median(denominator)?, replicates, level)
-}
-
-/// The median of the ratios numerator\[i\] / denominator\[i\] of values measured side by side: what disturbed both cancels.
-///
-/// `None` if the lengths differ, there are fewer than two pairs, the ratios have no spread, or a value is not positive and finite.
-pub fn paired_ratio(numerator: &[f64], denominator: &[f64], level: f64) -> Option<Estimate> {
-    if numerator.len() != denominator.len() || !all_positive(numerator) || !all_positive(denominator) {
-        return None;
-    }
-    let ratios: Vec<f64> = numerator.iter().zip(denominator).map(|(top, bottom)| top / bottom).collect();
-    of_sample(&ratios, level, median)
 }
 
 /// The intervals of several numbers that are computed together from independent samples, such as the parameters of a curve through
@@ -101,10 +72,6 @@ fn can_vary(values: &[f64]) -> bool {
     all_finite(values) && values.iter().any(|value| Some(value) != values.first())
 }
 
-fn all_positive(values: &[f64]) -> bool {
-    values.iter().all(|&value| value > 0.0 && value.is_finite())
-}
-
 /// Draws with replacement.
 struct Resampler(Pcg64Dxsm);
 
@@ -131,6 +98,7 @@ impl Resampler {
 mod tests {
     use super::*;
     use crate::analysis::mean::Moments;
+    use crate::analysis::quantile::median;
 
     /// Twelve normal deviates or so: sums of uniforms, minus their mean (the classic Irwin-Hall construction).
     fn normal(draw: &mut Resampler) -> f64 {
@@ -171,20 +139,6 @@ mod tests {
     }
 
     #[test]
-    fn ratios_of_medians_and_of_pairs() {
-        let slow = [8.1, 7.9, 8.0, 8.2, 7.8, 8.0, 8.3];
-        let fast = [4.0, 4.1, 3.9, 4.0, 4.2, 4.0, 3.8];
-        let ratio = median_ratio(&slow, &fast, 0.95).unwrap();
-        assert!((ratio.value - 2.0).abs() < 1e-12);
-        assert!(ratio.interval.low > 1.8 && ratio.interval.high < 2.2 && ratio.interval.contains(2.0));
-        // A disturbance common to both members of a pair cancels exactly.
-        let drift = [1.0, 5.0, 2.0, 9.0];
-        let twice: Vec<f64> = drift.iter().enumerate().map(|(i, d)| d * (2.0 + 0.01 * i as f64)).collect();
-        let paired = paired_ratio(&twice, &drift, 0.95).unwrap();
-        assert!(paired.interval.low >= 2.0 - 1e-12 && paired.interval.high <= 2.03 + 1e-12, "{paired:?}");
-    }
-
-    #[test]
     fn groups_are_resampled_by_themselves() {
         let groups = [vec![1.0, 2.0, 3.0], vec![10.0, 20.0, 30.0]];
         let means = |groups: &[Vec<f64>]| {
@@ -220,9 +174,5 @@ mod tests {
         assert_eq!(of_sample(&[1.0, f64::NAN, 2.0], 0.95, median), None);
         assert_eq!(of_sample(&[1.0, 2.0], 0.95, |_| Some(f64::NAN)), None);
         assert_eq!(of_sample(&[1.0, 2.0], 1.0, median), None);
-        assert_eq!(median_ratio(&[1.0, 2.0], &[0.0, 1.0], 0.95), None);
-        assert_eq!(median_ratio(&[1.0], &[1.0, 2.0], 0.95), None);
-        assert_eq!(median_ratio(&[1.0, 1.0], &[2.0, 2.0], 0.95), None);
-        assert_eq!(paired_ratio(&[1.0, 2.0], &[1.0], 0.95), None);
     }
 }

@@ -21,8 +21,6 @@ pub struct Evidence {
     pub processors: Option<usize>,
     /// Physical cores of the machine.
     pub physical_cores: Option<usize>,
-    /// Whether one worker's share of the data fits a cache that the whole does not fit.
-    pub share_fits_cache: Option<bool>,
 }
 
 /// The likely cause.
@@ -35,8 +33,6 @@ pub enum Cause {
     Disturbance,
     /// Logical processors share cores.
     SharedCores,
-    /// The shares fit a cache, the whole does not.
-    Cache,
     /// Nothing that is known explains it.
     Unexplained,
 }
@@ -49,7 +45,6 @@ impl fmt::Display for Cause {
             Self::SharedCores => {
                 "likely cause: processors share cores (SMT), so that the baseline may have had less than a core to itself"
             }
-            Self::Cache => "likely cause: a worker's share of the data fits a cache, the whole does not",
             Self::Unexplained => "unexplained: nothing that was recorded tells why",
         })
     }
@@ -62,8 +57,6 @@ pub fn cause(evidence: &Evidence) -> Cause {
         Cause::SlowBaseline
     } else if evidence.warnings > 0 {
         Cause::Disturbance
-    } else if evidence.share_fits_cache == Some(true) {
-        Cause::Cache
     } else if shared {
         Cause::SharedCores
     } else {
@@ -83,11 +76,7 @@ mod tests {
             (none, Cause::Unexplained),
             (Evidence { at_one_worker: one(0.97, 1.02), ..none }, Cause::Unexplained),
             (Evidence { at_one_worker: one(1.01, 1.05), warnings: 3, ..none }, Cause::SlowBaseline),
-            (Evidence { warnings: 1, share_fits_cache: Some(true), ..none }, Cause::Disturbance),
-            (
-                Evidence { share_fits_cache: Some(true), processors: Some(4), physical_cores: Some(2), ..none },
-                Cause::Cache,
-            ),
+            (Evidence { warnings: 1, ..none }, Cause::Disturbance),
             (Evidence { processors: Some(4), physical_cores: Some(2), ..none }, Cause::SharedCores),
             (Evidence { processors: Some(2), physical_cores: Some(2), ..none }, Cause::Unexplained),
             (Evidence { processors: Some(4), ..none }, Cause::Unexplained),
@@ -99,7 +88,7 @@ mod tests {
 
     #[test]
     fn only_evidence_is_called_a_cause() {
-        for cause in [Cause::SlowBaseline, Cause::Disturbance, Cause::SharedCores, Cause::Cache] {
+        for cause in [Cause::SlowBaseline, Cause::Disturbance, Cause::SharedCores] {
             assert!(cause.to_string().starts_with("likely cause: "));
         }
         assert!(Cause::Unexplained.to_string().starts_with("unexplained"));

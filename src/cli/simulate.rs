@@ -3,8 +3,8 @@
 use super::output::print;
 use super::progress::Talk;
 use crate::error::{Error, InputError, Result};
-use crate::experiment::Progress;
-use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate};
+use crate::experiment::{Progress, read_calibration};
+use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate, strategy_named};
 use crate::report::{Block, Results, forecasts, save};
 use crate::simulate::{Contender, Hardware, Noise, Observed, Prediction, Speeds, contenders, forecast, predict};
 use crate::strategy::STRATEGIES;
@@ -55,8 +55,19 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         [] => STRATEGIES.iter().map(|entry| entry.name.to_string()).collect(),
         names => names.to_vec(),
     };
-    talk.note("calibrating: every strategy hands out empty jobs");
-    let mut contenders = contenders(&calibrate(&names)?)?;
+    for name in &names {
+        strategy_named(name)?;
+    }
+    std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
+    // What was measured elsewhere or earlier is explained by what handing out cost then.
+    let calibrated = arguments.trace.join("calibration.csv");
+    let rows = if calibrated.is_file() && arguments.strategies.is_empty() {
+        read_calibration(&calibrated)?
+    } else {
+        talk.note("calibrating: every strategy hands out empty jobs");
+        calibrate(&names)?
+    };
+    let mut contenders = contenders(&rows);
     let costs = trace.costs_s();
 
     if !arguments.no_check {
@@ -71,10 +82,15 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let settings = &trace.header.settings;
     let spec = &settings.spec;
     let workload = format!(
-        "{}, {}x{}, {} spp, {}, simulated",
-        settings.scene, spec.width, spec.height, settings.spp, settings.decomposition
+        "{}, {}x{}, {} spp, {}, simulated{}",
+        settings.scene,
+        spec.width,
+        spec.height,
+        settings.spp,
+        settings.decomposition,
+        hardware_in_words(arguments)
     );
-    let blocks = forecasts::forecast_blocks(&rows, &workload);
+    let blocks = forecasts::forecast_blocks(&rows, &workload, hardware == Hardware::default());
     show(&blocks)?;
     for block in &blocks {
         save(block, &arguments.out)?;
@@ -94,21 +110,31 @@ fn parse_workers(text: &str) -> Result<Vec<usize>> {
         }
         None => text.split(',').map(number).collect::<Option<Vec<usize>>>(),
     };
-    list.ok_or_else(|| {
+    let sorted = |mut list: Vec<usize>| {
+        list.sort_unstable();
+        list.dedup();
+        list
+    };
+    list.map(sorted).ok_or_else(|| {
         InputError::new("workers", text, "cannot be read")
             .allowed(format!("1..{MOST_WORKERS}, or a list like 1,2,768"))
             .into()
     })
 }
 
+/// The slowest core: slower ones are no cores, and take long to replay.
+const SLOWEST: f64 = 0.01;
+/// The largest share of the time that interruptions may take, and the shortest that they may be.
+const MOST_NOISE: f64 = 0.9;
+const SHORTEST_MS: f64 = 0.001;
 /// Beyond that a simulation says nothing about any machine, and takes long to say it.
 const MOST_WORKERS: usize = 1 << 16;
 
 fn hardware(arguments: &Arguments) -> Result<Hardware> {
     let speed = |field: &str, text: &str, value: Option<f64>| {
-        value.filter(|speed| *speed > 0.0 && speed.is_finite()).ok_or_else(|| {
+        value.filter(|speed| (SLOWEST..=1.0).contains(speed)).ok_or_else(|| {
             let error = InputError::new(field, text, "is no speed");
-            Error::from(error.allowed("numbers above 0, 1 being a core like this one"))
+            Error::from(error.allowed(format!("{SLOWEST} to 1, 1 being a core like this one")))
         })
     };
     let speeds = match (&arguments.slow_core, &arguments.efficiency_cores) {
@@ -126,35 +152,60 @@ fn hardware(arguments: &Arguments) -> Result<Hardware> {
     Ok(Hardware { speeds, noise })
 }
 
+/// What differs from cores that are all like this one.
+fn hardware_in_words(arguments: &Arguments) -> String {
+    let parts = [
+        arguments.slow_core.map(|speed| format!(", one core of speed {speed}")),
+        arguments.efficiency_cores.as_ref().map(|cores| format!(", fast cores and the others' speed {cores}")),
+        arguments.noise.as_ref().map(|noise| format!(", interruptions {noise}")),
+    ];
+    parts.into_iter().flatten().collect()
+}
+
 fn parse_noise(text: &str) -> Result<Noise> {
     let (share, length) = text.split_once(':').unwrap_or((text, "0.1"));
     let noise = share.parse().ok().zip(length.parse::<f64>().ok());
-    let noise = noise.and_then(|(share, milliseconds)| Noise::new(share, milliseconds * 1e-3, 1));
+    let sensible = |&(share, milliseconds): &(f64, f64)| share <= MOST_NOISE && milliseconds >= SHORTEST_MS;
+    let noise = noise.filter(sensible).and_then(|(share, milliseconds)| Noise::new(share, milliseconds * 1e-3, 1));
     noise.ok_or_else(|| {
         InputError::new("noise", text, "cannot be read")
-            .allowed("SHARE[:MILLISECONDS], a share below 1, like 0.02:0.5")
+            .allowed(format!("SHARE[:MILLISECONDS], up to {MOST_NOISE}, from {SHORTEST_MS} ms, like 0.02:0.5"))
             .into()
     })
 }
 
-/// Seconds that may be spent on predicting this machine.
+/// Seconds after which no further round of predictions is begun.
 const CHECK_S: f64 = 30.0;
+/// Seconds of a round from which on this machine is not predicted at all.
+const MOST_CHECK_S: f64 = 120.0;
 
-/// Runs the trace's own workload on 1 to all processors of this machine, each round beginning with a serial run for the costs.
+/// Runs the trace's own workload on 1, 2, 4 and so on to all processors of this machine, each round beginning with a serial run for the costs.
 fn predict_live(trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Result<Vec<Prediction>> {
     let processors = available_threads();
     let base = &trace.header.settings;
     let work_s: f64 = trace.costs_s().iter().sum();
-    let schedules: Vec<Settings> = contenders
-        .iter()
-        .filter(|contender| contender.name != "serial")
-        .flat_map(|contender| {
-            let threads = if contender.has_a_thread_per_job() { vec![1] } else { (1..=processors).collect() };
-            let name = &contender.name;
-            threads.into_iter().map(move |threads| Settings { strategy: name.clone(), threads, ..base.clone() })
-        })
-        .collect();
-    let round_s: f64 = schedules.iter().map(|settings| work_s / settings.threads as f64).sum::<f64>() + work_s;
+    let doubled =
+        std::iter::successors(Some(1), |threads| Some(2 * threads)).take_while(|threads| *threads < processors);
+    let counts: Vec<usize> = doubled.chain([processors]).collect();
+    let mut schedules = Vec::new();
+    for contender in contenders.iter().filter(|contender| contender.name != "serial") {
+        let threads = if contender.has_a_thread_per_job() { &[1][..] } else { &counts };
+        for &threads in threads {
+            let settings = Settings { strategy: contender.name.clone(), threads, ..base.clone() };
+            match Setup::prepare(settings) {
+                Ok(setup) => schedules.push(setup),
+                Err(error) => talk.note(&format!("{} is not tried on this machine: {error}", contender.name)),
+            }
+        }
+    }
+    let used = |setup: &Setup| setup.threads().min(processors) as f64;
+    let round_s: f64 = schedules.iter().map(|setup| work_s / used(setup)).sum::<f64>() + work_s;
+    if round_s > MOST_CHECK_S {
+        talk.note(&format!(
+            "this machine is not predicted: trying all strategies on the jobs of the trace would take {round_s:.0} s"
+        ));
+        return Ok(Vec::new());
+    }
     let rounds = (CHECK_S / round_s).clamp(1.0, 5.0) as u64;
     let mut runs = Vec::new();
     talk.begin("predicting this machine", rounds * schedules.len() as u64);
@@ -162,10 +213,10 @@ fn predict_live(trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Res
         let serial = Setup::prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;
         let alone = serial.run(None)?;
         let costs = TraceFile::new(&serial, &alone).costs_s();
-        for (index, settings) in schedules.iter().enumerate() {
-            let setup = Setup::prepare(settings.clone())?;
+        for (index, setup) in schedules.iter().enumerate() {
+            let settings = setup.settings();
             let outcome = setup.run(None)?;
-            let inflation = outcome.cpu_s().zip(alone.cpu_s()).map_or(1.0, |(own, serial)| own / serial);
+            let inflation = forecasts::inflation(outcome.cpu_s(), alone.cpu_s());
             let observed = Observed {
                 inflation,
                 decomposition: settings.decomposition.clone(),

@@ -113,7 +113,7 @@ impl Decomposition {
         let examples: Vec<&str> = DECOMPOSITIONS.iter().map(|entry| entry.example).collect();
         let problem = if entry.is_some() { "cannot be read" } else { "there is no decomposition of that name" };
         Err(InputError::new("decomposition", text, problem)
-            .allowed(format!("as in {}; numbers from 1", examples.join(", ")))
+            .allowed(format!("as in {}; numbers from 1, samples in 16, 32, 64, ...", examples.join(", ")))
             .into())
     }
 

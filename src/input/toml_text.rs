@@ -9,8 +9,13 @@ use std::path::Path;
 /// No scene or experiment comes near this; a device file or a mistaken path does.
 const LARGEST_FILE: u64 = 16 << 20;
 
-/// The text of a user's file.
+/// The text of a definition.
 pub fn read_text(path: &Path) -> Result<String> {
+    read_text_up_to(path, LARGEST_FILE)
+}
+
+/// The text of a user's file of so many bytes at most.
+pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
     let name = path.display().to_string();
     let file = std::fs::File::open(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => InputError::new("file", &name, "there is no such file").into(),
@@ -20,9 +25,10 @@ pub fn read_text(path: &Path) -> Result<String> {
         return Err(InputError::new("file", name, "is a directory").into());
     }
     let mut bytes = Vec::new();
-    file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(|e| Error::system("reading", path, e))?;
-    if bytes.len() as u64 > LARGEST_FILE {
-        return Err(InputError::new("file", name, "is larger than a definition can be").allowed("up to 16 MiB").into());
+    file.take(most + 1).read_to_end(&mut bytes).map_err(|e| Error::system("reading", path, e))?;
+    if bytes.len() as u64 > most {
+        let allowed = format!("up to {} MiB", most >> 20);
+        return Err(InputError::new("file", name, "is larger than such a file can be").allowed(allowed).into());
     }
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();

@@ -67,8 +67,7 @@ pub fn strategy_named(text: &str) -> Result<(&'static Entry, Option<String>)> {
     };
     let entry = strategy::find(name).ok_or_else(|| {
         let names: Vec<&str> = STRATEGIES.iter().map(|entry| entry.name).collect();
-        InputError::new("strategy", name, "there is no strategy of that name")
-            .allowed(format!("{}, {THREAD_PER_ROW}", names.join(", ")))
+        InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
     })?;
     match (entry.discipline)(parameter.as_deref()) {
         Err(StrategyError::Parameter { allowed, .. }) => {

@@ -4,7 +4,7 @@ use super::ledger::Ledger;
 use super::output::{self, Delivery, OUTPUTS, Output};
 use super::settings::{LARGEST_THREADS, strategy_named};
 use super::usage::Usage;
-use super::{Settings, Trace, Warning, available_threads, pilot};
+use super::{Settings, THREAD_PER_ROW, Trace, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Decomposition, Film, FilmKey, Plan};
 use crate::kernel::{self, Counts, Kernel};
@@ -79,7 +79,10 @@ impl Setup {
         let settings = settings.resolved();
         settings.check()?;
         let decomposition = Decomposition::parse(&settings.decomposition)?;
-        let (strategy, parameter) = strategy_named(&settings.strategy)?;
+        let (strategy, parameter) = strategy_named(&settings.strategy).map_err(|error| match error {
+            Error::Input(input) if strategy::find(&input.value).is_none() => also_per_row(*input),
+            other => other,
+        })?;
         let Some(output) = output::find(&settings.output) else {
             let names: Vec<&str> = OUTPUTS.iter().map(|entry| entry.name).collect();
             return Err(InputError::new("output", &settings.output, "there is none of that name")
@@ -294,6 +297,12 @@ impl Setup {
         }
         warnings
     }
+}
+
+/// Where a strategy is named together with its pieces, report A's name for both is allowed too.
+fn also_per_row(error: InputError) -> Error {
+    let allowed = format!("{}, {THREAD_PER_ROW}", error.allowed);
+    error.allowed(allowed).into()
 }
 
 /// What all jobs of a run share.

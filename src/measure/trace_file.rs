@@ -10,9 +10,12 @@ use super::{JobSpan, Outcome, Settings, Setup, Trace};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::film::{Bounds, Piece};
-use crate::input::read_text;
+use crate::input::read_text_up_to;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+
+/// A row has some 60 bytes: room for more jobs than a film can have pixels.
+const LARGEST_FILE: u64 = 1 << 33;
 
 /// What was run and how long it took.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -106,7 +109,7 @@ impl TraceFile {
 
     /// Reads a file that [`TraceFile::write`] wrote.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = read_text(path)?;
+        let text = read_text_up_to(path, LARGEST_FILE)?;
         let wrong = |line: usize, field: &str, value: &str, problem: String| -> Error {
             InputError::new(field, value, problem).in_file(path.display().to_string(), Some((line, 1))).into()
         };
@@ -117,6 +120,9 @@ impl TraceFile {
         };
         let header: TraceHeader =
             serde_json::from_str(json).map_err(|e| wrong(1, "header", "", format!("cannot be read: {e}")))?;
+        if !(header.makespan_s > 0.0 && header.makespan_s.is_finite()) {
+            return Err(wrong(1, "makespan_s", &header.makespan_s.to_string(), "is no time".to_string()));
+        }
         let mut rows = Vec::new();
         for (index, row) in csv::Reader::from_reader(table.as_bytes()).deserialize::<TraceRow>().enumerate() {
             let line = index + 3;
@@ -128,10 +134,18 @@ impl TraceFile {
             if !ordered || row.x1 <= row.x0 || row.y1 <= row.y0 {
                 return Err(wrong(line, "row", "", "stops before it starts, or has no pixels".to_string()));
             }
+            if row.worker >= header.workers {
+                let problem = format!("is no worker of a run that had {}", header.workers);
+                return Err(wrong(line, "worker", &row.worker.to_string(), problem));
+            }
             rows.push(row);
         }
         if rows.is_empty() {
             return Err(wrong(2, "rows", "", "there are none".to_string()));
+        }
+        if header.workers as usize > rows.len() {
+            let problem = format!("cannot all have had one of {} jobs", rows.len());
+            return Err(wrong(1, "workers", &header.workers.to_string(), problem));
         }
         Ok(Self { header, rows })
     }

@@ -1,7 +1,7 @@
 //! Simulated and predicted schedules as tables and charts: for the figure of an experiment and for the verb `simulate`.
 
 use super::block::{Block, Table};
-use super::results::Results;
+use super::results::{Results, image};
 use crate::error::Result;
 use crate::measure::Record;
 use crate::plot::style::Look;
@@ -9,23 +9,24 @@ use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::simulate::{Contender, Forecast, Observed, Prediction, agreement, predict};
 use std::collections::BTreeMap;
 
-/// The makespans of all rows, predicted from the serial run of the same pieces in the same repetition.
+/// The makespans of rows whose workers had a processor each, or that have a thread for each job, predicted from the serial run of the same
+/// pieces in the same repetition.
 pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Prediction>> {
-    let key = |record: &Record| {
-        let size = format!("{}x{} {}", record.width, record.height, record.spp);
-        format!("{} {} {} {size} {}", record.scene_hash, record.estimator, record.sampler, record.decomposition)
-    };
+    let key = |record: &Record| (format!("{} {}", image(record), record.decomposition), record.repetition);
     let mut costs: BTreeMap<(String, u32), (Vec<f64>, Option<f64>)> = BTreeMap::new();
     for record in results.records.iter().filter(|record| record.strategy == "serial") {
         if let Some(trace) = results.trace(record)? {
-            costs.insert((key(record), record.repetition), (trace.costs_s(), record.cpu_s()));
+            costs.insert(key(record), (trace.costs_s(), record.cpu_s()));
         }
     }
-    let runs = results.records.iter().filter(|record| record.strategy != "serial").filter_map(|record| {
-        let (costs, serial_cpu_s) = costs.get(&(key(record), record.repetition))?;
-        let inflation = record.cpu_s().zip(*serial_cpu_s).map_or(1.0, |(own, serial)| own / serial);
+    let processors = results.run.machine.processors;
+    let modelled = |record: &Record| {
+        record.strategy != "serial" && (record.threads <= processors || record.threads == record.jobs)
+    };
+    let runs = results.records.iter().filter(|record| modelled(record)).filter_map(|record| {
+        let (costs, serial_cpu_s) = costs.get(&key(record))?;
         let observed = Observed {
-            inflation,
+            inflation: inflation(record.cpu_s(), *serial_cpu_s),
             decomposition: record.decomposition.clone(),
             strategy: record.strategy.clone(),
             workers: record.threads,
@@ -33,7 +34,12 @@ pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Pr
         };
         Some((observed, costs.as_slice()))
     });
-    Ok(predict(runs, contenders, results.run.machine.processors))
+    Ok(predict(runs, contenders, processors))
+}
+
+/// CPU time over that of the serial run beside it; 1 where the system told none.
+pub fn inflation(own_s: Option<f64>, serial_s: Option<f64>) -> f64 {
+    own_s.zip(serial_s).filter(|(own, serial)| *own > 0.0 && *serial > 0.0).map_or(1.0, |(own, serial)| own / serial)
 }
 
 /// Predicted against measured, and the errors in a sentence.
@@ -50,8 +56,8 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
             prediction.runs.to_string(),
             format!("{:.2}", prediction.predicted_s * 1e3),
             format!("{:.2}", prediction.measured_s * 1e3),
-            format!("{:+.1} %", 100.0 * (prediction.ratio - 1.0)),
             format!("{:+.1} %", 100.0 * (prediction.plain_ratio - 1.0)),
+            format!("{:+.1} %", 100.0 * (prediction.ratio - 1.0)),
         ]
     };
     let columns = [
@@ -62,27 +68,29 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
         "predicted ms",
         "measured ms",
         "error (median of paired ratios)",
-        "error if work inflation is not known",
+        "error, told the CPU time",
     ];
     let title = "The simulator predicts this machine".to_string();
     let rows = predictions.iter().map(row).collect();
     vec![
         Block::Finding(format!(
-            "{} schedules of this machine predicted from serial runs: median absolute error {:.1} %, worst {:.1} %, bias {:+.1} %. That is for jobs as dear as \
-             the runs' CPU time says they were; where they are taken to cost what they cost the serial run, which no schedule can influence, the median is {:.1} %, the worst {:.1} %.",
+            "{} schedules of this machine predicted from serial runs: median absolute error {:.1} %, worst {:.1} %, bias {:+.1} %. Told besides how much more CPU time each run took than the serial one, \
+             which tells the machine's disturbances from the schedule's doing but is no prediction: median {:.1} %, worst {:.1} %.",
             predictions.len(),
-            100.0 * known.median_absolute,
-            100.0 * known.worst_absolute,
-            100.0 * known.bias,
             100.0 * plain.median_absolute,
             100.0 * plain.worst_absolute,
+            100.0 * plain.bias,
+            100.0 * known.median_absolute,
+            100.0 * known.worst_absolute,
         )),
         Block::Table { stem: "predictions", table: Table { title, columns: columns.map(String::from).to_vec(), rows } },
     ]
 }
 
 /// Speedup and efficiency against cores, and all numbers as a table.
-pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
+///
+/// Graham's bound is drawn for equal cores, for which alone it holds.
+pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> Vec<Block> {
     let mut blocks = Vec::new();
     let shown = representatives(rows);
     let bound = rows.iter().map(|row| row.share_s * row.workers as f64 / row.longest_s).reduce(f64::max);
@@ -110,7 +118,7 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
     let mut efficiency = LineChart::new("Forecast: efficiency", axis(), efficiency_axis, series(|row| row.efficiency));
     efficiency.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
     let mut makespans = series(|row| row.makespan_s);
-    makespans.extend(bounds(rows, makespans.len()));
+    makespans.extend(bounds(rows, makespans.len(), equal_cores));
     let makespan = LineChart::new("Forecast: makespan and its bounds", axis(), Axis::log("seconds"), makespans);
     let charts = [("forecast-speedup", speedup), ("forecast-efficiency", efficiency), ("forecast-makespan", makespan)];
     for (stem, mut chart) in charts {
@@ -154,7 +162,7 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str) -> Vec<Block> {
 type Value = fn(&Forecast) -> f64;
 
 /// What no schedule can beat, and what every greedy one keeps to, as lines without intervals.
-fn bounds(rows: &[Forecast], first: usize) -> Vec<Series> {
+fn bounds(rows: &[Forecast], first: usize, equal_cores: bool) -> Vec<Series> {
     let values: [(&str, Value); 3] = [
         ("bound: work / cores", |row| row.share_s),
         ("bound: longest job", |row| row.longest_s),
@@ -168,7 +176,7 @@ fn bounds(rows: &[Forecast], first: usize) -> Vec<Series> {
         let points = own.iter().map(|row| Point::new(row.workers as f64, value(row))).collect();
         Series::new(name, Look::nth(first + index), points)
     };
-    values.into_iter().enumerate().map(line).collect()
+    values.into_iter().take(if equal_cores { 3 } else { 2 }).enumerate().map(line).collect()
 }
 
 /// The strategies that a chart shows: the first of those whose speedups are alike everywhere, to within a quarter.
@@ -177,12 +185,13 @@ fn representatives(rows: &[Forecast]) -> Vec<String> {
     names.dedup();
     let speedups =
         |name: &str| rows.iter().filter(|row| row.strategy == name).map(|row| row.speedup).collect::<Vec<f64>>();
+    let most = names.iter().map(|name| speedups(name).len()).max().unwrap_or(0);
     let mut shown: Vec<(String, Vec<f64>)> = Vec::new();
     for name in names {
         let own = speedups(name);
         let alike = |other: &Vec<f64>| other.iter().zip(&own).all(|(a, b)| (a / b - 1.0).abs() < 0.25);
         // A strategy that has one number of workers whatever is asked, as serial has, is no line.
-        if own.len() > 1 && !shown.iter().any(|(_, other)| alike(other)) {
+        if own.len() == most && !shown.iter().any(|(_, other)| alike(other)) {
             shown.push((name.to_string(), own));
         }
     }

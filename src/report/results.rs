@@ -190,7 +190,7 @@ impl Results {
 }
 
 /// What tells images apart.
-fn image(record: &Record) -> String {
+pub(super) fn image(record: &Record) -> String {
     let what = format!("{} {} {}", record.scene_hash, record.estimator, record.sampler);
     format!("{what} {}x{} {} {}", record.width, record.height, record.spp, record.seed)
 }

@@ -32,14 +32,14 @@ pub struct Prediction {
     pub workers: usize,
     /// How many runs there were.
     pub runs: usize,
-    /// Median of what the simulator finds for the inflated work, in seconds.
+    /// Median of what the simulator finds, in seconds.
     pub predicted_s: f64,
     /// Median of what was measured, in seconds.
     pub measured_s: f64,
-    /// Median of predicted over measured, run by run.
-    pub ratio: f64,
-    /// The same for a prediction that knows nothing of the inflation.
+    /// Median of predicted over measured, run by run, for jobs that cost what they cost the serial run.
     pub plain_ratio: f64,
+    /// The same for jobs that cost more by the run's inflation.
+    pub ratio: f64,
 }
 
 /// Predicts each run from the costs of its jobs, which should come from a serial run made beside it; runs of no contender are left out.
@@ -67,7 +67,7 @@ pub fn predict<'a>(
             strategy,
             workers,
             runs: runs.len(),
-            predicted_s: middle(|run| run[0])?,
+            predicted_s: middle(|run| run[2])?,
             measured_s: middle(|run| run[1])?,
             ratio: middle(|run| run[0] / run[1])?,
             plain_ratio: middle(|run| run[2] / run[1])?,
@@ -108,6 +108,6 @@ mod tests {
 
         let inflated = Observed { inflation: 1.5, ..run(3.0) };
         let found = predict([(inflated, &[1.0, 1.0][..])], &[contender], 2);
-        assert_eq!((found[0].predicted_s, found[0].ratio, found[0].plain_ratio), (3.0, 1.0, 2.0 / 3.0));
+        assert_eq!((found[0].predicted_s, found[0].ratio, found[0].plain_ratio), (2.0, 1.0, 2.0 / 3.0));
     }
 }

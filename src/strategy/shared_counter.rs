@@ -9,10 +9,8 @@
 //! worker idles while a job is left, so the imbalance is one job at most; with very small jobs the line is the bottleneck.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crossbeam::utils::CachePadded;
-
+use super::counter::Counter;
 use super::panics::Panics;
 use super::self_scheduling;
 use super::team;
@@ -41,14 +39,12 @@ struct SharedCounter(Config);
 
 impl Strategy for SharedCounter {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        // Padded, so that taking a job doesn't slow down whoever reads the neighbours, the counts of the `Arc` among them.
-        let next = Arc::new(CachePadded::new(AtomicUsize::new(0)));
+        let next = Arc::new(Counter::default());
         let bodies = (0..self.0.threads.get().min(jobs)).map(|_| {
             let (job, next) = (Arc::clone(&job), Arc::clone(&next));
             move |panics: &Panics| {
                 while !panics.stop_asked() {
-                    // Relaxed: the indices alone are shared out here; what jobs write is published by joining the threads.
-                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let index = next.take();
                     if index >= jobs {
                         break;
                     }

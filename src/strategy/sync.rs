@@ -1,6 +1,6 @@
 //! What our own concurrent primitives are made of.
 //!
-//! `counter`, `locked_queue`, `panics`, `ranges` and `taken` take these types from here and from nowhere else. So `tests/loom.rs` can
+//! `counter`, `locked_queue`, `panics`, `ranges` and `taken` take these types from here and from nowhere else. So `tests/loom/main.rs` can
 //! include the same files beside a module of this name that has loom's types, which try every interleaving. Those five files hold no
 //! unit tests: outside a model loom's types don't work.
 

@@ -19,6 +19,9 @@ fn a_damaged_trace_is_refused_with_its_line() {
         (String::new(), "run.csv:1:"),
         ("job,worker\n0,0\n".to_string(), "run.csv:1:"),
         (whole.replacen("\"spp\"", "\"ssp\"", 1), "run.csv:1:"),
+        (whole.replacen("\"workers\":", "\"workers\":4000000", 1), "run.csv:1:"),
+        (whole.replacen("\"makespan_s\":", "\"makespan_s\":-", 1), "run.csv:1:"),
+        (whole.replace(second_job, &second_job.replacen(",0,", ",9,", 1).replacen(",1,", ",9,", 1)), "run.csv:4:"),
         (lines[..2].join("\n"), "run.csv:2:"),
         (whole.replace(second_job, &second_job.replacen('1', "7", 1)), "run.csv:4:"),
         (whole.replace(second_job, "1,0,0.5,0.25,1,1,0,0,8,8,0,4"), "run.csv:4:"),
@@ -37,14 +40,17 @@ fn a_damaged_trace_is_refused_with_its_line() {
 fn options_that_make_no_sense_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     finish(pathmark(folder.path(), &RENDER)).with_code(0);
-    let cases: [(&[&str], &[&str]); 9] = [
+    let cases: [(&[&str], &[&str]); 12] = [
+        (&["--noise", "0.5:1e-9"], &["noise", "0.5:1e-9", "0.001 ms"]),
+        (&["--slow-core", "8"], &["slow-core", "8", "0.01 to 1"]),
+        (&["--strategies", "thread-per-row"], &["strategy", "thread-per-row", "thread-per-job"]),
         (&["--workers", "0"], &["workers", "0", "1.."]),
         (&["--workers", "8..2"], &["workers", "8..2"]),
         (&["--workers", "many"], &["workers", "many"]),
         (&["--slow-core", "0"], &["slow-core", "0"]),
         (&["--slow-core", "NaN"], &["slow-core", "NaN"]),
         (&["--efficiency-cores", "4"], &["efficiency-cores", "4"]),
-        (&["--noise", "1.5"], &["noise", "1.5", "below 1"]),
+        (&["--noise", "1.5"], &["noise", "1.5", "0.9"]),
         (&["--strategies", "magic"], &["strategy", "magic", "work-stealing"]),
         (&["--strategies", "dynamic:x"], &["dynamic"]),
     ];

@@ -61,6 +61,20 @@ fn a_trace_is_replayed_on_other_machines() {
     assert!(!said.contains("median absolute error"), "{said}");
 }
 
+/// What cannot be tried on this machine, a thread for each of 19200 pixels, is left out with a word and simulated all the same.
+#[test]
+fn jobs_too_many_for_threads_are_simulated() {
+    let folder = tempfile::tempdir().unwrap();
+    let cut = ["--size", "160x120", "--spp", "4", "--decomposition", "tiles:1x1", "--trace", "run.csv"];
+    run(folder.path(), &[&["render", "cornell", "--strategy", "serial"][..], &cut].concat());
+    let chosen = ["--strategies", "thread-per-job,shared-counter", "--workers", "4"];
+    let finished = run(folder.path(), &[&["simulate", "run.csv", "--out", "forecast"][..], &chosen].concat());
+    assert!(finished.err.contains("thread-per-job is not tried"), "{}", finished.err);
+    assert!(finished.out.contains("shared-counter"), "{}", finished.out);
+    let chart = fs::read_to_string(folder.path().join("forecast/forecast-speedup.svg")).unwrap();
+    assert!(!chart.contains("no data"));
+}
+
 /// An experiment that keeps traces is predicted from its own rows.
 #[test]
 fn an_experiment_with_traces_is_predicted_from_its_rows() {

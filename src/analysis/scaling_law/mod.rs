@@ -81,9 +81,6 @@ pub enum Fit {
 }
 
 impl Law {
-    /// All laws.
-    pub const ALL: [Self; 3] = [Self::Amdahl, Self::Gustafson, Self::Universal];
-
     /// What its parameters are called, in order.
     pub fn parameters(self) -> &'static [&'static str] {
         match self {
@@ -96,15 +93,6 @@ impl Law {
     pub fn least_worker_counts(self) -> usize {
         if self == Self::Universal { 3 } else { 1 }
     }
-
-    /// The speedup at `workers`, which need not be whole, for parameters in the order of [`Law::parameters`].
-    fn at(self, parameters: [f64; 2], workers: f64) -> f64 {
-        let lost = parameters[0] * (workers - 1.0);
-        match self {
-            Self::Gustafson => workers - lost,
-            Self::Amdahl | Self::Universal => workers / (1.0 + lost + parameters[1] * workers * (workers - 1.0)),
-        }
-    }
 }
 
 impl std::fmt::Display for Law {
@@ -114,14 +102,6 @@ impl std::fmt::Display for Law {
             Self::Gustafson => "Gustafson's law",
             Self::Universal => "the Universal Scalability Law",
         })
-    }
-}
-
-impl Fitted {
-    /// The fitted speedup at `workers`, which need not be whole: for drawing the curve.
-    pub fn at(&self, workers: f64) -> f64 {
-        let value = |index: usize| self.parameters.get(index).map_or(0.0, |parameter| parameter.estimate.value);
-        self.law.at([value(0), value(1)], workers)
     }
 }
 

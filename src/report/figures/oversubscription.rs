@@ -5,8 +5,12 @@ use crate::measure::Record;
 use crate::plot::style::Look;
 use crate::plot::{Axis, LineChart, Point, Series};
 use crate::report::block::Block;
-use crate::report::results::{Results, Schedule, confidence, median_with_interval};
+use crate::report::results::{Results, Schedule, confidence, median_with_interval, with_level};
 use std::collections::BTreeMap;
+
+/// Report D's strategy, and the one that it is compared with.
+const PER_SECTION: &str = "thread-per-job";
+const FEW: &str = "shared-counter";
 
 /// Points of time against something, by series.
 type Lines = BTreeMap<String, Vec<Point>>;
@@ -22,7 +26,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let point = |x: usize| Point::new(x as f64, median * 1e3).with_y(bar);
         let jobs = records.first().map_or(0, |record| record.jobs);
         if schedule.decomposition.starts_with("grid:") {
-            let name = if schedule.threads == jobs {
+            let name = if schedule.strategy == PER_SECTION {
                 "a thread for each section"
             } else {
                 "shared counter, a thread for each processor"
@@ -76,27 +80,38 @@ fn series(lines: Lines) -> Vec<Series> {
     lines.map(|(index, (name, points))| Series::new(name, Look::nth(index), sorted(points))).collect()
 }
 
-/// Report D's "around 16 to 49 is a good number" against the same pieces with a thread for each processor.
+/// Report D's "around 16 to 49 is a good number", against 4 sections, and against the same pieces with a thread for each processor.
 fn finding(results: &Results) -> Option<Block> {
-    let grids = |per_job: bool| {
-        move |record: &Record| {
-            record.decomposition.starts_with("grid:")
-                && (16..=49).contains(&record.jobs)
-                && (record.strategy == "thread-per-job") == per_job
-        }
+    let time = |strategy: &str, decomposition: &str, repetition: u32| {
+        let same = |record: &&Record| {
+            record.strategy == strategy && record.decomposition == decomposition && record.repetition == repetition
+        };
+        results.records.iter().find(same)?.makespan_s
     };
-    let one_section = |record: &Record| record.decomposition == "grid:4" && record.strategy == "thread-per-job";
-    let median_of = |wanted: &dyn Fn(&Record) -> bool| {
-        let times: Vec<f64> =
-            results.records.iter().filter(|record| wanted(record)).filter_map(|record| record.makespan_s).collect();
-        crate::analysis::quantile::median(&times)
+    let (mut against_four, mut against_few) = (Vec::new(), Vec::new());
+    let in_range = |record: &&Record| {
+        record.strategy == PER_SECTION && record.decomposition.starts_with("grid:") && (16..=49).contains(&record.jobs)
     };
-    let (four, many, few) = (median_of(&one_section)?, median_of(&grids(true))?, median_of(&grids(false))?);
+    for record in results.records.iter().filter(in_range) {
+        let Some(own_s) = record.makespan_s else { continue };
+        against_four.extend(time(PER_SECTION, "grid:4", record.repetition).map(|four_s| own_s / four_s));
+        against_few.extend(time(FEW, &record.decomposition, record.repetition).map(|few_s| own_s / few_s));
+    }
+    let in_words = |ratios: &[f64]| {
+        let (value, interval) = median_with_interval(ratios)?;
+        let interval = interval?;
+        let verdict = match (interval.low > 1.0, interval.high < 1.0) {
+            (true, _) => "longer",
+            (_, true) => "shorter",
+            _ => "not told apart",
+        };
+        Some(format!("{value:.2} times as long, {} ({verdict})", with_level(&interval, 2)))
+    };
     Some(Block::Finding(format!(
-        "A thread for each of 16 to 49 sections takes {:.2} times as long as one for each of 4 (medians), so report D's range is a good one on {} processors as well, if threads and sections \
-         are tied together. But a thread for each processor on the same 16 to 49 sections takes {:.2} times as long as a thread for each section: what helps is the smaller pieces, not the threads.",
-        many / four,
+        "A thread for each of 16 to 49 sections takes, against one for each of 4 sections, {}; against a thread for each of the {} processors on the same 16 to 49 sections, {}. \
+         The first is what report D saw; the second is what its threads, apart from the smaller pieces, gain or cost.",
+        in_words(&against_four)?,
         results.run.machine.processors,
-        few / many,
+        in_words(&against_few)?,
     )))
 }

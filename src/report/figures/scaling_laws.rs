@@ -1,6 +1,6 @@
 //! Laws of speedup fitted to what was measured; where the points can't tell, the table says why.
 
-use crate::analysis::scaling_law::{Check, Fit, Law, Point, fit};
+use crate::analysis::scaling_law::{Fit, Law, Parameter, Point, fit};
 use crate::error::Result;
 use crate::report::block::{Block, Table};
 use crate::report::results::{LEVEL, Results, Schedule, with_level};
@@ -30,7 +30,7 @@ fn row(strategy: &str, law: Law, points: &[Point]) -> Vec<String> {
     let (parameters, verdict) = match fit(law, points, LEVEL) {
         Fit::Unidentifiable(reason) => ("none".to_string(), format!("not identifiable: {reason}")),
         Fit::Found(fitted) => {
-            let parameter = |parameter: &crate::analysis::scaling_law::Parameter| {
+            let parameter = |parameter: &Parameter| {
                 let estimate = &parameter.estimate;
                 format!("{} = {:.4}, {}", parameter.name, estimate.value, with_level(&estimate.interval, 4))
             };
@@ -38,16 +38,9 @@ fn row(strategy: &str, law: Law, points: &[Point]) -> Vec<String> {
             if let Some(peak) = &fitted.peak {
                 parameters.push(format!("peak at p = {:.0}, {}", peak.value, with_level(&peak.interval, 0)));
             }
-            (parameters.join("; "), verdict(&fitted.check))
+            let counts = fitted.worker_counts;
+            (parameters.join("; "), format!("{}; {counts} thread counts above 1", fitted.check))
         }
     };
     vec![strategy.to_string(), law.to_string(), parameters, verdict]
-}
-
-fn verdict(check: &Check) -> String {
-    match check {
-        Check::Passed { p_value } => format!("yes, as far as the residuals tell (p = {p_value:.2})"),
-        Check::Rejected { p_value } => format!("no: the points lie off the curve (p = {p_value:.3})"),
-        Check::NotPossible => Check::NotPossible.to_string(),
-    }
 }

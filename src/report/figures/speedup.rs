@@ -1,6 +1,7 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by which Karp and Flatt explain what is missing.
 
 use crate::analysis::Estimate;
+use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, Point as LawPoint, fit};
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_estimate};
 use crate::analysis::superlinear::{Evidence, cause};
 use crate::error::Result;
@@ -10,10 +11,15 @@ use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, Figure, LineChart, Overlay, Point, Series};
 use crate::report::block::{Block, Table};
 use crate::report::results::{LEVEL, Results, Schedule, median_with_interval, with_level};
+use crate::strategy::{self, Workers};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// More threads than this are no axis any more: strategies that start so many by a rule of their own become level lines.
-const MOST_ON_AXIS: usize = 16;
+/// Whether the number of threads is the strategy's own rule, so that it is no place on an axis.
+fn has_a_thread_per_job(schedule: &Schedule) -> bool {
+    let name = schedule.strategy.split(':').next().unwrap_or_default();
+    schedule.strategy == THREAD_PER_ROW || strategy::find(name).is_some_and(|entry| entry.workers == Workers::PerJob)
+}
+
 /// More lines than this cannot be told apart in one chart: strategies become named rows instead.
 const MOST_LINES: usize = 8;
 
@@ -100,16 +106,20 @@ fn row(results: &Results, schedule: &Schedule, estimate: &Estimate) -> Vec<Strin
 fn evidence(results: &Results, schedule: &Schedule) -> Evidence {
     let alone = Schedule { threads: 1, ..schedule.clone() };
     let doubts = ["foreign-load", "drift", "slowed", "too-short"];
+    // The baseline's doubts count as well: a serial run that was held up makes all others look fast.
+    let concerned =
+        |own: &Schedule| own == schedule || (own.strategy == "serial" && own.decomposition == schedule.decomposition);
     let warned = |record: &&crate::measure::Record| {
-        Schedule::of(record) == *schedule && doubts.iter().any(|doubt| record.warnings.contains(doubt))
+        concerned(&Schedule::of(record)) && doubts.iter().any(|doubt| record.warnings.contains(doubt))
     };
     let machine = &results.run.machine;
     Evidence {
-        at_one_worker: median_with_interval(&results.paired_speedups(&alone)).and_then(|(_, interval)| interval),
+        at_one_worker: (schedule.threads > 1)
+            .then(|| median_with_interval(&results.paired_speedups(&alone)).and_then(|(_, interval)| interval))
+            .flatten(),
         warnings: results.records.iter().filter(warned).count(),
         processors: Some(machine.processors),
         physical_cores: Some(machine.physical_cores).filter(|cores| *cores > 0),
-        share_fits_cache: None,
     }
 }
 
@@ -122,18 +132,26 @@ fn dots(
     value: impl Fn(f64, usize) -> f64,
 ) -> DotPlot {
     let mut threads: Vec<usize> =
-        speedups.iter().map(|(s, _)| s.threads).filter(|threads| *threads <= MOST_ON_AXIS).collect();
+        speedups.iter().filter(|(s, _)| !has_a_thread_per_job(s)).map(|(s, _)| s.threads).collect();
     threads.sort_unstable();
     threads.dedup();
-    let mut rows: BTreeMap<&str, Vec<Option<Dot>>> = BTreeMap::new();
+    let several = speedups.iter().map(|(s, _)| &s.decomposition).collect::<BTreeSet<_>>().len() > 2;
+    let mut rows: BTreeMap<String, Vec<Option<Dot>>> = BTreeMap::new();
     for (schedule, estimate) in speedups {
-        let dots = rows.entry(&schedule.strategy).or_insert_with(|| vec![None; threads.len() + 1]);
-        let group = threads.iter().position(|threads| *threads == schedule.threads).unwrap_or(threads.len());
+        // One decomposition, and the rows of report A beside it, need no name.
+        let name = if several {
+            format!("{}, {}", schedule.strategy, schedule.decomposition)
+        } else {
+            schedule.strategy.clone()
+        };
+        let dots = rows.entry(name).or_insert_with(|| vec![None; threads.len() + 1]);
+        let place = threads.iter().position(|threads| *threads == schedule.threads);
+        let group = place.filter(|_| !has_a_thread_per_job(schedule)).unwrap_or(threads.len());
         let of = |speedup: f64| value(speedup, schedule.threads);
         let interval = Some((of(estimate.interval.low), of(estimate.interval.high)));
         dots[group] = Some(Dot { value: of(estimate.value), interval });
     }
-    let mut rows: Vec<Row> = rows.into_iter().map(|(name, dots)| Row { name: name.to_string(), dots }).collect();
+    let mut rows: Vec<Row> = rows.into_iter().map(|(name, dots)| Row { name, dots }).collect();
     let best = |row: &Row| row.dots.iter().flatten().map(|dot| dot.value).fold(0.0, f64::max);
     rows.sort_by(|a, b| best(b).total_cmp(&best(a)));
     let mut names: Vec<String> = threads
@@ -159,7 +177,7 @@ fn dots(
 fn series(speedups: &[(Schedule, Estimate)], value: impl Fn(f64, usize) -> f64) -> (Vec<Series>, Vec<f64>) {
     let mut lines: BTreeMap<&str, Vec<Point>> = BTreeMap::new();
     let mut ticks = Vec::new();
-    for (schedule, estimate) in speedups.iter().filter(|(schedule, _)| schedule.threads <= MOST_ON_AXIS) {
+    for (schedule, estimate) in speedups.iter().filter(|(schedule, _)| !has_a_thread_per_job(schedule)) {
         let threads = schedule.threads;
         let interval = (value(estimate.interval.low, threads), value(estimate.interval.high, threads));
         let point = Point::new(threads as f64, value(estimate.value, threads)).with_y(Some(interval));
@@ -175,7 +193,7 @@ fn series(speedups: &[(Schedule, Estimate)], value: impl Fn(f64, usize) -> f64) 
 
 fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineChart {
     let (mut series, ticks) = series(speedups, |speedup, _| speedup);
-    for (schedule, estimate) in speedups.iter().filter(|(schedule, _)| schedule.threads > MOST_ON_AXIS) {
+    for (schedule, estimate) in speedups.iter().filter(|(schedule, _)| has_a_thread_per_job(schedule)) {
         let interval = (estimate.interval.low, estimate.interval.high);
         let points = ticks.iter().map(|x| Point::new(*x, estimate.value).with_y(Some(interval))).collect();
         let name = format!("{}: always {}", schedule.strategy, schedule.threads);
@@ -195,8 +213,31 @@ fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineCh
         Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
         Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
     ];
+    chart.overlays.extend(fits(results, speedups));
     chart.dodge = 5.0;
     chart
+}
+
+/// Amdahl's law where the points bear it out, in the order of the strategies' lines.
+fn fits(results: &Results, speedups: &[(Schedule, Estimate)]) -> Vec<Overlay> {
+    let processors = results.run.machine.processors;
+    let mut points: BTreeMap<&str, Vec<LawPoint>> = BTreeMap::new();
+    for (schedule, _) in speedups.iter().filter(|(schedule, _)| !has_a_thread_per_job(schedule)) {
+        let own = points.entry(&schedule.strategy).or_default();
+        if schedule.threads <= processors {
+            own.push((schedule.threads, results.paired_speedups(schedule)));
+        }
+    }
+    let overlay = |(index, (name, points)): (usize, (&str, Vec<LawPoint>))| {
+        let Fit::Found(Fitted { parameters, check: Check::Passed { .. }, .. }) = fit(Law::Amdahl, &points, LEVEL)
+        else {
+            return None;
+        };
+        let serial_share = parameters.first()?.estimate.value;
+        let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
+        Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, index))
+    };
+    points.into_iter().enumerate().filter_map(overlay).collect()
 }
 
 fn efficiency_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineChart {

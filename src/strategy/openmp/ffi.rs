@@ -1,4 +1,4 @@
-//! A parallel loop of libgomp, through the few lines of C in `shim.c`. This is the crate's only unsafe code.
+//! A parallel loop of libgomp, through the few lines of C in `shim.c`. This is the strategies' only unsafe code.
 #![expect(unsafe_code, reason = "pragmas need C, and C is called by pointers; each block says why it is sound")]
 
 use std::ffi::{c_int, c_void};
