@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::measure::Record;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
-use crate::simulate::{Contender, Forecast, Observed, Prediction, agreement, predict};
+use crate::simulate::{Contender, DISTURBED, Forecast, Observed, Prediction, agreement, predict};
 use std::collections::BTreeMap;
 
 /// The makespans of rows whose workers had a processor each, or that have a thread for each job, predicted from the serial run of the same
@@ -44,10 +44,32 @@ pub fn inflation(own_s: Option<f64>, serial_s: Option<f64>) -> f64 {
 
 /// Predicted against measured, and the errors in a sentence.
 pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
-    let errors = |ratio: fn(&Prediction) -> f64| {
-        agreement(&predictions.iter().map(|prediction| (ratio(prediction), 1.0)).collect::<Vec<_>>())
+    let errors = |ratio: fn(&Prediction) -> Option<f64>| {
+        let ratios = predictions.iter().filter_map(ratio);
+        agreement(&ratios.map(|ratio| (ratio, 1.0)).collect::<Vec<_>>())
     };
-    let Some((known, plain)) = errors(|p| p.ratio).zip(errors(|p| p.plain_ratio)) else { return Vec::new() };
+    let all = errors(|p| Some(p.plain_ratio)).zip(errors(|p| Some(p.ratio)));
+    let Some((plain, told)) = all else { return Vec::new() };
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let (runs, quiet) = predictions.iter().fold((0, 0), |sum, p| (sum.0 + p.runs, sum.1 + p.undisturbed));
+    let finding = match errors(|p| p.undisturbed_ratio) {
+        None => {
+            "No run was undisturbed, so there is no telling how well the simulator predicts this machine.".to_string()
+        }
+        Some(found) => format!(
+            "{} schedules of this machine predicted from serial runs: median absolute error {}, worst {}, bias {:+.1} %. That is over the {quiet} of {runs} runs whose CPU time was within {:.0} % of that of the serial run \
+             beside them, so that it was the schedule that made their time; over all runs the median is {}, the worst {}. Told besides what CPU time each run took, which is no prediction: median {}, worst {}.",
+            predictions.iter().filter(|prediction| prediction.undisturbed > 0).count(),
+            percent(found.median_absolute),
+            percent(found.worst_absolute),
+            100.0 * found.bias,
+            100.0 * DISTURBED,
+            percent(plain.median_absolute),
+            percent(plain.worst_absolute),
+            percent(told.median_absolute),
+            percent(told.worst_absolute),
+        ),
+    };
     let row = |prediction: &Prediction| {
         vec![
             prediction.strategy.clone(),
@@ -56,6 +78,8 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
             prediction.runs.to_string(),
             format!("{:.2}", prediction.predicted_s * 1e3),
             format!("{:.2}", prediction.measured_s * 1e3),
+            prediction.undisturbed.to_string(),
+            prediction.undisturbed_ratio.map_or_else(|| "-".to_string(), |r| format!("{:+.1} %", 100.0 * (r - 1.0))),
             format!("{:+.1} %", 100.0 * (prediction.plain_ratio - 1.0)),
             format!("{:+.1} %", 100.0 * (prediction.ratio - 1.0)),
         ]
@@ -67,22 +91,15 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
         "runs",
         "predicted ms",
         "measured ms",
-        "error (median of paired ratios)",
+        "undisturbed runs",
+        "error, undisturbed runs",
+        "error, all runs",
         "error, told the CPU time",
     ];
     let title = "The simulator predicts this machine".to_string();
     let rows = predictions.iter().map(row).collect();
     vec![
-        Block::Finding(format!(
-            "{} schedules of this machine predicted from serial runs: median absolute error {:.1} %, worst {:.1} %, bias {:+.1} %. Told besides how much more CPU time each run took than the serial one, \
-             which tells the machine's disturbances from the schedule's doing but is no prediction: median {:.1} %, worst {:.1} %.",
-            predictions.len(),
-            100.0 * plain.median_absolute,
-            100.0 * plain.worst_absolute,
-            100.0 * plain.bias,
-            100.0 * known.median_absolute,
-            100.0 * known.worst_absolute,
-        )),
+        Block::Finding(finding),
         Block::Table { stem: "predictions", table: Table { title, columns: columns.map(String::from).to_vec(), rows } },
     ]
 }

@@ -43,5 +43,5 @@ pub use contender::{Contender, Order, contenders};
 pub use forecast::{Forecast, forecast};
 pub use hardware::{Hardware, Noise, Speeds};
 pub use overhead::{Overhead, Overheads};
-pub use prediction::{Observed, Prediction, predict};
+pub use prediction::{DISTURBED, Observed, Prediction, predict};
 pub use replay::{Replay, replay};

@@ -5,6 +5,9 @@ use super::hardware::Hardware;
 use crate::measure::median;
 use std::collections::BTreeMap;
 
+/// Relative difference in CPU time from which a run, or the serial one beside it, was disturbed by something that is no schedule.
+pub const DISTURBED: f64 = 0.1;
+
 /// A measured run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
@@ -36,6 +39,10 @@ pub struct Prediction {
     pub predicted_s: f64,
     /// Median of what was measured, in seconds.
     pub measured_s: f64,
+    /// How many of them were undisturbed: their CPU time is within [`DISTURBED`] of that of the serial run beside them.
+    pub undisturbed: usize,
+    /// Median of predicted over measured, over the undisturbed runs; `None` if there is none.
+    pub undisturbed_ratio: Option<f64>,
     /// Median of predicted over measured, run by run, for jobs that cost what they cost the serial run.
     pub plain_ratio: f64,
     /// The same for jobs that cost more by the run's inflation.
@@ -50,7 +57,7 @@ pub fn predict<'a>(
     contenders: &[Contender],
     processors: usize,
 ) -> Vec<Prediction> {
-    let mut groups: BTreeMap<(String, String, usize), Vec<[f64; 3]>> = BTreeMap::new();
+    let mut groups: BTreeMap<(String, String, usize), Vec<[f64; 4]>> = BTreeMap::new();
     for (run, costs) in runs {
         let Some(contender) = contenders.iter().find(|contender| contender.name == run.strategy) else { continue };
         let workers = if contender.has_a_thread_per_job() { processors } else { run.workers };
@@ -58,11 +65,15 @@ pub fn predict<'a>(
         let inflated: Vec<f64> = costs.iter().map(|cost| cost * run.inflation).collect();
         let (predicted_s, plain_s) = (replayed(&inflated), replayed(costs));
         let key = (run.strategy, run.decomposition, run.workers);
-        groups.entry(key).or_default().push([predicted_s, run.makespan_s, plain_s]);
+        groups.entry(key).or_default().push([predicted_s, run.makespan_s, plain_s, run.inflation]);
     }
-    let prediction = |((strategy, decomposition, workers), runs): ((String, String, usize), Vec<[f64; 3]>)| {
-        let middle = |value: fn(&[f64; 3]) -> f64| median(&mut runs.iter().map(value).collect::<Vec<f64>>());
+    let prediction = |((strategy, decomposition, workers), runs): ((String, String, usize), Vec<[f64; 4]>)| {
+        let middle = |value: fn(&[f64; 4]) -> f64| median(&mut runs.iter().map(value).collect::<Vec<f64>>());
+        let quiet = runs.iter().filter(|run| (run[3] - 1.0).abs() <= DISTURBED);
+        let mut quiet: Vec<f64> = quiet.map(|run| run[2] / run[1]).collect();
         Some(Prediction {
+            undisturbed: quiet.len(),
+            undisturbed_ratio: median(&mut quiet),
             decomposition,
             strategy,
             workers,
@@ -104,10 +115,11 @@ mod tests {
         assert_eq!(found.len(), 1);
         // Predicted 2, 4, 6 against 2, 5, 8: ratios 1, .8, .75.
         assert_eq!((found[0].runs, found[0].predicted_s, found[0].measured_s, found[0].ratio), (3, 4.0, 5.0, 0.8));
-        assert_eq!(found[0].plain_ratio, 0.8);
+        assert_eq!((found[0].plain_ratio, found[0].undisturbed, found[0].undisturbed_ratio), (0.8, 3, Some(0.8)));
 
         let inflated = Observed { inflation: 1.5, ..run(3.0) };
         let found = predict([(inflated, &[1.0, 1.0][..])], &[contender], 2);
         assert_eq!((found[0].predicted_s, found[0].ratio, found[0].plain_ratio), (2.0, 1.0, 2.0 / 3.0));
+        assert_eq!((found[0].undisturbed, found[0].undisturbed_ratio), (0, None));
     }
 }
