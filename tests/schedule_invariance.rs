@@ -80,10 +80,15 @@ fn only_deterministic_samplers_have_a_checksum() {
             let spec = Spec { sampler: sampler.name.into(), ..settings().spec };
             run(Settings { spec, strategy: "shared-counter".into(), threads: 3, ..settings() })
         };
-        let (first, second) = (render(), render());
-        assert_eq!(first.checksum, second.checksum, "{}", sampler.name);
+        let first = render();
         assert_eq!(first.checksum.is_some(), sampler.deterministic, "{}", sampler.name);
-        assert_eq!(first.film == second.film, sampler.deterministic, "{}", sampler.name);
+        // On a busy machine one thread may do all the work, twice in the same order; not five times.
+        let same = (0..5).all(|_| {
+            let again = render();
+            assert_eq!(again.checksum, first.checksum, "{}", sampler.name);
+            again.film == first.film
+        });
+        assert_eq!(same, sampler.deterministic, "{}", sampler.name);
     }
 }
 

@@ -49,9 +49,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let figures: [(&'static str, Box<dyn Figure>); 2] = if strategies.len() > MOST_LINES {
         let per_processor = |speedup: f64, threads: usize| speedup / in_use(threads, processors) as f64;
         let of_speedup =
-            dots(results, &speedups, "Speedup by strategy", "speedup against serial", |speedup, _| speedup);
-        let of_efficiency =
-            dots(results, &speedups, "Efficiency by strategy", "speedup per processor in use", per_processor);
+            dots(results, &speedups, ["Speedup by strategy", "speedup against serial", "serial"], |speedup, _| speedup);
+        let of_efficiency = dots(
+            results,
+            &speedups,
+            ["Efficiency by strategy", "speedup per processor in use", "ideal"],
+            per_processor,
+        );
         [("speedup", Box::new(of_speedup)), ("efficiency", Box::new(of_efficiency))]
     } else {
         [
@@ -127,8 +131,7 @@ fn evidence(results: &Results, schedule: &Schedule) -> Evidence {
 fn dots(
     results: &Results,
     speedups: &[(Schedule, Estimate)],
-    title: &str,
-    axis: &str,
+    [title, axis, guide]: [&str; 3],
     value: impl Fn(f64, usize) -> f64,
 ) -> DotPlot {
     let mut threads: Vec<usize> =
@@ -167,7 +170,7 @@ fn dots(
     }
     let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows);
     plot.groups = names.into_iter().enumerate().map(|(index, name)| Group { name, look: Look::nth(index) }).collect();
-    plot.guides = vec![(1.0, "1".to_string())];
+    plot.guides = vec![(1.0, guide.to_string())];
     plot.subtitle = results.workload();
     plot.caption = "Median of ratios within a repetition. Bars: distribution-free interval.".to_string();
     plot
