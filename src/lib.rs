@@ -22,8 +22,8 @@
 //! # Ok::<(), pathmark::error::Error>(())
 //! ```
 //!
-//! Layers, each importing only those above it: `error`, `digest`, `math`, `input`, `atomic_file`; `image_io`, `metric`, `sampling`; `material`;
-//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`, `analysis`; `plot`,
+//! Layers, each importing only those above it: `error`, `digest`, `math`, `input`, `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
+//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`; `plot`,
 //! `report`; `cli`.
 
 // A test may unwrap; the library tells its user what is wrong.

@@ -34,6 +34,7 @@ const RULES: &[Rule] = &[
     beside("atomic_file", 0, &["error"]),
     rule("image_io", 1),
     beside("metric", 1, &["image_io"]), // metrics compare images
+    only("analysis", 1, &[]),           // statistics on plain numbers, whatever was measured
     rule("sampling", 1),
     rule("material", 2),
     rule("scene", 3),
@@ -45,9 +46,8 @@ const RULES: &[Rule] = &[
     // what uses it can bring the two together.
     only("strategy", 5, &[]),
     rule("measure", 6),
-    only("simulate", 7, &["error", "measure", "strategy"]), // numbers in, numbers out: no pixel, no thread, no clock
+    only("simulate", 7, &["analysis", "measure", "strategy"]), // numbers in, numbers out: no pixel, no thread, no clock
     rule("experiment", 8),
-    rule("analysis", 8),
     only("plot", 9, &["error", "atomic_file", "metric", "image_io"]), // draws numbers, whatever they were measured on
     beside("report", 9, &["plot"]),
     rule("cli", 10),

@@ -3,7 +3,8 @@
 //! Two things are watched for each cell: its time, which anything can lengthen, and its processor time, which waiting cannot. Work that takes
 //! more processor time than before ran on slower processors: on a virtual machine usually because its host has put two of them on one core.
 
-use crate::measure::{Record, Warning, median};
+use crate::analysis::quantile::median;
+use crate::measure::{Record, Warning};
 use std::collections::HashMap;
 
 /// Earlier rows of a cell that are enough to say what it usually takes.
@@ -24,7 +25,7 @@ struct Times {
 
 /// By how much a value differs from the median of enough others.
 fn change(value: f64, before: &[f64]) -> Option<f64> {
-    let usual = (before.len() >= ENOUGH).then(|| median(&mut before.to_vec())).flatten()?;
+    let usual = median(before).filter(|_| before.len() >= ENOUGH)?;
     Some(value / usual - 1.0)
 }
 

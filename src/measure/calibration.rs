@@ -9,8 +9,8 @@
 
 use super::available_threads;
 use super::settings::strategy_named;
-use super::trace::median;
 use super::usage::Usage;
+use crate::analysis::quantile::median;
 use crate::error::{Error, Result};
 use crate::strategy::{Config, Spawner, SystemThreads, Workers};
 use serde::{Deserialize, Serialize};
@@ -103,7 +103,7 @@ pub fn calibrate(strategies: &[String]) -> Result<Vec<CalibrationRow>> {
             }
         }
     }
-    for (row, (seconds, cpu_s)) in rows.iter_mut().zip(&mut times) {
+    for (row, (seconds, cpu_s)) in rows.iter_mut().zip(&times) {
         row.seconds = median(seconds).unwrap_or_default();
         row.cpu_s = median(cpu_s);
     }

@@ -24,6 +24,6 @@ pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};
 pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name, strategy_named};
 pub use setup::{Outcome, Setup};
-pub use trace::{Idle, JobSpan, Trace, median};
+pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};
 pub use warning::Warning;

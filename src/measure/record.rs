@@ -1,6 +1,7 @@
 //! One row of `records.csv`: one repetition of one cell, with everything that is needed to repeat it.
 
 use super::{Outcome, Settings, Setup, Warning};
+use crate::analysis::quantile::median;
 use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
@@ -178,9 +179,8 @@ impl Record {
 
     /// The row of a run that was done.
     pub fn new(setup: &Setup, outcome: &Outcome, errors: Measured) -> Self {
-        let durations = outcome.trace.sorted_durations_s();
-        let busy = outcome.trace.busy_s();
-        let idle = outcome.trace.idle_s(outcome.makespan_s);
+        let durations = outcome.trace.durations_s();
+        let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
         let counts = &outcome.counts;
         let mut record = described(setup.settings());
         record.started_utc.clone_from(&outcome.started_utc);
@@ -201,13 +201,15 @@ impl Record {
             record.foreign_cpu_s = cpu.foreign_s;
             record.peak_rss_bytes = cpu.peak_rss_bytes;
         }
-        record.busy_sum_s = Some(busy.iter().sum());
-        record.busy_max_s = busy.iter().copied().reduce(f64::max);
-        record.gap_sum_s = Some(idle.gap_s);
-        record.tail_sum_s = Some(idle.tail_s);
-        record.job_min_s = durations.first().copied();
-        record.job_median_s = outcome.trace.median_duration_s();
-        record.job_max_s = durations.last().copied();
+        if let Some(balance) = &balance {
+            record.busy_sum_s = Some(balance.busy_s());
+            record.busy_max_s = balance.workers.iter().map(|share| share.busy_s).reduce(f64::max);
+            record.gap_sum_s = Some(balance.gap_s());
+            record.tail_sum_s = Some(balance.tail_s());
+        }
+        record.job_min_s = durations.iter().copied().reduce(f64::min);
+        record.job_median_s = median(&durations);
+        record.job_max_s = durations.iter().copied().reduce(f64::max);
         record.paths = Some(counts.paths);
         record.rays = Some(counts.rays);
         record.escaped = Some(counts.escaped);

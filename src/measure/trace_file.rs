@@ -86,7 +86,7 @@ impl TraceFile {
 
     /// Seconds of each job, in index order.
     pub fn costs_s(&self) -> Vec<f64> {
-        self.rows.iter().map(|row| row.stop_s - row.start_s).collect()
+        self.trace().durations_s()
     }
 
     /// Who did what when.

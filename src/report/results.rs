@@ -146,12 +146,9 @@ impl Results {
     /// CPU time of a schedule over that of `serial` on the same pieces, in the same repetition: what the same work costs more when several
     /// processors do it, and what the schedule itself costs. The median of the ratios.
     pub(super) fn work_inflation(&self, schedule: &Schedule) -> Option<f64> {
-        let cpu = |is_wanted: &dyn Fn(&Schedule) -> bool| -> BTreeMap<(String, u32), f64> {
-            let wanted = self.records.iter().filter(|record| is_wanted(&Schedule::of(record)));
-            wanted.filter_map(|record| Some(((image(record), record.repetition), record.cpu_s()?))).collect()
-        };
-        let serial = cpu(&|s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
-        median(&ratios(&cpu(&|s| s == schedule), &serial))
+        let serial =
+            self.values(Record::cpu_s, |s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
+        median(&ratios(&self.values(Record::cpu_s, |s| s == schedule), &serial))
     }
 
     /// How many times as long rows of one kind take as rows of another, paired by image but for the sampler, and by repetition.
@@ -184,8 +181,17 @@ impl Results {
 
     /// The makespans of the schedules that are wanted, by image and repetition.
     fn times(&self, is_wanted: impl Fn(&Schedule) -> bool) -> BTreeMap<(String, u32), f64> {
+        self.values(|record| record.makespan_s, is_wanted)
+    }
+
+    /// A value of the rows of the schedules that are wanted, by image and repetition.
+    fn values(
+        &self,
+        value: fn(&Record) -> Option<f64>,
+        is_wanted: impl Fn(&Schedule) -> bool,
+    ) -> BTreeMap<(String, u32), f64> {
         let wanted = self.records.iter().filter(|record| is_wanted(&Schedule::of(record)));
-        wanted.filter_map(|record| Some(((image(record), record.repetition), record.makespan_s?))).collect()
+        wanted.filter_map(|record| Some(((image(record), record.repetition), value(record)?))).collect()
     }
 }
 

@@ -1,13 +1,12 @@
 //! One run drawn with a lane for each worker: for the figure of many runs and for the verb that shows one.
 
-use crate::analysis::balance::{Balance, of_spans};
+use crate::analysis::balance::Balance;
 use crate::measure::{TraceFile, TraceRow, schedule_name};
 use crate::plot::gantt::{GanttChart, JobBar, Schedule, Shade};
 
 /// The balance of a traced run; `None` if its workers or times cannot be.
 pub fn balance(trace: &TraceFile) -> Option<Balance> {
-    let spans = trace.rows.iter().map(|row| (row.worker as usize, row.start_s, row.stop_s));
-    of_spans(spans, trace.header.makespan_s, trace.header.workers as usize)
+    trace.trace().balance(trace.header.makespan_s, trace.header.workers as usize)
 }
 
 /// What was run, in words.

@@ -1,6 +1,6 @@
 //! How far predictions are from what was measured.
 
-use crate::measure::median;
+use crate::analysis::quantile::median;
 
 /// Relative errors of predictions, as (predicted - measured) / measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,11 +15,11 @@ pub struct Agreement {
 
 /// Compares pairs of (predicted, measured) seconds; `None` without pairs.
 pub fn agreement(pairs: &[(f64, f64)]) -> Option<Agreement> {
-    let mut errors: Vec<f64> = pairs.iter().map(|(predicted, measured)| (predicted - measured) / measured).collect();
-    let mut absolute: Vec<f64> = errors.iter().map(|error| error.abs()).collect();
-    let median_absolute = median(&mut absolute)?;
+    let errors: Vec<f64> = pairs.iter().map(|(predicted, measured)| (predicted - measured) / measured).collect();
+    let absolute: Vec<f64> = errors.iter().map(|error| error.abs()).collect();
+    let median_absolute = median(&absolute)?;
     let worst_absolute = absolute.iter().copied().fold(0.0, f64::max);
-    Some(Agreement { bias: median(&mut errors)?, median_absolute, worst_absolute })
+    Some(Agreement { bias: median(&errors)?, median_absolute, worst_absolute })
 }
 
 #[cfg(test)]

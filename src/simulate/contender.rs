@@ -4,7 +4,8 @@ use super::bounds::longest_first;
 use super::hardware::Hardware;
 use super::overhead::Overheads;
 use super::replay::{Replay, replay};
-use crate::measure::{CalibrationRow, median, strategy_named};
+use crate::analysis::quantile::median;
+use crate::measure::{CalibrationRow, strategy_named};
 use crate::strategy::{ChunkRule, Discipline};
 
 /// A discipline with a name and its mechanism's cost.
@@ -96,8 +97,8 @@ fn share_the_start(contenders: &mut [Contender], rows: &[CalibrationRow]) {
         !contender.has_a_thread_per_job() && own.clone().all(|row| row.started == row.threads) && own.count() > 0
     };
     let (mut starters, _): (Vec<&mut Contender>, Vec<_>) = contenders.iter_mut().partition(|one| starts_workers(one));
-    let mut starts: Vec<f64> = starters.iter().map(|contender| contender.overheads.start_s()).collect();
-    if let Some(start_s) = median(&mut starts) {
+    let starts: Vec<f64> = starters.iter().map(|contender| contender.overheads.start_s()).collect();
+    if let Some(start_s) = median(&starts) {
         for contender in &mut starters {
             contender.overheads = std::mem::take(&mut contender.overheads).with_start(start_s);
         }

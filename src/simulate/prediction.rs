@@ -2,7 +2,7 @@
 
 use super::contender::Contender;
 use super::hardware::Hardware;
-use crate::measure::median;
+use crate::analysis::quantile::median;
 use std::collections::BTreeMap;
 
 /// Relative difference in CPU time from which a run, or the serial one beside it, was disturbed by something that is no schedule.
@@ -68,12 +68,12 @@ pub fn predict<'a>(
         groups.entry(key).or_default().push([predicted_s, run.makespan_s, plain_s, run.inflation]);
     }
     let prediction = |((strategy, decomposition, workers), runs): ((String, String, usize), Vec<[f64; 4]>)| {
-        let middle = |value: fn(&[f64; 4]) -> f64| median(&mut runs.iter().map(value).collect::<Vec<f64>>());
+        let middle = |value: fn(&[f64; 4]) -> f64| median(&runs.iter().map(value).collect::<Vec<f64>>());
         let quiet = runs.iter().filter(|run| (run[3] - 1.0).abs() <= DISTURBED);
-        let mut quiet: Vec<f64> = quiet.map(|run| run[2] / run[1]).collect();
+        let quiet: Vec<f64> = quiet.map(|run| run[2] / run[1]).collect();
         Some(Prediction {
             undisturbed: quiet.len(),
-            undisturbed_ratio: median(&mut quiet),
+            undisturbed_ratio: median(&quiet),
             decomposition,
             strategy,
             workers,

@@ -53,6 +53,7 @@ use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
 pub use discipline::{Amount, ChunkRule, Deal, Discipline, Handout, Start, Stealing, Victim};
+pub use static_blocks::block;
 
 macro_rules! strategies {
     ($($(#[$condition:meta])* $module:ident),* $(,)?) => {

@@ -1,8 +1,12 @@
 //! What `steal-one` and `steal-half` share: each worker begins with its block of the jobs, and whoever has none left steals from another
 //! worker's end.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 use std::sync::Arc;
+
+use rand::Rng;
+use rand_pcg::Pcg32;
 
 use super::panics::Panics;
 use super::ranges::Ranges;
@@ -65,7 +69,7 @@ impl Strategy for RangeStealing {
             let (job, shared) = (Arc::clone(&job), Arc::clone(&shared));
             move |panics: &Panics| {
                 let (ranges, taken) = &*shared;
-                let mut thief = Thief { worker, amount, victim, state: worker as u64 };
+                let mut thief = Thief::new(worker, amount, victim);
                 let next = || ranges.pop(worker).or_else(|| thief.steal(ranges)).map(|index| index as usize);
                 taken.work(worker, panics, next, &*job);
             }
@@ -79,11 +83,15 @@ struct Thief {
     worker: usize,
     amount: Amount,
     victim: Victim,
-    /// Of the random numbers. Seeded with the worker's number, so that no clock and no luck from outside has a part in a run.
-    state: u64,
+    /// Its stream is the worker's number, so that no clock and no luck from outside has a part in a run.
+    random: Pcg32,
 }
 
 impl Thief {
+    fn new(worker: usize, amount: Amount, victim: Victim) -> Self {
+        Self { worker, amount, victim, random: Pcg32::new(0, worker as u64) }
+    }
+
     /// A job from another worker; what comes with it is in this worker's range afterwards. `None` if no worker had one when asked.
     fn steal(&mut self, ranges: &Ranges) -> Option<u32> {
         let workers = ranges.workers();
@@ -94,20 +102,13 @@ impl Thief {
         };
         let first = match self.victim {
             Victim::Neighbour => thief + 1,
-            Victim::Random => (self.random() % workers as u64) as usize,
-            // If it has become poor meanwhile, its neighbour will do.
-            Victim::Richest => (0..workers).max_by_key(|&worker| ranges.left(worker))?,
+            // The product's high half is below the number of workers.
+            Victim::Random => ((u64::from(self.random.next_u32()) * workers as u64) >> 32) as usize,
+            // Of equals the first. If it has become poor meanwhile, its neighbour will do.
+            Victim::Richest => (0..workers).max_by_key(|&worker| (ranges.left(worker), Reverse(worker)))?,
         };
         let mut victims = (first..first + workers).map(|worker| worker % workers).filter(|&victim| victim != thief);
         victims.find_map(|victim| ranges.steal(thief, victim, amount))
-    }
-
-    /// `SplitMix64`: Steele, Lea and Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
-    fn random(&mut self) -> u64 {
-        self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.state ^ self.state >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
     }
 }
 
@@ -122,7 +123,7 @@ mod tests {
     }
 
     fn stolen(worker: usize, amount: Amount, victim: Victim, ranges: &Ranges) -> Option<u32> {
-        Thief { worker, amount, victim, state: worker as u64 }.steal(ranges)
+        Thief::new(worker, amount, victim).steal(ranges)
     }
 
     #[test]
@@ -141,7 +142,7 @@ mod tests {
         assert_eq!(stolen(0, Amount::One, Victim::Neighbour, &ranges()), Some(0));
         assert_eq!(stolen(0, Amount::One, Victim::Richest, &ranges()), Some(4));
         // Worker 3 first, then 4: a random start reaches both, and 1.
-        let mut thief = Thief { worker: 0, amount: Amount::One, victim: Victim::Random, state: 0 };
+        let mut thief = Thief::new(0, Amount::One, Victim::Random);
         let mut seen: Vec<_> = (0..50).filter_map(|_| thief.steal(&ranges())).collect();
         seen.sort_unstable();
         seen.dedup();
@@ -153,11 +154,10 @@ mod tests {
         );
     }
 
-    /// First value for seed 0, of the reference implementation by Vigna.
     #[test]
-    fn the_generator_is_split_mix() {
-        let mut thief = Thief { worker: 0, amount: Amount::One, victim: Victim::Random, state: 0 };
-        assert_eq!(thief.random(), 0xe220_a839_7b1d_cdaf);
+    fn of_equally_rich_victims_the_first_is_asked() {
+        let from = Ranges::new([0..0, 0..2, 2..4].into_iter());
+        assert_eq!(stolen(0, Amount::One, Victim::Richest, &from), Some(1));
     }
 
     #[test]

@@ -57,7 +57,7 @@ impl Strategy for StaticBlocks {
 }
 
 /// The jobs of `worker`. Block w starts where block w - 1 ends, the first at 0 and the last ends at `jobs`: each index is in one.
-pub(super) fn block(worker: usize, workers: usize, jobs: usize) -> Range<usize> {
+pub fn block(worker: usize, workers: usize, jobs: usize) -> Range<usize> {
     // Not worker * jobs / workers, whose product overflows.
     let (size, remainder) = (jobs / workers, jobs % workers);
     let start = |worker: usize| worker * size + worker.min(remainder);

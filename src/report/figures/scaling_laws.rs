@@ -13,17 +13,23 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// The fits of each law to each strategy, over worker counts that have a processor each: beyond that, more workers are no more machine.
 pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Block {
     let processors = results.run.machine.processors;
-    let mut points: BTreeMap<String, Vec<Point>> = BTreeMap::new();
-    for schedule in results.by(Schedule::of).into_keys() {
-        if schedule.strategy != "serial" && schedule.threads <= processors {
-            let speedups = results.paired_speedups(&schedule);
-            points.entry(schedule.strategy).or_default().push((schedule.threads, speedups));
-        }
-    }
+    let points = points(results);
     let rows = points.iter().flat_map(|(strategy, points)| laws.iter().map(move |law| row(strategy, *law, points)));
     let columns = ["strategy", "law", "parameters, interval (confidence)", "does it describe the points?"];
     let title = format!("Laws of speedup, up to {processors} threads on {processors} processors");
     Block::Table { stem, table: Table { title, columns: columns.map(String::from).to_vec(), rows: rows.collect() } }
+}
+
+/// The speedups of each strategy at worker counts that have a processor each.
+pub(super) fn points(results: &Results) -> BTreeMap<String, Vec<Point>> {
+    let mut points: BTreeMap<String, Vec<Point>> = BTreeMap::new();
+    for schedule in results.by(Schedule::of).into_keys() {
+        if schedule.strategy != "serial" && schedule.threads <= results.run.machine.processors {
+            let speedups = results.paired_speedups(&schedule);
+            points.entry(schedule.strategy).or_default().push((schedule.threads, speedups));
+        }
+    }
+    points
 }
 
 fn row(strategy: &str, law: Law, points: &[Point]) -> Vec<String> {

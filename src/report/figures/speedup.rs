@@ -1,5 +1,6 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by which Karp and Flatt explain what is missing.
 
+use super::scaling_laws;
 use crate::analysis::Estimate;
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, Point as LawPoint, fit};
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_estimate};
@@ -216,31 +217,24 @@ fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineCh
         Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
         Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
     ];
-    chart.overlays.extend(fits(results, speedups));
+    chart.overlays.extend(fits(results, &chart.series));
     chart.dodge = 5.0;
     chart
 }
 
-/// Amdahl's law where the points bear it out, in the order of the strategies' lines.
-fn fits(results: &Results, speedups: &[(Schedule, Estimate)]) -> Vec<Overlay> {
-    let processors = results.run.machine.processors;
-    let mut points: BTreeMap<&str, Vec<LawPoint>> = BTreeMap::new();
-    for (schedule, _) in speedups.iter().filter(|(schedule, _)| !has_a_thread_per_job(schedule)) {
-        let own = points.entry(&schedule.strategy).or_default();
-        if schedule.threads <= processors {
-            own.push((schedule.threads, results.paired_speedups(schedule)));
-        }
-    }
-    let overlay = |(index, (name, points)): (usize, (&str, Vec<LawPoint>))| {
+/// Amdahl's law where the points bear it out, in the colours of the strategies' lines.
+fn fits(results: &Results, series: &[Series]) -> Vec<Overlay> {
+    let overlay = |(name, points): (String, Vec<LawPoint>)| {
         let Fit::Found(Fitted { parameters, check: Check::Passed { .. }, .. }) = fit(Law::Amdahl, &points, LEVEL)
         else {
             return None;
         };
         let serial_share = parameters.first()?.estimate.value;
         let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
-        Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, index))
+        let line = series.iter().position(|series| series.name == name)?;
+        Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
     };
-    points.into_iter().enumerate().filter_map(overlay).collect()
+    scaling_laws::points(results).into_iter().filter_map(overlay).collect()
 }
 
 fn efficiency_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineChart {

@@ -14,7 +14,7 @@ use rand::Rng;
 use rand_pcg::Pcg32;
 
 use super::crew::Crew;
-use crate::strategy::{Amount, Start, Stealing, Victim};
+use crate::strategy::{Amount, Start, Stealing, Victim, block};
 
 pub(super) fn run(crew: &mut Crew<'_>, stealing: Stealing) {
     let mut queues = Queues::new(stealing, crew.workers(), crew.jobs());
@@ -60,11 +60,8 @@ impl Queues {
         match stealing.start {
             Start::Shared(_) => queues.shared = 0..jobs,
             Start::Blocks => {
-                let mut start = 0;
                 for worker in 0..workers {
-                    let end = start + jobs / workers + usize::from(worker < jobs % workers);
-                    queues.put(worker, start..end);
-                    start = end;
+                    queues.put(worker, block(worker, workers, jobs));
                 }
             }
         }
