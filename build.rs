@@ -35,8 +35,9 @@ fn main() -> io::Result<()> {
     openmp();
 
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
-    embed("experiments/scenes", &out.join("scenes.rs"))?;
-    embed("experiments", &out.join("experiments.rs"))
+    embed("experiments/scenes", "toml", &out.join("scenes.rs"))?;
+    embed("experiments/scenes", "obj", &out.join("meshes.rs"))?;
+    embed("experiments", "toml", &out.join("experiments.rs"))
 }
 
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
@@ -51,18 +52,20 @@ fn openmp() {
     println!("cargo::rustc-link-lib=gomp");
 }
 
-/// Writes an array of (stem, text) over the TOML files of a folder, sorted by name.
-fn embed(folder: &str, target: &Path) -> io::Result<()> {
+/// Writes an array of (name, text) over the files of a folder with that extension, sorted by name. Definitions go by their stems; files
+/// that definitions name keep their extension.
+fn embed(folder: &str, extension: &str, target: &Path) -> io::Result<()> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join(folder);
     let mut files: Vec<PathBuf> =
         fs::read_dir(root)?.map(|entry| entry.map(|e| e.path())).collect::<io::Result<_>>()?;
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files.retain(|path| path.extension().is_some_and(|own| own == extension));
     files.sort();
     let mut code = String::from("&[");
     for file in files {
-        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let name = if extension == "toml" { file.file_stem() } else { file.file_name() };
+        let name = name.unwrap_or_default().to_string_lossy();
         // Writing to a string cannot fail.
-        let _ = write!(code, "({stem:?}, include_str!({:?})),", file.display().to_string());
+        let _ = write!(code, "({name:?}, include_str!({:?})),", file.display().to_string());
     }
     code.push(']');
     fs::write(target, code)

@@ -22,7 +22,8 @@
 //! # Ok::<(), pathmark::error::Error>(())
 //! ```
 //!
-//! Layers, each importing only those above it: `error`, `digest`, `math`, `input`, `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
+//! Layers, each importing only those above it: `error`, `digest`, `effect`, `math`, `input`,
+//! `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
 //! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`; `plot`,
 //! `report`; `cli`.
 
@@ -33,6 +34,7 @@ pub mod analysis;
 pub mod atomic_file;
 pub mod cli;
 pub mod digest;
+pub mod effect;
 pub mod error;
 pub mod estimator;
 pub mod experiment;

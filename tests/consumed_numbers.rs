@@ -1,6 +1,6 @@
 //! What estimators do with random numbers, seen through samplers of our own: R09 and R13 of the catalogue of hard cases.
 
-use pathmark::estimator::{Bsdf, Estimator, Probe, Smallpt};
+use pathmark::estimator::{Bsdf, Estimator, Options, Probe, Smallpt};
 use pathmark::math::Rgb;
 use pathmark::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
 use pathmark::scene::{AllEffects, load};
@@ -17,6 +17,8 @@ impl Sampler for Ledger {
     }
 }
 
+const OPTIONS: Options = Options { max_depth: None };
+
 /// R13: within a sample no number is used twice, also where glass splits the path; and every estimator draws for its own sample only.
 #[test]
 fn no_number_is_used_twice() {
@@ -26,12 +28,12 @@ fn no_number_is_used_twice() {
     for pixel in 0..64 * 48 {
         let ledger = Ledger(Mutex::new(Vec::new()));
         let key = SampleKey { seed: 3, pixel, sample: 0 };
-        let ray = view.ray(pixel % 64, pixel / 64, 0, [0.5, 0.5]);
+        let ray = view.ray::<AllEffects>(pixel % 64, pixel / 64, 0, [0.5, 0.5], || [0.5; 2]);
         for splitting in [true, false] {
             if splitting {
-                Smallpt.sample::<_, AllEffects, ()>(&scene, ray, key, &ledger, &mut ());
+                Smallpt::new(OPTIONS).sample::<_, AllEffects, ()>(&scene, ray, key, &ledger, &mut ());
             } else {
-                Bsdf.sample::<_, AllEffects, ()>(&scene, ray, key, &ledger, &mut ());
+                Bsdf::new(OPTIONS).sample::<_, AllEffects, ()>(&scene, ray, key, &ledger, &mut ());
             }
             let used = std::mem::take(&mut *ledger.0.lock().unwrap());
             assert!(used.iter().all(|at| at.key == key && at.bounce > 0 && at.purpose != Purpose::Film));
@@ -70,9 +72,9 @@ fn extreme_numbers_do_no_harm() {
     for u in [[0.0, 0.0], [0.0, last], [last, 0.0], [last, last], [0.0, 0.5], [0.5, last]] {
         for pixel in 0..16 * 12 {
             let (key, sampler) = (SampleKey { seed: 0, pixel, sample: 0 }, Always(u));
-            let ray = view.ray(pixel % 16, pixel / 16, pixel % 4, u);
+            let ray = view.ray::<AllEffects>(pixel % 16, pixel / 16, pixel % 4, u, || u);
             let mut escapes = Escapes::default();
-            let radiance: Rgb = Smallpt.sample::<_, AllEffects, _>(&scene, ray, key, &sampler, &mut escapes);
+            let radiance: Rgb = Smallpt::new(OPTIONS).sample::<_, AllEffects, _>(&scene, ray, key, &sampler, &mut escapes);
             assert!(radiance.is_valid_radiance(), "numbers {u:?}, pixel {pixel}: {radiance:?}");
             assert_eq!(escapes.0, 0, "numbers {u:?}, pixel {pixel}: left the closed box");
         }

@@ -60,13 +60,14 @@ fn an_unreachable_object_changes_nothing() {
     let cornell = load("cornell").unwrap();
     let mut larger = cornell.clone();
     // Beyond the left wall, whose sphere encloses the box.
-    larger.shapes.push(Sphere { center: [-500.0, 40.0, 80.0].into(), radius: 30.0 });
+    larger.primitives.spheres.push(Sphere { center: [-500.0, 40.0, 80.0].into(), radius: 30.0 });
     larger.objects.push(Object { name: "unreachable".into(), ..cornell.objects[0].clone() });
+    larger.owners.push(cornell.objects.len() as u32);
     for estimator in ["smallpt", "bsdf"] {
         assert_eq!(checksum(&larger, spec(estimator)), checksum(&cornell, spec(estimator)), "{estimator}");
     }
     // And the checksum does see an object that can be reached.
-    larger.shapes.last_mut().unwrap().center = [50.0, 30.0, 60.0].into();
+    larger.primitives.spheres.last_mut().unwrap().center = [50.0, 30.0, 60.0].into();
     assert_ne!(checksum(&larger, spec("bsdf")), checksum(&cornell, spec("bsdf")));
 }
 
@@ -104,7 +105,7 @@ fn a_larger_effect_profile_changes_nothing() {
 #[test]
 fn parts_are_parts_of_the_whole() {
     let scene = Arc::new(load("cornell").unwrap());
-    let kernel = kernel::build(&scene, &spec("smallpt")).unwrap().kernel;
+    let kernel = kernel::build(&scene, &spec("smallpt")).unwrap();
     let render = |samples: Range<u32>, bounds: Bounds| -> Vec<PixelSum> {
         let mut buffer = TileBuffer::new(bounds);
         kernel.render(&Piece { bounds, samples }, &mut buffer);

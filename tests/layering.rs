@@ -30,6 +30,7 @@ const RULES: &[Rule] = &[
     rule("error", 0),
     rule("math", 0),
     rule("digest", 0),
+    rule("effect", 0),
     beside("input", 0, &["error", "math"]), // errors with a place; numbers that become vectors and colours
     beside("atomic_file", 0, &["error"]),
     rule("image_io", 1),

@@ -9,7 +9,7 @@ use pathmark::math::{Frame, Ray, Vec3, dot};
 use pathmark::measure::{Outcome, Settings, Setup};
 use pathmark::sampling::{Address, Purpose, SampleKey};
 use pathmark::sampling::{Independent, Sampler};
-use pathmark::scene::{AllEffects, Hit, Scene, Standpoint, load};
+use pathmark::scene::{AllEffects, Hit, Scene, Standpoint, Tests, load};
 use scene_text::{Ball, load_scene};
 use std::sync::Arc;
 
@@ -28,6 +28,10 @@ fn render(scene: Scene, estimator: &str, (width, height): (u32, u32), spp: u32) 
     Setup::for_scene(Arc::new(scene), settings).unwrap().run(None).unwrap()
 }
 
+fn intersect(scene: &Scene, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
+    scene.intersect::<AllEffects>(ray, from, &mut Tests::default())
+}
+
 /// Two uniform numbers for draw `k` of the test at hand.
 fn uniform(k: u32) -> [f64; 2] {
     let key = SampleKey { seed: 11, pixel: k, sample: 0 };
@@ -41,7 +45,7 @@ fn scatter(scene: &Scene, hit: &Hit, direction: Vec3, u: f64) -> (Ray, Standpoin
     let material: &Material = &scene.objects[hit.object as usize].material;
     let wi = material.sample::<AllEffects>(wo, hit.inside, [u, 0.5]).expect("no absorption").wi;
     let inside = (wi.z < 0.0) != hit.inside;
-    (Ray { origin: hit.point, direction: frame.to_world(wi) }, Standpoint { object: hit.object, inside })
+    (Ray { origin: hit.point, direction: frame.to_world(wi) }, Standpoint { primitive: hit.primitive, inside })
 }
 
 /// S40: through a lone glass ball of radius 4e-5 and 1e-6, smaller than any usual epsilon, and one of 16.5: the same lengths in radii.
@@ -58,7 +62,7 @@ fn a_tiny_glass_ball_is_a_rescaled_big_one() {
         let mut lengths = Vec::new();
         // In by refraction, once around inside by reflection, out by refraction, on to the wall.
         for u in [0.99, 0.0, 0.99, 0.0] {
-            let hit = scene.intersect(&ray, from).expect("the scene is closed");
+            let hit = intersect(scene, &ray, from).expect("the scene is closed");
             lengths.push(hit.t / radius);
             let (next, standpoint) = scatter(scene, &hit, ray.direction, u);
             (ray, from) = (Ray { direction: next.direction.normalized(), ..next }, Some(standpoint));
@@ -94,7 +98,7 @@ fn no_chord_is_too_short() {
             let cos = libm::exp10(-5.0 * uniform(k + 20_000)[0]);
             let direction = frame.to_world(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)).normalized();
             let ray = Ray { origin: center + normal * radius, direction };
-            let hit = scene.intersect(&ray, Some(Standpoint { object: 0, inside: true })).expect("closed");
+            let hit = intersect(&scene, &ray, Some(Standpoint { primitive: 0, inside: true })).expect("closed");
             // The origin is a rounded point: its error, relative to the radius, turns the chord.
             let tolerance = 2.0 * radius * 1e-14 + 4e-14;
             let error = (hit.t - 2.0 * radius * cos).abs();
@@ -111,7 +115,7 @@ fn power_of_two_scaling_changes_no_bit() {
         let expected = render(cornell.clone(), estimator, (24, 18), 8).checksum;
         for k in (-40..=40).step_by(8) {
             let scaled = cornell.scaled(libm::exp2(f64::from(k)));
-            assert_eq!(scaled.shapes == cornell.shapes, k == 0, "nothing was scaled");
+            assert_eq!(scaled.primitives == cornell.primitives, k == 0, "nothing was scaled");
             assert_eq!(render(scaled, estimator, (24, 18), 8).checksum, expected, "{estimator}, 2^{k}");
         }
     }
@@ -143,10 +147,10 @@ fn edges_have_no_gap() {
         }
         let x = edge + gap;
         let up = Ray { origin: Vec3::new(x, 40.0, z), direction: Vec3::new(0.0, 1.0, 0.0) };
-        let ceiling = scene.intersect(&up, None).expect("a ceiling");
+        let ceiling = intersect(&scene, &up, None).expect("a ceiling");
         assert_eq!(scene.objects[ceiling.object as usize].name, "ceiling");
         let ray = Ray { origin: ceiling.point, direction: Vec3::new(-1.0, -0.3, 0.1).normalized() };
-        let hit = scene.intersect(&ray, Some(Standpoint { object: ceiling.object, inside: true })).expect("a wall");
+        let hit = intersect(&scene, &ray, Some(Standpoint { primitive: ceiling.primitive, inside: true })).expect("a wall");
         // The wall slopes by up to 1e-3 and its sphere's numbers are rounded at 1e-11.
         let expected = gap / -ray.direction.x;
         let name = scene.objects[hit.object as usize].name.as_str();
@@ -170,7 +174,7 @@ fn ties_go_to_the_first_object() {
         let out = Vec3::new(2.0 * u - 1.0, 2.0 * v - 1.0, 0.1).normalized();
         let inwards = Ray { origin: out * 3.0, direction: -out };
         let outwards = Ray { origin: out * 0.9, direction: out };
-        let seen = |scene: &Scene, ray: &Ray| scene.intersect(ray, None).map(|hit| hit.object);
+        let seen = |scene: &Scene, ray: &Ray| intersect(scene, ray, None).map(|hit| hit.object);
         assert_eq!((seen(&thin, &inwards), seen(&thin, &outwards)), (Some(1), Some(0)), "thin shell, {out:?}");
         assert_eq!(seen(&identical, &outwards), Some(1), "identical spheres from inside, {out:?}");
         assert_eq!(seen(&identical, &inwards), Some(1), "identical spheres from outside, {out:?}");
@@ -195,7 +199,7 @@ fn the_light_cap_ends_where_geometry_says() {
         let (x, z) = (50.0 + rho * libm::cos(turn), 81.6 + rho * libm::sin(turn));
         let rho = libm::hypot(x - 50.0, z - 81.6);
         let ray = Ray { origin: Vec3::new(x, 40.0, z), direction: Vec3::new(0.0, 1.0, 0.0) };
-        let hit = scene.intersect(&ray, None).expect("a ceiling");
+        let hit = intersect(&scene, &ray, None).expect("a ceiling");
         let expected = if rho < RADIUS { "light" } else { "ceiling" };
         let found = scene.objects[hit.object as usize].name.as_str();
         assert!(found == expected || (rho - RADIUS).abs() < 1e-8, "{found} at radius {rho}");
@@ -215,7 +219,7 @@ fn camera_rays_start_inside_the_box() {
         for y in 0..height {
             for x in 0..width {
                 for (sample, u) in [(0, [0.0, 0.0]), (1, [almost_one, 0.0]), (2, [0.0, almost_one]), (3, [0.5, 0.5])] {
-                    let Ray { origin, direction } = view.ray(x, y, sample, u);
+                    let Ray { origin, direction } = view.ray::<AllEffects>(x, y, sample, u, || [0.0; 2]);
                     assert!((dot(direction, direction).sqrt() - 1.0).abs() <= 4.0 * f64::EPSILON);
                     if width > 7 {
                         let inside = (1.0..99.0).contains(&origin.x) && (0.0..81.6).contains(&origin.y);
@@ -237,7 +241,7 @@ fn mirror_chains_do_not_drift() {
         let mut ray = Ray { origin: Vec3::new(70_000.0, 30_000.0, -10_000.0), direction };
         let (mut from, mut chord) = (None, None);
         for bounce in 0..10_000 {
-            let hit = scene.intersect(&ray, from).expect("a closed sphere");
+            let hit = intersect(&scene, &ray, from).expect("a closed sphere");
             if renormalise && bounce > 0 {
                 let first = *chord.get_or_insert(hit.t);
                 assert!((hit.t / first - 1.0).abs() < 1e-11, "bounce {bounce}: chord {} after {first}", hit.t);

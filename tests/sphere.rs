@@ -10,7 +10,7 @@ mod scene_text;
 
 use double_double::two_product;
 use pathmark::math::{Ray, Vec3, dot, first_root, roots};
-use pathmark::scene::Sphere;
+use pathmark::scene::{Primitive, Sphere};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 use scene_text::{Ball, load_scene};
@@ -208,7 +208,7 @@ fn a_million_rays_stay_within_the_bound() {
         let found = first(f, d, a, r);
         if !stretched {
             // What the scene calls is the same formula.
-            let meet = Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: r }.meet(&Ray { origin: f, direction: d });
+            let meet = Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: r }.meet(&Ray { origin: f, direction: d }, &());
             assert_eq!(Some(meet).filter(|t| *t > 0.0), found);
         }
         match expected {

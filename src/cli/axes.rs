@@ -27,6 +27,12 @@ pub(super) struct Axes {
     /// Effect profile [default: the smallest that covers the scene]
     #[arg(long, value_name = "PROFILE")]
     pub(super) effects: Option<String>,
+    /// What finds the nearest surface [default: the fitting one for so many]
+    #[arg(long, value_name = "NAME")]
+    pub(super) accelerator: Option<String>,
+    /// Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]
+    #[arg(long, value_name = "N")]
+    pub(super) max_depth: Option<u16>,
     /// Who renders: a strategy of `pathmark list strategies`, or thread-per-row
     #[arg(long, value_name = "NAME", default_value = "work-stealing")]
     pub(super) strategy: String,
@@ -102,6 +108,8 @@ impl Axes {
                 sampler: self.sampler.clone(),
                 kernel: self.kernel.clone(),
                 effects: self.effects.clone(),
+                accelerator: self.accelerator.clone(),
+                max_depth: self.max_depth,
                 subpixel_clamp: self.subpixel_clamp,
             },
             decomposition: self.cut()?,

@@ -6,12 +6,12 @@ use crate::estimator::ESTIMATORS;
 use crate::experiment::{Definition, EXPERIMENTS};
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
-use crate::kernel::KERNELS;
+use crate::kernel::{KERNELS, Spec, choose};
 use crate::material::MATERIALS;
 use crate::measure::OUTPUTS;
 use crate::metric::METRICS;
 use crate::sampling::SAMPLERS;
-use crate::scene::{PROFILES, SCENES, load, smallest_profile};
+use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, GENERATORS, PROFILES, SCENES, SHAPES, effect_names, load};
 use crate::strategy::STRATEGIES;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -36,7 +36,12 @@ enum Kind {
     Samplers,
     Kernels,
     Effects,
+    Accelerators,
+    Cameras,
+    Shapes,
+    Generators,
     Materials,
+    Features,
     Metrics,
     Formats,
     Experiments,
@@ -59,8 +64,9 @@ fn items(kind: Kind) -> Result<Vec<Item>> {
         Kind::Scenes => {
             let scene = |(name, _): &(&str, &str)| {
                 let scene = load(name)?;
-                let (effects, profile) = (scene.effects.names(), smallest_profile(scene.effects));
-                Ok(item(name, &format!("{} (calls for {effects}; profile {profile})", scene.about)))
+                let choice = choose(&scene, &Spec::default())?;
+                let calls_for = effect_names(scene.effects());
+                Ok(item(name, &format!("{} (calls for {calls_for}; profile {})", scene.about, choice.effects())))
             };
             SCENES.iter().map(scene).collect::<Result<_>>()?
         }
@@ -71,6 +77,11 @@ fn items(kind: Kind) -> Result<Vec<Item>> {
         Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Kernels => KERNELS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Accelerators => ACCELERATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Cameras => CAMERAS.iter().map(|(name, about)| item(name, about)).collect(),
+        Kind::Shapes => SHAPES.iter().map(|(name, about)| item(name, about)).collect(),
+        Kind::Generators => GENERATORS.iter().map(|(name, about)| item(name, about)).collect(),
+        Kind::Features => FEATURES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Materials => MATERIALS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Metrics => METRICS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Formats => FORMATS.iter().map(|entry| item(entry.name, entry.about)).collect(),

@@ -3,13 +3,14 @@
 //! To add one: write its file with a type that implements [`Estimator`], and give it a line in `estimators!` below.
 
 mod bsdf;
+mod direct;
 mod path;
 mod smallpt;
 
-use crate::material::EffectSet;
+use crate::effect::{EffectSet, Effects};
 use crate::math::{Ray, Rgb};
 use crate::sampling::{SampleKey, Sampler};
-use crate::scene::Scene;
+use crate::scene::{Hit, Scene, Tests};
 
 pub use bsdf::Bsdf;
 pub use path::MAX_BOUNCES;
@@ -17,12 +18,20 @@ pub use smallpt::Smallpt;
 
 /// Told what a path does. The empty implementation `()` costs nothing.
 pub trait Probe {
-    /// A ray was traced.
-    fn ray(&mut self) {}
+    /// A ray was traced, and this is what it was tested against in the hierarchy, if there is one.
+    fn ray(&mut self, _tests: Tests) {}
     /// A ray met nothing: in a closed scene, a leak.
     fn escaped(&mut self) {}
-    /// A path was cut at [`MAX_BOUNCES`].
+    /// A path was cut at the bounce limit.
     fn truncated(&mut self) {}
+    /// A vertex of the path: where a ray that set out with this throughput arrived, after so many bounces.
+    fn vertex(&mut self, _bounces: u16, _ray: &Ray, _hit: &Hit, _throughput: Rgb) {}
+    /// Light that a vertex after so many bounces adds to the sample.
+    fn light(&mut self, _bounces: u16, _contribution: Rgb) {}
+    /// A part of a path ended after so many bounces.
+    fn ended(&mut self, _bounces: u16) {}
+    /// The code of an effect ran.
+    fn used(&mut self, _effect: Effects) {}
 }
 
 impl Probe for () {}
@@ -31,6 +40,9 @@ impl Probe for () {}
 pub trait Estimator: Send + Sync {
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
+
+    /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
+    const MAX_DEPTH: Option<u16> = None;
 
     /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as sample `key` estimates it.
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
@@ -59,18 +71,32 @@ pub struct Entry {
     pub about: &'static str,
     /// Samples per pixel must be a multiple of this.
     pub spp_multiple: u32,
+    /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
+    pub max_depth: Option<u16>,
+}
+
+/// What every estimator can be told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Options {
+    /// After so many bounces a path is cut, whatever its throughput; `None` leaves it to the estimator.
+    pub max_depth: Option<u16>,
 }
 
 macro_rules! estimators {
     ($($name:literal, $about:literal => $estimator:ident;)*) => {
         /// The estimators, in the order in which they are listed.
         pub const ESTIMATORS: &[Entry] =
-            &[$(Entry { name: $name, about: $about, spp_multiple: <$estimator as Estimator>::SPP_MULTIPLE }),*];
+            &[$(Entry {
+                name: $name,
+                about: $about,
+                spp_multiple: <$estimator as Estimator>::SPP_MULTIPLE,
+                max_depth: <$estimator as Estimator>::MAX_DEPTH,
+            }),*];
 
         /// Calls the visitor with the estimator of that name; `None` if there is none.
-        pub fn with_estimator<V: EstimatorVisitor>(name: &str, visitor: V) -> Option<V::Output> {
+        pub fn with_estimator<V: EstimatorVisitor>(name: &str, options: Options, visitor: V) -> Option<V::Output> {
             match name {
-                $($name => Some(visitor.visit($estimator)),)*
+                $($name => Some(visitor.visit($estimator::new(options))),)*
                 _ => None,
             }
         }

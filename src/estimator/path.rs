@@ -1,12 +1,15 @@
-//! The path that `smallpt` and `bsdf` share: emission is collected wherever the path arrives, directions come from the surface.
+//! The path that `smallpt` and `bsdf` share: emission is collected wherever the path arrives, directions come from the surface, and point
+//! lights, which no path can arrive at, are asked at every vertex.
 //!
 //! Written as a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the thread's stack.
 
+use super::direct::{light_at_fog, light_at_surface};
 use super::{Estimator, Probe};
-use crate::material::{BsdfSample, Density, EffectSet};
-use crate::math::{Frame, Ray, Rgb};
-use crate::sampling::{Address, Purpose, SampleKey, Sampler};
-use crate::scene::{Scene, Standpoint};
+use crate::effect::EffectSet;
+use crate::material::{BsdfSample, Density};
+use crate::math::{Frame, Ray, Rgb, Vec3};
+use crate::sampling::{Address, Purpose, SampleKey, Sampler, uniform_sphere};
+use crate::scene::{BACKGROUND, FOG, Fog, Hit, Scene, Standpoint, Tests};
 
 /// Where a path is cut whatever its throughput: only a closed scene that absorbs nothing comes here, and it is counted.
 pub const MAX_BOUNCES: u16 = u16::MAX;
@@ -23,6 +26,8 @@ pub(super) trait Rules: Send + Sync {
     const SPLITS: u16;
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
+    /// After so many bounces a path is cut.
+    fn max_depth(&self) -> u16;
 }
 
 impl<R: Rules> Estimator for R {
@@ -37,12 +42,13 @@ impl<R: Rules> Estimator for R {
         sampler: &S,
         probe: &mut P,
     ) -> Rgb {
+        let walk = Walk { scene, key, sampler, max_depth: self.max_depth() };
         let mut collected = Rgb::BLACK;
         let mut part = Part { ray, from: None, throughput: Rgb::WHITE, vertices: 0, branch: 0 };
         let mut waiting = [part; LARGEST_STACK];
         let mut depth = 0;
         loop {
-            while let Some(next) = advance::<R, S, X, P>(scene, part, key, sampler, probe, &mut collected) {
+            while let Some(next) = walk.advance::<R, X, P>(part, probe, &mut collected) {
                 part = next.0;
                 if let Some(other) = next.1 {
                     waiting[depth] = other;
@@ -58,6 +64,14 @@ impl<R: Rules> Estimator for R {
     }
 }
 
+/// What is the same for all parts of a path.
+struct Walk<'a, S> {
+    scene: &'a Scene,
+    key: SampleKey,
+    sampler: &'a S,
+    max_depth: u16,
+}
+
 /// A part of a path that waits to be followed.
 #[derive(Clone, Copy)]
 struct Part {
@@ -68,58 +82,169 @@ struct Part {
     branch: u16,
 }
 
-/// Traces a part to its next vertex. What goes on from there, and, after a split, the other way; `None` when the part has ended.
-#[inline(always)]
-fn advance<R: Rules, S: Sampler, X: EffectSet, P: Probe>(
-    scene: &Scene,
-    part: Part,
-    key: SampleKey,
-    sampler: &S,
-    probe: &mut P,
-    collected: &mut Rgb,
-) -> Option<(Part, Option<Part>)> {
-    probe.ray();
-    let Some(hit) = scene.intersect(&part.ray, part.from) else {
-        probe.escaped();
-        return None;
-    };
-    let object = &scene.objects[hit.object as usize];
-    *collected += part.throughput * object.emission;
-    if part.vertices == MAX_BOUNCES {
-        probe.truncated();
-        return None;
+impl Part {
+    /// The numbers of the vertex that this part is on its way to.
+    #[inline(always)]
+    fn address(&self, key: SampleKey, purpose: Purpose) -> Address {
+        Address { key, bounce: self.vertices + 1, branch: self.branch, purpose }
+    }
+}
+
+impl<S: Sampler> Walk<'_, S> {
+    #[inline(always)]
+    fn pair(&self, part: &Part, purpose: Purpose) -> [f64; 2] {
+        self.sampler.pair(part.address(self.key, purpose))
     }
 
-    let vertices = part.vertices + 1;
-    let address = |purpose| Address { key, bounce: vertices, branch: part.branch, purpose };
-    let mut throughput = part.throughput;
-    if vertices > ROULETTE_AFTER {
-        let survival = object.material.albedo().max_channel();
-        // A number equal to the chance ends the path, so a black surface ends every path, whatever the number.
-        if sampler.pair(address(Purpose::Roulette))[0] >= survival {
+    /// Traces a part to its next vertex. What goes on from there, and, after a split, the other way; `None` when the part has ended.
+    #[inline(always)]
+    fn advance<R: Rules, X: EffectSet, P: Probe>(
+        &self,
+        mut part: Part,
+        probe: &mut P,
+        collected: &mut Rgb,
+    ) -> Option<(Part, Option<Part>)> {
+        let scene = self.scene;
+        let mut tests = Tests::default();
+        let hit = scene.intersect::<X>(&part.ray, part.from, &mut tests);
+        probe.ray(tests);
+        if X::EFFECTS.cover(FOG)
+            && let Some(fog) = self.fog_around(&part)
+        {
+            probe.used(FOG);
+            let reach = hit.map_or(f64::INFINITY, |hit| hit.t);
+            let free = fog.free_path(self.pair(&part, Purpose::Medium)[0]);
+            let way = reach.min(free);
+            let glow = part.throughput * fog.glow(way);
+            probe.light(part.vertices, glow);
+            *collected += glow;
+            let transmittance = fog.transmittance(way);
+            part.throughput = part.throughput * transmittance;
+            if free < reach {
+                return self.scatter::<X, P>(part, transmittance, part.ray.at(free), probe, collected);
+            }
+        }
+        let Some(hit) = hit else {
+            if X::EFFECTS.cover(BACKGROUND)
+                && let Some(background) = scene.background
+            {
+                probe.used(BACKGROUND);
+                probe.light(part.vertices, part.throughput * background);
+                *collected += part.throughput * background;
+            }
+            probe.escaped();
+            probe.ended(part.vertices);
+            return None;
+        };
+        self.surface::<R, X, P>(part, &hit, probe, collected)
+    }
+
+    /// The fog that a part travels through: none inside of what transmits light.
+    #[inline(always)]
+    fn fog_around(&self, part: &Part) -> Option<&Fog> {
+        let fog = self.scene.fog.as_ref()?;
+        let is_in_glass = part.from.is_some_and(|from| {
+            let owner = self.scene.owners[from.primitive as usize];
+            from.inside && self.scene.objects[owner as usize].material.transmits()
+        });
+        (!is_in_glass).then_some(fog)
+    }
+
+    /// What happens at a point of a surface.
+    #[inline(always)]
+    fn surface<R: Rules, X: EffectSet, P: Probe>(
+        &self,
+        part: Part,
+        hit: &Hit,
+        probe: &mut P,
+        collected: &mut Rgb,
+    ) -> Option<(Part, Option<Part>)> {
+        let scene = self.scene;
+        let object = &scene.objects[hit.object as usize];
+        probe.vertex(part.vertices, &part.ray, hit, part.throughput);
+        probe.light(part.vertices, part.throughput * object.emission);
+        *collected += part.throughput * object.emission;
+        if part.vertices == self.max_depth {
+            probe.truncated();
+            probe.ended(part.vertices);
             return None;
         }
-        throughput = throughput * (1.0 / survival);
+
+        let vertices = part.vertices + 1;
+        let normal = if hit.inside { -hit.normal } else { hit.normal };
+        let frame = Frame::around(normal);
+        let wo = frame.to_local(-part.ray.direction);
+        let direct = light_at_surface::<X, P>(scene, hit, &frame, wo, probe);
+        if let Some(direct) = direct {
+            probe.light(vertices, part.throughput * direct);
+            *collected += part.throughput * direct;
+        }
+
+        let mut throughput = part.throughput;
+        if vertices > ROULETTE_AFTER {
+            let survival = object.material.albedo().max_channel();
+            // A number equal to the chance ends the path, so a black surface ends every path, whatever the number.
+            if self.pair(&part, Purpose::Roulette)[0] >= survival {
+                probe.ended(part.vertices);
+                return None;
+            }
+            throughput = throughput * (1.0 / survival);
+        }
+
+        probe.used(object.material.effect());
+        let leave = |sample: BsdfSample, branch: u16| {
+            let towards = frame.to_world(sample.wi);
+            // A chain of delta bounces would let the length drift; any other direction is made anew.
+            let direction = if sample.density == Density::Delta { towards.normalized() } else { towards };
+            let ray = Ray { origin: hit.point, direction };
+            let from = Some(Standpoint { primitive: hit.primitive, inside: (sample.wi.z < 0.0) != hit.inside });
+            Part { ray, from, throughput: throughput * sample.weight, vertices, branch }
+        };
+        if vertices <= R::SPLITS
+            && let [Some(reflected), Some(refracted)] = object.material.delta_lobes::<X>(wo, hit.inside)
+        {
+            return Some((leave(reflected, part.branch), Some(leave(refracted, part.branch | 1 << (vertices - 1)))));
+        }
+        let sample = object.material.sample::<X>(wo, hit.inside, self.pair(&part, Purpose::Bsdf));
+        let next = sample.map(|sample| leave(sample, part.branch));
+        // Nothing that a black part still finds could reach the film.
+        let next = next.filter(|next| !next.throughput.is_black());
+        if next.is_none() {
+            probe.ended(part.vertices);
+        }
+        Some((next?, None))
     }
 
-    let normal = if hit.inside { -hit.normal } else { hit.normal };
-    let frame = Frame::around(normal);
-    let wo = frame.to_local(-part.ray.direction);
-    let leave = |sample: BsdfSample, branch: u16| {
-        let towards = frame.to_world(sample.wi);
-        // A chain of delta bounces would let the length drift; any other direction is made anew.
-        let direction = if sample.density == Density::Delta { towards.normalized() } else { towards };
-        let ray = Ray { origin: hit.point, direction };
-        let from = Some(Standpoint { object: hit.object, inside: (sample.wi.z < 0.0) != hit.inside });
-        Part { ray, from, throughput: throughput * sample.weight, vertices, branch }
-    };
-    if vertices <= R::SPLITS
-        && let Some([reflected, refracted]) = object.material.split::<X>(wo, hit.inside)
-    {
-        return Some((leave(reflected, part.branch), Some(leave(refracted, part.branch | 1 << (vertices - 1)))));
+    /// What happens where fog scatters light, evenly in all directions. Absorption on the way is the survival of roulette.
+    fn scatter<X: EffectSet, P: Probe>(
+        &self,
+        part: Part,
+        transmittance: Rgb,
+        point: Vec3,
+        probe: &mut P,
+        collected: &mut Rgb,
+    ) -> Option<(Part, Option<Part>)> {
+        if part.vertices == self.max_depth {
+            probe.truncated();
+            probe.ended(part.vertices);
+            return None;
+        }
+        let vertices = part.vertices + 1;
+        if let Some(direct) = light_at_fog::<X, P>(self.scene, point, probe) {
+            probe.light(vertices, part.throughput * direct);
+            *collected += part.throughput * direct;
+        }
+        let mut throughput = part.throughput;
+        if vertices > ROULETTE_AFTER {
+            let survival = transmittance.max_channel();
+            if self.pair(&part, Purpose::Roulette)[0] >= survival {
+                probe.ended(part.vertices);
+                return None;
+            }
+            throughput = throughput * (1.0 / survival);
+        }
+        let direction = uniform_sphere(self.pair(&part, Purpose::Bsdf)).normalized();
+        let ray = Ray { origin: point, direction };
+        Some((Part { ray, from: None, throughput, vertices, ..part }, None))
     }
-    let sample = object.material.sample::<X>(wo, hit.inside, sampler.pair(address(Purpose::Bsdf)))?;
-    let next = leave(sample, part.branch);
-    // Nothing that it still finds could reach the film.
-    (!next.throughput.is_black()).then_some((next, None))
 }

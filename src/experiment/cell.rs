@@ -29,6 +29,11 @@ impl Cell {
         if settings.output != Settings::default().output {
             id = format!("{id}/{}", settings.output);
         }
+        for (axis, value) in [("effects", &spec.effects), ("accelerator", &spec.accelerator)] {
+            if let Some(value) = value {
+                id = format!("{id}/{axis}-{value}");
+            }
+        }
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.threads.min(available_threads()) as u64;
         Self { id, settings, image, weight: weight.max(1) }
@@ -45,6 +50,9 @@ impl Cell {
             ("seed", spec.seed.to_string()),
             ("decomposition", settings.decomposition.clone()),
             ("output", settings.output.clone()),
+            ("effects", spec.effects.clone().unwrap_or_default()),
+            ("accelerator", spec.accelerator.clone().unwrap_or_default()),
+            ("max-depth", spec.max_depth.map(|depth| depth.to_string()).unwrap_or_default()),
             ("strategy", schedule_name(&settings.strategy, &settings.decomposition).to_string()),
             ("threads", settings.threads.to_string()),
         ];
@@ -60,7 +68,7 @@ impl Cell {
 
     /// The file name of its image.
     pub fn image_file(&self) -> String {
-        format!("{}.pfm", self.image.replace('/', "-"))
+        format!("{}.pfm", self.image.replace(['/', ':'], "-"))
     }
 }
 
@@ -72,5 +80,6 @@ pub fn trace_file(cell: &str, repetition: u32) -> String {
 /// The scene's hash is in it: two scene files may have the same name, and one may be edited between two runs.
 fn image_word(scene: &Scene, spec: &Spec, spp: u32) -> String {
     let what = format!("{}-{}/{}/{}", scene.name, scene.hash, spec.estimator, spec.sampler);
-    format!("{what}/{}x{}/{spp}spp/seed{}", spec.width, spec.height, spec.seed)
+    let depth = spec.max_depth.map(|depth| format!("/depth{depth}")).unwrap_or_default();
+    format!("{what}/{}x{}/{spp}spp/seed{}{depth}", spec.width, spec.height, spec.seed)
 }

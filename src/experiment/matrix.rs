@@ -28,6 +28,13 @@ pub(super) struct Matrix {
     pub(super) decomposition: Vec<String>,
     #[serde(default = "slots")]
     pub(super) output: Vec<String>,
+    #[serde(default = "fitting")]
+    pub(super) effects: Vec<String>,
+    #[serde(default = "fitting")]
+    pub(super) accelerator: Vec<String>,
+    /// Where paths are cut; nowhere if it is empty.
+    #[serde(default, rename = "max-depth")]
+    pub(super) max_depth: Vec<u16>,
     /// Instead of the profile's.
     pub(super) size: Option<[u32; 2]>,
     /// Whether samples per pixel are for each thread.
@@ -37,6 +44,18 @@ pub(super) struct Matrix {
 
 fn independent() -> Vec<String> {
     vec!["independent".to_string()]
+}
+
+/// Whatever fits the scene best.
+const FITTING: &str = "fitting";
+
+fn fitting() -> Vec<String> {
+    vec![FITTING.to_string()]
+}
+
+/// The name, unless it leaves the choice open.
+fn unless_fitting(name: &str) -> Option<String> {
+    (name != FITTING).then(|| name.to_string())
 }
 
 fn slots() -> Vec<String> {
@@ -134,6 +153,8 @@ impl Definition {
             ("estimator", matrix.estimator.is_empty()),
             ("sampler", matrix.sampler.is_empty()),
             ("output", matrix.output.is_empty()),
+            ("effects", matrix.effects.is_empty()),
+            ("accelerator", matrix.accelerator.is_empty()),
             ("spp", spps.is_empty()),
             ("seed", seeds.is_empty()),
             ("strategy", scale.strategy.as_ref().unwrap_or(&matrix.strategy).is_empty()),
@@ -144,22 +165,33 @@ impl Definition {
             let problem = "is an empty axis, so there is nothing to run";
             return Err(self.located(profile, InputError::new(axis, "[]", problem).allowed("at least one value")));
         }
+        let depths: Vec<Option<u16>> = match matrix.max_depth.as_slice() {
+            [] => vec![None],
+            depths => depths.iter().copied().map(Some).collect(),
+        };
         for scene in &matrix.scene {
             for estimator in &matrix.estimator {
                 for sampler in &matrix.sampler {
                     self.check_sampler(profile, sampler)?;
-                    for spp in spps {
-                        for seed in seeds {
-                            let spec = Spec {
-                                width: size[0],
-                                height: size[1],
-                                seed: *seed,
-                                estimator: estimator.clone(),
-                                sampler: sampler.clone(),
-                                ..Spec::default()
-                            };
-                            let image =
-                                Settings { scene: self.scene_path(scene), spp: *spp, spec, ..Settings::default() };
+                    for (max_depth, spp, seed) in
+                        depths.iter().flat_map(|d| spps.iter().flat_map(move |n| seeds.iter().map(move |s| (*d, *n, *s))))
+                    {
+                        let spec = Spec {
+                            width: size[0],
+                            height: size[1],
+                            seed,
+                            estimator: estimator.clone(),
+                            sampler: sampler.clone(),
+                            max_depth,
+                            ..Spec::default()
+                        };
+                        let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };
+                        for (effects, accelerator) in
+                            matrix.effects.iter().flat_map(|e| matrix.accelerator.iter().map(move |a| (e, a)))
+                        {
+                            let mut image = image.clone();
+                            image.spec.effects = unless_fitting(effects);
+                            image.spec.accelerator = unless_fitting(accelerator);
                             self.add_schedules(profile, matrix, &image, cells)?;
                         }
                     }

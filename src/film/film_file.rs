@@ -34,6 +34,9 @@ pub struct FilmKey {
     pub width: u32,
     /// Rows.
     pub height: u32,
+    /// Where paths are cut, if they are.
+    #[serde(default)]
+    pub max_depth: Option<u16>,
     /// Revision of the arithmetic: films of another one are rendered anew.
     pub revision: u32,
 }

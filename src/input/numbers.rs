@@ -29,7 +29,13 @@ fn checked_triple<'de, D: Deserializer<'de>>(
     }
 }
 
-fn out_of_range<E: Error>(value: f64, allowed: &str) -> E {
+/// Whether a coordinate is within bounds; not so NaN.
+pub fn coordinate_limit(x: f64) -> bool {
+    x.abs() <= LARGEST
+}
+
+/// The error of a number that is not.
+pub fn out_of_range<E: Error>(value: f64, allowed: &str) -> E {
     E::custom(format_args!("{value} is out of range (allowed: {allowed})"))
 }
 
@@ -45,7 +51,7 @@ pub fn radiance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Er
 
 /// Three coordinates.
 pub fn point<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
-    checked_triple(deserializer, |x| x.abs() <= LARGEST, "-1e100 to 1e100 in each coordinate").map(Vec3::from)
+    checked_triple(deserializer, coordinate_limit, "-1e100 to 1e100 in each coordinate").map(Vec3::from)
 }
 
 /// A direction of any length; it is normalised here.
@@ -71,4 +77,15 @@ pub fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Er
 /// A ratio of indices of refraction.
 pub fn refractive_index<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (0.01..=100.0).contains(&x), "0.01 to 100")
+}
+
+/// A number from 0 to 1.
+pub fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    checked(deserializer, |x| (0.0..=1.0).contains(&x), "0 to 1")
+}
+
+/// A vertical field of view in degrees, turned into the height of the image plane at distance 1.
+pub fn field_of_view<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let degrees = checked(deserializer, |x| (1e-6..=179.0).contains(&x), "1e-6 to 179 degrees")?;
+    Ok(2.0 * libm::tan(degrees.to_radians() / 2.0))
 }

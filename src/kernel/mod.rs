@@ -3,11 +3,13 @@
 mod scalar;
 
 use crate::error::{InputError, Result};
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, with_estimator};
+use crate::effect::EffectSet;
+use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, with_estimator};
 use crate::film::{Piece, TileBuffer};
-use crate::material::EffectSet;
 use crate::sampling::{SAMPLERS, Sampler, SamplerVisitor, with_sampler};
-use crate::scene::{PROFILES, ProfileVisitor, Scene, smallest_profile, with_profile};
+use crate::scene::{
+    ACCELERATORS, Accelerator, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, accelerator, effect_names, smallest_profile, with_profile,
+};
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -28,6 +30,10 @@ pub struct Counts {
     pub escaped: u64,
     /// Paths cut at the bounce limit.
     pub truncated: u64,
+    /// Boxes that rays were tested against.
+    pub box_tests: u64,
+    /// Primitives that rays were tested against in a hierarchy; without one every ray is tested against all.
+    pub primitive_tests: u64,
 }
 
 impl Counts {
@@ -38,6 +44,8 @@ impl Counts {
         self.invalid += other.invalid;
         self.escaped += other.escaped;
         self.truncated += other.truncated;
+        self.box_tests += other.box_tests;
+        self.primitive_tests += other.primitive_tests;
     }
 }
 
@@ -64,6 +72,10 @@ pub struct Spec {
     pub kernel: String,
     /// Effect profile by name; the smallest that covers the scene if `None`.
     pub effects: Option<String>,
+    /// Accelerator by name; the fitting one for so many primitives if `None`.
+    pub accelerator: Option<String>,
+    /// After so many bounces a path is cut; `None` leaves it to the estimator.
+    pub max_depth: Option<u16>,
     /// Whether each subpixel's mean is clamped to 1 before averaging, as smallpt does: biased.
     pub subpixel_clamp: bool,
 }
@@ -78,8 +90,23 @@ impl Default for Spec {
             sampler: "independent".to_string(),
             kernel: "scalar".to_string(),
             effects: None,
+            accelerator: None,
+            max_depth: None,
             subpixel_clamp: false,
         }
+    }
+}
+
+impl Spec {
+    /// Whether an option is on that changes what the image converges to.
+    pub fn is_biased(&self) -> bool {
+        self.subpixel_clamp || self.max_depth.is_some()
+    }
+
+    /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
+    pub fn depth(&self) -> Option<u16> {
+        let own = ESTIMATORS.iter().find(|entry| entry.name == self.estimator).and_then(|entry| entry.max_depth);
+        self.max_depth.or(own)
     }
 }
 
@@ -94,41 +121,69 @@ pub struct Entry {
 /// The kernels, in the order in which they are listed.
 pub const KERNELS: &[Entry] = &[Entry { name: "scalar", about: "one path at a time in f64" }];
 
-/// A kernel and the name of the profile that it was compiled for.
-pub struct Built {
-    /// The kernel.
-    pub kernel: Box<dyn Kernel>,
-    /// The profile's name.
-    pub effects: &'static str,
+/// What a spec comes to for a scene.
+#[derive(Clone, Copy)]
+pub struct Choice {
+    profile: &'static ProfileEntry,
+    accelerator: &'static Accelerator,
 }
 
-/// Builds the kernel for a scene.
-pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Built> {
-    let unknown = |field: &str, value: &str, names: Vec<&str>| {
-        InputError::new(field, value, "there is none of that name").allowed(names.join(", "))
+impl Choice {
+    /// Name of the effect profile.
+    pub fn effects(&self) -> &'static str {
+        self.profile.name
+    }
+
+    /// Name of the accelerator.
+    pub fn accelerator(&self) -> &'static str {
+        self.accelerator.name
+    }
+
+    /// Whether rays are tested against boxes before primitives.
+    pub fn is_hierarchical(&self) -> bool {
+        self.accelerator.is_hierarchy()
+    }
+}
+
+fn unknown(field: &str, value: &str, names: Vec<&str>) -> InputError {
+    InputError::new(field, value, "there is none of that name").allowed(names.join(", "))
+}
+
+/// Checks every name of the spec and chooses what it leaves open.
+pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
+    let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len()) else {
+        let names = ACCELERATORS.iter().map(|entry| entry.name).collect();
+        return Err(unknown("accelerator", spec.accelerator.as_deref().unwrap_or_default(), names).into());
     };
-    let wanted = spec.effects.as_deref().unwrap_or_else(|| smallest_profile(scene.effects));
+    let mut effects = scene.effects();
+    if accelerator.is_hierarchy() {
+        effects = effects.and(HIERARCHY);
+    }
+    let fitting = smallest_profile(effects);
+    let wanted = spec.effects.as_deref().unwrap_or(fitting);
     let Some(profile) = PROFILES.iter().find(|entry| entry.name == wanted) else {
         return Err(unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name).collect()).into());
     };
-    if !profile.effects.cover(scene.effects) {
-        let calls_for = scene.effects.names();
-        return Err(InputError::new(
-            "effects",
-            wanted,
-            format!("does not cover the scene, which calls for {calls_for}"),
-        )
-        .allowed(smallest_profile(scene.effects))
-        .into());
+    if !profile.effects.cover(effects) {
+        let problem = format!("does not cover the scene, which calls for {}", effect_names(effects));
+        return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
-    let with_names = ByProfile { scene: Arc::clone(scene), spec: spec.clone() };
-    let by_sampler = with_profile(profile.name, with_names)
-        .ok_or_else(|| unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name).collect()))?;
-    let by_estimator = by_sampler
-        .ok_or_else(|| unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name).collect()))?;
-    let kernel = by_estimator
-        .ok_or_else(|| unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name).collect()))?;
-    Ok(Built { kernel, effects: profile.name })
+    if !SAMPLERS.iter().any(|entry| entry.name == spec.sampler) {
+        return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name).collect()).into());
+    }
+    if !ESTIMATORS.iter().any(|entry| entry.name == spec.estimator) {
+        return Err(unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name).collect()).into());
+    }
+    Ok(Choice { profile, accelerator })
+}
+
+/// Builds the kernel for a scene, and what accelerates it.
+pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
+    let choice = choose(scene, spec)?;
+    let scene = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
+    let kernel = with_profile(choice.effects(), ByProfile { scene, spec: spec.clone() }).flatten().flatten();
+    // Every name has been checked, so there is a kernel.
+    kernel.ok_or_else(|| unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name).collect()).into())
 }
 
 /// From the profile's name to a type, then from the sampler's.
@@ -159,9 +214,10 @@ struct BySampler<X> {
 impl<X: EffectSet> SamplerVisitor for BySampler<X> {
     type Output = Option<Box<dyn Kernel>>;
     fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-        let name = self.spec.estimator.clone();
+        let (name, options) = (self.spec.estimator.clone(), Options { max_depth: self.spec.max_depth });
         with_estimator(
             &name,
+            options,
             ByEstimator::<S, X> { scene: self.scene, spec: self.spec, sampler, profile: self.profile },
         )
     }

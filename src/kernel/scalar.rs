@@ -1,12 +1,12 @@
 //! One path at a time, in f64: the readable kernel that every other one is measured against.
 
 use super::{Counts, Kernel, Spec};
+use crate::effect::EffectSet;
 use crate::estimator::{Estimator, Probe};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
-use crate::material::EffectSet;
 use crate::math::Rgb;
 use crate::sampling::{Address, Purpose, SampleKey, Sampler};
-use crate::scene::{SUBPIXELS, Scene, View};
+use crate::scene::{SUBPIXELS, Scene, Tests, View};
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -24,8 +24,10 @@ pub(super) struct Scalar<E, S, X> {
 
 impl Probe for Counts {
     #[inline(always)]
-    fn ray(&mut self) {
+    fn ray(&mut self, tests: Tests) {
         self.rays += 1;
+        self.box_tests += tests.boxes;
+        self.primitive_tests += tests.primitives;
     }
     fn escaped(&mut self) {
         self.escaped += 1;
@@ -52,8 +54,8 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
     #[inline(always)]
     fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
         let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
-        let film = Address { key, bounce: 0, branch: 0, purpose: Purpose::Film };
-        let ray = self.view.ray(x, y, sample, self.sampler.pair(film));
+        let pair = |purpose| self.sampler.pair(Address { key, bounce: 0, branch: 0, purpose });
+        let ray = self.view.ray::<X>(x, y, sample, pair(Purpose::Film), || pair(Purpose::Lens));
         let radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
         counts.paths += 1;
         if radiance.is_valid_radiance() {

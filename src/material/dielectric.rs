@@ -73,10 +73,16 @@ impl Bsdf for Dielectric {
     }
 
     #[inline(always)]
-    fn split(&self, wo: Vec3, inside: bool) -> Option<[BsdfSample; 2]> {
-        let Interface { refracted, reflectance } = self.interface(wo, inside)?;
-        Some([self.delta(reflect(wo), reflectance), self.delta(refracted, 1.0 - reflectance)])
+    fn delta_lobes(&self, wo: Vec3, inside: bool) -> [Option<BsdfSample>; 2] {
+        match self.interface(wo, inside) {
+            None => [Some(self.delta(reflect(wo), 1.0)), None],
+            Some(Interface { refracted, reflectance }) => {
+                [Some(self.delta(reflect(wo), reflectance)), Some(self.delta(refracted, 1.0 - reflectance))]
+            }
+        }
     }
+
+    const TRANSMITS: bool = true;
 
     #[inline(always)]
     fn albedo(&self) -> Rgb {
@@ -104,15 +110,18 @@ mod tests {
                 let wo = towards(f64::from(k) / 1000.0);
                 let low = glass().sample(wo, inside, [0.0, 0.0]).unwrap();
                 let high = glass().sample(wo, inside, [1.0 - f64::EPSILON, 0.0]).unwrap();
-                match glass().split(wo, inside) {
-                    None => assert_eq!((low.weight.r, high.weight.r), (1.0, 1.0)),
-                    Some([reflected, refracted]) => {
+                match glass().delta_lobes(wo, inside) {
+                    [Some(reflected), Some(refracted)] => {
                         let chance = 0.25 + 0.5 * reflected.weight.r;
                         assert!((0.25..=0.75).contains(&chance));
                         let mean = chance * low.weight.r + (1.0 - chance) * high.weight.r;
                         assert!((mean - 1.0).abs() < 1e-15 && low.weight.r.max(high.weight.r) <= 4.0 / 3.0 + 1e-15);
                         assert!((reflected.weight.r + refracted.weight.r - 1.0).abs() < 1e-15);
                         assert!(reflected.wi.z >= 0.0 && refracted.wi.z <= 0.0);
+                    }
+                    lobes => {
+                        assert_eq!((low.weight.r, high.weight.r), (1.0, 1.0));
+                        assert_eq!(lobes, [Some(low), None], "total internal reflection leaves one lobe");
                     }
                 }
             }
@@ -130,9 +139,9 @@ mod tests {
             (true, 0.8, 0.094_839_139_6),
             (true, 0.75, 0.532_392_578_125),
         ] {
-            let [reflected, _] = glass().split(towards(cos), inside).unwrap();
+            let reflected = glass().delta_lobes(towards(cos), inside)[0].unwrap();
             assert!((reflected.weight.r - expected).abs() < 1e-9, "inside {inside} cos {cos}: {}", reflected.weight.r);
         }
-        assert!(glass().split(towards(0.7), true).is_none(), "cos 0.7 is beyond the critical angle");
+        assert!(glass().delta_lobes(towards(0.7), true)[1].is_none(), "cos 0.7 is beyond the critical angle");
     }
 }

@@ -33,6 +33,11 @@ impl Bsdf for Mirror {
     }
 
     #[inline(always)]
+    fn delta_lobes(&self, wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
+        [Some(BsdfSample { wi: reflect(wo), weight: self.albedo, density: Density::Delta }), None]
+    }
+
+    #[inline(always)]
     fn albedo(&self) -> Rgb {
         self.albedo
     }

@@ -2,6 +2,7 @@
 //!
 //! To add one: write its file with a type that implements [`Bsdf`] and `Deserialize`, and give it a line in `materials!` below.
 
+use crate::effect::{EffectSet, Effects, Entry};
 use crate::math::{Rgb, Vec3};
 use serde::Deserialize;
 
@@ -36,54 +37,17 @@ pub trait Bsdf {
     /// The density per steradian with which [`Bsdf::sample`] chooses `wi`; 0 for delta lobes.
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f64;
 
-    /// The two directions of a surface that both reflects and transmits, each weighted by its share of the light, for estimators
-    /// that follow both; `None` if there is only one.
-    fn split(&self, _wo: Vec3, _inside: bool) -> Option<[BsdfSample; 2]> {
-        None
+    /// The directions of its delta lobes, each weighted by its share of the light, for estimators that follow all of them.
+    #[inline(always)]
+    fn delta_lobes(&self, _wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
+        [None, None]
     }
+
+    /// Whether light goes through, into a medium of its own inside the shape.
+    const TRANSMITS: bool = false;
 
     /// The largest share of light that it scatters: smallpt's "colour".
     fn albedo(&self) -> Rgb;
-}
-
-/// A set of material effects, as bits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Effects(u32);
-
-impl Effects {
-    /// The effects of both.
-    #[must_use]
-    pub const fn and(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    /// Whether every effect of `other` is in `self`.
-    pub const fn cover(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
-    }
-
-    /// The effects' names, joined with `+`.
-    pub fn names(self) -> String {
-        let names: Vec<&str> =
-            MATERIALS.iter().filter(|entry| self.cover(entry.effects)).map(|entry| entry.name).collect();
-        names.join("+")
-    }
-}
-
-/// The effects that a kernel is compiled for. What is not in it costs no branch: the test is on a constant.
-pub trait EffectSet: Send + Sync + 'static {
-    /// The set.
-    const EFFECTS: Effects;
-}
-
-/// One line of the table of materials.
-pub struct Entry {
-    /// Its name in scene files.
-    pub name: &'static str,
-    /// What it is, in a line.
-    pub about: &'static str,
-    /// The effect that it stands for.
-    pub effects: Effects,
 }
 
 macro_rules! materials {
@@ -95,11 +59,11 @@ macro_rules! materials {
 
         $(impl $Type {
             /// The bit of this effect.
-            pub const EFFECT: Effects = Effects(1 << Index::$Type as u32);
+            pub const EFFECT: Effects = Effects::material(Index::$Type as u32);
         })*
 
         /// The materials, in the order in which they are listed.
-        pub const MATERIALS: &[Entry] = &[$(Entry { name: $name, about: $about, effects: $Type::EFFECT }),*];
+        pub const MATERIALS: &[Entry] = &[$(Entry { name: $name, about: $about, effect: $Type::EFFECT }),*];
 
         /// Any material. In a scene file: `material = { diffuse = { albedo = [0.75, 0.25, 0.25] } }`.
         #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -110,7 +74,7 @@ macro_rules! materials {
 
         impl Material {
             /// The effect that it stands for.
-            pub const fn effects(&self) -> Effects {
+            pub const fn effect(&self) -> Effects {
                 match self { $(Self::$Type(_) => $Type::EFFECT),* }
             }
 
@@ -129,13 +93,36 @@ macro_rules! materials {
                 }
             }
 
-            /// [`Bsdf::split`] for the effects in `X`.
+            /// [`Bsdf::eval`] for the effects in `X`.
             #[inline(always)]
-            pub fn split<X: EffectSet>(&self, wo: Vec3, inside: bool) -> Option<[BsdfSample; 2]> {
+            pub fn eval<X: EffectSet>(&self, wo: Vec3, wi: Vec3) -> Rgb {
                 match self {
-                    $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.split(wo, inside),)*
-                    _ => None,
+                    $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.eval(wo, wi),)*
+                    _ => Rgb::BLACK,
                 }
+            }
+
+            /// [`Bsdf::pdf`] for the effects in `X`.
+            #[inline(always)]
+            pub fn pdf<X: EffectSet>(&self, wo: Vec3, wi: Vec3) -> f64 {
+                match self {
+                    $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.pdf(wo, wi),)*
+                    _ => 0.0,
+                }
+            }
+
+            /// [`Bsdf::delta_lobes`] for the effects in `X`.
+            #[inline(always)]
+            pub fn delta_lobes<X: EffectSet>(&self, wo: Vec3, inside: bool) -> [Option<BsdfSample>; 2] {
+                match self {
+                    $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.delta_lobes(wo, inside),)*
+                    _ => [None, None],
+                }
+            }
+
+            /// [`Bsdf::TRANSMITS`] of the material.
+            pub const fn transmits(&self) -> bool {
+                match self { $(Self::$Type(_) => $Type::TRANSMITS),* }
             }
         }
     };

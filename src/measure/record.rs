@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
@@ -41,6 +41,10 @@ pub struct Record {
     pub kernel: String,
     /// Floating-point format of the kernel.
     pub precision: String,
+    /// What the search for the nearest primitive goes by.
+    pub accelerator: String,
+    /// After so many bounces paths were cut; empty if only their throughput ended them.
+    pub max_depth: Option<u16>,
     /// Whether an option was on that changes what the image converges to.
     pub biased: bool,
     /// How the film was cut.
@@ -59,6 +63,8 @@ pub struct Record {
     pub jobs: usize,
     /// What was measured; empty if the run failed.
     pub workers_used: Option<u32>,
+    /// Seconds to build the kernel and what accelerates the scene.
+    pub build_s: Option<f64>,
     /// Seconds to find out what the pieces will cost, where their order depends on it.
     pub pilot_s: Option<f64>,
     /// Seconds to make the strategy (its pool, if it keeps one).
@@ -97,6 +103,10 @@ pub struct Record {
     pub paths: Option<u64>,
     /// Rays.
     pub rays: Option<u64>,
+    /// Boxes that rays were tested against.
+    pub box_tests: Option<u64>,
+    /// Primitives that rays were tested against.
+    pub primitive_tests: Option<u64>,
     /// Rays that met nothing.
     pub escaped: Option<u64>,
     /// Paths cut at the bounce limit.
@@ -148,7 +158,8 @@ fn described(settings: &Settings) -> Record {
         sampler: spec.sampler.clone(),
         kernel: spec.kernel.clone(),
         precision: "f64".to_string(),
-        biased: spec.subpixel_clamp,
+        max_depth: spec.depth(),
+        biased: spec.is_biased(),
         decomposition: settings.decomposition.clone(),
         strategy: settings.strategy.clone(),
         output: settings.output.clone(),
@@ -187,6 +198,8 @@ impl Record {
         record.scene.clone_from(&setup.scene().name);
         record.scene_hash.clone_from(&setup.scene().hash);
         record.effects = setup.effects().to_string();
+        record.accelerator = setup.accelerator().to_string();
+        record.build_s = Some(outcome.build_s);
         record.jobs = durations.len();
         record.workers_used = Some(outcome.workers_used);
         record.pilot_s = Some(outcome.pilot_s);
@@ -212,6 +225,10 @@ impl Record {
         record.job_max_s = durations.iter().copied().reduce(f64::max);
         record.paths = Some(counts.paths);
         record.rays = Some(counts.rays);
+        record.box_tests = Some(counts.box_tests);
+        // Without a hierarchy every ray is tested against every primitive, and nobody counts.
+        let all = counts.rays * setup.scene().owners.len() as u64;
+        record.primitive_tests = Some(if setup.is_hierarchical() { counts.primitive_tests } else { all });
         record.escaped = Some(counts.escaped);
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);

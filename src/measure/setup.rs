@@ -7,25 +7,32 @@ use super::usage::Usage;
 use super::{Settings, THREAD_PER_ROW, Trace, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Decomposition, Film, FilmKey, Plan};
-use crate::kernel::{self, Counts, Kernel};
+use crate::kernel::{self, Choice, Counts, Kernel};
 use crate::sampling::is_deterministic;
-use crate::scene::{SUBPIXELS, Scene};
+use crate::scene::{Filter, SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant, SystemTime};
 
 /// A run that can start: everything that the user could have got wrong has been checked.
 pub struct Setup {
     settings: Settings,
     scene: Arc<Scene>,
-    kernel: Arc<dyn Kernel>,
-    effects: &'static str,
+    choice: Choice,
+    /// Made by the first run: what accelerates a large scene takes seconds to build, and whoever only checks settings needs no kernel.
+    built: OnceLock<Built>,
     plan: Plan,
     by_cost: bool,
     output: &'static output::Entry,
     strategy: &'static strategy::Entry,
     parameter: Option<String>,
+}
+
+/// A kernel, and how long it took to build.
+struct Built {
+    kernel: Arc<dyn Kernel>,
+    build_s: f64,
 }
 
 /// What a run gave.
@@ -42,6 +49,8 @@ pub struct Outcome {
     pub counts: Counts,
     /// Threads that ran at least one job.
     pub workers_used: u32,
+    /// Seconds to build the kernel and what accelerates the scene; once for all runs of a setup.
+    pub build_s: f64,
     /// Seconds to find out what the pieces will cost, where their order depends on it.
     pub pilot_s: f64,
     /// Seconds to make the strategy.
@@ -68,7 +77,7 @@ impl Outcome {
 }
 
 impl Setup {
-    /// Checks the settings, loads the scene, cuts the film and builds the kernel.
+    /// Checks the settings, loads the scene and cuts the film.
     pub fn prepare(settings: Settings) -> Result<Self> {
         let scene = Arc::new(crate::scene::load(&settings.scene)?);
         Self::for_scene(scene, settings)
@@ -100,11 +109,11 @@ impl Setup {
                 .allowed(format!("at most {LARGEST_THREADS} jobs"))
                 .into());
         }
-        let built = kernel::build(&scene, &settings.spec)?;
+        let choice = kernel::choose(&scene, &settings.spec)?;
         Ok(Self {
             scene,
-            kernel: Arc::from(built.kernel),
-            effects: built.effects,
+            choice,
+            built: OnceLock::new(),
             plan,
             by_cost: decomposition.is_by_cost(),
             output,
@@ -126,7 +135,27 @@ impl Setup {
 
     /// Name of the effect profile.
     pub fn effects(&self) -> &'static str {
-        self.effects
+        self.choice.effects()
+    }
+
+    /// Name of the accelerator.
+    pub fn accelerator(&self) -> &'static str {
+        self.choice.accelerator()
+    }
+
+    /// Whether rays are tested against boxes before primitives.
+    pub fn is_hierarchical(&self) -> bool {
+        self.choice.is_hierarchical()
+    }
+
+    /// The kernel, which the first to ask has to wait for.
+    fn built(&self) -> Result<&Built> {
+        if let Some(built) = self.built.get() {
+            return Ok(built);
+        }
+        let before = Instant::now();
+        let kernel = Arc::from(kernel::build(&self.scene, &self.settings.spec)?);
+        Ok(self.built.get_or_init(|| Built { kernel, build_s: before.elapsed().as_secs_f64() }))
     }
 
     /// How many jobs there are.
@@ -155,6 +184,7 @@ impl Setup {
             spp: self.settings.spp,
             width: spec.width,
             height: spec.height,
+            max_depth: spec.max_depth,
             revision: kernel::REVISION,
         }
     }
@@ -172,11 +202,12 @@ impl Setup {
     /// Renders, times and verifies. `watch` is told the number of jobs done now and then, from another thread.
     pub fn run(&self, watch: Option<&(dyn Fn(u64) + Sync)>) -> Result<Outcome> {
         let started_utc = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+        let Built { kernel, build_s } = self.built()?;
         let before_pilot = Instant::now();
-        let plan = Arc::new(self.ordered_plan());
+        let plan = Arc::new(self.ordered_plan(&**kernel));
         let pilot_s = if self.by_cost { before_pilot.elapsed().as_secs_f64() } else { 0.0 };
         let run = Arc::new(Run {
-            kernel: Arc::clone(&self.kernel),
+            kernel: Arc::clone(kernel),
             ledger: Ledger::new(plan.len()),
             output: (self.output.new)(self.delivery(&plan)),
         });
@@ -227,6 +258,7 @@ impl Setup {
             film,
             counts,
             workers_used,
+            build_s: *build_s,
             pilot_s,
             setup_s,
             makespan_s: timed.makespan_s,
@@ -236,9 +268,9 @@ impl Setup {
         })
     }
 
-    fn ordered_plan(&self) -> Plan {
+    fn ordered_plan(&self, kernel: &dyn Kernel) -> Plan {
         let plan = self.plan.clone();
-        if self.by_cost { plan.clone().longest_first(&pilot::costs(&plan, &*self.kernel)) } else { plan }
+        if self.by_cost { plan.clone().longest_first(&pilot::costs(&plan, kernel)) } else { plan }
     }
 
     fn delivery(&self, plan: &Arc<Plan>) -> Delivery {
@@ -280,15 +312,18 @@ impl Setup {
         if workers_used as usize > processors {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
         }
-        if !self.settings.spp.is_multiple_of(SUBPIXELS) {
+        if self.scene.camera.filter == Filter::Subpixels && !self.settings.spp.is_multiple_of(SUBPIXELS) {
             warnings.push(Warning::PartialSubpixels);
         }
-        if self.settings.spec.subpixel_clamp {
+        if self.settings.spec.is_biased() {
             warnings.push(Warning::Biased);
         }
+        // Where a background says that the scene is open, or a depth that paths are to be cut, that is what was asked for.
+        let leaks = if self.scene.background.is_none() { counts.escaped } else { 0 };
+        let cuts = if self.settings.spec.depth().is_none() { counts.truncated } else { 0 };
         let counted = [
-            (counts.escaped, Warning::Escaped(counts.escaped)),
-            (counts.truncated, Warning::Truncated(counts.truncated)),
+            (leaks, Warning::Escaped(leaks)),
+            (cuts, Warning::Truncated(cuts)),
             (counts.invalid, Warning::InvalidSamples(counts.invalid)),
         ];
         warnings.extend(counted.into_iter().filter(|(count, _)| *count > 0).map(|(_, warning)| warning));

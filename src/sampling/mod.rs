@@ -13,7 +13,7 @@ pub use independent::Independent;
 pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;
-pub use warp::{cosine_hemisphere, tent};
+pub use warp::{concentric_disk, cosine_hemisphere, tent, uniform_sphere};
 
 /// Which sample of which pixel of which image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -39,6 +39,10 @@ pub enum Purpose {
     Bsdf = 1,
     /// Russian roulette.
     Roulette = 2,
+    /// The place on the camera's lens.
+    Lens = 3,
+    /// How far light gets through a medium.
+    Medium = 4,
 }
 
 /// Where a pair of numbers is used.
@@ -58,6 +62,17 @@ pub struct Address {
 pub trait Sampler: Send + Sync {
     /// Two numbers in [0, 1), the same for the same address unless the table says that the sampler is not deterministic.
     fn pair(&self, at: Address) -> [f64; 2];
+}
+
+impl Sampler for Box<dyn Sampler> {
+    fn pair(&self, at: Address) -> [f64; 2] {
+        (**self).pair(at)
+    }
+}
+
+/// Kernels are compiled once for all samplers that keep a state: what a call through a table costs is little beside their locks.
+fn stateful(sampler: impl Sampler + 'static) -> Box<dyn Sampler> {
+    Box::new(sampler)
 }
 
 /// A function over samplers: how the name on the command line becomes a type in a kernel.
@@ -96,9 +111,9 @@ macro_rules! samplers {
 
 samplers! {
     "independent", true, "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => |_| Independent;
-    "libc-rand", false, "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;
-    "locked", false, "one PCG32 behind a lock; not deterministic" => Locked::new;
-    "per-thread", false, "a PCG32 for each thread; not deterministic" => PerThread::new;
+    "libc-rand", false, "the C library's one rand() behind its lock (report A); not deterministic" => |seed| stateful(LibcRand::new(seed));
+    "locked", false, "one PCG32 behind a lock; not deterministic" => |seed| stateful(Locked::new(seed));
+    "per-thread", false, "a PCG32 for each thread; not deterministic" => |seed| stateful(PerThread::new(seed));
 }
 
 /// Whether the sampler of that name gives the same numbers in each run.

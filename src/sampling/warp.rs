@@ -18,6 +18,29 @@ pub fn tent<T: Real>(u: T) -> T {
     T::select(r.lt(one), r.sqrt() - one, one - (two - r).sqrt())
 }
 
+/// A point of the unit disk with density 1/π, neighbours staying neighbours (Shirley and Chiu, "A Low Distortion Map Between Disk and
+/// Square", 1997).
+#[inline(always)]
+pub fn concentric_disk([u, v]: [f64; 2]) -> [f64; 2] {
+    let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
+    if x == 0.0 && y == 0.0 {
+        return [0.0, 0.0];
+    }
+    // Eighths of a turn from the axis that is nearer.
+    let (r, turns) = if x.abs() > y.abs() { (x, 0.125 * (y / x)) } else { (y, 0.25 - 0.125 * (x / y)) };
+    let (sin, cos) = sin_cos_turns(turns);
+    [r * cos, r * sin]
+}
+
+/// A direction with density 1/4π per steradian.
+#[inline(always)]
+pub fn uniform_sphere([u, v]: [f64; 2]) -> Vec3 {
+    let z = 1.0 - 2.0 * v;
+    let r = (1.0 - z * z).max(0.0).sqrt();
+    let (sin, cos) = sin_cos_turns(u);
+    Vec3::new(r * cos, r * sin, z)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,17 +1,31 @@
-//! What is rendered: shapes with materials and emission, a camera, and what effects they call for.
+//! What is rendered: shapes with materials and emission, lights, a camera, and what effects they call for.
 
 mod camera;
+mod feature;
+mod fog;
+mod generator;
+mod hierarchy;
 mod library;
+mod point_light;
 mod profile;
 mod reader;
-mod sphere;
+mod shape;
 
-pub use camera::{Camera, SUBPIXELS, View};
+pub use camera::{CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
+pub use feature::{BACKGROUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
+pub use fog::Fog;
+pub use generator::GENERATORS;
+pub use hierarchy::{ACCELERATORS, Bounds, Entry as Accelerator, Hierarchy, Tests, accelerator};
 pub use library::{SCENES, load};
-pub use profile::{AllEffects, DiffuseOnly, PROFILES, ProfileEntry, ProfileVisitor, smallest_profile, with_profile};
-pub use sphere::Sphere;
+pub use point_light::PointLight;
+pub use profile::{
+    AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects, SmallptEffects,
+    SurfaceEffects, effect_names, smallest_profile, with_profile,
+};
+pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle};
 
-use crate::material::{Effects, Material};
+use crate::effect::{EffectSet, Effects};
+use crate::material::Material;
 use crate::math::{Ray, Rgb, Vec3, dot};
 
 /// What is known of a thing in the scene besides its surface.
@@ -25,12 +39,12 @@ pub struct Object {
     pub emission: Rgb,
 }
 
-/// Where a path stands: on an object, on one of its sides. A ray that starts there needs no epsilon to miss its own start.
+/// Where a path stands: on a primitive, on one of its sides. A ray that starts there needs no epsilon to miss its own start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Standpoint {
-    /// Index of the object.
-    pub object: u32,
-    /// Whether the ray leaves to the object's inside.
+    /// Number of the primitive.
+    pub primitive: u32,
+    /// Whether the ray leaves to its inside.
     pub inside: bool,
 }
 
@@ -39,7 +53,9 @@ pub struct Standpoint {
 pub struct Hit {
     /// Distance, in lengths of the ray's direction.
     pub t: f64,
-    /// Index of the object.
+    /// Number of the primitive.
+    pub primitive: u32,
+    /// Index of the object that it belongs to.
     pub object: u32,
     /// The point.
     pub point: Vec3,
@@ -52,46 +68,62 @@ pub struct Hit {
 /// Everything that a kernel needs to know about what it renders.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Its name: the file's stem.
+    /// Its name: the file's stem, and a generator's number.
     pub name: String,
     /// What it is, in a line.
     pub about: String,
-    /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
+    /// SHA-256 of everything that defines it, shortened to 16 hexadecimal digits.
     pub hash: String,
     /// The estimator that is used unless another is asked for.
     pub default_estimator: Option<String>,
     /// Where it is seen from.
     pub camera: Camera,
-    /// The surface of each object, in the same order, which decides ties. Apart from the objects, so that the search for the nearest
-    /// touches nothing else.
-    pub shapes: Vec<Sphere>,
+    /// The surfaces, apart from the objects, so that the search for the nearest touches nothing else.
+    pub primitives: Primitives,
     /// What is in it.
     pub objects: Vec<Object>,
-    /// The effects that its materials call for.
-    pub effects: Effects,
+    /// The object of each primitive.
+    pub owners: Vec<u32>,
+    /// Lights without a size.
+    pub point_lights: Vec<PointLight>,
+    /// The radiance of rays that meet nothing; `None` if none should.
+    pub background: Option<Rgb>,
+    /// What is between the surfaces.
+    pub fog: Option<Fog>,
+    /// What the search for the nearest primitive goes by; every primitive is tested if `None`.
+    pub hierarchy: Option<Hierarchy>,
 }
 
 impl Scene {
-    /// The first object along the ray; among equally near ones the first in the scene. `from` is where the ray starts, if it starts
-    /// on an object.
+    /// The effects that it calls for.
+    pub fn effects(&self) -> Effects {
+        let called = |is_there: bool, effect: Effects| if is_there { effect } else { Effects::NONE };
+        let materials = self.objects.iter().fold(Effects::NONE, |all, object| all.and(object.material.effect()));
+        materials
+            .and(self.primitives.effects())
+            .and(self.camera.effects())
+            .and(called(self.background.is_some(), BACKGROUND))
+            .and(called(!self.point_lights.is_empty(), POINT_LIGHT))
+            .and(called(self.fog.is_some(), FOG))
+            .and(called(self.hierarchy.is_some(), HIERARCHY))
+    }
+
+    /// The first primitive of the kinds in `X` along the ray; among equally near ones the one with the lowest number. `from` is where the
+    /// ray starts, if it starts on one.
     #[inline(always)]
-    pub fn intersect(&self, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
-        let own = from.map_or(u32::MAX, |standpoint| standpoint.object);
-        let leave = from.map_or(f64::NAN, |from| self.shapes[from.object as usize].leave(ray, from.inside));
-        let (mut t, mut object) = (f64::INFINITY, u32::MAX);
-        for (index, shape) in (0u32..).zip(&self.shapes) {
-            let meet = shape.meet(ray);
-            let distance = if index == own { leave } else { meet };
-            // NaN, zero and negative distances are no hits. Written as selections, because a processor cannot foresee which sphere
-            // will turn out to be nearer: wrong guesses cost about a tenth of the kernel's time.
-            let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
-            object = if ahead < t { index } else { object };
-            t = if ahead < t { ahead } else { t };
-        }
-        let shape = self.shapes.get(object as usize)?;
+    pub fn intersect<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, tests: &mut Tests) -> Option<Hit> {
+        let Nearest { t, primitive } =
+            self.primitives.nearest::<X>(self.hierarchy.as_ref(), ray, from, f64::INFINITY, tests);
+        let object = *self.owners.get(primitive as usize)?;
         let point = ray.at(t);
-        let normal = shape.normal(point);
-        Some(Hit { t, object, point, normal, inside: dot(normal, ray.direction) > 0.0 })
+        let normal = self.primitives.normal::<X>(primitive, point);
+        Some(Hit { t, primitive, object, point, normal, inside: dot(normal, ray.direction) > 0.0 })
+    }
+
+    /// Whether anything of the kinds in `X` is on the ray nearer than `limit`.
+    #[inline(always)]
+    pub fn is_blocked<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, limit: f64, tests: &mut Tests) -> bool {
+        self.primitives.nearest::<X>(self.hierarchy.as_ref(), ray, from, limit, tests).primitive != u32::MAX
     }
 
     /// The same scene in thermal equilibrium: every surface gives off exactly what it does not reflect (1 - albedo), so that in a
@@ -111,7 +143,15 @@ impl Scene {
     pub fn scaled(&self, factor: f64) -> Self {
         let mut scene = self.clone();
         scene.camera = scene.camera.scaled(factor);
-        scene.shapes = scene.shapes.iter().map(|shape| shape.scaled(factor)).collect();
+        scene.primitives = scene.primitives.scaled(factor);
+        scene.point_lights = scene.point_lights.iter().map(|light| light.scaled(factor)).collect();
+        scene.fog = scene.fog.map(|fog| fog.scaled(factor));
         scene
+    }
+
+    /// The same scene with the search structure of that name; `None` if it is to have none.
+    pub fn accelerated(&self, name: &str) -> Option<Self> {
+        let hierarchy = accelerator(Some(name), 0)?.build(&self.primitives.bounds())?;
+        Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 }

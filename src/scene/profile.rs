@@ -3,7 +3,10 @@
 //! A scene runs on the smallest profile that covers what it calls for, so an effect that it does not use costs nothing. `--effects
 //! PROFILE` forces a larger one, which is how that cost is measured.
 
-use crate::material::{Dielectric, Diffuse, EffectSet, Effects, Mirror};
+use super::feature::{BACKGROUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
+use super::shape::{PRIMITIVES, Plane, Sphere};
+use crate::effect::{EffectSet, Effects, all};
+use crate::material::{Dielectric, Diffuse, MATERIALS, Mirror};
 
 /// A function over profiles: how a profile's name becomes a type in a kernel.
 pub trait ProfileVisitor {
@@ -28,7 +31,7 @@ macro_rules! profiles {
         $(#[doc = $about] #[derive(Debug, Clone, Copy)] pub struct $Type;
         impl EffectSet for $Type { const EFFECTS: Effects = $effects; })*
 
-        /// The profiles, smallest first.
+        /// The profiles. The fitting one is the first that covers a scene, so smaller ones come first.
         pub const PROFILES: &[ProfileEntry] =
             &[$(ProfileEntry { name: $name, about: $about, effects: $Type::EFFECTS }),*];
 
@@ -42,12 +45,30 @@ macro_rules! profiles {
     };
 }
 
+const SMALLPT: Effects = Sphere::EFFECT.and(Diffuse::EFFECT).and(Mirror::EFFECT).and(Dielectric::EFFECT);
+const ALL: Effects = all(PRIMITIVES).and(all(MATERIALS)).and(all(FEATURES));
+
 profiles! {
-    DiffuseOnly, "diffuse", "diffuse reflection alone", Diffuse::EFFECT;
-    AllEffects, "all", "every effect there is", Diffuse::EFFECT.and(Mirror::EFFECT).and(Dielectric::EFFECT);
+    DiffuseOnly, "diffuse", "diffuse spheres alone", Sphere::EFFECT.and(Diffuse::EFFECT);
+    SmallptEffects, "smallpt", "spheres that are diffuse, mirrors or glass", SMALLPT;
+    LensEffects, "lens", "smallpt's effects through a lens", SMALLPT.and(LENS);
+    FogEffects, "fog", "smallpt's effects in fog", SMALLPT.and(FOG);
+    SceneryEffects, "scenery", "spheres and planes of smallpt's materials under point lights or a sky, in a hierarchy",
+        SMALLPT.and(Plane::EFFECT).and(BACKGROUND).and(POINT_LIGHT).and(HIERARCHY);
+    SurfaceEffects, "surfaces", "spheres, planes and triangles of every material, in a hierarchy",
+        all(PRIMITIVES).and(all(MATERIALS)).and(HIERARCHY);
+    AllEffects, "all", "every effect there is", ALL;
 }
 
 /// The name of the smallest profile that covers the effects.
 pub fn smallest_profile(effects: Effects) -> &'static str {
     PROFILES.iter().find(|entry| entry.effects.cover(effects)).map_or("all", |entry| entry.name)
 }
+
+/// The names of the effects, joined with `+`.
+pub fn effect_names(effects: Effects) -> String {
+    let tables = PRIMITIVES.iter().chain(MATERIALS).chain(FEATURES);
+    let names: Vec<&str> = tables.filter(|entry| effects.cover(entry.effect)).map(|entry| entry.name).collect();
+    names.join("+")
+}
+

@@ -2,9 +2,11 @@
 //!
 //! ```toml
 //! about = "A red wall"
+//! base = "cornell"             # optional: a scene that this one changes
 //! estimator = "smallpt"        # optional: the estimator that is used unless another is asked for
+//! background = [0.0, 0.0, 0.0] # optional: the radiance of rays that meet nothing; without it the scene should be closed
 //!
-//! [camera.smallpt]
+//! [camera.smallpt]             # a camera of `pathmark list cameras`
 //! position = [50.0, 52.0, 295.6]
 //! direction = [0.0, -0.042612, -1.0]
 //! field = 0.5135
@@ -16,74 +18,219 @@
 //! material = { diffuse = { albedo = [0.75, 0.25, 0.25] } }
 //! emission = [0.0, 0.0, 0.0]   # optional
 //! ```
+//!
+//! There may be `[[point-lights]]`, a `[fog]` and a `[generator.NAME]`. With a base, whatever is named here replaces what the base says;
+//! an object with the name of one of its objects replaces the fields that it has, and `without` lists objects to leave out.
 
-use super::{Camera, Object, Scene, Sphere};
-use crate::digest;
-use crate::error::{InputError, Result};
+use super::generator::{Generator, Made};
+use super::library::{Files, Folder, Source, source};
+use super::shape::{AnyShape, Primitives};
+use super::{Camera, Fog, Object, PointLight, Scene};
+use crate::digest::Fingerprint;
+use crate::error::{Error, InputError, Result};
 use crate::input::{locate, parse, radiance};
-use crate::material::{Effects, Material};
+use crate::material::Material;
 use crate::math::Rgb;
-use serde::Deserialize;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SceneFile {
-    about: String,
-    estimator: Option<String>,
-    camera: CameraFile,
-    objects: Vec<ObjectFile>,
-}
+use crate::scene::camera::CameraFile;
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-enum CameraFile {
-    Smallpt(Camera),
+struct SceneFile {
+    about: String,
+    base: Option<String>,
+    #[serde(default)]
+    without: Vec<String>,
+    estimator: Option<String>,
+    #[serde(default, deserialize_with = "some_radiance")]
+    background: Option<Rgb>,
+    camera: Option<CameraFile>,
+    fog: Option<Fog>,
+    point_lights: Option<Vec<PointLight>>,
+    generator: Option<Generator>,
+    #[serde(default)]
+    objects: Vec<ObjectFile>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ObjectFile {
     name: String,
-    shape: ShapeFile,
+    shape: Option<AnyShape>,
+    material: Option<Material>,
+    #[serde(default, deserialize_with = "some_radiance")]
+    emission: Option<Rgb>,
+}
+
+fn some_radiance<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Option<Rgb>, D::Error> {
+    radiance(deserializer).map(Some)
+}
+
+/// An object before its shape has become primitives.
+struct Part {
+    name: String,
+    shapes: Vec<AnyShape>,
+    folder: Folder,
     material: Material,
-    #[serde(default = "black", deserialize_with = "radiance")]
     emission: Rgb,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-enum ShapeFile {
-    Sphere(Sphere),
+/// A scene while it is put together from its bases.
+struct Draft {
+    estimator: Option<String>,
+    background: Option<Rgb>,
+    camera: Option<Camera>,
+    fog: Option<Fog>,
+    point_lights: Vec<PointLight>,
+    generator: Option<Generator>,
+    parts: Vec<Part>,
+    hash: Fingerprint,
 }
 
-fn black() -> Rgb {
-    Rgb::BLACK
-}
+/// A scene that is the base of a base and so on, further than this, is taken for a circle.
+const DEEPEST_BASE: usize = 8;
 
-/// Reads a scene; `name` becomes the scene's, `file` is shown in errors.
-pub(super) fn scene_from_text(name: &str, file: &str, text: &str) -> Result<Scene> {
-    let parsed: SceneFile = parse(text, file)?;
-    if parsed.objects.is_empty() {
-        return Err(InputError::new("objects", "[]", "a scene needs at least one object")
-            .in_file(file, locate(text, "objects", "[]"))
-            .into());
+/// Reads a scene. `number` is for its generator.
+pub(super) fn scene_from_text(source: &Source, number: Option<f64>) -> Result<Scene> {
+    let (mut draft, about) = draft(source, 0)?;
+    let mut name = source.name.clone();
+    if let Some(number) = number {
+        name = format!("{name}:{number}");
+        let problem = match &mut draft.generator {
+            None => Err("nothing: only scenes with a generator take a number"),
+            Some(generator) => generator.set_number(number),
+        };
+        problem.map_err(|allowed| {
+            InputError::new("scene", &name, "the number behind the colon does not fit").allowed(allowed)
+        })?;
+        draft.hash.update(number.to_string().as_bytes());
     }
-    let CameraFile::Smallpt(camera) = parsed.camera;
-    let (mut shapes, mut objects) = (Vec::new(), Vec::new());
-    for object in parsed.objects {
-        let ShapeFile::Sphere(shape) = object.shape;
-        shapes.push(shape);
-        objects.push(Object { name: object.name, material: object.material, emission: object.emission });
+    let generated = draft.generator.iter().flat_map(Generator::make).map(|Made { name, shapes, material, emission }| {
+        Part { name, shapes, folder: source.folder.clone(), material, emission }
+    });
+    draft.parts.extend(generated.collect::<Vec<_>>());
+    let Some(camera) = draft.camera else {
+        return Err(missing(source, "camera", "a scene needs a camera"));
+    };
+    if draft.parts.is_empty() {
+        return Err(missing(source, "objects", "a scene needs at least one object"));
     }
-    let effects = objects.iter().fold(Effects::default(), |all, object| all.and(object.material.effects()));
-    Ok(Scene {
-        name: name.to_string(),
-        about: parsed.about,
-        hash: digest::of_text(text),
-        default_estimator: parsed.estimator,
+    let mut scene = Scene {
+        name,
+        about,
+        hash: String::new(),
+        default_estimator: draft.estimator,
         camera,
-        shapes,
-        objects,
-        effects,
-    })
+        primitives: Primitives::default(),
+        objects: Vec::new(),
+        owners: Vec::new(),
+        point_lights: draft.point_lights,
+        background: draft.background,
+        fog: draft.fog,
+        hierarchy: None,
+    };
+    add_parts(&mut scene, draft.parts, &mut draft.hash)?;
+    scene.hash = draft.hash.finish();
+    Ok(scene)
+}
+
+/// Turns parts into objects and primitives, which are numbered kind by kind.
+fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Result<()> {
+    let mut owners: Vec<Vec<u32>> = vec![Vec::new(); scene.primitives.counts().len()];
+    for (index, part) in (0u32..).zip(parts) {
+        let before = scene.primitives.counts();
+        let mut files = Files { folder: &part.folder, hash };
+        for shape in part.shapes {
+            shape.add_to(&mut scene.primitives, &mut files)?;
+        }
+        for ((owners, before), now) in owners.iter_mut().zip(before).zip(scene.primitives.counts()) {
+            owners.extend(std::iter::repeat_n(index, now - before));
+        }
+        scene.objects.push(Object { name: part.name, material: part.material, emission: part.emission });
+    }
+    scene.owners = owners.concat();
+    Ok(())
+}
+
+fn missing(source: &Source, field: &str, problem: &str) -> Error {
+    InputError::new(field, "", problem).in_file(&source.file, locate(&source.text, field, "")).into()
+}
+
+/// What a file says on top of what its base says.
+fn draft(source: &Source, depth: usize) -> Result<(Draft, String)> {
+    let file: SceneFile = parse(&source.text, &source.file)?;
+    let mut draft = match &file.base {
+        None => Draft {
+            estimator: None,
+            background: None,
+            camera: None,
+            fog: None,
+            point_lights: Vec::new(),
+            generator: None,
+            parts: Vec::new(),
+            hash: Fingerprint::default(),
+        },
+        Some(base) => base_of(source, base, depth)?,
+    };
+    draft.hash.update(source.text.as_bytes());
+    draft.estimator = file.estimator.or(draft.estimator);
+    draft.background = file.background.or(draft.background);
+    draft.camera = file.camera.map(Camera::from).or(draft.camera);
+    draft.fog = file.fog.or(draft.fog);
+    draft.point_lights = file.point_lights.unwrap_or(draft.point_lights);
+    draft.generator = file.generator.or(draft.generator);
+    for name in &file.without {
+        let before = draft.parts.len();
+        draft.parts.retain(|part| part.name != *name);
+        if draft.parts.len() == before {
+            let error = InputError::new("without", name, "the base has no object of that name");
+            return Err(error.in_file(&source.file, locate(&source.text, "without", name)).into());
+        }
+    }
+    let inherited = draft.parts.len();
+    let mut names: BTreeMap<String, usize> =
+        draft.parts.iter().enumerate().map(|(index, part)| (part.name.clone(), index)).collect();
+    for object in file.objects {
+        let own = names.get(&object.name).copied();
+        match (own, object) {
+            (Some(index), object) if index < inherited => {
+                let part = &mut draft.parts[index];
+                if let Some(shape) = object.shape {
+                    (part.shapes, part.folder) = (vec![shape], source.folder.clone());
+                }
+                part.material = object.material.unwrap_or(part.material.clone());
+                part.emission = object.emission.unwrap_or(part.emission);
+            }
+            (Some(_), object) => {
+                let error = InputError::new("name", &object.name, "two objects have this name");
+                return Err(error.in_file(&source.file, locate(&source.text, "name", &object.name)).into());
+            }
+            (None, ObjectFile { name, shape: Some(shape), material: Some(material), emission }) => {
+                let (emission, folder) = (emission.unwrap_or(Rgb::BLACK), source.folder.clone());
+                names.insert(name.clone(), draft.parts.len());
+                draft.parts.push(Part { name, shapes: vec![shape], folder, material, emission });
+            }
+            (None, object) => {
+                let lacks = if object.shape.is_none() { "shape" } else { "material" };
+                let error = InputError::new("name", &object.name, format!("the object has no {lacks}"));
+                return Err(error.in_file(&source.file, locate(&source.text, "name", &object.name)).into());
+            }
+        }
+    }
+    Ok((draft, file.about))
+}
+
+fn base_of(from: &Source, base: &str, depth: usize) -> Result<Draft> {
+    let error = |problem: String| {
+        InputError::new("base", base, problem).in_file(&from.file, locate(&from.text, "base", base))
+    };
+    if depth == DEEPEST_BASE {
+        return Err(error(format!("is the {DEEPEST_BASE}th base of a base: they may go in a circle")).into());
+    }
+    let source = source(base, &from.folder).map_err(|problem| match problem {
+        Error::Input(problem) if problem.place.is_none() => Error::from(error(problem.problem).allowed(problem.allowed)),
+        other => other,
+    })?;
+    Ok(draft(&source, depth + 1)?.0)
 }

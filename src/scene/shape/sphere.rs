@@ -4,6 +4,7 @@
 //! shape = { sphere = { center = [27.0, 16.5, 47.0], radius = 16.5 } }
 //! ```
 
+use super::{Bounds, Primitive};
 use crate::input::{length, point};
 use crate::math::{Ray, Vec3, dot, first_root};
 use serde::Deserialize;
@@ -20,29 +21,34 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-impl Sphere {
-    /// Distance to the surface for a ray (of unit direction) that starts elsewhere; not above zero, or NaN, if it misses.
+impl Primitive for Sphere {
+    type Prepared = ();
+
     #[inline(always)]
-    pub fn meet(&self, ray: &Ray) -> f64 {
+    fn prepare(_ray: &Ray) -> Self::Prepared {}
+
+    #[inline(always)]
+    fn meet(&self, ray: &Ray, _prepared: &()) -> f64 {
         first_root(ray.origin - self.center, ray.direction, 1.0, self.radius)
     }
 
-    /// Distance to the surface for a ray that starts on it: one root is the start, the other is twice the way to the closest approach.
-    /// To the outside there is none.
+    /// One root is the start, the other is twice the way to the closest approach. To the outside there is none.
     #[inline(always)]
-    pub fn leave(&self, ray: &Ray, inside: bool) -> f64 {
+    fn leave(&self, ray: &Ray, inside: bool) -> f64 {
         if inside { 2.0 * dot(self.center - ray.origin, ray.direction).abs() } else { f64::NAN }
     }
 
-    /// The outward unit normal at a point of the surface.
     #[inline(always)]
-    pub fn normal(&self, point: Vec3) -> Vec3 {
+    fn normal(&self, point: Vec3) -> Vec3 {
         (point - self.center).normalized()
     }
 
-    /// The same sphere with every length multiplied.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
+    fn bounds(&self) -> Option<Bounds> {
+        let r = Vec3::new(self.radius, self.radius, self.radius);
+        Some(Bounds::of_points(&[self.center - r, self.center + r]))
+    }
+
+    fn scaled(&self, factor: f64) -> Self {
         Self { center: self.center * factor, radius: self.radius * factor }
     }
 }

@@ -1,0 +1,151 @@
+//! Where a scene is seen from. A camera and its pixel filter belong together. One kind a file; this file is their table and what they
+//! have in common: rows lie level, sample k of a pixel is one ray.
+//!
+//! To add one: write its file with a type that implements `Into<Camera>` and `Deserialize`, and give it a line in `cameras!` below.
+
+mod pinhole;
+mod smallpt;
+mod thin_lens;
+
+use crate::effect::{EffectSet, Effects};
+use crate::math::{Ray, Vec3};
+use crate::sampling::{concentric_disk, tent};
+use crate::scene::LENS;
+use serde::Deserialize;
+
+/// Any camera, read.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    /// The pinhole, or the middle of the lens.
+    pub position: Vec3,
+    /// The middle of the view, of length 1.
+    pub direction: Vec3,
+    /// Which way is up, roughly.
+    pub up: Vec3,
+    /// Height of the image plane at distance 1.
+    pub field: f64,
+    /// How far along its direction a ray starts, so that it can start inside a closed box.
+    pub advance: f64,
+    /// How samples are spread over a pixel.
+    pub filter: Filter,
+    /// The lens; a pinhole if `None`.
+    pub lens: Option<Lens>,
+}
+
+/// A thin lens.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lens {
+    /// Its radius.
+    pub radius: f64,
+    /// Distance of the plane that is sharp, along the view direction.
+    pub focus: f64,
+}
+
+/// How the samples of a pixel are spread.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Filter {
+    /// smallpt's: a tent over each of 2x2 subpixels, sample k taking subpixel k mod 4.
+    Subpixels,
+    /// Evenly over the pixel.
+    Pixel,
+}
+
+/// Subpixels in a pixel: 2 by 2.
+pub const SUBPIXELS: u32 = 4;
+
+macro_rules! cameras {
+    ($($module:ident :: $Type:ident, $name:literal, $about:literal;)*) => {
+        /// Name and description of the cameras, in the order in which they are listed.
+        pub const CAMERAS: &[(&str, &str)] = &[$(($name, $about)),*];
+
+        /// A camera as scene files name it.
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        pub(super) enum CameraFile {
+            $($Type($module::$Type)),*
+        }
+
+        impl From<CameraFile> for Camera {
+            fn from(file: CameraFile) -> Self {
+                match file { $(CameraFile::$Type(camera) => camera.into()),* }
+            }
+        }
+    };
+}
+
+cameras! {
+    smallpt::Smallpt, "smallpt", "smallpt's: rays start some way in front of the pinhole, a tent filter on 2x2 subpixels";
+    pinhole::Pinhole, "pinhole", "a pinhole that looks at a point";
+    thin_lens::ThinLens, "thin-lens", "a lens that is sharp at one distance only";
+}
+
+/// A camera set up for an image size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    camera: Camera,
+    right: Vec3,
+    up: Vec3,
+    width: f64,
+    height: f64,
+    rows: u32,
+}
+
+impl Camera {
+    /// What it calls for.
+    pub fn effects(&self) -> Effects {
+        if self.lens.is_some() { LENS } else { Effects::NONE }
+    }
+
+    /// Sets up the image plane for `width` x `height` pixels.
+    pub fn view(&self, width: u32, height: u32) -> View {
+        let (w, h) = (f64::from(width), f64::from(height));
+        let side = match self.filter {
+            // The subpixel camera's rows lie along the x axis, exactly.
+            Filter::Subpixels => Vec3::new(1.0, 0.0, 0.0),
+            Filter::Pixel => self.direction.cross(self.up).normalized(),
+        };
+        let right = side * (w * self.field / h);
+        let up = right.cross(self.direction).normalized() * self.field;
+        View { camera: *self, right, up, width: w, height: h, rows: height }
+    }
+
+    /// The same camera with every length multiplied.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let lens = self.lens.map(|lens| Lens { radius: lens.radius * factor, focus: lens.focus * factor });
+        Self { position: self.position * factor, advance: self.advance * factor, lens, ..*self }
+    }
+}
+
+impl View {
+    /// The ray of sample `sample` through pixel (`x`, `y`), row 0 at the top. `film` places it in the pixel and `lens` on the lens; the
+    /// latter is asked only if there is one.
+    ///
+    /// The direction is normalised before the ray is advanced. g++ happens to evaluate smallpt's expression in that order; the other
+    /// order starts rays above the ceiling and lights the top rows.
+    #[inline(always)]
+    pub fn ray<X: EffectSet>(&self, x: u32, y: u32, sample: u32, film: [f64; 2], lens: impl FnOnce() -> [f64; 2]) -> Ray {
+        let [dx, dy] = match self.camera.filter {
+            Filter::Subpixels => {
+                let subpixel = sample % SUBPIXELS;
+                let (sx, sy) = (f64::from(subpixel % 2), f64::from(subpixel / 2));
+                [(sx + 0.5 + tent(film[0])) / 2.0, (sy + 0.5 + tent(film[1])) / 2.0]
+            }
+            Filter::Pixel => film,
+        };
+        let across = (dx + f64::from(x)) / self.width - 0.5;
+        let upward = (dy + f64::from(self.rows - 1 - y)) / self.height - 0.5;
+        let towards = self.right * across + self.up * upward + self.camera.direction;
+        if X::EFFECTS.cover(LENS)
+            && let Some(Lens { radius, focus }) = self.camera.lens
+        {
+            let [u, v] = concentric_disk(lens());
+            let (right, up) = (self.right.normalized(), self.up.normalized());
+            let offset = right * (u * radius) + up * (v * radius);
+            let direction = (towards * focus - offset).normalized();
+            return Ray { origin: self.camera.position + offset + direction * self.camera.advance, direction };
+        }
+        let direction = towards.normalized();
+        Ray { origin: self.camera.position + direction * self.camera.advance, direction }
+    }
+}

@@ -1,0 +1,73 @@
+//! A homogeneous medium that fills the scene, except inside glass.
+//!
+//! ```toml
+//! [fog]
+//! absorption = [0.001, 0.001, 0.001]   # per unit of length
+//! scattering = 0.002                   # per unit of length, evenly in all directions
+//! emission = [0.0, 0.0, 0.0]           # optional: the radiance of fog without an end
+//! ```
+//!
+//! Where light is scattered is drawn with density σs exp(-σs t), so nothing is left to weigh but absorption, which follows the law of Beer
+//! and Lambert, exp(-σa t), in each channel. One σs for all channels keeps the draw exact for each of them.
+
+use crate::input::{positive, radiance};
+use crate::math::Rgb;
+use serde::Deserialize;
+
+/// The medium.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Fog {
+    /// Share of light absorbed per unit of length, σa, per channel.
+    #[serde(deserialize_with = "radiance")]
+    pub absorption: Rgb,
+    /// Share of light scattered per unit of length, σs.
+    #[serde(deserialize_with = "positive")]
+    pub scattering: f64,
+    /// The source function: the radiance of fog without an end, W sr⁻¹ m⁻² per channel.
+    #[serde(default = "black", deserialize_with = "radiance")]
+    pub emission: Rgb,
+}
+
+fn black() -> Rgb {
+    Rgb::BLACK
+}
+
+impl Fog {
+    /// How far light gets before it is scattered, for u in [0, 1); infinite without scattering.
+    #[inline(always)]
+    pub fn free_path(&self, u: f64) -> f64 {
+        // ln(1 - u) for u < 1 is finite, and exact where u is small.
+        if self.scattering > 0.0 { -libm::log1p(-u) / self.scattering } else { f64::INFINITY }
+    }
+
+    /// The share of light that is not absorbed over a distance, per channel.
+    #[inline(always)]
+    pub fn transmittance(&self, t: f64) -> Rgb {
+        let share = |sigma: f64| if sigma > 0.0 { libm::exp(-sigma * t) } else { 1.0 };
+        Rgb { r: share(self.absorption.r), g: share(self.absorption.g), b: share(self.absorption.b) }
+    }
+
+    /// The share of light that is not scattered over a distance.
+    #[inline(always)]
+    pub fn unscattered(&self, t: f64) -> f64 {
+        libm::exp(-self.scattering * t)
+    }
+
+    /// The radiance that the fog adds over a distance, per channel: emission (1 - exp(-σa t)).
+    #[inline(always)]
+    pub fn glow(&self, t: f64) -> Rgb {
+        let glow = |emission: f64, sigma: f64| if emission > 0.0 && sigma > 0.0 { -emission * libm::expm1(-sigma * t) } else { 0.0 };
+        Rgb {
+            r: glow(self.emission.r, self.absorption.r),
+            g: glow(self.emission.g, self.absorption.g),
+            b: glow(self.emission.b, self.absorption.b),
+        }
+    }
+
+    /// The same fog with every length multiplied.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { absorption: self.absorption * (1.0 / factor), scattering: self.scattering / factor, ..*self }
+    }
+}

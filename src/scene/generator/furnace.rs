@@ -1,0 +1,64 @@
+//! A closed box in thermal equilibrium: its walls give off what they do not reflect, a mirror and a glass ball neither absorb nor emit,
+//! so the radiance is 1 everywhere, in every direction, whatever the albedo. The higher that is, the longer are the paths.
+
+use super::{Generate, Made};
+use crate::material::{Dielectric, Diffuse, Material, Mirror};
+use crate::math::{Rgb, Vec3};
+use crate::scene::Sphere;
+use crate::scene::shape::{AnyShape, Quad};
+use serde::Deserialize;
+
+/// The generator as it is written.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct Furnace {
+    /// Of the walls: the number behind the scene's name.
+    albedo: f64,
+}
+
+impl Generate for Furnace {
+    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
+        if !(0.0..1.0).contains(&number) {
+            return Err("an albedo from 0 to below 1");
+        }
+        self.albedo = number;
+        Ok(())
+    }
+
+    fn make(&self) -> Vec<Made> {
+        let grey = |x: f64| Rgb { r: x, g: x, b: x };
+        // Corner k has coordinate -1 or 1 by the bits of k.
+        let corner = |k: u8| {
+            let side = |bit: u8| if k & bit == 0 { -1.0 } else { 1.0 };
+            Vec3::new(side(1), side(2), side(4))
+        };
+        let walls = [
+            ("left", [0, 4, 6, 2]),
+            ("right", [1, 3, 7, 5]),
+            ("floor", [0, 1, 5, 4]),
+            ("ceiling", [2, 6, 7, 3]),
+            ("back", [0, 2, 3, 1]),
+            ("front", [4, 5, 7, 6]),
+        ];
+        let wall = |(name, corners): (&str, [u8; 4])| Made {
+            name: name.to_string(),
+            shapes: vec![AnyShape::Quad(Quad { corners: corners.map(corner) })],
+            material: Material::Diffuse(Diffuse { albedo: grey(self.albedo) }),
+            emission: grey(1.0 - self.albedo),
+        };
+        let ball = |name: &str, center: Vec3, material: Material| Made {
+            name: name.to_string(),
+            shapes: vec![AnyShape::Sphere(Sphere { center, radius: 0.35 })],
+            material,
+            emission: Rgb::BLACK,
+        };
+        let mirror = Material::Mirror(Mirror { albedo: Rgb::WHITE });
+        let glass = Material::Dielectric(Dielectric { eta: 1.5, tint: Rgb::WHITE });
+        let mut objects = vec![
+            ball("mirror ball", Vec3::new(-0.4, -0.6, -0.4), mirror),
+            ball("glass ball", Vec3::new(0.4, -0.6, 0.1), glass),
+        ];
+        objects.extend(walls.map(wall));
+        objects
+    }
+}

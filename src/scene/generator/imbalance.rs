@@ -1,0 +1,62 @@
+//! Work that is concentrated in a corner by a stated factor.
+//!
+//! The camera looks from the middle of a diffuse sphere; a black screen close in front of it covers the image but for its upper left
+//! sixteenth. On the screen a path ends with its first ray. In the sphere, under roulette after the fifth vertex, it takes
+//! 5 + 1/(1 - albedo) rays on average, which fixes the albedo. The sphere gives off what it does not reflect, so the corner is white.
+
+use super::{Generate, Made};
+use crate::material::{Diffuse, Material};
+use crate::math::{Rgb, Vec3};
+use crate::scene::Sphere;
+use crate::scene::shape::{AnyShape, Quad};
+use serde::Deserialize;
+
+/// Rays before roulette starts.
+const CERTAIN: f64 = 5.0;
+
+/// The generator as it is written.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct Imbalance {
+    /// Rays of a path in the corner, one elsewhere: the number behind the scene's name.
+    factor: f64,
+}
+
+impl Generate for Imbalance {
+    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
+        if !(7.0..=1000.0).contains(&number) {
+            return Err("a factor from 7 to 1000");
+        }
+        self.factor = number;
+        Ok(())
+    }
+
+    fn make(&self) -> Vec<Made> {
+        let albedo = 1.0 - 1.0 / (self.factor - CERTAIN);
+        let grey = |x: f64| Rgb { r: x, g: x, b: x };
+        let diffuse = |albedo: f64| Material::Diffuse(Diffuse { albedo: grey(albedo) });
+        let sphere = Made {
+            name: "sphere".to_string(),
+            shapes: vec![AnyShape::Sphere(Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: 1.0 })],
+            material: diffuse(albedo),
+            emission: grey(1.0 - albedo),
+        };
+        // At this distance the image is this high; it is never wider than it is high times three.
+        let (z, half) = (-1e-4, 0.25e-4);
+        let screen = |name: &str, [x0, x1]: [f64; 2], [y0, y1]: [f64; 2]| Made {
+            name: name.to_string(),
+            shapes: vec![AnyShape::Quad(Quad {
+                corners: [Vec3::new(x0, y0, z), Vec3::new(x1, y0, z), Vec3::new(x1, y1, z), Vec3::new(x0, y1, z)],
+            })],
+            material: diffuse(0.0),
+            emission: Rgb::BLACK,
+        };
+        let wide = 4.0 * half;
+        let corner = -half * 4.0 / 6.0;
+        vec![
+            sphere,
+            screen("screen below", [-wide, wide], [-wide, half / 2.0]),
+            screen("screen beside", [corner, wide], [half / 2.0, wide]),
+        ]
+    }
+}

@@ -1,0 +1,69 @@
+//! Scenes that are computed instead of written down, for studies that need them in many sizes. A scene file names one:
+//!
+//! ```toml
+//! [generator.spheres]
+//! count = 1000
+//! seed = 1
+//! ```
+//!
+//! and `NAME:NUMBER`, wherever scenes are named, replaces its first field: `spheres:100000`.
+//!
+//! To add one: write its file with a type that implements [`Generate`] and `Deserialize`, and give it a line in `generators!` below.
+
+mod furnace;
+mod imbalance;
+mod spheres;
+
+use super::shape::AnyShape;
+use crate::material::Material;
+use crate::math::Rgb;
+use serde::Deserialize;
+
+/// An object as a generator makes it.
+pub(super) struct Made {
+    pub(super) name: String,
+    pub(super) shapes: Vec<AnyShape>,
+    pub(super) material: Material,
+    pub(super) emission: Rgb,
+}
+
+/// Makes objects.
+trait Generate {
+    /// Replaces what the number behind the scene's name stands for; says what is allowed if it is something else.
+    fn set_number(&mut self, number: f64) -> Result<(), &'static str>;
+
+    /// The objects.
+    fn make(&self) -> Vec<Made>;
+}
+
+macro_rules! generators {
+    ($($module:ident :: $Type:ident, $name:literal, $about:literal;)*) => {
+        /// Name and description of the generators, in the order in which they are listed.
+        pub const GENERATORS: &[(&str, &str)] = &[$(($name, $about)),*];
+
+        /// Any generator. In a scene file: `[generator.spheres]`.
+        #[derive(Debug, Clone, Deserialize)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        pub(super) enum Generator {
+            $($Type($module::$Type)),*
+        }
+
+        impl Generator {
+            /// See [`Generate::set_number`].
+            pub(super) fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
+                match self { $(Self::$Type(generator) => generator.set_number(number)),* }
+            }
+
+            /// The objects.
+            pub(super) fn make(&self) -> Vec<Made> {
+                match self { $(Self::$Type(generator) => generator.make()),* }
+            }
+        }
+    };
+}
+
+generators! {
+    spheres::Spheres, "spheres", "so many diffuse balls, evenly at random in a cube, filling the same share of it";
+    imbalance::Imbalance, "imbalance", "a sixteenth of the image where a path costs so many rays, one elsewhere";
+    furnace::Furnace, "furnace", "a closed box of that albedo in thermal equilibrium, with a mirror and a glass ball in it";
+}

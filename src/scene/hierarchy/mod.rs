@@ -1,0 +1,99 @@
+//! A bounding volume hierarchy over the primitives, so that a ray is tested against few of them: `--accelerator median` and `sah`, which
+//! report B describes.
+//!
+//! It finds what testing every primitive finds, to the bit: boxes are tested with a margin that covers the rounding of box and
+//! primitive, a box as far as the nearest hit is still opened, and among equally near primitives the lowest number wins. It is built by
+//! one thread from total orders, so the same scene gives the same tree.
+//!
+//! To add a way of splitting: write its file with a type that implements [`Split`], and give it a line in `accelerators!` below.
+
+mod bounds;
+mod build;
+mod median;
+mod sah;
+mod traverse;
+
+pub use bounds::Bounds;
+
+use bounds::Margin;
+
+/// Boxes and primitives that rays were tested against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Tests {
+    /// Boxes.
+    pub boxes: u64,
+    /// Primitives in boxes.
+    pub primitives: u64,
+}
+
+/// A node: a box, and where its children or primitives are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Node {
+    bounds: Bounds,
+    /// Of an inner node the second child (the first follows the node); of a leaf its first entry in `order`.
+    at: u32,
+    /// Entries of a leaf; 0 in an inner node.
+    count: u16,
+    /// Along which axis the children were separated.
+    axis: u16,
+}
+
+/// The tree, depth first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Hierarchy {
+    nodes: Vec<Node>,
+    /// Primitives in the order of the leaves.
+    order: Vec<u32>,
+    margin: Margin,
+}
+
+/// How a node's primitives are divided between its children.
+trait Split {
+    /// The axis, and how many of the node's primitives, in the order of their centroids along it, go to the first child; `None` makes
+    /// it a leaf. `sorted` holds them three times, in the order of each axis.
+    fn split(&mut self, bounds: &[Bounds], node: &Bounds, sorted: [&[u32]; 3]) -> Option<(usize, usize)>;
+}
+
+/// One line of the table of accelerators.
+pub struct Entry {
+    /// Its name on the command line, in CSV and TOML.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+    build: Option<fn(&[Option<Bounds>]) -> Option<Hierarchy>>,
+}
+
+macro_rules! accelerators {
+    ($($name:literal, $about:literal => $build:expr;)*) => {
+        /// The accelerators, in the order in which they are listed.
+        pub const ACCELERATORS: &[Entry] = &[$(Entry { name: $name, about: $about, build: $build }),*];
+    };
+}
+
+accelerators! {
+    "none", "every primitive is tested" => None;
+    "median", "a bounding volume hierarchy, split at the median of the widest axis" => Some(|bounds| build::build(bounds, median::Median));
+    "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|bounds| build::build(bounds, sah::Sah::new()));
+}
+
+/// From so many primitives on, a hierarchy is faster than testing all of them, whatever the scene (experiment `acceleration`).
+const WORTH_A_HIERARCHY: usize = 24;
+
+impl Entry {
+    /// Whether it needs the code of a hierarchy.
+    pub fn is_hierarchy(&self) -> bool {
+        self.build.is_some()
+    }
+
+    /// Builds the structure over primitives with these boxes; `None` if there is nothing to build.
+    pub(crate) fn build(&self, bounds: &[Option<Bounds>]) -> Option<Hierarchy> {
+        self.build?(bounds)
+    }
+}
+
+/// The accelerator of that name, or the fitting one for so many primitives.
+pub fn accelerator(name: Option<&str>, primitives: usize) -> Option<&'static Entry> {
+    let fitting = if primitives < WORTH_A_HIERARCHY { "none" } else { "sah" };
+    let wanted = name.unwrap_or(fitting);
+    ACCELERATORS.iter().find(|entry| entry.name == wanted)
+}

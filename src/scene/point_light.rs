@@ -1,0 +1,31 @@
+//! A light without a size: its irradiance falls off with the square of the distance.
+//!
+//! ```toml
+//! [[point-lights]]
+//! position = [50.0, 70.0, 80.0]
+//! intensity = [10000.0, 10000.0, 10000.0]   # W per steradian
+//! ```
+
+use crate::input::{point, radiance};
+use crate::math::{Rgb, Vec3};
+use serde::Deserialize;
+
+/// The light.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointLight {
+    /// Where it is.
+    #[serde(deserialize_with = "point")]
+    pub position: Vec3,
+    /// Radiant intensity, in W per steradian.
+    #[serde(deserialize_with = "radiance")]
+    pub intensity: Rgb,
+}
+
+impl PointLight {
+    /// The same light with every length multiplied; its irradiance stays what it was.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { position: self.position * factor, intensity: self.intensity * (factor * factor) }
+    }
+}

@@ -1,0 +1,72 @@
+//! The triangles of a Wavefront OBJ file beside the scene, or of one of its objects (`o` or `g` lines). Polygons are cut into triangles;
+//! normals, texture coordinates and materials in the file are not used. Triangles without an area are left out.
+//!
+//! ```toml
+//! shape = { mesh = { file = "box.obj", object = "tall-block" } }
+//! ```
+
+use super::{Primitives, Shape, Triangle};
+use crate::error::{InputError, Result};
+use crate::input::coordinate_limit;
+use crate::math::Vec3;
+use crate::scene::library::{Files, Folder};
+use serde::Deserialize;
+
+/// A mesh in a file.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct Mesh {
+    /// The file, beside the scene's.
+    file: String,
+    /// The object in it; all if `None`.
+    object: Option<String>,
+}
+
+impl Mesh {
+    fn error(&self, folder: &Folder, field: &str, value: impl ToString, problem: impl ToString) -> InputError {
+        InputError::new(field, value.to_string(), problem.to_string()).in_file(folder.place_of(&self.file), None)
+    }
+}
+
+impl Shape for Mesh {
+    fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
+        let text = files.read(&self.file)?;
+        let folder = files.folder;
+        let options = tobj::LoadOptions { triangulate: true, single_index: true, ..tobj::LoadOptions::default() };
+        let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
+        let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, no_materials)
+            .map_err(|problem| self.error(folder, "mesh", "", problem))?;
+        if let Some(object) = self.object.as_ref().filter(|object| !models.iter().any(|model| model.name == **object)) {
+            let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
+            let error = self.error(folder, "object", object, "there is no object of that name");
+            return Err(error.allowed(names.join(", ")).into());
+        }
+        let before = primitives.triangles.len();
+        for model in models.iter().filter(|model| self.object.as_ref().is_none_or(|object| model.name == *object)) {
+            if let Some(x) = model.mesh.positions.iter().find(|x| !coordinate_limit(**x)) {
+                let error = self.error(folder, "v", x, "is out of range");
+                return Err(error.allowed("-1e100 to 1e100 in each coordinate").into());
+            }
+            let corner = |index: u32| {
+                let at = 3 * index as usize;
+                let [x, y, z] = [0, 1, 2].map(|k| model.mesh.positions.get(at + k).copied());
+                Some(Vec3::new(x?, y?, z?))
+            };
+            for face in model.mesh.indices.chunks_exact(3) {
+                let [Some(a), Some(b), Some(c)] = [face[0], face[1], face[2]].map(corner) else {
+                    return Err(self.error(folder, "f", face[0], "names a vertex that is not there").into());
+                };
+                let triangle = Triangle { corners: [a, b, c] };
+                if triangle.is_degenerate() {
+                    primitives.degenerate += 1;
+                } else {
+                    primitives.triangles.push(triangle);
+                }
+            }
+        }
+        if primitives.triangles.len() == before {
+            return Err(self.error(folder, "mesh", "", "has no triangle with an area").into());
+        }
+        Ok(())
+    }
+}

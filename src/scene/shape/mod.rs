@@ -1,0 +1,292 @@
+//! What surfaces are made of. Rays are tested against *primitives*, of which each kind has an array of its own; *shapes* are what scene
+//! files name, and each becomes one primitive or many.
+//!
+//! To add a shape that is made of primitives: write its file with a type that implements [`Shape`] and `Deserialize`, and give it a line
+//! in `shapes!` below. A new kind of primitive implements [`Primitive`] and has a line in `primitives!` besides.
+//!
+//! Primitives are numbered kind by kind, in the order of the table, and within a kind in the order of the scene. Among equally near ones
+//! the lowest number is hit, whatever structure accelerates the search.
+
+mod mesh;
+mod quad;
+
+use super::hierarchy::{Bounds, Hierarchy, Tests};
+use super::{HIERARCHY, Standpoint};
+use crate::effect::{EffectSet, Effects, Entry};
+use crate::error::Result;
+use crate::math::{Ray, Vec3};
+use crate::scene::library::Files;
+pub(super) use mesh::Mesh;
+pub(super) use quad::Quad;
+use serde::Deserialize;
+
+/// Something that a ray can be tested against.
+pub trait Primitive {
+    /// What of a ray every primitive of the kind needs to know, worked out once.
+    type Prepared: Copy;
+
+    /// Works it out.
+    fn prepare(ray: &Ray) -> Self::Prepared;
+
+    /// Distance to the surface for a ray (of unit direction) that starts elsewhere; not above zero, or NaN, if it misses.
+    fn meet(&self, ray: &Ray, prepared: &Self::Prepared) -> f64;
+
+    /// Distance to where a ray that starts on the surface meets it again; NaN if it does not.
+    fn leave(&self, ray: &Ray, inside: bool) -> f64;
+
+    /// The unit normal of the outer side at a point of the surface.
+    fn normal(&self, point: Vec3) -> Vec3;
+
+    /// A box around it; `None` if it has no end.
+    fn bounds(&self) -> Option<Bounds>;
+
+    /// The same with every length multiplied.
+    #[must_use]
+    fn scaled(&self, factor: f64) -> Self;
+}
+
+/// A shape as scene files name it.
+pub(super) trait Shape {
+    /// Adds its primitives. Files that it names are looked for in the scene's own folder.
+    fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()>;
+}
+
+/// The nearest primitive so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nearest {
+    /// Distance, in lengths of the ray's direction.
+    pub t: f64,
+    /// Number of the primitive; `u32::MAX` if there is none.
+    pub primitive: u32,
+}
+
+macro_rules! primitives {
+    ($($module:ident :: $Type:ident, $field:ident, $name:literal, $about:literal;)*) => {
+        $(mod $module; pub use $module::$Type;)*
+
+        #[derive(Clone, Copy)]
+        enum Index { $($Type),* }
+
+        $(impl $Type {
+            /// The bit of this effect.
+            pub const EFFECT: Effects = Effects::primitive(Index::$Type as u32);
+        })*
+
+        /// The kinds of primitives, in the order in which they are numbered.
+        pub const PRIMITIVES: &[Entry] = &[$(Entry { name: $name, about: $about, effect: $Type::EFFECT }),*];
+
+        /// Every primitive of a scene.
+        #[derive(Debug, Clone, PartialEq, Default)]
+        pub struct Primitives {
+            $(#[doc = $about] pub $field: Vec<$Type>,)*
+            /// Triangles of meshes that were left out because they have no area.
+            pub degenerate: usize,
+        }
+
+        /// What each kind needs to know of a ray.
+        #[derive(Clone, Copy)]
+        struct Prepared {
+            $($field: <$Type as Primitive>::Prepared,)*
+        }
+
+        impl Primitives {
+            /// How many there are of each kind, in the order of the table.
+            pub fn counts(&self) -> Vec<usize> {
+                vec![$(self.$field.len()),*]
+            }
+
+            /// The kinds that there are.
+            pub fn effects(&self) -> Effects {
+                let mut effects = Effects::NONE;
+                $(if !self.$field.is_empty() { effects = effects.and($Type::EFFECT); })*
+                effects
+            }
+
+            /// The boxes of all primitives in the order of their numbers; `None` for those without an end.
+            pub fn bounds(&self) -> Vec<Option<Bounds>> {
+                let mut bounds = Vec::with_capacity(self.counts().iter().sum());
+                $(bounds.extend(self.$field.iter().map(Primitive::bounds));)*
+                bounds
+            }
+
+            /// The same with every length multiplied.
+            #[must_use]
+            pub fn scaled(&self, factor: f64) -> Self {
+                Self { $($field: self.$field.iter().map(|primitive| primitive.scaled(factor)).collect(),)* degenerate: self.degenerate }
+            }
+
+            /// The outward unit normal of a primitive of the kinds in `X` at a point of it.
+            #[inline(always)]
+            pub fn normal<X: EffectSet>(&self, primitive: u32, point: Vec3) -> Vec3 {
+                let mut index = primitive as usize;
+                $(if X::EFFECTS.cover($Type::EFFECT) {
+                    if let Some(primitive) = self.$field.get(index) {
+                        return primitive.normal(point);
+                    }
+                    index -= self.$field.len();
+                })*
+                unreachable!("primitive {index} after the last")
+            }
+
+            /// Tests every primitive of the kinds in `X` for which `is_wanted`, in the order of their numbers.
+            #[inline(always)]
+            fn scan<X: EffectSet>(
+                &self,
+                ray: &Ray,
+                from: Option<Standpoint>,
+                mut nearest: Nearest,
+                is_wanted: impl Fn(Effects) -> bool,
+            ) -> Nearest {
+                let own = from.map_or(u32::MAX, |from| from.primitive);
+                let inside = from.is_some_and(|from| from.inside);
+                let mut first = 0_u32;
+                $(if X::EFFECTS.cover($Type::EFFECT) {
+                    if is_wanted($Type::EFFECT) {
+                        let prepared = $Type::prepare(ray);
+                        let own = own.wrapping_sub(first);
+                        let leave = self.$field.get(own as usize).map_or(f64::NAN, |own| own.leave(ray, inside));
+                        for (index, primitive) in (0_u32..).zip(&self.$field) {
+                            let meet = primitive.meet(ray, &prepared);
+                            nearest = nearest.or(if index == own { leave } else { meet }, first + index);
+                        }
+                    }
+                    first += self.$field.len() as u32;
+                })*
+                // The last kind leaves it unread.
+                let _ = first;
+                nearest
+            }
+
+            #[inline(always)]
+            fn prepare(ray: &Ray) -> Prepared {
+                Prepared { $($field: $Type::prepare(ray)),* }
+            }
+
+            /// Distance to one primitive of the kinds in `X`, from elsewhere or, if it is the ray's own, from there.
+            #[inline(always)]
+            fn distance<X: EffectSet>(
+                &self,
+                primitive: u32,
+                ray: &Ray,
+                prepared: &Prepared,
+                from: Option<Standpoint>,
+            ) -> f64 {
+                let mut index = primitive as usize;
+                $(if X::EFFECTS.cover($Type::EFFECT) {
+                    if let Some(found) = self.$field.get(index) {
+                        return match from {
+                            Some(from) if from.primitive == primitive => found.leave(ray, from.inside),
+                            _ => found.meet(ray, &prepared.$field),
+                        };
+                    }
+                    index -= self.$field.len();
+                })*
+                unreachable!("primitive {index} after the last")
+            }
+        }
+
+        $(impl Shape for $Type {
+            fn add_to(self, primitives: &mut Primitives, _files: &mut Files<'_>) -> Result<()> {
+                primitives.$field.push(self);
+                Ok(())
+            }
+        })*
+    };
+}
+
+primitives! {
+    sphere::Sphere, spheres, "sphere", "spheres";
+    plane::Plane, planes, "plane", "planes without an end";
+    triangle::Triangle, triangles, "triangle", "triangles, also those of quads and meshes";
+}
+
+macro_rules! shapes {
+    ($($Type:ident, $name:literal, $about:literal;)*) => {
+        /// Any shape. In a scene file: `shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }`.
+        #[derive(Debug, Clone, Deserialize)]
+        #[serde(deny_unknown_fields, rename_all = "kebab-case")]
+        pub(super) enum AnyShape {
+            $(#[doc = $about] $Type($Type)),*
+        }
+
+        impl AnyShape {
+            /// Adds its primitives.
+            pub(super) fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
+                match self { $(Self::$Type(shape) => shape.add_to(primitives, files)),* }
+            }
+        }
+
+        /// Name and description of the shapes that scene files can name.
+        pub const SHAPES: &[(&str, &str)] = &[$(($name, $about)),*];
+    };
+}
+
+shapes! {
+    Sphere, "sphere", "a sphere";
+    Plane, "plane", "a plane without an end";
+    Triangle, "triangle", "a triangle";
+    Quad, "quad", "four corners: two triangles";
+    Mesh, "mesh", "the triangles of an OBJ file, or of one of its objects";
+}
+
+impl Nearest {
+    /// Nothing nearer than `t`.
+    #[inline(always)]
+    pub(super) fn than(t: f64) -> Self {
+        Self { t, primitive: u32::MAX }
+    }
+
+    /// The nearer of this one and a primitive with a higher number. NaN, zero and negative distances are no hits. Written as selections,
+    /// because a processor cannot foresee which will turn out to be nearer: wrong guesses cost about a tenth of the kernel's time.
+    #[inline(always)]
+    fn or(self, distance: f64, primitive: u32) -> Self {
+        let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
+        Self {
+            primitive: if ahead < self.t { primitive } else { self.primitive },
+            t: if ahead < self.t { ahead } else { self.t },
+        }
+    }
+
+    /// Likewise, for primitives in any order.
+    #[inline(always)]
+    pub(super) fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
+        let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
+        let wins = ahead < self.t || (ahead == self.t && primitive < self.primitive && ahead < f64::INFINITY);
+        if wins { Self { t: ahead, primitive } } else { self }
+    }
+}
+
+impl Primitives {
+    /// The first primitive of the kinds in `X` along the ray that is nearer than `limit`. Where it starts on one, `from` says so.
+    #[inline(always)]
+    pub(super) fn nearest<X: EffectSet>(
+        &self,
+        hierarchy: Option<&Hierarchy>,
+        ray: &Ray,
+        from: Option<Standpoint>,
+        limit: f64,
+        tests: &mut Tests,
+    ) -> Nearest {
+        let none = Nearest::than(limit);
+        if X::EFFECTS.cover(HIERARCHY)
+            && let Some(hierarchy) = hierarchy
+        {
+            return self.search::<X>(hierarchy, ray, from, none, tests);
+        }
+        self.scan::<X>(ray, from, none, |_| true)
+    }
+
+    /// What is in the hierarchy and, one by one, what is too large for it.
+    fn search<X: EffectSet>(
+        &self,
+        hierarchy: &Hierarchy,
+        ray: &Ray,
+        from: Option<Standpoint>,
+        none: Nearest,
+        tests: &mut Tests,
+    ) -> Nearest {
+        let endless = self.scan::<X>(ray, from, none, |kind| kind == Plane::EFFECT);
+        let prepared = Self::prepare(ray);
+        hierarchy.nearest(ray, endless, tests, |primitive| self.distance::<X>(primitive, ray, &prepared, from))
+    }
+}

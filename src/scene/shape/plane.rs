@@ -1,0 +1,53 @@
+//! A plane without an end, seen from both sides. Its inside is where its normal does not point.
+//!
+//! ```toml
+//! shape = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
+//! ```
+
+use super::{Bounds, Primitive};
+use crate::input::{direction, point};
+use crate::math::{Ray, Vec3, dot};
+use serde::Deserialize;
+
+/// A plane.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plane {
+    /// Any point of it.
+    #[serde(deserialize_with = "point")]
+    pub point: Vec3,
+    /// Its normal; of length 1 once it is read.
+    #[serde(deserialize_with = "direction")]
+    pub normal: Vec3,
+}
+
+impl Primitive for Plane {
+    type Prepared = ();
+
+    fn prepare(_ray: &Ray) -> Self::Prepared {}
+
+    /// Along the plane the quotient is infinite or NaN, and neither is a hit; there is no other angle at which it vanishes.
+    #[inline(always)]
+    fn meet(&self, ray: &Ray, _prepared: &()) -> f64 {
+        let t = dot(self.point - ray.origin, self.normal) / dot(ray.direction, self.normal);
+        if t < f64::INFINITY { t } else { f64::NAN }
+    }
+
+    #[inline(always)]
+    fn leave(&self, _ray: &Ray, _inside: bool) -> f64 {
+        f64::NAN
+    }
+
+    #[inline(always)]
+    fn normal(&self, _point: Vec3) -> Vec3 {
+        self.normal
+    }
+
+    fn bounds(&self) -> Option<Bounds> {
+        None
+    }
+
+    fn scaled(&self, factor: f64) -> Self {
+        Self { point: self.point * factor, ..*self }
+    }
+}
