@@ -74,7 +74,8 @@ fn extreme_numbers_do_no_harm() {
             let (key, sampler) = (SampleKey { seed: 0, pixel, sample: 0 }, Always(u));
             let ray = view.ray::<AllEffects>(pixel % 16, pixel / 16, pixel % 4, u, || u);
             let mut escapes = Escapes::default();
-            let radiance: Rgb = Smallpt::new(OPTIONS).sample::<_, AllEffects, _>(&scene, ray, key, &sampler, &mut escapes);
+            let radiance: Rgb =
+                Smallpt::new(OPTIONS).sample::<_, AllEffects, _>(&scene, ray, key, &sampler, &mut escapes);
             assert!(radiance.is_valid_radiance(), "numbers {u:?}, pixel {pixel}: {radiance:?}");
             assert_eq!(escapes.0, 0, "numbers {u:?}, pixel {pixel}: left the closed box");
         }

@@ -150,7 +150,8 @@ fn edges_have_no_gap() {
         let ceiling = intersect(&scene, &up, None).expect("a ceiling");
         assert_eq!(scene.objects[ceiling.object as usize].name, "ceiling");
         let ray = Ray { origin: ceiling.point, direction: Vec3::new(-1.0, -0.3, 0.1).normalized() };
-        let hit = intersect(&scene, &ray, Some(Standpoint { primitive: ceiling.primitive, inside: true })).expect("a wall");
+        let hit =
+            intersect(&scene, &ray, Some(Standpoint { primitive: ceiling.primitive, inside: true })).expect("a wall");
         // The wall slopes by up to 1e-3 and its sphere's numbers are rounded at 1e-11.
         let expected = gap / -ray.direction.x;
         let name = scene.objects[hit.object as usize].name.as_str();

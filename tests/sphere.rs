@@ -208,7 +208,8 @@ fn a_million_rays_stay_within_the_bound() {
         let found = first(f, d, a, r);
         if !stretched {
             // What the scene calls is the same formula.
-            let meet = Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: r }.meet(&Ray { origin: f, direction: d }, &());
+            let meet =
+                Sphere { center: Vec3::new(0.0, 0.0, 0.0), radius: r }.meet(&Ray { origin: f, direction: d }, &());
             assert_eq!(Some(meet).filter(|t| *t > 0.0), found);
         }
         match expected {

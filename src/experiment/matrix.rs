@@ -173,8 +173,9 @@ impl Definition {
             for estimator in &matrix.estimator {
                 for sampler in &matrix.sampler {
                     self.check_sampler(profile, sampler)?;
-                    for (max_depth, spp, seed) in
-                        depths.iter().flat_map(|d| spps.iter().flat_map(move |n| seeds.iter().map(move |s| (*d, *n, *s))))
+                    for (max_depth, spp, seed) in depths
+                        .iter()
+                        .flat_map(|d| spps.iter().flat_map(move |n| seeds.iter().map(move |s| (*d, *n, *s))))
                     {
                         let spec = Spec {
                             width: size[0],

@@ -2,13 +2,14 @@
 
 mod scalar;
 
-use crate::error::{InputError, Result};
 use crate::effect::EffectSet;
+use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, with_estimator};
 use crate::film::{Piece, TileBuffer};
 use crate::sampling::{SAMPLERS, Sampler, SamplerVisitor, with_sampler};
 use crate::scene::{
-    ACCELERATORS, Accelerator, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, accelerator, effect_names, smallest_profile, with_profile,
+    ACCELERATORS, Accelerator, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, accelerator, effect_names,
+    smallest_profile, with_profile,
 };
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};

@@ -57,7 +57,9 @@ impl Fog {
     /// The radiance that the fog adds over a distance, per channel: emission (1 - exp(-σa t)).
     #[inline(always)]
     pub fn glow(&self, t: f64) -> Rgb {
-        let glow = |emission: f64, sigma: f64| if emission > 0.0 && sigma > 0.0 { -emission * libm::expm1(-sigma * t) } else { 0.0 };
+        let glow = |emission: f64, sigma: f64| {
+            if emission > 0.0 && sigma > 0.0 { -emission * libm::expm1(-sigma * t) } else { 0.0 }
+        };
         Rgb {
             r: glow(self.emission.r, self.absorption.r),
             g: glow(self.emission.g, self.absorption.g),

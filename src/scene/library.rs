@@ -77,7 +77,8 @@ pub(super) fn source(name_or_path: &str, folder: &Folder) -> Result<Source> {
             Folder::Embedded => path.to_path_buf(),
         };
         let text = read_text(&path)?;
-        let name = path.file_stem().map_or_else(|| name_or_path.to_string(), |stem| stem.to_string_lossy().into_owned());
+        let name =
+            path.file_stem().map_or_else(|| name_or_path.to_string(), |stem| stem.to_string_lossy().into_owned());
         let folder = Folder::Disk(path.parent().map(Path::to_path_buf).unwrap_or_default());
         return Ok(Source { name, file: path.display().to_string(), text, folder });
     }

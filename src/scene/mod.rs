@@ -19,8 +19,8 @@ pub use hierarchy::{ACCELERATORS, Bounds, Entry as Accelerator, Hierarchy, Tests
 pub use library::{SCENES, load};
 pub use point_light::PointLight;
 pub use profile::{
-    AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects, SmallptEffects,
-    SurfaceEffects, effect_names, smallest_profile, with_profile,
+    AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects,
+    SmallptEffects, SurfaceEffects, effect_names, smallest_profile, with_profile,
 };
 pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle};
 
@@ -86,7 +86,7 @@ pub struct Scene {
     pub owners: Vec<u32>,
     /// Lights without a size.
     pub point_lights: Vec<PointLight>,
-    /// The radiance of rays that meet nothing; `None` if none should.
+    /// The radiance of rays that meet nothing; `None` if none should, because the scene is closed.
     pub background: Option<Rgb>,
     /// What is between the surfaces.
     pub fog: Option<Fog>,
@@ -102,7 +102,7 @@ impl Scene {
         materials
             .and(self.primitives.effects())
             .and(self.camera.effects())
-            .and(called(self.background.is_some(), BACKGROUND))
+            .and(called(self.background.is_some_and(|radiance| !radiance.is_black()), BACKGROUND))
             .and(called(!self.point_lights.is_empty(), POINT_LIGHT))
             .and(called(self.fog.is_some(), FOG))
             .and(called(self.hierarchy.is_some(), HIERARCHY))

@@ -71,4 +71,3 @@ pub fn effect_names(effects: Effects) -> String {
     let names: Vec<&str> = tables.filter(|entry| effects.cover(entry.effect)).map(|entry| entry.name).collect();
     names.join("+")
 }
-

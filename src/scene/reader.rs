@@ -106,9 +106,14 @@ pub(super) fn scene_from_text(source: &Source, number: Option<f64>) -> Result<Sc
         })?;
         draft.hash.update(number.to_string().as_bytes());
     }
-    let generated = draft.generator.iter().flat_map(Generator::make).map(|Made { name, shapes, material, emission }| {
-        Part { name, shapes, folder: source.folder.clone(), material, emission }
-    });
+    let generated =
+        draft.generator.iter().flat_map(Generator::make).map(|Made { name, shapes, material, emission }| Part {
+            name,
+            shapes,
+            folder: source.folder.clone(),
+            material,
+            emission,
+        });
     draft.parts.extend(generated.collect::<Vec<_>>());
     let Some(camera) = draft.camera else {
         return Err(missing(source, "camera", "a scene needs a camera"));
@@ -222,14 +227,15 @@ fn draft(source: &Source, depth: usize) -> Result<(Draft, String)> {
 }
 
 fn base_of(from: &Source, base: &str, depth: usize) -> Result<Draft> {
-    let error = |problem: String| {
-        InputError::new("base", base, problem).in_file(&from.file, locate(&from.text, "base", base))
-    };
+    let error =
+        |problem: String| InputError::new("base", base, problem).in_file(&from.file, locate(&from.text, "base", base));
     if depth == DEEPEST_BASE {
         return Err(error(format!("is the {DEEPEST_BASE}th base of a base: they may go in a circle")).into());
     }
     let source = source(base, &from.folder).map_err(|problem| match problem {
-        Error::Input(problem) if problem.place.is_none() => Error::from(error(problem.problem).allowed(problem.allowed)),
+        Error::Input(problem) if problem.place.is_none() => {
+            Error::from(error(problem.problem).allowed(problem.allowed))
+        }
         other => other,
     })?;
     Ok(draft(&source, depth + 1)?.0)

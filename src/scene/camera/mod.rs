@@ -124,7 +124,14 @@ impl View {
     /// The direction is normalised before the ray is advanced. g++ happens to evaluate smallpt's expression in that order; the other
     /// order starts rays above the ceiling and lights the top rows.
     #[inline(always)]
-    pub fn ray<X: EffectSet>(&self, x: u32, y: u32, sample: u32, film: [f64; 2], lens: impl FnOnce() -> [f64; 2]) -> Ray {
+    pub fn ray<X: EffectSet>(
+        &self,
+        x: u32,
+        y: u32,
+        sample: u32,
+        film: [f64; 2],
+        lens: impl FnOnce() -> [f64; 2],
+    ) -> Ray {
         let [dx, dy] = match self.camera.filter {
             Filter::Subpixels => {
                 let subpixel = sample % SUBPIXELS;

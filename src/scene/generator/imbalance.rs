@@ -41,8 +41,8 @@ impl Generate for Imbalance {
             material: diffuse(albedo),
             emission: grey(1.0 - albedo),
         };
-        // At this distance the image is this high; it is never wider than it is high times three.
-        let (z, half) = (-1e-4, 0.25e-4);
+        // With an image plane as high as it is far away, the image reaches this far up at this distance, and a third further sideways.
+        let (z, half) = (-1e-4, 0.5e-4);
         let screen = |name: &str, [x0, x1]: [f64; 2], [y0, y1]: [f64; 2]| Made {
             name: name.to_string(),
             shapes: vec![AnyShape::Quad(Quad {
@@ -52,7 +52,7 @@ impl Generate for Imbalance {
             emission: Rgb::BLACK,
         };
         let wide = 4.0 * half;
-        let corner = -half * 4.0 / 6.0;
+        let corner = -half * 2.0 / 3.0;
         vec![
             sphere,
             screen("screen below", [-wide, wide], [-wide, half / 2.0]),

@@ -23,7 +23,8 @@ struct Task {
 /// The tree over the primitives that have a box; `None` if none has.
 pub(super) fn build(boxes: &[Option<Bounds>], mut rule: impl Split) -> Option<Hierarchy> {
     let bounds: Vec<Bounds> = boxes.iter().map(|bounds| bounds.unwrap_or(Bounds::EMPTY)).collect();
-    let bounded: Vec<u32> = (0u32..).zip(boxes).filter(|(_, bounds)| bounds.is_some()).map(|(index, _)| index).collect();
+    let bounded: Vec<u32> =
+        (0u32..).zip(boxes).filter(|(_, bounds)| bounds.is_some()).map(|(index, _)| index).collect();
     if bounded.is_empty() {
         return None;
     }
