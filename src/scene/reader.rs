@@ -159,7 +159,9 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
 }
 
 fn missing(source: &Source, field: &str, problem: &str) -> Error {
-    InputError::new(field, "", problem).in_file(&source.file, locate(&source.text, field, "")).into()
+    // An empty list has a place; what is not written at all has none.
+    let at = locate(&source.text, field, "[]");
+    InputError::new(field, if at.is_some() { "[]" } else { "" }, problem).in_file(&source.file, at).into()
 }
 
 /// What a file says on top of what its base says.

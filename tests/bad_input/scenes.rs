@@ -55,7 +55,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("[camera.smallpt]", "[camera.fisheye]", &["fisheye", "smallpt"]),
     ("about = \"one ball\"", "about = 7", &["about", "7", "string"]),
     ("about = \"one ball\"", "about = \"one ball\"\nabout = \"two\"", &["about", "duplicate"]),
-    ("about = \"one ball\"", "about = \"one ball\"\nfog = 0.5", &["fog", "objects"]),
+    ("about = \"one ball\"", "about = \"one ball\"\nsmoke = 0.5", &["smoke", "objects"]),
     ("about = \"one ball\"", "about = \"one ball\"\nestimator = \"magic\"", &["estimator", "magic", "smallpt"]),
     ("about = \"one ball\"", "about = \"one\0ball\"", &["about"]),
 ];
@@ -131,7 +131,7 @@ fn files_that_are_no_scenes_are_refused() {
 fn a_scene_without_objects_is_refused_at_its_place() {
     let end = BALL.find("[[objects]]").unwrap();
     let camera = &BALL[..end];
-    refused_file(camera, &["objects", "missing"]);
+    refused_file(camera, &["ball.toml", "objects", "at least one"]);
     refused_file(format!("objects = []\n{camera}"), &["ball.toml:1:", "objects = []", "at least one"]);
 }
 

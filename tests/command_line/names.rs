@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 12] = [
+const KINDS: [&str; 17] = [
     "scenes",
     "strategies",
     "decompositions",
@@ -14,7 +14,12 @@ const KINDS: [&str; 12] = [
     "samplers",
     "kernels",
     "effects",
+    "accelerators",
+    "cameras",
+    "shapes",
+    "generators",
     "materials",
+    "features",
     "metrics",
     "formats",
     "experiments",
