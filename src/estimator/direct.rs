@@ -2,7 +2,7 @@
 
 use super::Probe;
 use crate::effect::EffectSet;
-use crate::math::{Frame, Ray, Rgb, Vec3, dot};
+use crate::math::{Ray, Rgb, Vec3, dot};
 use crate::scene::{FOG, Fog, Hit, POINT_LIGHT, PointLight, Scene, Standpoint, Tests};
 use std::f64::consts::PI;
 
@@ -34,19 +34,20 @@ fn through(fog: Option<&Fog>, distance: f64, beam: Rgb) -> Rgb {
     fog.map_or(beam, |fog| beam * fog.transmittance(distance) * fog.unscattered(distance))
 }
 
-/// The radiance that the point lights cause at a surface towards `wo`; `None` if there are none.
+/// The radiance that the point lights cause at a surface that a ray of that direction met, back along the ray; `None` if there are none.
 #[inline(always)]
 pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
     scene: &Scene,
     hit: &Hit,
-    frame: &Frame,
-    wo: Vec3,
+    direction: Vec3,
     probe: &mut P,
 ) -> Option<Rgb> {
     if !X::EFFECTS.cover(POINT_LIGHT) || scene.point_lights.is_empty() {
         return None;
     }
     probe.used(POINT_LIGHT);
+    let frame = hit.frame();
+    let wo = frame.to_local(-direction);
     let material = &scene.objects[hit.object as usize].material;
     let mut radiance = Rgb::BLACK;
     for light in &scene.point_lights {

@@ -7,7 +7,7 @@ use super::direct::{light_at_fog, light_at_surface};
 use super::{Estimator, Probe};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
-use crate::math::{Frame, Ray, Rgb, Vec3};
+use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler, uniform_sphere};
 use crate::scene::{BACKGROUND, FOG, Fog, Hit, Scene, Standpoint, Tests};
 
@@ -109,7 +109,7 @@ impl<S: Sampler> Walk<'_, S> {
         let hit = scene.intersect::<X>(&part.ray, part.from, &mut tests);
         probe.ray(tests);
         if X::EFFECTS.cover(FOG)
-            && let Some(fog) = self.fog_around(&part)
+            && let Some(fog) = self.fog_around::<X>(&part)
         {
             probe.used(FOG);
             let reach = hit.map_or(f64::INFINITY, |hit| hit.t);
@@ -141,10 +141,10 @@ impl<S: Sampler> Walk<'_, S> {
 
     /// The fog that a part travels through: none inside of what transmits light.
     #[inline(always)]
-    fn fog_around(&self, part: &Part) -> Option<&Fog> {
+    fn fog_around<X: EffectSet>(&self, part: &Part) -> Option<&Fog> {
         let fog = self.scene.fog.as_ref()?;
         let is_in_glass = part.from.is_some_and(|from| {
-            let owner = self.scene.owners[from.primitive as usize];
+            let owner = self.scene.owner::<X>(from.primitive);
             from.inside && self.scene.objects[owner as usize].material.transmits()
         });
         (!is_in_glass).then_some(fog)
@@ -171,11 +171,7 @@ impl<S: Sampler> Walk<'_, S> {
         }
 
         let vertices = part.vertices + 1;
-        let normal = if hit.inside { -hit.normal } else { hit.normal };
-        let frame = Frame::around(normal);
-        let wo = frame.to_local(-part.ray.direction);
-        let direct = light_at_surface::<X, P>(scene, hit, &frame, wo, probe);
-        if let Some(direct) = direct {
+        if let Some(direct) = light_at_surface::<X, P>(scene, hit, part.ray.direction, probe) {
             probe.light(vertices, part.throughput * direct);
             *collected += part.throughput * direct;
         }
@@ -192,6 +188,8 @@ impl<S: Sampler> Walk<'_, S> {
         }
 
         probe.used(object.material.effect());
+        let frame = hit.frame();
+        let wo = frame.to_local(-part.ray.direction);
         let leave = |sample: BsdfSample, branch: u16| {
             let towards = frame.to_world(sample.wi);
             // A chain of delta bounces would let the length drift; any other direction is made anew.

@@ -13,6 +13,9 @@ pub const LENS: Effects = Effects::feature(3);
 /// Something between the surfaces.
 pub const FOG: Effects = Effects::feature(4);
 
+/// Objects that are made of several primitives, so that a primitive's number does not tell its object.
+pub const COMPOUND: Effects = Effects::feature(5);
+
 /// The features, in the order in which they are listed.
 pub const FEATURES: &[Entry] = &[
     Entry { name: "hierarchy", about: "a bounding volume hierarchy over the primitives", effect: HIERARCHY },
@@ -20,4 +23,5 @@ pub const FEATURES: &[Entry] = &[
     Entry { name: "point-light", about: "lights without a size, by inverse squares", effect: POINT_LIGHT },
     Entry { name: "lens", about: "a thin lens", effect: LENS },
     Entry { name: "fog", about: "a homogeneous medium that absorbs, scatters and glows", effect: FOG },
+    Entry { name: "compound", about: "objects that are made of several primitives", effect: COMPOUND },
 ];

@@ -12,7 +12,7 @@ mod reader;
 mod shape;
 
 pub use camera::{CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
-pub use feature::{BACKGROUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
+pub use feature::{BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{ACCELERATORS, Bounds, Entry as Accelerator, Hierarchy, Tests, accelerator};
@@ -26,7 +26,7 @@ pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Spher
 
 use crate::effect::{EffectSet, Effects};
 use crate::material::Material;
-use crate::math::{Ray, Rgb, Vec3, dot};
+use crate::math::{Frame, Ray, Rgb, Vec3, dot};
 
 /// What is known of a thing in the scene besides its surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +63,14 @@ pub struct Hit {
     pub normal: Vec3,
     /// Whether the ray arrives from the object's inside.
     pub inside: bool,
+}
+
+impl Hit {
+    /// The local frame, its normal on the side that the ray came from.
+    #[inline(always)]
+    pub fn frame(&self) -> Frame {
+        Frame::around(if self.inside { -self.normal } else { self.normal })
+    }
 }
 
 /// Everything that a kernel needs to know about what it renders.
@@ -105,6 +113,7 @@ impl Scene {
             .and(called(self.background.is_some_and(|radiance| !radiance.is_black()), BACKGROUND))
             .and(called(!self.point_lights.is_empty(), POINT_LIGHT))
             .and(called(self.fog.is_some(), FOG))
+            .and(called((0..).zip(&self.owners).any(|(primitive, owner)| primitive != *owner), COMPOUND))
             .and(called(self.hierarchy.is_some(), HIERARCHY))
     }
 
@@ -114,10 +123,19 @@ impl Scene {
     pub fn intersect<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, tests: &mut Tests) -> Option<Hit> {
         let Nearest { t, primitive } =
             self.primitives.nearest::<X>(self.hierarchy.as_ref(), ray, from, f64::INFINITY, tests);
-        let object = *self.owners.get(primitive as usize)?;
+        if primitive == u32::MAX {
+            return None;
+        }
+        let object = self.owner::<X>(primitive);
         let point = ray.at(t);
         let normal = self.primitives.normal::<X>(primitive, point);
         Some(Hit { t, primitive, object, point, normal, inside: dot(normal, ray.direction) > 0.0 })
+    }
+
+    /// The object that a primitive belongs to.
+    #[inline(always)]
+    pub fn owner<X: EffectSet>(&self, primitive: u32) -> u32 {
+        if X::EFFECTS.cover(COMPOUND) { self.owners[primitive as usize] } else { primitive }
     }
 
     /// Whether anything of the kinds in `X` is on the ray nearer than `limit`.

@@ -3,7 +3,7 @@
 //! A scene runs on the smallest profile that covers what it calls for, so an effect that it does not use costs nothing. `--effects
 //! PROFILE` forces a larger one, which is how that cost is measured.
 
-use super::feature::{BACKGROUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
+use super::feature::{BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 use super::shape::{PRIMITIVES, Plane, Sphere};
 use crate::effect::{EffectSet, Effects, all};
 use crate::material::{Dielectric, Diffuse, MATERIALS, Mirror};
@@ -54,9 +54,9 @@ profiles! {
     LensEffects, "lens", "smallpt's effects through a lens", SMALLPT.and(LENS);
     FogEffects, "fog", "smallpt's effects in fog", SMALLPT.and(FOG);
     SceneryEffects, "scenery", "spheres and planes of smallpt's materials under point lights or a sky, in a hierarchy",
-        SMALLPT.and(Plane::EFFECT).and(BACKGROUND).and(POINT_LIGHT).and(HIERARCHY);
+        SMALLPT.and(Plane::EFFECT).and(BACKGROUND).and(POINT_LIGHT).and(HIERARCHY).and(COMPOUND);
     SurfaceEffects, "surfaces", "spheres, planes and triangles of every material, in a hierarchy",
-        all(PRIMITIVES).and(all(MATERIALS)).and(HIERARCHY);
+        all(PRIMITIVES).and(all(MATERIALS)).and(HIERARCHY).and(COMPOUND);
     AllEffects, "all", "every effect there is", ALL;
 }
 
