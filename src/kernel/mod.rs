@@ -6,10 +6,10 @@ use crate::effect::EffectSet;
 use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, with_estimator};
 use crate::film::{Piece, TileBuffer};
-use crate::sampling::{SAMPLERS, Sampler, SamplerVisitor, with_sampler};
+use crate::sampling::{SAMPLERS, Sampler, SamplerVisitor, stateful_sampler, with_keyed_sampler};
 use crate::scene::{
-    ACCELERATORS, Accelerator, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, accelerator, effect_names,
-    smallest_profile, with_profile,
+    ACCELERATORS, Accelerator, AllEffects, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, accelerator,
+    effect_names, smallest_profile, with_profile,
 };
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
@@ -160,13 +160,18 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     if accelerator.is_hierarchy() {
         effects = effects.and(HIERARCHY);
     }
-    let fitting = smallest_profile(effects);
+    let is_stateful = SAMPLERS.iter().any(|entry| entry.name == spec.sampler && !entry.deterministic);
+    let fitting = if is_stateful { AllEffects::NAME } else { smallest_profile(effects) };
     let wanted = spec.effects.as_deref().unwrap_or(fitting);
     let Some(profile) = PROFILES.iter().find(|entry| entry.name == wanted) else {
         return Err(unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name).collect()).into());
     };
     if !profile.effects.cover(effects) {
         let problem = format!("does not cover the scene, which calls for {}", effect_names(effects));
+        return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
+    }
+    if is_stateful && profile.name != fitting {
+        let problem = format!("is not compiled for the sampler {}", spec.sampler);
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
     if !SAMPLERS.iter().any(|entry| entry.name == spec.sampler) {
@@ -182,7 +187,11 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
 pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
     let choice = choose(scene, spec)?;
     let scene = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
-    let kernel = with_profile(choice.effects(), ByProfile { scene, spec: spec.clone() }).flatten().flatten();
+    let spec = spec.clone();
+    let kernel = match stateful_sampler(&spec.sampler, spec.seed) {
+        Some(sampler) => BySampler::<AllEffects>::new(scene, spec.clone()).visit(sampler),
+        None => with_profile(choice.effects(), ByProfile { scene, spec: spec.clone() }).flatten().flatten(),
+    };
     // Every name has been checked, so there is a kernel.
     kernel.ok_or_else(|| unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name).collect()).into())
 }
@@ -196,12 +205,8 @@ struct ByProfile {
 impl ProfileVisitor for ByProfile {
     type Output = Option<Option<Box<dyn Kernel>>>;
     fn visit<X: EffectSet>(self) -> Self::Output {
-        let (name, seed) = (self.spec.sampler.clone(), self.spec.seed);
-        with_sampler(
-            &name,
-            seed,
-            BySampler::<X> { scene: self.scene, spec: self.spec, profile: std::marker::PhantomData },
-        )
+        let name = self.spec.sampler.clone();
+        with_keyed_sampler(&name, BySampler::<X>::new(self.scene, self.spec))
     }
 }
 
@@ -210,6 +215,12 @@ struct BySampler<X> {
     scene: Arc<Scene>,
     spec: Spec,
     profile: std::marker::PhantomData<X>,
+}
+
+impl<X> BySampler<X> {
+    fn new(scene: Arc<Scene>, spec: Spec) -> Self {
+        Self { scene, spec, profile: std::marker::PhantomData }
+    }
 }
 
 impl<X: EffectSet> SamplerVisitor for BySampler<X> {

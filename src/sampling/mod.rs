@@ -70,11 +70,6 @@ impl Sampler for Box<dyn Sampler> {
     }
 }
 
-/// Kernels are compiled once for all samplers that keep a state: what a call through a table costs is little beside their locks.
-fn stateful(sampler: impl Sampler + 'static) -> Box<dyn Sampler> {
-    Box::new(sampler)
-}
-
 /// A function over samplers: how the name on the command line becomes a type in a kernel.
 pub trait SamplerVisitor {
     /// What it returns.
@@ -94,15 +89,29 @@ pub struct Entry {
 }
 
 macro_rules! samplers {
-    ($($name:literal, $deterministic:literal, $about:literal => $sampler:expr;)*) => {
+    (
+        keyed { $($keyed:literal, $keyed_about:literal => $new_keyed:expr;)* }
+        stateful { $($stateful:literal, $stateful_about:literal => $new_stateful:expr;)* }
+    ) => {
         /// The samplers, in the order in which they are listed.
-        pub const SAMPLERS: &[Entry] =
-            &[$(Entry { name: $name, about: $about, deterministic: $deterministic }),*];
+        pub const SAMPLERS: &[Entry] = &[
+            $(Entry { name: $keyed, about: $keyed_about, deterministic: true },)*
+            $(Entry { name: $stateful, about: $stateful_about, deterministic: false },)*
+        ];
 
-        /// Calls the visitor with the sampler of that name, made for an image's seed; `None` if there is none.
-        pub fn with_sampler<V: SamplerVisitor>(name: &str, seed: u64, visitor: V) -> Option<V::Output> {
+        /// Calls the visitor with the deterministic sampler of that name; `None` if there is none.
+        pub fn with_keyed_sampler<V: SamplerVisitor>(name: &str, visitor: V) -> Option<V::Output> {
             match name {
-                $($name => Some(visitor.visit(($sampler)(seed))),)*
+                $($keyed => Some(visitor.visit($new_keyed)),)*
+                _ => None,
+            }
+        }
+
+        /// The sampler of that name that keeps a state, made for an image's seed; `None` if there is none. Kernels are compiled once for
+        /// all of them: what a call through a table costs is little beside their locks.
+        pub fn stateful_sampler(name: &str, seed: u64) -> Option<Box<dyn Sampler>> {
+            match name {
+                $($stateful => Some(Box::new($new_stateful(seed))),)*
                 _ => None,
             }
         }
@@ -110,10 +119,14 @@ macro_rules! samplers {
 }
 
 samplers! {
-    "independent", true, "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => |_| Independent;
-    "libc-rand", false, "the C library's one rand() behind its lock (report A); not deterministic" => |seed| stateful(LibcRand::new(seed));
-    "locked", false, "one PCG32 behind a lock; not deterministic" => |seed| stateful(Locked::new(seed));
-    "per-thread", false, "a PCG32 for each thread; not deterministic" => |seed| stateful(PerThread::new(seed));
+    keyed {
+        "independent", "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => Independent;
+    }
+    stateful {
+        "libc-rand", "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;
+        "locked", "one PCG32 behind a lock; not deterministic" => Locked::new;
+        "per-thread", "a PCG32 for each thread; not deterministic" => PerThread::new;
+    }
 }
 
 /// Whether the sampler of that name gives the same numbers in each run.

@@ -29,7 +29,11 @@ pub struct ProfileEntry {
 macro_rules! profiles {
     ($($Type:ident, $name:literal, $about:literal, $effects:expr;)*) => {
         $(#[doc = $about] #[derive(Debug, Clone, Copy)] pub struct $Type;
-        impl EffectSet for $Type { const EFFECTS: Effects = $effects; })*
+        impl EffectSet for $Type { const EFFECTS: Effects = $effects; }
+        impl $Type {
+            /// Its name on the command line and in records.
+            pub const NAME: &str = $name;
+        })*
 
         /// The profiles. The fitting one is the first that covers a scene, so smaller ones come first.
         pub const PROFILES: &[ProfileEntry] =
@@ -62,7 +66,7 @@ profiles! {
 
 /// The name of the smallest profile that covers the effects.
 pub fn smallest_profile(effects: Effects) -> &'static str {
-    PROFILES.iter().find(|entry| entry.effects.cover(effects)).map_or("all", |entry| entry.name)
+    PROFILES.iter().find(|entry| entry.effects.cover(effects)).map_or(AllEffects::NAME, |entry| entry.name)
 }
 
 /// The names of the effects, joined with `+`.
