@@ -86,7 +86,7 @@ impl Whitted {
     /// Traces a part to where it arrives, adds the light from there, and returns what goes on.
     #[inline(always)]
     fn follow<X: EffectSet, P: Probe>(
-        &self,
+        self,
         scene: &Scene,
         mut part: Part,
         probe: &mut P,
