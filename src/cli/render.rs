@@ -27,6 +27,9 @@ pub(super) struct Arguments {
     image: Option<PathBuf>,
     #[command(flatten)]
     axes: Axes,
+    /// Scale what .png, .ppm and .bmp show so that the brightest channel of the image is 1; the light itself stays as it is
+    #[arg(long)]
+    auto_exposure: bool,
     /// Write who did what when: .csv for `pathmark trace` and `pathmark simulate`
     #[arg(long, value_name = "FILE")]
     trace: Option<PathBuf>,
@@ -38,7 +41,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let setup = Setup::prepare(arguments.axes.settings(&arguments.scene, arguments.spp, arguments.seed)?)?;
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.scene().name)));
-    image_io::check_format(&path)?;
+    let format = image_io::check_format(&path)?;
     atomic_file::check_writable(&path)?;
     if let Some(trace) = &arguments.trace {
         atomic_file::check_writable(trace)?;
@@ -47,7 +50,9 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     talk.begin(&format!("{} at {} spp", setup.scene().name, arguments.spp), setup.jobs() as u64);
     let outcome = setup.run(Some(&|done| talk.advance(done)))?;
     talk.end();
-    image_io::write(&path, &outcome.film.image())?;
+    let image = outcome.film.image();
+    let shown = if arguments.auto_exposure && !format.linear { image_io::auto_exposed(&image) } else { image };
+    image_io::write(&path, &shown)?;
     if let Some(trace) = &arguments.trace {
         TraceFile::new(&setup, &outcome).write(trace)?;
     }

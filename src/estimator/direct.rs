@@ -1,45 +1,63 @@
 //! Light that arrives straight from point lights, which no path can hit: a shadow ray to each.
 
 use super::Probe;
+use super::medium::Medium;
 use crate::effect::EffectSet;
 use crate::math::{Ray, Rgb, Vec3, dot};
-use crate::scene::{FOG, Fog, Hit, POINT_LIGHT, PointLight, Scene, Standpoint, Tests};
+use crate::scene::{Hit, POINT_LIGHT, PointLight, Scene, Standpoint, Tests};
 use std::f64::consts::PI;
 
-/// The irradiance that arrives from a light on a surface that faces it, if nothing is between: intensity over distance squared, less what
-/// fog takes.
-#[inline(always)]
-fn arriving<X: EffectSet, P: Probe>(
-    scene: &Scene,
-    light: &PointLight,
-    point: Vec3,
-    from: Option<Standpoint>,
-    probe: &mut P,
-) -> Option<Rgb> {
-    let towards = light.position - point;
-    let distance = dot(towards, towards).sqrt();
-    let direction = towards * (1.0 / distance);
-    let mut tests = Tests::default();
-    let is_blocked = scene.is_blocked::<X>(&Ray { origin: point, direction }, from, distance, &mut tests);
-    probe.ray(tests);
-    if is_blocked {
-        return None;
+/// The part of the way to a light on which something can hide it. A light that lies in a surface is not hidden by it: what remains is more
+/// than rounding makes of a distance, and relative, so that it is the same in scenes of any size.
+const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
+
+/// The straight way to a light.
+struct Way {
+    direction: Vec3,
+    distance: f64,
+}
+
+impl Way {
+    /// `None` where the light itself is: there it has no direction.
+    #[inline(always)]
+    fn to(light: &PointLight, point: Vec3) -> Option<Self> {
+        let towards = light.position - point;
+        let distance = dot(towards, towards).sqrt();
+        (distance > 0.0).then(|| Self { direction: towards * (1.0 / distance), distance })
     }
-    let irradiance = light.intensity * (1.0 / (distance * distance));
-    Some(if X::EFFECTS.cover(FOG) { through(scene.fog.as_ref(), distance, irradiance) } else { irradiance })
+
+    /// The irradiance that arrives on a surface that faces the light, if nothing is between: intensity over distance squared, less what fog
+    /// takes.
+    #[inline(always)]
+    fn arriving<X: EffectSet, P: Probe>(
+        &self,
+        scene: &Scene,
+        light: &PointLight,
+        point: Vec3,
+        from: Option<Standpoint>,
+        medium: Medium,
+        probe: &mut P,
+    ) -> Option<Rgb> {
+        let mut tests = Tests::default();
+        let ray = Ray { origin: point, direction: self.direction };
+        let is_hidden = scene.is_blocked::<X>(&ray, from, self.distance * HIDING, &mut tests);
+        probe.ray(tests);
+        if is_hidden {
+            return None;
+        }
+        let irradiance = light.intensity * (1.0 / (self.distance * self.distance));
+        Some(medium.fog::<X>(scene).map_or(irradiance, |fog| irradiance * fog.unhindered(self.distance)))
+    }
 }
 
-/// What is left of a beam after a distance: neither absorbed nor scattered.
-fn through(fog: Option<&Fog>, distance: f64, beam: Rgb) -> Rgb {
-    fog.map_or(beam, |fog| beam * fog.transmittance(distance) * fog.unscattered(distance))
-}
-
-/// The radiance that the point lights cause at a surface that a ray of that direction met, back along the ray; `None` if there are none.
+/// The radiance that the point lights cause at a surface that a ray of that direction met, back along the ray, which lies in `medium`;
+/// `None` if there are none.
 #[inline(always)]
 pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
     scene: &Scene,
     hit: &Hit,
     direction: Vec3,
+    medium: Medium,
     probe: &mut P,
 ) -> Option<Rgb> {
     if !X::EFFECTS.cover(POINT_LIGHT) || scene.point_lights.is_empty() {
@@ -51,13 +69,15 @@ pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
     let material = &scene.objects[hit.object as usize].material;
     let mut radiance = Rgb::BLACK;
     for light in &scene.point_lights {
-        let wi = frame.to_local((light.position - hit.point).normalized());
+        let Some(way) = Way::to(light, hit.point) else { continue };
+        let wi = frame.to_local(way.direction);
         let scattered = material.eval::<X>(wo, wi) * wi.z.abs();
         if scattered.is_black() {
             continue;
         }
         let from = Some(Standpoint { primitive: hit.primitive, inside: (wi.z < 0.0) != hit.inside });
-        if let Some(irradiance) = arriving::<X, P>(scene, light, hit.point, from, probe) {
+        let medium = medium.beyond::<X>(hit, wi);
+        if let Some(irradiance) = way.arriving::<X, P>(scene, light, hit.point, from, medium, probe) {
             radiance += scattered * irradiance;
         }
     }
@@ -73,7 +93,8 @@ pub(super) fn light_at_fog<X: EffectSet, P: Probe>(scene: &Scene, point: Vec3, p
     probe.used(POINT_LIGHT);
     let mut radiance = Rgb::BLACK;
     for light in &scene.point_lights {
-        if let Some(beam) = arriving::<X, P>(scene, light, point, None, probe) {
+        let Some(way) = Way::to(light, point) else { continue };
+        if let Some(beam) = way.arriving::<X, P>(scene, light, point, None, Medium::OUTSIDE, probe) {
             radiance += beam * (0.25 / PI);
         }
     }

@@ -3,9 +3,12 @@
 //! To add one: write its file with a type that implements [`Estimator`], and give it a line in `estimators!` below.
 
 mod bsdf;
+mod camera_ray;
 mod direct;
+mod medium;
 mod path;
 mod smallpt;
+mod whitted;
 
 use crate::effect::{EffectSet, Effects};
 use crate::math::{Ray, Rgb};
@@ -13,8 +16,10 @@ use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{Hit, Scene, Tests};
 
 pub use bsdf::Bsdf;
+pub use camera_ray::camera_ray;
 pub use path::MAX_BOUNCES;
 pub use smallpt::Smallpt;
+pub use whitted::Whitted;
 
 /// Told what a path does. The empty implementation `()` costs nothing.
 pub trait Probe {
@@ -36,13 +41,16 @@ pub trait Probe {
 
 impl Probe for () {}
 
-/// An unbiased estimate of radiance, one sample at a time.
+/// An estimate of radiance, one sample at a time: unbiased unless it has a [`Estimator::MAX_DEPTH`] of its own.
 pub trait Estimator: Send + Sync {
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
 
     /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
     const MAX_DEPTH: Option<u16> = None;
+
+    /// The largest number of bounces that it can be asked for.
+    const LARGEST_DEPTH: u16 = u16::MAX;
 
     /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as sample `key` estimates it.
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
@@ -73,6 +81,8 @@ pub struct Entry {
     pub spp_multiple: u32,
     /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
     pub max_depth: Option<u16>,
+    /// The largest number of bounces that it can be asked for.
+    pub largest_depth: u16,
 }
 
 /// What every estimator can be told.
@@ -91,6 +101,7 @@ macro_rules! estimators {
                 about: $about,
                 spp_multiple: <$estimator as Estimator>::SPP_MULTIPLE,
                 max_depth: <$estimator as Estimator>::MAX_DEPTH,
+                largest_depth: <$estimator as Estimator>::LARGEST_DEPTH,
             }),*];
 
         /// Calls the visitor with the estimator of that name; `None` if there is none.
@@ -106,4 +117,5 @@ macro_rules! estimators {
 estimators! {
     "smallpt", "smallpt's own: glass splits at the first two vertices, roulette after the fifth" => Smallpt;
     "bsdf", "the same transport without splitting: one direction at every vertex" => Bsdf;
+    "whitted", "Whitted's of 1980: point lights, ideal mirrors and glass, nothing by way of diffuse surfaces; 10 bounces" => Whitted;
 }

@@ -4,12 +4,13 @@
 //! Written as a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the thread's stack.
 
 use super::direct::{light_at_fog, light_at_surface};
+use super::medium::Medium;
 use super::{Estimator, Probe};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler, uniform_sphere};
-use crate::scene::{BACKGROUND, FOG, Fog, Hit, Scene, Standpoint, Tests};
+use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
 
 /// Where a path is cut whatever its throughput: only a closed scene that absorbs nothing comes here, and it is counted.
 pub const MAX_BOUNCES: u16 = u16::MAX;
@@ -44,7 +45,8 @@ impl<R: Rules> Estimator for R {
     ) -> Rgb {
         let walk = Walk { scene, key, sampler, max_depth: self.max_depth() };
         let mut collected = Rgb::BLACK;
-        let mut part = Part { ray, from: None, throughput: Rgb::WHITE, vertices: 0, branch: 0 };
+        let mut part =
+            Part { ray, from: None, throughput: Rgb::WHITE, vertices: 0, branch: 0, medium: Medium::OUTSIDE };
         let mut waiting = [part; LARGEST_STACK];
         let mut depth = 0;
         loop {
@@ -80,6 +82,7 @@ struct Part {
     throughput: Rgb,
     vertices: u16,
     branch: u16,
+    medium: Medium,
 }
 
 impl Part {
@@ -108,12 +111,10 @@ impl<S: Sampler> Walk<'_, S> {
         let mut tests = Tests::default();
         let hit = scene.intersect::<X>(&part.ray, part.from, &mut tests);
         probe.ray(tests);
-        if X::EFFECTS.cover(FOG)
-            && let Some(fog) = self.fog_around::<X>(&part)
-        {
+        if let Some(fog) = part.medium.fog::<X>(scene) {
             probe.used(FOG);
             let reach = hit.map_or(f64::INFINITY, |hit| hit.t);
-            let free = fog.free_path(self.pair(&part, Purpose::Medium)[0]);
+            let free = fog.free_path(|| self.pair(&part, Purpose::Medium)[0]);
             let way = reach.min(free);
             let glow = part.throughput * fog.glow(way);
             probe.light(part.vertices, glow);
@@ -126,7 +127,7 @@ impl<S: Sampler> Walk<'_, S> {
         }
         let Some(hit) = hit else {
             if X::EFFECTS.cover(BACKGROUND)
-                && let Some(background) = scene.background
+                && let Some(background) = scene.background.filter(|radiance| !radiance.is_black())
             {
                 probe.used(BACKGROUND);
                 probe.light(part.vertices, part.throughput * background);
@@ -137,17 +138,6 @@ impl<S: Sampler> Walk<'_, S> {
             return None;
         };
         self.surface::<R, X, P>(part, &hit, probe, collected)
-    }
-
-    /// The fog that a part travels through: none inside of what transmits light.
-    #[inline(always)]
-    fn fog_around<X: EffectSet>(&self, part: &Part) -> Option<&Fog> {
-        let fog = self.scene.fog.as_ref()?;
-        let is_in_glass = part.from.is_some_and(|from| {
-            let owner = self.scene.owner::<X>(from.primitive);
-            from.inside && self.scene.objects[owner as usize].material.transmits()
-        });
-        (!is_in_glass).then_some(fog)
     }
 
     /// What happens at a point of a surface.
@@ -171,7 +161,7 @@ impl<S: Sampler> Walk<'_, S> {
         }
 
         let vertices = part.vertices + 1;
-        if let Some(direct) = light_at_surface::<X, P>(scene, hit, part.ray.direction, probe) {
+        if let Some(direct) = light_at_surface::<X, P>(scene, hit, part.ray.direction, part.medium, probe) {
             probe.light(vertices, part.throughput * direct);
             *collected += part.throughput * direct;
         }
@@ -196,7 +186,8 @@ impl<S: Sampler> Walk<'_, S> {
             let direction = if sample.density == Density::Delta { towards.normalized() } else { towards };
             let ray = Ray { origin: hit.point, direction };
             let from = Some(Standpoint { primitive: hit.primitive, inside: (sample.wi.z < 0.0) != hit.inside });
-            Part { ray, from, throughput: throughput * sample.weight, vertices, branch }
+            let medium = part.medium.beyond::<X>(hit, sample.wi);
+            Part { ray, from, throughput: throughput * sample.weight, vertices, branch, medium }
         };
         if vertices <= R::SPLITS
             && let [Some(reflected), Some(refracted)] = object.material.delta_lobes::<X>(wo, hit.inside)

@@ -8,6 +8,7 @@
 
 mod bmp;
 mod codec;
+mod exposure;
 mod exr;
 mod hdr;
 #[cfg(test)]
@@ -23,6 +24,7 @@ use std::path::Path;
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+pub use exposure::auto_exposed;
 
 /// A picture: linear radiance per colour channel (red, green, blue), row by row from the top.
 #[derive(Debug, Clone, PartialEq)]

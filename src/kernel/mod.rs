@@ -101,7 +101,7 @@ impl Default for Spec {
 impl Spec {
     /// Whether an option is on that changes what the image converges to.
     pub fn is_biased(&self) -> bool {
-        self.subpixel_clamp || self.max_depth.is_some()
+        self.subpixel_clamp || self.depth().is_some()
     }
 
     /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
@@ -177,8 +177,13 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     if !SAMPLERS.iter().any(|entry| entry.name == spec.sampler) {
         return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name).collect()).into());
     }
-    if !ESTIMATORS.iter().any(|entry| entry.name == spec.estimator) {
+    let Some(estimator) = ESTIMATORS.iter().find(|entry| entry.name == spec.estimator) else {
         return Err(unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name).collect()).into());
+    };
+    if let Some(depth) = spec.max_depth.filter(|depth| *depth > estimator.largest_depth) {
+        let problem = format!("is more than {} can follow", estimator.name);
+        let allowed = format!("0 to {}", estimator.largest_depth);
+        return Err(InputError::new("max-depth", depth.to_string(), problem).allowed(allowed).into());
     }
     Ok(Choice { profile, accelerator })
 }

@@ -2,10 +2,10 @@
 
 use super::{Counts, Kernel, Spec};
 use crate::effect::EffectSet;
-use crate::estimator::{Estimator, Probe};
+use crate::estimator::{Estimator, Probe, camera_ray};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
 use crate::math::Rgb;
-use crate::sampling::{Address, Purpose, SampleKey, Sampler};
+use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{SUBPIXELS, Scene, Tests, View};
 use std::marker::PhantomData;
 use std::sync::Arc;
@@ -54,8 +54,7 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
     #[inline(always)]
     fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
         let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
-        let pair = |purpose| self.sampler.pair(Address { key, bounce: 0, branch: 0, purpose });
-        let ray = self.view.ray::<X>(x, y, sample, pair(Purpose::Film), || pair(Purpose::Lens));
+        let ray = camera_ray::<S, X, Counts>(&self.view, [x, y], key, &self.sampler, counts);
         let radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
         counts.paths += 1;
         if radiance.is_valid_radiance() {

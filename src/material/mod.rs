@@ -132,4 +132,5 @@ materials! {
     diffuse::Diffuse, "diffuse", "ideal diffuse (Lambertian) reflection";
     mirror::Mirror, "mirror", "ideal specular reflection";
     dielectric::Dielectric, "dielectric", "clear glass: refraction and reflection by Schlick's Fresnel term";
+    polished::Polished, "polished", "a mirror over a diffuse base";
 }

@@ -45,6 +45,13 @@ impl Rgb {
         valid(self.r) && valid(self.g) && valid(self.b)
     }
 
+    /// The same function of each channel.
+    #[inline(always)]
+    #[must_use]
+    pub fn map(self, of: impl Fn(f64) -> f64) -> Self {
+        Self { r: of(self.r), g: of(self.g), b: of(self.b) }
+    }
+
     /// The channels in order.
     #[inline(always)]
     pub fn channels(self) -> [f64; 3] {

@@ -38,7 +38,7 @@ pub enum Warning {
     TooShort,
     /// The samples do not divide among the four subpixels, so the pixel's filter is lopsided.
     PartialSubpixels,
-    /// Subpixels are clamped before averaging.
+    /// Something changes what the image converges to: clamped subpixels, or paths that are cut after some bounces.
     Biased,
     /// Rays left the scene.
     Escaped(u64),

@@ -72,6 +72,75 @@ mod tests {
         assert!((first - 2.0 / 3.0).abs() < 1e-5 && (second - 0.5).abs() < 1e-12, "{first} {second}");
     }
 
+    /// Over the midpoints of a grid, whose cells share the square evenly.
+    fn mean(of: impl Fn([f64; 2]) -> f64) -> f64 {
+        let n = 512;
+        let at = |k: i32| (f64::from(k) + 0.5) / f64::from(n);
+        (0..n * n).map(|k| of([at(k % n), at(k / n)])).sum::<f64>() / f64::from(n * n)
+    }
+
+    /// Like H03: corners and middle stay on the disk, and the corners of the square are its diagonals.
+    #[test]
+    fn disk_warp_is_finite_at_the_corners() {
+        for u in CORNERS {
+            for v in CORNERS {
+                let [x, y] = concentric_disk([u, v]);
+                assert!(x * x + y * y <= 1.0 + 4.0 * f64::EPSILON, "({u}, {v}): {x} {y}");
+            }
+        }
+        assert_eq!(concentric_disk([0.5, 0.5]), [0.0, 0.0]);
+        let diagonal = 0.5f64.sqrt();
+        for (corner, [x, y]) in [
+            ([0.0, 0.0], [-diagonal, -diagonal]),
+            ([1.0, 0.0], [diagonal, -diagonal]),
+            ([0.0, 1.0], [-diagonal, diagonal]),
+            ([1.0, 1.0], [diagonal, diagonal]),
+            ([1.0, 0.5], [1.0, 0.0]),
+            ([0.5, 0.0], [0.0, -1.0]),
+        ] {
+            let [a, b] = concentric_disk(corner);
+            assert!((a - x).abs() < 1e-15 && (b - y).abs() < 1e-15, "{corner:?}: {a} {b}");
+        }
+    }
+
+    /// Under the density 1/π the mean of x² is 1/4, of x² y² 1/24, of r⁴ 1/3, and odd moments vanish.
+    #[test]
+    fn disk_warp_has_the_moments_of_its_density() {
+        let found = |of: fn(f64, f64) -> f64| mean(|u| concentric_disk(u).into_iter().reduce(of).unwrap_or_default());
+        for (name, found, expected) in [
+            ("x", found(|x, _| x), 0.0),
+            ("xy", found(|x, y| x * y), 0.0),
+            ("x2", found(|x, _| x * x), 0.25),
+            ("y2", found(|_, y| y * y), 0.25),
+            ("x2y2", found(|x, y| x * x * y * y), 1.0 / 24.0),
+            ("r4", found(|x, y| (x * x + y * y) * (x * x + y * y)), 1.0 / 3.0),
+        ] {
+            assert!((found - expected).abs() < 1e-5, "{name}: {found} instead of {expected}");
+        }
+    }
+
+    /// H05, like H03: unit at the corners; means of z and xy vanish, of x², y² and z² are 1/3, of z⁴ 1/5.
+    #[test]
+    fn sphere_warp() {
+        for u in CORNERS {
+            for v in CORNERS {
+                let d = uniform_sphere([u, v]);
+                assert!((dot(d, d).sqrt() - 1.0).abs() <= 4.0 * f64::EPSILON, "({u}, {v}): {d:?}");
+            }
+        }
+        let found = |of: fn(Vec3) -> f64| mean(|u| of(uniform_sphere(u)));
+        for (name, found, expected) in [
+            ("z", found(|d| d.z), 0.0),
+            ("xy", found(|d| d.x * d.y), 0.0),
+            ("x2", found(|d| d.x * d.x), 1.0 / 3.0),
+            ("y2", found(|d| d.y * d.y), 1.0 / 3.0),
+            ("z2", found(|d| d.z * d.z), 1.0 / 3.0),
+            ("z4", found(|d| d.z * d.z * d.z * d.z), 0.2),
+        ] {
+            assert!((found - expected).abs() < 1e-5, "{name}: {found} instead of {expected}");
+        }
+    }
+
     /// H04: inside [-1, 1], with the tent's variance 1/6.
     #[test]
     fn tent_filter() {

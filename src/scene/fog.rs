@@ -1,4 +1,4 @@
-//! A homogeneous medium that fills the scene, except inside glass.
+//! A homogeneous medium that fills the scene, except inside glass. A camera stands in the fog, wherever it is.
 //!
 //! ```toml
 //! [fog]
@@ -33,38 +33,52 @@ fn black() -> Rgb {
     Rgb::BLACK
 }
 
+/// exp(-σt), also for endless ways; 1 without any loss.
+#[inline(always)]
+fn kept(sigma: f64, t: f64) -> f64 {
+    if sigma > 0.0 { libm::exp(-sigma * t) } else { 1.0 }
+}
+
+/// 1 - exp(-σt), exact also for thin fog.
+#[inline(always)]
+fn lost(sigma: f64, t: f64) -> f64 {
+    if sigma > 0.0 { -libm::expm1(-sigma * t) } else { 0.0 }
+}
+
 impl Fog {
-    /// How far light gets before it is scattered, for u in [0, 1); infinite without scattering.
+    /// How far light gets before it is scattered, for a number in [0, 1); infinite without scattering, and then no number is drawn.
     #[inline(always)]
-    pub fn free_path(&self, u: f64) -> f64 {
+    pub fn free_path(&self, draw: impl FnOnce() -> f64) -> f64 {
         // ln(1 - u) for u < 1 is finite, and exact where u is small.
-        if self.scattering > 0.0 { -libm::log1p(-u) / self.scattering } else { f64::INFINITY }
+        if self.scattering > 0.0 { -libm::log1p(-draw()) / self.scattering } else { f64::INFINITY }
     }
 
     /// The share of light that is not absorbed over a distance, per channel.
     #[inline(always)]
     pub fn transmittance(&self, t: f64) -> Rgb {
-        let share = |sigma: f64| if sigma > 0.0 { libm::exp(-sigma * t) } else { 1.0 };
-        Rgb { r: share(self.absorption.r), g: share(self.absorption.g), b: share(self.absorption.b) }
+        self.absorption.map(|sigma| kept(sigma, t))
     }
 
-    /// The share of light that is not scattered over a distance.
+    /// The share of light that is neither absorbed nor scattered over a distance, per channel.
     #[inline(always)]
-    pub fn unscattered(&self, t: f64) -> f64 {
-        libm::exp(-self.scattering * t)
+    pub fn unhindered(&self, t: f64) -> Rgb {
+        self.transmittance(t) * kept(self.scattering, t)
     }
 
-    /// The radiance that the fog adds over a distance, per channel: emission (1 - exp(-σa t)).
+    /// The radiance that the fog adds over a distance on which nothing is scattered, per channel: emission (1 - exp(-σa t)).
     #[inline(always)]
     pub fn glow(&self, t: f64) -> Rgb {
-        let glow = |emission: f64, sigma: f64| {
-            if emission > 0.0 && sigma > 0.0 { -emission * libm::expm1(-sigma * t) } else { 0.0 }
+        self.emission * self.absorption.map(|sigma| lost(sigma, t))
+    }
+
+    /// What arrives unscattered of the radiance that the fog gives off over a distance: emission σa/σt (1 - exp(-σt t)) for σt = σa + σs.
+    #[inline(always)]
+    pub fn unhindered_glow(&self, t: f64) -> Rgb {
+        let share = |sigma: f64| {
+            let all = sigma + self.scattering;
+            if sigma > 0.0 { sigma / all * lost(all, t) } else { 0.0 }
         };
-        Rgb {
-            r: glow(self.emission.r, self.absorption.r),
-            g: glow(self.emission.g, self.absorption.g),
-            b: glow(self.emission.b, self.absorption.b),
-        }
+        self.emission * self.absorption.map(share)
     }
 
     /// The same fog with every length multiplied.

@@ -6,7 +6,7 @@
 use super::feature::{BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 use super::shape::{PRIMITIVES, Plane, Sphere};
 use crate::effect::{EffectSet, Effects, all};
-use crate::material::{Dielectric, Diffuse, MATERIALS, Mirror};
+use crate::material::{Dielectric, Diffuse, MATERIALS, Mirror, Polished};
 
 /// A function over profiles: how a profile's name becomes a type in a kernel.
 pub trait ProfileVisitor {
@@ -57,8 +57,8 @@ profiles! {
     SmallptEffects, "smallpt", "spheres that are diffuse, mirrors or glass", SMALLPT;
     LensEffects, "lens", "smallpt's effects through a lens", SMALLPT.and(LENS);
     FogEffects, "fog", "smallpt's effects in fog", SMALLPT.and(FOG);
-    SceneryEffects, "scenery", "spheres and planes of smallpt's materials under point lights or a sky, in a hierarchy",
-        SMALLPT.and(Plane::EFFECT).and(BACKGROUND).and(POINT_LIGHT).and(HIERARCHY).and(COMPOUND);
+    SceneryEffects, "scenery", "spheres and planes, polished or of smallpt's materials, under point lights or a sky, in a hierarchy",
+        SMALLPT.and(Polished::EFFECT).and(Plane::EFFECT).and(BACKGROUND).and(POINT_LIGHT).and(HIERARCHY).and(COMPOUND);
     SurfaceEffects, "surfaces", "spheres, planes and triangles of every material, in a hierarchy",
         all(PRIMITIVES).and(all(MATERIALS)).and(HIERARCHY).and(COMPOUND);
     AllEffects, "all", "every effect there is", ALL;

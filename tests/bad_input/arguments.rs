@@ -45,6 +45,9 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--threads", "18446744073709551616"], &["threads", "18446744073709551616"]),
     (&["--seed", "9223372036854775808"], &["seed", "9223372036854775808", "0 to 9223372036854775807"]),
     (&["--seed", "18446744073709551616"], &["seed", "18446744073709551616"]),
+    (&["--estimator", "whitted", "--max-depth", "33"], &["max-depth", "33", "whitted", "0 to 32"]),
+    (&["--max-depth", "65536"], &["max-depth", "65536"]),
+    (&["--max-depth=-1"], &["max-depth", "-1"]),
     (&["--colour", "red"], &["--colour"]),
     // A thread for each of 90 000 jobs would end the process on many systems.
     (

@@ -28,6 +28,37 @@ fn every_format_is_read_back() {
     }
 }
 
+/// Automatic exposure is for looking: it scales display formats alone, and says nothing else than without it.
+#[test]
+fn automatic_exposure_changes_only_what_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |image: &str, options: &[&str]| {
+        let options = [&["-o", image], options].concat();
+        let mut record = record(folder.path(), "report-c", &options);
+        let object = record.as_object_mut().unwrap();
+        // Times and the machine's moods.
+        object.retain(|name, _| !name.ends_with("_s") && !name.contains("switches") && name != "started_utc");
+        object.retain(|name, _| !["warnings", "workers_used", "peak_rss_bytes"].contains(&name.as_str()));
+        record
+    };
+    let bytes = |image: &str| fs::read(folder.path().join(image)).unwrap();
+    let linear = |image: &str| pathmark::image_io::read(&folder.path().join(image)).unwrap();
+    for format in names("formats") {
+        let (plain, exposed) = (format!("plain.{format}"), format!("exposed.{format}"));
+        assert_eq!(render(&plain, &[]), render(&exposed, &["--auto-exposure"]), "{format}");
+        let is_shown = ["png", "ppm", "bmp"].contains(&format.as_str());
+        assert_eq!(bytes(&plain) != bytes(&exposed), is_shown, "{format}");
+    }
+    // What is shown is the light over its largest channel, to the rounding of 8 bits.
+    let (light, shown) = (linear("plain.pfm"), linear("exposed.png"));
+    let largest = light.pixels.iter().flatten().copied().fold(0.0, f64::max);
+    assert!(largest > 1.1 || largest < 0.9, "no power: the brightest channel is {largest}");
+    for (light, shown) in light.pixels.iter().flatten().zip(shown.pixels.iter().flatten()) {
+        let display = pathmark::image_io::tone_map::display;
+        assert!((display(light / largest) - display(*shown)).abs() <= 0.5001 / 255.0, "{light} is shown as {shown}");
+    }
+}
+
 #[test]
 fn a_reference_is_cached_and_a_heat_map_is_drawn() {
     let folder = tempfile::tempdir().unwrap();

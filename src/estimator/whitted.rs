@@ -1,0 +1,154 @@
+//! `--estimator whitted`: Turner Whitted, "An Improved Illumination Model for Shaded Display", Communications of the ACM 23(6), 1980, which
+//! reports C and D took up. Surfaces are lit by point lights and by what they mirror or let through; light that arrives by way of diffuse
+//! surfaces is left out, so what it converges to is darker than the light of the same scene.
+//!
+//! Every ideal reflection and refraction is followed, so nothing is left to chance but the place inside the pixel. The tree of rays is
+//! walked depth first in a loop: at most one part of it waits at each depth.
+
+use super::direct::light_at_surface;
+use super::medium::Medium;
+use super::{Estimator, Options, Probe};
+use crate::effect::EffectSet;
+use crate::material::BsdfSample;
+use crate::math::{Frame, Ray, Rgb};
+use crate::sampling::{SampleKey, Sampler};
+use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
+
+/// After so many bounces rays are cut unless another number is asked for.
+const DEFAULT_DEPTH: u16 = 10;
+
+/// The largest number that can be asked for: glass in glass makes up to 2^depth rays of a sample.
+const LARGEST_DEPTH: u16 = 32;
+
+/// The estimator.
+#[derive(Debug, Clone, Copy)]
+pub struct Whitted {
+    max_depth: u16,
+}
+
+impl Whitted {
+    /// The estimator; a depth above its largest counts as that.
+    pub fn new(options: Options) -> Self {
+        Self { max_depth: options.max_depth.unwrap_or(DEFAULT_DEPTH).min(LARGEST_DEPTH) }
+    }
+}
+
+/// A ray of the tree.
+#[derive(Clone, Copy)]
+struct Part {
+    ray: Ray,
+    from: Option<Standpoint>,
+    throughput: Rgb,
+    bounces: u16,
+    medium: Medium,
+}
+
+impl Estimator for Whitted {
+    const SPP_MULTIPLE: u32 = 1;
+    const MAX_DEPTH: Option<u16> = Some(DEFAULT_DEPTH);
+    const LARGEST_DEPTH: u16 = LARGEST_DEPTH;
+
+    #[inline(always)]
+    fn sample<S: Sampler, X: EffectSet, P: Probe>(
+        &self,
+        scene: &Scene,
+        ray: Ray,
+        _key: SampleKey,
+        _sampler: &S,
+        probe: &mut P,
+    ) -> Rgb {
+        let mut collected = Rgb::BLACK;
+        let mut part = Part { ray, from: None, throughput: Rgb::WHITE, bounces: 0, medium: Medium::OUTSIDE };
+        let mut waiting = [part; LARGEST_DEPTH as usize];
+        let mut depth = 0;
+        loop {
+            let [first, second] = self.follow::<X, P>(scene, part, probe, &mut collected);
+            match (first, second) {
+                (Some(first), second) => {
+                    part = first;
+                    if let Some(second) = second {
+                        waiting[depth] = second;
+                        depth += 1;
+                    }
+                }
+                (None, Some(only)) => part = only,
+                (None, None) if depth == 0 => return collected,
+                (None, None) => {
+                    depth -= 1;
+                    part = waiting[depth];
+                }
+            }
+        }
+    }
+}
+
+impl Whitted {
+    /// Traces a part to where it arrives, adds the light from there, and returns what goes on.
+    #[inline(always)]
+    fn follow<X: EffectSet, P: Probe>(
+        self,
+        scene: &Scene,
+        mut part: Part,
+        probe: &mut P,
+        collected: &mut Rgb,
+    ) -> [Option<Part>; 2] {
+        let mut add = |probe: &mut P, bounces: u16, light: Rgb| {
+            probe.light(bounces, light);
+            *collected += light;
+        };
+        let mut tests = Tests::default();
+        let hit = scene.intersect::<X>(&part.ray, part.from, &mut tests);
+        probe.ray(tests);
+        if let Some(fog) = part.medium.fog::<X>(scene) {
+            probe.used(FOG);
+            let way = hit.map_or(f64::INFINITY, |hit| hit.t);
+            add(probe, part.bounces, part.throughput * fog.unhindered_glow(way));
+            part.throughput = part.throughput * fog.unhindered(way);
+        }
+        let Some(hit) = hit else {
+            if X::EFFECTS.cover(BACKGROUND)
+                && let Some(background) = scene.background.filter(|radiance| !radiance.is_black())
+            {
+                probe.used(BACKGROUND);
+                add(probe, part.bounces, part.throughput * background);
+            }
+            probe.escaped();
+            probe.ended(part.bounces);
+            return [None, None];
+        };
+        let object = &scene.objects[hit.object as usize];
+        probe.vertex(part.bounces, &part.ray, &hit, part.throughput);
+        add(probe, part.bounces, part.throughput * object.emission);
+        if part.bounces == self.max_depth {
+            probe.truncated();
+            probe.ended(part.bounces);
+            return [None, None];
+        }
+
+        if let Some(direct) = light_at_surface::<X, P>(scene, &hit, part.ray.direction, part.medium, probe) {
+            add(probe, part.bounces + 1, part.throughput * direct);
+        }
+        probe.used(object.material.effect());
+        let frame = hit.frame();
+        let wo = frame.to_local(-part.ray.direction);
+        let lobes = object.material.delta_lobes::<X>(wo, hit.inside);
+        let next = lobes.map(|lobe| lobe.and_then(|lobe| part.after::<X>(&hit, &frame, &lobe)));
+        if next.iter().all(Option::is_none) {
+            probe.ended(part.bounces);
+        }
+        next
+    }
+}
+
+impl Part {
+    /// What leaves a surface by one of its lobes; `None` if nothing does.
+    #[inline(always)]
+    fn after<X: EffectSet>(&self, hit: &Hit, frame: &Frame, lobe: &BsdfSample) -> Option<Self> {
+        let throughput = self.throughput * lobe.weight;
+        let direction = frame.to_world(lobe.wi).normalized();
+        let from = Some(Standpoint { primitive: hit.primitive, inside: (lobe.wi.z < 0.0) != hit.inside });
+        let medium = self.medium.beyond::<X>(hit, lobe.wi);
+        let ray = Ray { origin: hit.point, direction };
+        (!throughput.is_black()).then_some(Self { ray, from, throughput, bounces: self.bounces + 1, medium })
+    }
+}

@@ -1,0 +1,46 @@
+//! Automatic exposure, as report C has it: the brightest channel of the whole picture becomes 1. A choice of what is looked at, never of
+//! what is measured: one bright pixel darkens all others, so numbers of two pictures cannot be compared.
+
+use super::Image;
+
+/// The picture divided by its largest finite channel; as it is if that is not above zero.
+#[must_use]
+pub fn auto_exposed(image: &Image) -> Image {
+    let finite = image.pixels.iter().flatten().copied().filter(|value| value.is_finite());
+    let largest = finite.fold(0.0, f64::max);
+    if largest <= 0.0 {
+        return image.clone();
+    }
+    // Divided, not multiplied by the inverse: the largest is to be 1 exactly, also where it has no inverse.
+    Image { pixels: image.pixels.iter().map(|pixel| pixel.map(|value| value / largest)).collect(), ..*image }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(values: &[f64]) -> Image {
+        let pixels: Vec<_> = values.iter().map(|value| [*value, 0.0, 0.25]).collect();
+        Image { width: values.len() as u32, height: 1, pixels }
+    }
+
+    #[test]
+    fn the_largest_channel_becomes_one() {
+        assert_eq!(auto_exposed(&row(&[4.0, 1.0])).pixels, [[1.0, 0.0, 0.0625], [0.25, 0.0, 0.0625]]);
+        // Dark pictures are brightened.
+        assert_eq!(auto_exposed(&row(&[0.125])).pixels, [[0.5, 0.0, 1.0]]);
+        for value in [0.1, 0.3, 7.0, 1e300] {
+            assert_eq!(auto_exposed(&row(&[value, 0.01])).pixels.iter().flatten().copied().fold(0.0, f64::max), 1.0);
+        }
+    }
+
+    #[test]
+    fn what_has_no_largest_stays() {
+        assert_eq!(auto_exposed(&Image::new(3, 2)), Image::new(3, 2));
+        let tiny = Image { width: 1, height: 1, pixels: vec![[5e-324, 0.0, 0.0]] };
+        assert_eq!(auto_exposed(&tiny).pixels, [[1.0, 0.0, 0.0]]);
+        let odd = Image { width: 1, height: 1, pixels: vec![[f64::INFINITY, 2.0, f64::NAN]] };
+        let [infinite, largest, nan] = auto_exposed(&odd).pixels[0];
+        assert!(infinite == f64::INFINITY && largest == 1.0 && nan.is_nan());
+    }
+}

@@ -1,0 +1,11 @@
+//! Effects that only some scenes call for: fog, lenses, cut paths, Whitted's estimator; what they do, and that they do nothing elsewhere.
+
+mod camera;
+mod depth;
+#[path = "../support/estimate.rs"]
+mod estimate;
+mod fog;
+mod scale;
+mod small_stack;
+mod unused;
+mod whitted;

@@ -1,0 +1,85 @@
+//! An effect that a scene does not call for costs it nothing: its code is not entered even where it is compiled in, and no number is drawn
+//! for it.
+
+use pathmark::effect::Effects;
+use pathmark::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Probe, camera_ray, with_estimator};
+use pathmark::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
+use pathmark::scene::{AllEffects, BACKGROUND, FOG, HIERARCHY, LENS, PRIMITIVES, SCENES, Scene, effect_names, load};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+const SIDE: u32 = 12;
+
+/// The effects whose code ran.
+#[derive(Default)]
+struct Used(Effects);
+
+impl Probe for Used {
+    fn used(&mut self, effect: Effects) {
+        self.0 = self.0.and(effect);
+    }
+}
+
+/// Counts what numbers are drawn for.
+#[derive(Default)]
+struct Drawn {
+    lens: AtomicU64,
+    medium: AtomicU64,
+}
+
+impl Sampler for Drawn {
+    fn pair(&self, at: Address) -> [f64; 2] {
+        match at.purpose {
+            Purpose::Lens => self.lens.fetch_add(1, Ordering::Relaxed),
+            Purpose::Medium => self.medium.fetch_add(1, Ordering::Relaxed),
+            _ => 0,
+        };
+        Independent.pair(at)
+    }
+}
+
+/// A few samples of a scene with every effect compiled in.
+struct Look<'a>(&'a Scene);
+
+impl EstimatorVisitor for Look<'_> {
+    type Output = (Effects, [u64; 2]);
+    fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
+        let Self(scene) = self;
+        let view = scene.camera.view(SIDE, SIDE);
+        let (mut used, drawn) = (Used::default(), Drawn::default());
+        for pixel in 0..SIDE * SIDE {
+            let key = SampleKey { seed: 11, pixel, sample: pixel % 4 };
+            let at = [pixel % SIDE, pixel / SIDE];
+            let ray = camera_ray::<_, AllEffects, _>(&view, at, key, &drawn, &mut used);
+            estimator.sample::<_, AllEffects, _>(scene, ray, key, &drawn, &mut used);
+        }
+        (used.0, [drawn.lens.into_inner(), drawn.medium.into_inner()])
+    }
+}
+
+#[test]
+fn no_scene_enters_an_effect_that_it_does_not_call_for() {
+    let mut seen = Effects::NONE;
+    for (name, _) in SCENES {
+        let scene = load(name).unwrap();
+        let called = scene.effects();
+        for entry in ESTIMATORS {
+            let look = with_estimator(entry.name, Options { max_depth: None }, Look(&scene));
+            let (used, [lens, medium]) = look.unwrap();
+            let (used_names, called_names) = (effect_names(used), effect_names(called));
+            assert!(called.cover(used), "{name}, {}: {used_names} for {called_names}", entry.name);
+            assert_eq!(lens > 0, called.cover(LENS), "{name}, {}: {lens} numbers for a lens", entry.name);
+            assert!(medium == 0 || called.cover(FOG), "{name}, {}: {medium} numbers for fog", entry.name);
+            assert_eq!(used.cover(LENS), called.cover(LENS), "{name}, {}: lens", entry.name);
+            assert_eq!(used.cover(FOG), called.cover(FOG), "{name}, {}: fog", entry.name);
+            assert!(medium > 0 || !called.cover(FOG) || entry.name == "whitted", "{name}, {}", entry.name);
+            seen = seen.and(used);
+        }
+    }
+    // The probe is told of everything that the scenes call for but shapes, which are not entered one by one.
+    let silent = PRIMITIVES.iter().fold(HIERARCHY, |all, entry| all.and(entry.effect));
+    for (name, _) in SCENES {
+        let called = load(name).unwrap().effects();
+        assert!(seen.and(silent).cover(called), "{name}: {} of {}", effect_names(seen), effect_names(called));
+    }
+    assert!(seen.cover(BACKGROUND) && seen.cover(LENS) && seen.cover(FOG), "{}", effect_names(seen));
+}
