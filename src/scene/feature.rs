@@ -12,6 +12,8 @@ pub const POINT_LIGHT: Effects = Effects::feature(2);
 pub const LENS: Effects = Effects::feature(3);
 /// Something between the surfaces.
 pub const FOG: Effects = Effects::feature(4);
+/// Surfaces that give off more light in some directions than in others.
+pub const ANGULAR_EMISSION: Effects = Effects::feature(5);
 
 /// The features, in the order in which they are listed.
 pub const FEATURES: &[Entry] = &[
@@ -20,4 +22,5 @@ pub const FEATURES: &[Entry] = &[
     Entry { name: "point-light", about: "lights without a size, by inverse squares", effect: POINT_LIGHT },
     Entry { name: "lens", about: "a thin lens", effect: LENS },
     Entry { name: "fog", about: "a homogeneous medium that absorbs, scatters and glows", effect: FOG },
+    Entry { name: "angular-emission", about: "emission by the angle to the normal", effect: ANGULAR_EMISSION },
 ];
