@@ -8,7 +8,7 @@ use super::medium::Medium;
 use super::{Estimator, Probe};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
-use crate::math::{Ray, Rgb, Vec3};
+use crate::math::{Ray, Rgb, Vec3, dot};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler, uniform_sphere};
 use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
 
@@ -152,8 +152,9 @@ impl<S: Sampler> Walk<'_, S> {
         let scene = self.scene;
         let object = &scene.objects[hit.object as usize];
         probe.vertex(part.vertices, &part.ray, hit, part.throughput);
-        probe.light(part.vertices, part.throughput * object.emission);
-        *collected += part.throughput * object.emission;
+        let emission = object.emitted::<X>(dot(part.ray.direction, hit.normal).abs());
+        probe.light(part.vertices, part.throughput * emission);
+        *collected += part.throughput * emission;
         if part.vertices == self.max_depth {
             probe.truncated();
             probe.ended(part.vertices);

@@ -84,6 +84,12 @@ pub fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error
     checked(deserializer, |x| (0.0..=1.0).contains(&x), "0 to 1")
 }
 
+/// The roughness of a microfacet surface, alpha of GGX: 0, which is smooth, or from 1e-4, below which the lobe is narrower than directions
+/// are exact.
+pub fn roughness<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    checked(deserializer, |x| x == 0.0 || (1e-4..=1.0).contains(&x), "0, or 1e-4 to 1")
+}
+
 /// A vertical field of view in degrees, turned into the height of the image plane at distance 1.
 pub fn field_of_view<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let degrees = checked(deserializer, |x| (1e-6..=179.0).contains(&x), "1e-6 to 179 degrees")?;

@@ -1,15 +1,30 @@
-//! Clear glass, as smallpt has it: Schlick's Fresnel term, total internal reflection, and a tint that multiplies both directions.
+//! Clear glass: reflection and refraction by their Fresnel shares, total internal reflection, and a tint that multiplies both directions.
 //!
 //! ```toml
 //! material = { dielectric = { eta = 1.5, tint = [0.999, 0.999, 0.999] } }
+//! material = { dielectric = { eta = 1.5, tint = [0.999, 0.999, 0.999], fresnel = "exact" } }
 //! ```
+//!
+//! `fresnel = "schlick"`, smallpt's and the default, is a polynomial that for η = 1.5 is off by at most 0.0357 of the light (at cosine 0.088
+//! from outside, 0.7476 from inside); `"exact"` is Fresnel's formula for unpolarised light.
 //!
 //! Radiance is not scaled by η² on the way through (smallpt's convention): right wherever camera and lights are in the same medium.
 
 use super::{Bsdf, BsdfSample, Density};
 use crate::input::{albedo, refractive_index};
-use crate::math::{Rgb, Vec3, fresnel_schlick, reflect, refract};
+use crate::math::{Rgb, Vec3, fresnel_dielectric, fresnel_schlick, reflect, refract};
 use serde::Deserialize;
+
+/// How the share of light that is reflected is worked out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fresnel {
+    /// Schlick's approximation (1994), as smallpt has it.
+    #[default]
+    Schlick,
+    /// Fresnel's formula.
+    Exact,
+}
 
 /// A smooth surface between air and a clear medium inside the shape.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -21,6 +36,9 @@ pub struct Dielectric {
     /// The share of light that either direction keeps, per channel, 0 to 1.
     #[serde(deserialize_with = "albedo")]
     pub tint: Rgb,
+    /// How the reflected share is worked out.
+    #[serde(default)]
+    pub fresnel: Fresnel,
 }
 
 /// The refracted direction and the share of light that is reflected; `None` under total internal reflection.
@@ -37,10 +55,16 @@ impl Dielectric {
         if cos2 < 0.0 {
             return None;
         }
-        let root = (self.eta - 1.0) / (self.eta + 1.0);
-        // Schlick's cosine is the one in the thinner medium.
-        let cos = if eta < 1.0 { wo.z } else { -refracted.z };
-        Some(Interface { refracted, reflectance: fresnel_schlick(cos, root * root) })
+        let reflectance = match self.fresnel {
+            Fresnel::Schlick => {
+                let root = (self.eta - 1.0) / (self.eta + 1.0);
+                // Schlick's cosine is the one in the thinner medium.
+                let cos = if eta < 1.0 { wo.z } else { -refracted.z };
+                fresnel_schlick(cos, root * root)
+            }
+            Fresnel::Exact => fresnel_dielectric(wo.z, if inside { 1.0 / self.eta } else { self.eta }),
+        };
+        Some(Interface { refracted, reflectance })
     }
 
     #[inline(always)]
@@ -95,7 +119,7 @@ mod tests {
     use super::*;
 
     fn glass() -> Dielectric {
-        Dielectric { eta: 1.5, tint: Rgb::WHITE }
+        Dielectric { eta: 1.5, tint: Rgb::WHITE, fresnel: Fresnel::Schlick }
     }
 
     fn towards(cos: f64) -> Vec3 {
@@ -105,12 +129,15 @@ mod tests {
     /// H13: the mean weight over the choice of lobe is 1, whatever the angle, from either side, and no weight is above 4/3.
     #[test]
     fn choosing_a_lobe_keeps_the_energy() {
-        for inside in [false, true] {
+        for (fresnel, inside) in
+            [Fresnel::Schlick, Fresnel::Exact].into_iter().flat_map(|kind| [(kind, false), (kind, true)])
+        {
+            let glass = Dielectric { fresnel, ..glass() };
             for k in 0..=1000 {
                 let wo = towards(f64::from(k) / 1000.0);
-                let low = glass().sample(wo, inside, [0.0, 0.0]).unwrap();
-                let high = glass().sample(wo, inside, [1.0 - f64::EPSILON, 0.0]).unwrap();
-                match glass().delta_lobes(wo, inside) {
+                let low = glass.sample(wo, inside, [0.0, 0.0]).unwrap();
+                let high = glass.sample(wo, inside, [1.0 - f64::EPSILON, 0.0]).unwrap();
+                match glass.delta_lobes(wo, inside) {
                     [Some(reflected), Some(refracted)] => {
                         let chance = 0.25 + 0.5 * reflected.weight.r;
                         assert!((0.25..=0.75).contains(&chance));

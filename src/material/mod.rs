@@ -2,9 +2,16 @@
 //!
 //! To add one: write its file with a type that implements [`Bsdf`] and `Deserialize`, and give it a line in `materials!` below.
 
+mod angular;
+mod ggx;
+
 use crate::effect::{EffectSet, Effects, Entry};
 use crate::math::{Rgb, Vec3};
 use serde::Deserialize;
+
+pub use dielectric::Fresnel;
+pub use ggx::{Facets, Ggx};
+pub use kd_ks::Sampling;
 
 /// How likely a direction was.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,8 +53,15 @@ pub trait Bsdf {
     /// Whether light goes through, into a medium of its own inside the shape.
     const TRANSMITS: bool = false;
 
-    /// The largest share of light that it scatters: smallpt's "colour".
+    /// The share of light that it scatters: smallpt's "colour". Where the share depends on the angle, about its mean: roulette goes by it and is
+    /// unbiased for any number above 0.
     fn albedo(&self) -> Rgb;
+
+    /// The share of light that it scatters towards directions with that cosine, from 0 to 1, on either side; `None` if that is
+    /// [`Bsdf::albedo`] whatever the angle.
+    fn albedo_at(&self, _cos: f64) -> Option<Rgb> {
+        None
+    }
 }
 
 macro_rules! materials {
@@ -78,10 +92,15 @@ macro_rules! materials {
                 match self { $(Self::$Type(_) => $Type::EFFECT),* }
             }
 
-            /// The largest share of light that it scatters.
+            /// [`Bsdf::albedo`] of the material.
             #[inline(always)]
             pub fn albedo(&self) -> Rgb {
                 match self { $(Self::$Type(material) => material.albedo()),* }
+            }
+
+            /// [`Bsdf::albedo_at`] of the material.
+            pub fn albedo_at(&self, cos: f64) -> Option<Rgb> {
+                match self { $(Self::$Type(material) => material.albedo_at(cos)),* }
             }
 
             /// [`Bsdf::sample`] for the effects in `X`; whoever chooses `X` makes sure that it covers the scene.
@@ -131,6 +150,9 @@ macro_rules! materials {
 materials! {
     diffuse::Diffuse, "diffuse", "ideal diffuse (Lambertian) reflection";
     mirror::Mirror, "mirror", "ideal specular reflection";
-    dielectric::Dielectric, "dielectric", "clear glass: refraction and reflection by Schlick's Fresnel term";
+    dielectric::Dielectric, "dielectric", "clear glass: refraction and reflection by Schlick's or the exact Fresnel term";
     polished::Polished, "polished", "a mirror over a diffuse base";
+    fresnel_mirror::FresnelMirror, "fresnel-mirror", "a mirror that absorbs what Fresnel's formula lets in";
+    conductor::Conductor, "conductor", "metal, rough by GGX or smooth, with Schlick's Fresnel term";
+    kd_ks::KdKs, "kd-ks", "a matte body under GGX facets, shared out by Fresnel's formula at the surface at large";
 }

@@ -12,7 +12,7 @@ mod trig;
 mod vector;
 
 pub use frame::Frame;
-pub use optics::{fresnel_schlick, reflect, refract};
+pub use optics::{fresnel_dielectric, fresnel_schlick, reflect, refract};
 pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;

@@ -1,27 +1,27 @@
-//! What a scene can call for besides materials and primitives.
+//! What a scene can call for besides materials and primitives. To add a feature, give it a line in `features!` and let `Scene::effects`
+//! tell when it is called for.
 
 use crate::effect::{Effects, Entry};
 
-/// Rays are tested against boxes before primitives.
-pub const HIERARCHY: Effects = Effects::feature(0);
-/// Light that arrives from nowhere.
-pub const BACKGROUND: Effects = Effects::feature(1);
-/// Lights without a size.
-pub const POINT_LIGHT: Effects = Effects::feature(2);
-/// A lens instead of a pinhole.
-pub const LENS: Effects = Effects::feature(3);
-/// Something between the surfaces.
-pub const FOG: Effects = Effects::feature(4);
+macro_rules! features {
+    ($($index:ident, $NAME:ident, $name:literal, $about:literal;)*) => {
+        #[derive(Clone, Copy)]
+        enum Index { $($index),* }
 
-/// Objects that are made of several primitives, so that a primitive's number does not tell its object.
-pub const COMPOUND: Effects = Effects::feature(5);
+        $(#[doc = concat!("The bit of: ", $about, ".")]
+        pub const $NAME: Effects = Effects::feature(Index::$index as u32);)*
 
-/// The features, in the order in which they are listed.
-pub const FEATURES: &[Entry] = &[
-    Entry { name: "hierarchy", about: "a bounding volume hierarchy over the primitives", effect: HIERARCHY },
-    Entry { name: "background", about: "radiance of rays that meet nothing", effect: BACKGROUND },
-    Entry { name: "point-light", about: "lights without a size, by inverse squares", effect: POINT_LIGHT },
-    Entry { name: "lens", about: "a thin lens", effect: LENS },
-    Entry { name: "fog", about: "a homogeneous medium that absorbs, scatters and glows", effect: FOG },
-    Entry { name: "compound", about: "objects that are made of several primitives", effect: COMPOUND },
-];
+        /// The features, in the order in which they are listed.
+        pub const FEATURES: &[Entry] = &[$(Entry { name: $name, about: $about, effect: $NAME }),*];
+    };
+}
+
+features! {
+    Hierarchy, HIERARCHY, "hierarchy", "a bounding volume hierarchy over the primitives";
+    Background, BACKGROUND, "background", "radiance of rays that meet nothing";
+    PointLight, POINT_LIGHT, "point-light", "lights without a size, by inverse squares";
+    Lens, LENS, "lens", "a thin lens";
+    Fog, FOG, "fog", "a homogeneous medium that absorbs, scatters and glows";
+    Compound, COMPOUND, "compound", "objects that are made of several primitives";
+    AngularEmission, ANGULAR_EMISSION, "angular-emission", "emission by the angle to the normal";
+}

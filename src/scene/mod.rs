@@ -1,5 +1,6 @@
 //! What is rendered: shapes with materials and emission, lights, a camera, and what effects they call for.
 
+mod angular_emission;
 mod camera;
 mod feature;
 mod fog;
@@ -11,8 +12,9 @@ mod profile;
 mod reader;
 mod shape;
 
+pub use angular_emission::AngularEmission;
 pub use camera::{CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
-pub use feature::{BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
+pub use feature::{ANGULAR_EMISSION, BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{ACCELERATORS, Bounds, Entry as Accelerator, Hierarchy, Tests, accelerator};
@@ -37,6 +39,19 @@ pub struct Object {
     pub material: Material,
     /// The radiance that it gives off in every direction, on both sides.
     pub emission: Rgb,
+    /// The radiance that it gives off instead, by the angle; scene files have none, [`Scene::in_equilibrium`] may need it.
+    pub angular_emission: Option<AngularEmission>,
+}
+
+impl Object {
+    /// The radiance that it gives off at that cosine to its normal, on either side.
+    #[inline(always)]
+    pub fn emitted<X: EffectSet>(&self, cos: f64) -> Rgb {
+        match &self.angular_emission {
+            Some(emission) if X::EFFECTS.cover(ANGULAR_EMISSION) => emission.at(cos),
+            _ => self.emission,
+        }
+    }
 }
 
 /// Where a path stands: on a primitive, on one of its sides. A ray that starts there needs no epsilon to miss its own start.
@@ -114,6 +129,7 @@ impl Scene {
             .and(called(!self.point_lights.is_empty(), POINT_LIGHT))
             .and(called(self.fog.is_some(), FOG))
             .and(called((0..).zip(&self.owners).any(|(primitive, owner)| primitive != *owner), COMPOUND))
+            .and(called(self.objects.iter().any(|object| object.angular_emission.is_some()), ANGULAR_EMISSION))
             .and(called(self.hierarchy.is_some(), HIERARCHY))
     }
 
@@ -144,15 +160,20 @@ impl Scene {
         self.primitives.nearest::<X>(self.hierarchy.as_ref(), ray, from, limit, tests).primitive != u32::MAX
     }
 
-    /// The same scene in thermal equilibrium: every surface gives off exactly what it does not reflect (1 - albedo), so that in a
-    /// closed scene the radiance is 1 everywhere, in every direction: an exact expectation for every pixel.
+    /// The same scene in thermal equilibrium: every surface gives off exactly what it does not reflect (1 - albedo, by the angle where that
+    /// matters), fog glows, the background is white where there is one and point lights are out, so that the radiance is 1 everywhere, in
+    /// every direction: an exact expectation for every pixel.
     #[must_use]
     pub fn in_equilibrium(&self) -> Self {
+        let rest = |share: Rgb| Rgb { r: 1.0 - share.r, g: 1.0 - share.g, b: 1.0 - share.b };
         let mut scene = self.clone();
         for object in &mut scene.objects {
-            let albedo = object.material.albedo();
-            object.emission = Rgb { r: 1.0 - albedo.r, g: 1.0 - albedo.g, b: 1.0 - albedo.b };
+            object.emission = rest(object.material.albedo());
+            object.angular_emission = AngularEmission::tabulate(|cos| object.material.albedo_at(cos).map(rest));
         }
+        scene.background = scene.background.map(|_| Rgb::WHITE);
+        scene.fog = scene.fog.map(|fog| Fog { emission: Rgb::WHITE, ..fog });
+        scene.point_lights.clear();
         scene
     }
 

@@ -152,7 +152,8 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
         for ((owners, before), now) in owners.iter_mut().zip(before).zip(scene.primitives.counts()) {
             owners.extend(std::iter::repeat_n(index, now - before));
         }
-        scene.objects.push(Object { name: part.name, material: part.material, emission: part.emission });
+        let Part { name, material, emission, .. } = part;
+        scene.objects.push(Object { name, material, emission, angular_emission: None });
     }
     scene.owners = owners.concat();
     Ok(())

@@ -2,7 +2,7 @@
 //! so the radiance is 1 everywhere, in every direction, whatever the albedo. The higher that is, the longer are the paths.
 
 use super::{Generate, Made};
-use crate::material::{Dielectric, Diffuse, Material, Mirror};
+use crate::material::{Dielectric, Diffuse, Fresnel, Material, Mirror};
 use crate::math::{Rgb, Vec3};
 use crate::scene::Sphere;
 use crate::scene::shape::{AnyShape, Quad};
@@ -53,7 +53,7 @@ impl Generate for Furnace {
             emission: Rgb::BLACK,
         };
         let mirror = Material::Mirror(Mirror { albedo: Rgb::WHITE });
-        let glass = Material::Dielectric(Dielectric { eta: 1.5, tint: Rgb::WHITE });
+        let glass = Material::Dielectric(Dielectric { eta: 1.5, tint: Rgb::WHITE, fresnel: Fresnel::Schlick });
         let mut objects = vec![
             ball("mirror ball", Vec3::new(-0.4, -0.6, -0.4), mirror),
             ball("glass ball", Vec3::new(0.4, -0.6, 0.1), glass),

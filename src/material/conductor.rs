@@ -1,0 +1,118 @@
+//! Metal: microfacets after Cook and Torrance (1982) with GGX normals, height-correlated shadowing and Schlick's Fresnel term. Light that
+//! another facet catches is lost, so a rough metal is darker than a smooth one (59 % at α = 1).
+//!
+//! ```toml
+//! material = { conductor = { alpha = 0.25, f0 = [1.0, 0.77, 0.34] } }
+//! ```
+//!
+//! α = 0 is the smooth mirror by its type and not as a limit. Otherwise α is from 1e-4, a lobe of some 0.01 degrees, to 1.
+
+use super::angular::{scattered, schlick_average};
+use super::ggx::facets;
+use super::{Bsdf, BsdfSample, Density, Facets, Ggx};
+use crate::input::albedo;
+use crate::math::{Rgb, Vec3, dot, fresnel_schlick, reflect};
+use serde::Deserialize;
+
+/// A metal surface. Both sides are alike.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Conductor {
+    /// How rough it is, by GGX's α.
+    #[serde(rename = "alpha", deserialize_with = "facets")]
+    pub facets: Facets,
+    /// The share of light that a facet reflects at normal incidence, per channel, 0 to 1.
+    #[serde(deserialize_with = "albedo")]
+    pub f0: Rgb,
+}
+
+impl Conductor {
+    #[inline(always)]
+    fn fresnel(&self, cos: f64) -> Rgb {
+        let Rgb { r, g, b } = self.f0;
+        Rgb { r: fresnel_schlick(cos, r), g: fresnel_schlick(cos, g), b: fresnel_schlick(cos, b) }
+    }
+
+    #[inline(always)]
+    fn reflected(&self, wo: Vec3) -> BsdfSample {
+        BsdfSample { wi: reflect(wo), weight: self.fresnel(wo.z), density: Density::Delta }
+    }
+
+    fn rough(&self, ggx: &Ggx, wo: Vec3, wi: Vec3) -> Rgb {
+        // The cosine at the facet from the sum of the two directions: the same bits when they change places.
+        let sum = wo + wi;
+        self.fresnel(0.5 * dot(sum, sum).sqrt()) * ggx.reflection(wo, wi)
+    }
+}
+
+impl Bsdf for Conductor {
+    /// By the normals that are seen; the weight is F G2/G1, at most 1. `None` where the facet points below the surface.
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
+        let Facets::Rough(ggx) = &self.facets else { return Some(self.reflected(wo)) };
+        let h = ggx.visible_normal(wo, u);
+        let wi = Ggx::mirrored(wo, h);
+        let weight = self.fresnel(dot(wo, h)) * ggx.unshadowed(wo, wi);
+        (wi.z > 0.0).then(|| BsdfSample { wi, weight, density: Density::PerSolidAngle(ggx.pdf(wo, wi)) })
+    }
+
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        match &self.facets {
+            Facets::Mirror => Rgb::BLACK,
+            Facets::Rough(ggx) => self.rough(ggx, wo, wi),
+        }
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f64 {
+        match &self.facets {
+            Facets::Rough(ggx) if wi.z > 0.0 => ggx.pdf(wo, wi),
+            _ => 0.0,
+        }
+    }
+
+    #[inline(always)]
+    fn delta_lobes(&self, wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
+        [(self.facets == Facets::Mirror).then(|| self.reflected(wo)), None]
+    }
+
+    #[inline(always)]
+    fn albedo(&self) -> Rgb {
+        let Rgb { r, g, b } = self.f0;
+        Rgb { r: schlick_average(r), g: schlick_average(g), b: schlick_average(b) }
+    }
+
+    fn albedo_at(&self, cos: f64) -> Option<Rgb> {
+        Some(match &self.facets {
+            Facets::Mirror => self.fresnel(cos),
+            Facets::Rough(ggx) => scattered(ggx, cos, |wo, wi| self.rough(ggx, wo, wi)),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// H23: smooth is a type: one direction, F alone, nothing to evaluate.
+    #[test]
+    fn alpha_zero_is_a_mirror() {
+        let gold = Conductor { facets: Facets::of(0.0), f0: Rgb { r: 1.0, g: 0.75, b: 0.25 } };
+        let wo = Vec3::new(0.6, 0.0, 0.8);
+        let sample = gold.sample(wo, false, [0.3, 0.7]).unwrap();
+        assert_eq!((sample.wi, sample.density), (Vec3::new(-0.6, -0.0, 0.8), Density::Delta));
+        // (1 - 0.8)^5 = 0.00032.
+        let expected = [1.0, 0.750_08, 0.250_24];
+        assert!(sample.weight.channels().iter().zip(expected).all(|(found, right)| (found - right).abs() < 1e-15));
+        assert_eq!((gold.eval(wo, sample.wi), gold.pdf(wo, sample.wi)), (Rgb::BLACK, 0.0));
+        assert_eq!(gold.delta_lobes(wo, false), [Some(sample), None]);
+    }
+
+    /// The mean of Schlick's polynomial over the hemisphere: its integral with 2 cos by the midpoint rule.
+    #[test]
+    fn the_average_is_the_average() {
+        let n = 10_000;
+        let cosines = (0..n).map(|k| (f64::from(k) + 0.5) / f64::from(n));
+        let mean = cosines.map(|cos| 2.0 * cos * fresnel_schlick(cos, 0.3)).sum::<f64>() / f64::from(n);
+        assert!((mean - schlick_average(0.3)).abs() < 1e-7, "{mean}");
+    }
+}

@@ -1,0 +1,81 @@
+//! A mirror that reflects what Fresnel's formula says and absorbs the rest: the "perfect mirror" of the second report, whose renderer extends
+//! the exercise of a course (GAMES101, 2020).
+//!
+//! ```toml
+//! material = { fresnel-mirror = { eta = 12.85 } }
+//! ```
+//!
+//! The report writes the delta as F/cos with density 1 and returns 0 where cos < 0.001, which loses the light of grazing directions and
+//! calls for a clamp elsewhere. Here the lobe is a delta by type: its weight is F, and no cosine is divided by. The report's `Kd` and `Ks`
+//! play no part in its mirror, so there are no such fields.
+
+use super::angular::schlick_average;
+use super::{Bsdf, BsdfSample, Density};
+use crate::input::refractive_index;
+use crate::math::{Rgb, Vec3, fresnel_dielectric, reflect};
+use serde::Deserialize;
+
+/// A smooth surface over an opaque body that swallows what enters. Both sides are alike.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FresnelMirror {
+    /// Index of refraction of the body over that of the outside.
+    #[serde(deserialize_with = "refractive_index")]
+    pub eta: f64,
+}
+
+impl FresnelMirror {
+    #[inline(always)]
+    fn reflected(&self, wo: Vec3) -> BsdfSample {
+        BsdfSample { wi: reflect(wo), weight: Rgb::WHITE * fresnel_dielectric(wo.z, self.eta), density: Density::Delta }
+    }
+}
+
+impl Bsdf for FresnelMirror {
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, _inside: bool, _u: [f64; 2]) -> Option<BsdfSample> {
+        Some(self.reflected(wo))
+    }
+
+    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
+        Rgb::BLACK
+    }
+
+    fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn delta_lobes(&self, wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
+        [Some(self.reflected(wo)), None]
+    }
+
+    #[inline(always)]
+    fn albedo(&self) -> Rgb {
+        Rgb::WHITE * schlick_average(fresnel_dielectric(1.0, self.eta))
+    }
+
+    fn albedo_at(&self, cos: f64) -> Option<Rgb> {
+        Some(Rgb::WHITE * fresnel_dielectric(cos, self.eta))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// H29: at normal incidence ((n - 1)/(n + 1))², 0.7320 for the report's 12.85; along the surface everything, where the report's guard
+    /// makes it nothing.
+    #[test]
+    fn the_weight_is_the_fresnel_share() {
+        let mirror = FresnelMirror { eta: 12.85 };
+        let weight = |cos: f64| {
+            let sample = mirror.sample(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos), false, [0.5; 2]).unwrap();
+            assert_eq!((sample.wi.z, sample.density), (cos, Density::Delta));
+            sample.weight.r
+        };
+        let root = 11.85 / 13.85;
+        assert!((weight(1.0) - root * root).abs() < 1e-15);
+        assert!(weight(0.000_5) > 0.97 && weight(0.0) == 1.0, "{} {}", weight(0.000_5), weight(0.0));
+    }
+}

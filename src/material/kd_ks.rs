@@ -1,0 +1,199 @@
+//! The second report's microfacet material: a matte body under GGX facets,
+//! f = (1 - F) Kd/π + F G D/(4 cos cos), with D and G as in [`Ggx`].
+//!
+//! ```toml
+//! material = { kd-ks = { kd = [0.3, 0.3, 0.25], eta = 12.85, roughness = 0.25 } }
+//! material = { kd-ks = { kd = [0.3, 0.3, 0.25], eta = 12.85, roughness = 0.25, sampling = "vndf" } }
+//! ```
+//!
+//! F is Fresnel's formula at the normal of the surface at large and at the angle of `wo`, where the path comes from. A model that obeyed
+//! Helmholtz would take it at the facet, whose angle is the same from both sides: this one gives another value when the directions change
+//! places, because F(wo) is not F(wi), but it does not make light: it scatters (1 - F) Kd + F E, and E of the facets is at most 1.
+//!
+//! What the report guards is not guarded here: it puts D and the whole reflection to 1 where a divisor is below 0.001, which makes a surface of
+//! roughness 0 nearly black (0.056 of the light instead of all). The report's `Ks` is set, but nothing reads it: F takes its place, so there is
+//! no such field. Roughness 0 is a mirror by type over the matte body.
+
+use super::angular::{scattered, schlick_average};
+use super::ggx::facets;
+use super::{Bsdf, BsdfSample, Density, Facets, Ggx};
+use crate::input::{albedo, refractive_index};
+use crate::math::{Rgb, Vec3, fresnel_dielectric, reflect};
+use crate::sampling::cosine_hemisphere;
+use serde::Deserialize;
+use std::f64::consts::FRAC_1_PI;
+
+/// How directions are chosen where the surface is rough. What is estimated is the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sampling {
+    /// By the cosine, as the report does.
+    #[default]
+    Cosine,
+    /// By the normals that are seen or by the cosine, each as often as its part of the surface reflects.
+    Vndf,
+}
+
+/// A matte body under facets. Both sides are alike.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct KdKs {
+    /// The share of light that the body scatters of what gets to it, per channel, 0 to 1.
+    #[serde(deserialize_with = "albedo")]
+    pub kd: Rgb,
+    /// Index of refraction of the facets over that of the outside.
+    #[serde(deserialize_with = "refractive_index")]
+    pub eta: f64,
+    /// How rough it is, by GGX's α: 0, or 1e-4 to 1.
+    #[serde(rename = "roughness", deserialize_with = "facets")]
+    pub facets: Facets,
+    /// How directions are chosen.
+    #[serde(default)]
+    pub sampling: Sampling,
+}
+
+impl KdKs {
+    #[inline(always)]
+    fn fresnel(&self, wo: Vec3) -> f64 {
+        fresnel_dielectric(wo.z, self.eta)
+    }
+
+    /// The chance of following the facets under [`Sampling::Vndf`].
+    #[inline(always)]
+    fn chance(&self, fresnel: f64) -> f64 {
+        let matte = (1.0 - fresnel) * self.kd.max_channel();
+        // Without any light it does not matter which way it is not found.
+        if fresnel > 0.0 { fresnel / (fresnel + matte) } else { 0.0 }
+    }
+
+    #[inline(always)]
+    fn rough(&self, ggx: &Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> Rgb {
+        let facets = fresnel * ggx.reflection(wo, wi);
+        self.kd * ((1.0 - fresnel) * FRAC_1_PI) + Rgb::WHITE * facets
+    }
+
+    #[inline(always)]
+    fn rough_pdf(&self, ggx: &Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> f64 {
+        let cosine = wi.z * FRAC_1_PI;
+        match self.sampling {
+            Sampling::Cosine => cosine,
+            Sampling::Vndf => {
+                let chance = self.chance(fresnel);
+                chance * ggx.pdf(wo, wi) + (1.0 - chance) * cosine
+            }
+        }
+    }
+
+    /// Chooses the facets with that chance; the number is stretched over [0, 1) again for what was chosen.
+    #[inline(always)]
+    fn choose([u, v]: [f64; 2], chance: f64) -> (bool, [f64; 2]) {
+        if u < chance { (true, [u / chance, v]) } else { (false, [(u - chance) / (1.0 - chance), v]) }
+    }
+}
+
+impl Bsdf for KdKs {
+    #[inline(always)]
+    fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
+        let fresnel = self.fresnel(wo);
+        let Facets::Rough(ggx) = &self.facets else {
+            // The share of each is its chance, so neither weight holds it.
+            let (is_mirrored, u) = Self::choose(u, fresnel);
+            return Some(if is_mirrored {
+                BsdfSample { wi: reflect(wo), weight: Rgb::WHITE, density: Density::Delta }
+            } else {
+                let wi = cosine_hemisphere(u);
+                BsdfSample { wi, weight: self.kd, density: Density::PerSolidAngle((1.0 - fresnel) * wi.z * FRAC_1_PI) }
+            });
+        };
+        let wi = match self.sampling {
+            Sampling::Cosine => cosine_hemisphere(u),
+            Sampling::Vndf => match Self::choose(u, self.chance(fresnel)) {
+                (true, u) => Ggx::mirrored(wo, ggx.visible_normal(wo, u)),
+                (false, u) => cosine_hemisphere(u),
+            },
+        };
+        if wi.z <= 0.0 {
+            return None;
+        }
+        let pdf = self.rough_pdf(ggx, fresnel, wo, wi);
+        let weight = self.rough(ggx, fresnel, wo, wi) * (wi.z / pdf);
+        Some(BsdfSample { wi, weight, density: Density::PerSolidAngle(pdf) })
+    }
+
+    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
+        if wo.z <= 0.0 || wi.z <= 0.0 {
+            return Rgb::BLACK;
+        }
+        let fresnel = self.fresnel(wo);
+        match &self.facets {
+            Facets::Mirror => self.kd * ((1.0 - fresnel) * FRAC_1_PI),
+            Facets::Rough(ggx) => self.rough(ggx, fresnel, wo, wi),
+        }
+    }
+
+    fn pdf(&self, wo: Vec3, wi: Vec3) -> f64 {
+        if wo.z < 0.0 || wi.z <= 0.0 {
+            return 0.0;
+        }
+        let fresnel = self.fresnel(wo);
+        match &self.facets {
+            Facets::Mirror => (1.0 - fresnel) * wi.z * FRAC_1_PI,
+            Facets::Rough(ggx) => self.rough_pdf(ggx, fresnel, wo, wi),
+        }
+    }
+
+    #[inline(always)]
+    fn delta_lobes(&self, wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
+        let mirrored =
+            || BsdfSample { wi: reflect(wo), weight: Rgb::WHITE * self.fresnel(wo), density: Density::Delta };
+        [(self.facets == Facets::Mirror).then(mirrored), None]
+    }
+
+    #[inline(always)]
+    fn albedo(&self) -> Rgb {
+        let fresnel = schlick_average(fresnel_dielectric(1.0, self.eta));
+        self.kd * (1.0 - fresnel) + Rgb::WHITE * fresnel
+    }
+
+    fn albedo_at(&self, cos: f64) -> Option<Rgb> {
+        let fresnel = fresnel_dielectric(cos, self.eta);
+        let facets = match &self.facets {
+            Facets::Mirror => Rgb::WHITE,
+            Facets::Rough(ggx) => scattered(ggx, cos, |wo, wi| Rgb::WHITE * ggx.reflection(wo, wi)),
+        };
+        Some(self.kd * (1.0 - fresnel) + facets * fresnel)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// H28: the report's numbers never give back more than arrives, at any roughness and angle.
+    #[test]
+    fn no_light_is_made() {
+        for roughness in [0.0, 0.25, 0.5, 1.0] {
+            let kd = Rgb { r: 0.3, g: 0.3, b: 0.25 };
+            let facets = Facets::of(roughness);
+            let material = KdKs { kd, eta: 12.85, facets, sampling: Sampling::Cosine };
+            for k in 1..=100 {
+                let albedo = material.albedo_at(f64::from(k) / 100.0).unwrap().max_channel();
+                assert!((0.2..=1.0).contains(&albedo), "roughness {roughness}, cosine {k} %: {albedo}");
+            }
+        }
+    }
+
+    /// Smooth: chosen by F, and the two shares add up to F and (1 - F) Kd.
+    #[test]
+    fn roughness_zero_is_a_mirror_over_a_matte_body() {
+        let kd = Rgb { r: 0.5, g: 0.25, b: 0.125 };
+        let material = KdKs { kd, eta: 1.5, facets: Facets::of(0.0), sampling: Sampling::Cosine };
+        let wo = Vec3::new(0.0, 0.0, 1.0);
+        let mirrored = material.sample(wo, false, [0.039, 0.5]).unwrap();
+        assert_eq!((mirrored.weight, mirrored.density), (Rgb::WHITE, Density::Delta));
+        let matte = material.sample(wo, false, [0.041, 0.5]).unwrap();
+        assert_eq!(matte.weight, kd);
+        assert_eq!(matte.density, Density::PerSolidAngle(material.pdf(wo, matte.wi)));
+        assert!((material.delta_lobes(wo, false)[0].unwrap().weight.r - 0.04).abs() < 1e-15);
+    }
+}
