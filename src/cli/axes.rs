@@ -9,9 +9,9 @@ use crate::scene;
 use clap::Args;
 use std::path::Path;
 
-/// The three axes: *what*, *pieces*, *who*.
+/// *What* is rendered.
 #[derive(Args)]
-pub(super) struct Axes {
+pub(super) struct What {
     /// Columns and rows.
     #[arg(long, value_name = "WxH", default_value = "512x384", allow_hyphen_values = true)]
     pub(super) size: String,
@@ -33,6 +33,13 @@ pub(super) struct Axes {
     /// Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]
     #[arg(long, value_name = "N")]
     pub(super) max_depth: Option<u16>,
+}
+
+/// The three axes: *what*, *pieces*, *who*.
+#[derive(Args)]
+pub(super) struct Axes {
+    #[command(flatten)]
+    what: What,
     /// Who renders: a strategy of `pathmark list strategies`, or thread-per-row
     #[arg(long, value_name = "NAME", default_value = "work-stealing")]
     pub(super) strategy: String,
@@ -70,6 +77,42 @@ fn default_estimator(scene: &str) -> Result<Option<String>> {
     }
 }
 
+impl What {
+    /// The kernel for a scene, and a seed that belongs to an image, not to a reference.
+    fn spec(&self, scene: &str, seed: u64) -> Result<Spec> {
+        let (width, height) = parse_size(&self.size)?;
+        if seed > LARGEST_SEED {
+            let problem = "belongs to the references";
+            return Err(InputError::new("seed", seed.to_string(), problem)
+                .allowed(format!("0 to {LARGEST_SEED}"))
+                .into());
+        }
+        let default = Spec::default();
+        let estimator = match &self.estimator {
+            Some(estimator) => estimator.clone(),
+            None => default_estimator(scene)?.unwrap_or(default.estimator),
+        };
+        Ok(Spec {
+            width,
+            height,
+            seed,
+            estimator,
+            sampler: self.sampler.clone(),
+            kernel: self.kernel.clone(),
+            effects: self.effects.clone(),
+            accelerator: self.accelerator.clone(),
+            max_depth: self.max_depth,
+            subpixel_clamp: default.subpixel_clamp,
+        })
+    }
+
+    /// Settings under which samples are looked into, by nobody in particular.
+    pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
+        let spec = self.spec(scene, seed)?;
+        Ok(Settings { scene: scene.to_string(), spp, spec, ..Settings::default() })
+    }
+}
+
 impl Axes {
     /// The decomposition; a strategy whose name says its pieces takes no other.
     fn cut(&self) -> Result<String> {
@@ -83,35 +126,13 @@ impl Axes {
         }
     }
 
-    /// The settings for a scene, samples and a seed that belongs to an image, not to a reference.
+    /// The settings for a scene, samples and a seed.
     pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
-        let (width, height) = parse_size(&self.size)?;
-        if seed > LARGEST_SEED {
-            let problem = "belongs to the references";
-            return Err(InputError::new("seed", seed.to_string(), problem)
-                .allowed(format!("0 to {LARGEST_SEED}"))
-                .into());
-        }
-        let default = Spec::default();
-        let estimator = match &self.estimator {
-            Some(estimator) => estimator.clone(),
-            None => default_estimator(scene)?.unwrap_or(default.estimator),
-        };
+        let spec = Spec { subpixel_clamp: self.subpixel_clamp, ..self.what.spec(scene, seed)? };
         Ok(Settings {
             scene: scene.to_string(),
             spp,
-            spec: Spec {
-                width,
-                height,
-                seed,
-                estimator,
-                sampler: self.sampler.clone(),
-                kernel: self.kernel.clone(),
-                effects: self.effects.clone(),
-                accelerator: self.accelerator.clone(),
-                max_depth: self.max_depth,
-                subpixel_clamp: self.subpixel_clamp,
-            },
+            spec,
             decomposition: self.cut()?,
             output: self.output.clone(),
             strategy: self.strategy.clone(),

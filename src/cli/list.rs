@@ -53,23 +53,38 @@ struct Item {
     kind: Option<String>,
     name: String,
     about: String,
+    #[serde(flatten)]
+    scene: Option<SceneItem>,
+}
+
+/// What is known of a scene besides.
+#[derive(Serialize)]
+struct SceneItem {
+    calls_for: String,
+    profile: &'static str,
+    primitives: usize,
+    estimator: String,
 }
 
 fn item(name: &str, about: &str) -> Item {
-    Item { kind: None, name: name.to_string(), about: about.to_string() }
+    Item { kind: None, name: name.to_string(), about: about.to_string(), scene: None }
+}
+
+fn scene_item(name: &str) -> Result<Item> {
+    let scene = load(name)?;
+    let choice = choose(&scene, &Spec::default())?;
+    let more = SceneItem {
+        calls_for: effect_names(scene.effects()),
+        profile: choice.effects(),
+        primitives: scene.owners.len(),
+        estimator: scene.default_estimator.unwrap_or(Spec::default().estimator),
+    };
+    Ok(Item { scene: Some(more), ..item(name, &scene.about) })
 }
 
 fn items(kind: Kind) -> Result<Vec<Item>> {
     Ok(match kind {
-        Kind::Scenes => {
-            let scene = |(name, _): &(&str, &str)| {
-                let scene = load(name)?;
-                let choice = choose(&scene, &Spec::default())?;
-                let calls_for = effect_names(scene.effects());
-                Ok(item(name, &format!("{} (calls for {calls_for}; profile {})", scene.about, choice.effects())))
-            };
-            SCENES.iter().map(scene).collect::<Result<_>>()?
-        }
+        Kind::Scenes => SCENES.iter().map(|(name, _)| scene_item(name)).collect::<Result<_>>()?,
         Kind::Strategies => STRATEGIES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Decompositions => DECOMPOSITIONS.iter().map(|entry| item(entry.example, entry.about)).collect(),
         Kind::Outputs => OUTPUTS.iter().map(|entry| item(entry.name, entry.about)).collect(),
@@ -112,5 +127,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 
 fn table(items: &[Item]) -> String {
     let width = items.iter().map(|item| item.name.len()).max().unwrap_or(0);
-    items.iter().map(|item| format!("  {:width$}  {}", item.name, item.about)).collect::<Vec<_>>().join("\n")
+    let lines = items.iter().map(|item| {
+        let first = format!("  {:width$}  {}", item.name, item.about);
+        let Some(SceneItem { calls_for, profile, primitives, estimator }) = &item.scene else { return first };
+        let noun = if *primitives == 1 { "primitive" } else { "primitives" };
+        format!("{first}\n  {:width$}    {primitives} {noun}, {estimator}, profile {profile}: {calls_for}", "")
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }

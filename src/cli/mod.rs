@@ -3,12 +3,14 @@
 //! Exit codes: 0 done, 1 a check failed, 2 the user's input is wrong, 3 the system failed.
 
 mod axes;
+mod bounces;
 mod compare;
 mod list;
 mod output;
 mod progress;
 mod reference;
 mod render;
+mod replay;
 mod report;
 mod reproduce;
 mod run;
@@ -49,6 +51,10 @@ enum Verb {
     Simulate(simulate::Arguments),
     /// Show one run job by job.
     Trace(trace::Arguments),
+    /// Show one sample's path, bounce by bounce.
+    Replay(replay::Arguments),
+    /// Show the light of an image by the bounces that it made.
+    Bounces(bounces::Arguments),
     /// Show what there is to choose from.
     List(list::Arguments),
     /// One cell of a sweep, read from standard input.
@@ -69,6 +75,8 @@ pub fn main() -> ExitCode {
         Verb::Report(arguments) => report::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments, &talk),
         Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Replay(arguments) => replay::run(&arguments),
+        Verb::Bounces(arguments) => bounces::run(&arguments, &talk),
         Verb::List(arguments) => list::run(&arguments),
         Verb::Cell => crate::experiment::child_main(),
     };

@@ -33,6 +33,12 @@ pub trait Probe {
     fn vertex(&mut self, _bounces: u16, _ray: &Ray, _hit: &Hit, _throughput: Rgb) {}
     /// Light that a vertex after so many bounces adds to the sample.
     fn light(&mut self, _bounces: u16, _contribution: Rgb) {}
+    /// Fog scattered the path at the end of a ray that set out from `ray.origin`, so far away, with this throughput left.
+    fn scattered(&mut self, _bounces: u16, _ray: &Ray, _distance: f64, _throughput: Rgb) {}
+    /// The path splits: its other part will be followed when this one has ended.
+    fn split(&mut self, _bounces: u16) {}
+    /// Roulette ends a part.
+    fn roulette(&mut self) {}
     /// A part of a path ended after so many bounces.
     fn ended(&mut self, _bounces: u16) {}
     /// The code of an effect ran.
@@ -40,6 +46,40 @@ pub trait Probe {
 }
 
 impl Probe for () {}
+
+/// A probe behind a pointer: what only looks on need not be compiled into a kernel of its own.
+impl Probe for &mut dyn Probe {
+    fn ray(&mut self, tests: Tests) {
+        (**self).ray(tests);
+    }
+    fn escaped(&mut self) {
+        (**self).escaped();
+    }
+    fn truncated(&mut self) {
+        (**self).truncated();
+    }
+    fn vertex(&mut self, bounces: u16, ray: &Ray, hit: &Hit, throughput: Rgb) {
+        (**self).vertex(bounces, ray, hit, throughput);
+    }
+    fn light(&mut self, bounces: u16, contribution: Rgb) {
+        (**self).light(bounces, contribution);
+    }
+    fn scattered(&mut self, bounces: u16, ray: &Ray, distance: f64, throughput: Rgb) {
+        (**self).scattered(bounces, ray, distance, throughput);
+    }
+    fn split(&mut self, bounces: u16) {
+        (**self).split(bounces);
+    }
+    fn roulette(&mut self) {
+        (**self).roulette();
+    }
+    fn ended(&mut self, bounces: u16) {
+        (**self).ended(bounces);
+    }
+    fn used(&mut self, effect: Effects) {
+        (**self).used(effect);
+    }
+}
 
 /// An estimate of radiance, one sample at a time: unbiased unless it has a [`Estimator::MAX_DEPTH`] of its own.
 pub trait Estimator: Send + Sync {

@@ -122,6 +122,7 @@ impl<S: Sampler> Walk<'_, S> {
             let transmittance = fog.transmittance(way);
             part.throughput = part.throughput * transmittance;
             if free < reach {
+                probe.scattered(part.vertices, &part.ray, free, part.throughput);
                 return self.scatter::<X, P>(part, transmittance, part.ray.at(free), probe, collected);
             }
         }
@@ -172,6 +173,7 @@ impl<S: Sampler> Walk<'_, S> {
             let survival = object.material.albedo().max_channel();
             // A number equal to the chance ends the path, so a black surface ends every path, whatever the number.
             if self.pair(&part, Purpose::Roulette)[0] >= survival {
+                probe.roulette();
                 probe.ended(part.vertices);
                 return None;
             }
@@ -193,6 +195,7 @@ impl<S: Sampler> Walk<'_, S> {
         if vertices <= R::SPLITS
             && let [Some(reflected), Some(refracted)] = object.material.delta_lobes::<X>(wo, hit.inside)
         {
+            probe.split(part.vertices);
             return Some((leave(reflected, part.branch), Some(leave(refracted, part.branch | 1 << (vertices - 1)))));
         }
         let sample = object.material.sample::<X>(wo, hit.inside, self.pair(&part, Purpose::Bsdf));
@@ -228,6 +231,7 @@ impl<S: Sampler> Walk<'_, S> {
         if vertices > ROULETTE_AFTER {
             let survival = transmittance.max_channel();
             if self.pair(&part, Purpose::Roulette)[0] >= survival {
+                probe.roulette();
                 probe.ended(part.vertices);
                 return None;
             }

@@ -8,8 +8,8 @@
 //! keep = ["traces"]               # optional: images, traces, calibration
 //!
 //! [matrix]                       # cells are all combinations
-//! scene = ["cornell"]
-//! estimator = ["smallpt"]
+//! scene = ["cornell"]            # or "all"
+//! estimator = ["smallpt"]        # or "default", the scene's own
 //! spp = [16]
 //! seed = [1]
 //! strategy = ["serial", "rayon"]  # or "all"

@@ -6,6 +6,7 @@ use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{LARGEST_SEED, Settings, Setup, available_threads};
 use crate::sampling::{SAMPLERS, is_deterministic};
+use crate::scene::{SCENES, load};
 use crate::strategy::STRATEGIES;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
@@ -169,8 +170,8 @@ impl Definition {
             [] => vec![None],
             depths => depths.iter().copied().map(Some).collect(),
         };
-        for scene in &matrix.scene {
-            for estimator in &matrix.estimator {
+        for scene in &all_of(&matrix.scene, &SCENES.iter().map(|(name, _)| *name)) {
+            for estimator in &self.estimators(profile, matrix, scene)? {
                 for sampler in &matrix.sampler {
                     self.check_sampler(profile, sampler)?;
                     for (max_depth, spp, seed) in depths
@@ -202,6 +203,16 @@ impl Definition {
         Ok(())
     }
 
+    /// The estimators for a scene; `default` is the one that it names itself.
+    fn estimators(&self, profile: Profile, matrix: &Matrix, scene: &str) -> Result<Vec<String>> {
+        let own = || match load(&self.scene_path(scene)) {
+            Ok(scene) => Ok(scene.default_estimator.unwrap_or(Spec::default().estimator)),
+            Err(Error::Input(input)) if input.place.is_none() => Err(self.located(profile, *input)),
+            Err(other) => Err(other),
+        };
+        matrix.estimator.iter().map(|name| if name == "default" { own() } else { Ok(name.clone()) }).collect()
+    }
+
     /// Every row's checksum is compared with the others' of the same image, unless the definition says that there is none.
     fn check_sampler(&self, profile: Profile, sampler: &str) -> Result<()> {
         if self.unverified || is_deterministic(sampler) || !SAMPLERS.iter().any(|entry| entry.name == sampler) {
@@ -220,7 +231,8 @@ impl Definition {
             let error = InputError::new("seed", image.spec.seed.to_string(), "belongs to the references");
             return Err(self.located(profile, error.allowed(format!("0 to {LARGEST_SEED}"))));
         }
-        for strategy in all_strategies(scale.strategy.as_ref().unwrap_or(&matrix.strategy)) {
+        let strategies = scale.strategy.as_ref().unwrap_or(&matrix.strategy);
+        for strategy in all_of(strategies, &STRATEGIES.iter().map(|entry| entry.name)) {
             for threads in scale.threads.as_ref().unwrap_or(&matrix.threads).iter().map(Threads::count) {
                 for decomposition in scale.decomposition.as_ref().unwrap_or(&matrix.decomposition) {
                     for output in &matrix.output {
@@ -258,8 +270,8 @@ impl Definition {
     }
 }
 
-/// The names as they stand, `all` being every strategy in the table.
-fn all_strategies(names: &[String]) -> impl Iterator<Item = String> {
-    let table = || STRATEGIES.iter().map(|entry| entry.name.to_string()).collect();
-    names.iter().flat_map(move |name| if name == "all" { table() } else { vec![name.clone()] })
+/// The names as they stand, `all` being every one in the table.
+fn all_of(names: &[String], table: &(impl Iterator<Item = &'static str> + Clone)) -> Vec<String> {
+    let every = || table.clone().map(str::to_string).collect();
+    names.iter().flat_map(|name| if name == "all" { every() } else { vec![name.clone()] }).collect()
 }

@@ -1,5 +1,6 @@
 //! How an estimator is executed over a piece of the film. A kernel never sees a thread.
 
+mod inspect;
 mod scalar;
 
 use crate::effect::EffectSet;
@@ -11,6 +12,7 @@ use crate::scene::{
     ACCELERATORS, Accelerator, AllEffects, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, accelerator,
     effect_names, smallest_profile, with_profile,
 };
+pub use inspect::{BounceRow, Event, Inspect, LightByBounce, PathLog, inspect};
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

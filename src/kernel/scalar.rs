@@ -1,6 +1,6 @@
 //! One path at a time, in f64: the readable kernel that every other one is measured against.
 
-use super::{Counts, Kernel, Spec};
+use super::{Counts, Inspect, Kernel, Spec};
 use crate::effect::EffectSet;
 use crate::estimator::{Estimator, Probe, camera_ray};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
@@ -51,11 +51,18 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
         }
     }
 
+    /// What the estimator makes of a sample, right or wrong.
+    #[inline(always)]
+    fn estimate<P: Probe>(&self, x: u32, y: u32, sample: u32, probe: &mut P) -> Rgb {
+        let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
+        let ray = camera_ray::<S, X, P>(&self.view, [x, y], key, &self.sampler, probe);
+        self.estimator.sample::<S, X, P>(&self.scene, ray, key, &self.sampler, probe)
+    }
+
+    /// What a sample contributes to its pixel.
     #[inline(always)]
     fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
-        let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
-        let ray = camera_ray::<S, X, Counts>(&self.view, [x, y], key, &self.sampler, counts);
-        let radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
+        let radiance = self.estimate(x, y, sample, counts);
         counts.paths += 1;
         if radiance.is_valid_radiance() {
             return radiance;
@@ -103,5 +110,11 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Kernel for Scalar<E, S, X> {
             }
         }
         counts
+    }
+}
+
+impl<E: Estimator, S: Sampler, X: EffectSet> Inspect for Scalar<E, S, X> {
+    fn estimate(&self, x: u32, y: u32, sample: u32, mut probe: &mut dyn Probe) -> Rgb {
+        Self::estimate(self, x, y, sample, &mut probe)
     }
 }

@@ -22,7 +22,9 @@ pub use chrome_trace::chrome_trace;
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};
-pub use settings::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads, schedule_name, strategy_named};
+pub use settings::{
+    LARGEST_SEED, LARGEST_SPP, Settings, THREAD_PER_ROW, available_threads, schedule_name, strategy_named,
+};
 pub use setup::{Outcome, Setup};
 pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};

@@ -13,7 +13,7 @@ use std::num::NonZeroUsize;
 /// thousands, some of them by ending the process.
 pub(super) const LARGEST_THREADS: usize = 1 << 14;
 /// Most samples per pixel.
-const LARGEST_SPP: u32 = 1 << 24;
+pub const LARGEST_SPP: u32 = 1 << 24;
 /// Largest seed of an image under test: the seeds above belong to references.
 pub const LARGEST_SEED: u64 = REFERENCE_SEEDS - 1;
 

@@ -25,6 +25,11 @@ const WRONG: &[(&str, &str, &[&str])] = &[
         &["sampler", "dice", "independent"],
     ),
     ("scene = [\"cornell\"]", "scene = [\"bathroom\"]", &["scene", "bathroom", "cornell"]),
+    (
+        "scene = [\"cornell\"]\nestimator = [\"smallpt\"]",
+        "scene = [\"bathroom\"]\nestimator = [\"default\"]",
+        &["scene", "bathroom", "cornell"],
+    ),
     ("tiles:8x8", "hexagons", &["decomposition", "hexagons", "tiles:32x32"]),
     ("figures = [\"speedup\", ", "figures = [\"pie-chart\", ", &["figures", "pie-chart", "speedup"]),
     ("spp = [4]", "spp = [0]", &["spp", "0", "1 to"]),

@@ -1,0 +1,203 @@
+//! `pathmark replay SCENE`: one sample's path, bounce by bounce.
+
+use super::axes::What;
+use super::output::{print, print_json};
+use crate::error::{Error, InputError, Result};
+use crate::estimator::ESTIMATORS;
+use crate::film::{Bounds, Piece, TileBuffer};
+use crate::kernel::{self, Event, PathLog, Spec};
+use crate::math::{Rgb, Vec3};
+use crate::measure::{LARGEST_SPP, Setup};
+use crate::plot::number;
+use crate::scene::{self, Scene};
+use clap::Args;
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+/// `pathmark replay cornell --pixel 300,250 --sample 3`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A scene of `pathmark list scenes`, or the path of a .toml file
+    scene: String,
+    /// Column and row, from the top left
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pixel: String,
+    /// Which of the pixel's samples, from 0
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    sample: u32,
+    /// Seed of the image
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    what: What,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let sample = arguments.sample;
+    if sample >= LARGEST_SPP {
+        let problem = "is further than any image goes";
+        let allowed = format!("0 to {}", LARGEST_SPP - 1);
+        return Err(InputError::new("sample", sample.to_string(), problem).allowed(allowed).into());
+    }
+    // Any number of samples that the estimator takes: only the names are looked at.
+    let mut settings = arguments.what.settings(&arguments.scene, 1, arguments.seed)?;
+    let estimator = ESTIMATORS.iter().find(|entry| entry.name == settings.spec.estimator);
+    settings.spp = estimator.map_or(1, |entry| entry.spp_multiple);
+    let scene = Arc::new(scene::load(&arguments.scene)?);
+    let spec = Setup::for_scene(Arc::clone(&scene), settings)?.settings().spec.clone();
+    let (x, y) = pixel(&arguments.pixel, &spec)?;
+
+    let mut log = PathLog::default();
+    let radiance = kernel::inspect(&scene, &spec)?.estimate(x, y, sample, &mut log);
+    check(&scene, &spec, (x, y, sample), radiance)?;
+    if arguments.json {
+        return print_json(&json!({
+            "scene": scene.name, "width": spec.width, "height": spec.height, "seed": spec.seed,
+            "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": spec.depth(),
+            "pixel": [x, y], "sample": sample, "rays": log.rays, "radiance": radiance.channels(),
+            "events": log.events.iter().map(|event| object(&scene, event)).collect::<Vec<Value>>(),
+        }));
+    }
+    let Spec { width, height, seed, estimator, .. } = &spec;
+    let [r, g, b] = radiance.channels();
+    print(&format!(
+        "{}, {width}x{height}, {estimator}, seed {seed}: pixel {x},{y}, sample {sample}\n\n{}\n\nradiance {r} {g} {b}\n{}",
+        scene.name,
+        table(&lines(&scene, &log.events)),
+        if radiance.is_valid_radiance() {
+            "This is what the image is given, bit for bit."
+        } else {
+            "This is no radiance: the image is given nothing, and counts it as invalid."
+        },
+    ))
+}
+
+fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
+    let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
+    let inside = parsed.filter(|(x, y)| *x < spec.width && *y < spec.height);
+    inside.ok_or_else(|| {
+        let problem = if parsed.is_some() { "is outside of the image" } else { "is no pixel" };
+        let allowed = format!("X,Y from 0,0 to {},{}", spec.width - 1, spec.height - 1);
+        InputError::new("pixel", text, problem).allowed(allowed).into()
+    })
+}
+
+/// Renders the sample once more as an image does, with the kernel that fits the scene.
+fn check(scene: &Arc<Scene>, spec: &Spec, (x, y, sample): (u32, u32, u32), radiance: Rgb) -> Result<()> {
+    let bounds = Bounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+    let mut buffer = TileBuffer::new(bounds);
+    kernel::build(scene, spec)?.render(&Piece { bounds, samples: sample..sample + 1 }, &mut buffer);
+    let given = buffer.row_mut(y)[0].sum;
+    let expected = if radiance.is_valid_radiance() { radiance } else { Rgb::BLACK };
+    if given.map(f64::to_bits) == expected.channels().map(f64::to_bits) {
+        return Ok(());
+    }
+    Err(Error::Check(format!("the path gives {radiance:?}, and the image is given {given:?}")))
+}
+
+fn side(inside: bool) -> &'static str {
+    if inside { "inside" } else { "outside" }
+}
+
+fn name(scene: &Scene, object: u32) -> &str {
+    scene.objects.get(object as usize).map_or("", |object| &object.name)
+}
+
+fn object(scene: &Scene, event: &Event) -> Value {
+    let vector = |v: Vec3| [v.x, v.y, v.z];
+    match *event {
+        Event::Surface { bounces, origin, hit, throughput } => json!({
+            "event": "surface", "bounces": bounces, "object": name(scene, hit.object), "primitive": hit.primitive,
+            "side": side(hit.inside), "distance": hit.t, "origin": vector(origin), "point": vector(hit.point),
+            "normal": vector(hit.normal), "throughput": throughput.channels(),
+        }),
+        Event::Fog { bounces, origin, point, distance, throughput } => json!({
+            "event": "fog", "bounces": bounces, "distance": distance, "origin": vector(origin),
+            "point": vector(point), "throughput": throughput.channels(),
+        }),
+        Event::Light { bounces, radiance } => {
+            json!({ "event": "light", "bounces": bounces, "radiance": radiance.channels() })
+        }
+        Event::Split { bounces } => json!({ "event": "split", "bounces": bounces }),
+        Event::Escaped => json!({ "event": "escaped" }),
+        Event::Truncated => json!({ "event": "truncated" }),
+        Event::Roulette => json!({ "event": "roulette" }),
+        Event::Ended { bounces } => json!({ "event": "ended", "bounces": bounces }),
+    }
+}
+
+/// A line of the table: bounces, what, distance, point, throughput, light.
+type Line = [String; 6];
+
+fn triple(values: [f64; 3]) -> String {
+    values.map(|value| format!("{:>10}", number::short(value, 5))).join(" ")
+}
+
+fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    let mut why = "nothing goes on from here";
+    let mut fresh_surface = false;
+    let word = |bounces: u16, text: String| -> Line {
+        [bounces.to_string(), text, String::new(), String::new(), String::new(), String::new()]
+    };
+    for event in events {
+        let stands_on_surface = std::mem::take(&mut fresh_surface);
+        match *event {
+            Event::Surface { bounces, hit, throughput, .. } => {
+                let what = format!("{}, primitive {}, {}", name(scene, hit.object), hit.primitive, side(hit.inside));
+                let point = triple([hit.point.x, hit.point.y, hit.point.z]);
+                let (distance, throughput) = (number::short(hit.t, 6), triple(throughput.channels()));
+                lines.push([bounces.to_string(), what, distance, point, throughput, String::new()]);
+                fresh_surface = true;
+            }
+            Event::Fog { bounces, point, distance, throughput, .. } => {
+                let (point, throughput) = (triple([point.x, point.y, point.z]), triple(throughput.channels()));
+                let distance = number::short(distance, 6);
+                lines.push([
+                    bounces.to_string(),
+                    "scattered by fog".into(),
+                    distance,
+                    point,
+                    throughput,
+                    String::new(),
+                ]);
+            }
+            Event::Light { radiance, .. } if radiance.is_black() => {}
+            // What a surface gives off is told right after the arrival at it.
+            Event::Light { radiance, .. } if stands_on_surface => {
+                if let Some(line) = lines.last_mut() {
+                    line[5] = triple(radiance.channels());
+                }
+            }
+            Event::Light { bounces, radiance } => {
+                let mut line = word(bounces, "light".into());
+                line[5] = triple(radiance.channels());
+                lines.push(line);
+            }
+            Event::Split { bounces } => lines.push(word(bounces, "splits: the other way comes later".into())),
+            Event::Escaped => why = "met nothing",
+            Event::Truncated => why = "cut at the bounce limit",
+            Event::Roulette => why = "lost at roulette",
+            Event::Ended { bounces } => {
+                lines.push(word(bounces, format!("ends: {why}")));
+                why = "nothing goes on from here";
+            }
+        }
+    }
+    lines
+}
+
+fn table(lines: &[Line]) -> String {
+    let heads = ["bounces", "what", "distance", "point", "throughput", "light added"].map(String::from);
+    let all = || std::iter::once(&heads).chain(lines);
+    let widths: [usize; 6] =
+        std::array::from_fn(|column| all().map(|line| line[column].chars().count()).max().unwrap_or(0));
+    let row = |line: &Line| {
+        let cells: Vec<String> = line.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}")).collect();
+        cells.join("  ").trim_end().to_string()
+    };
+    all().map(row).collect::<Vec<_>>().join("\n")
+}
