@@ -11,7 +11,7 @@ const SPOKES: u32 = 32;
 
 /// The integral over the hemisphere of `bsdf(wi)` cos for the direction `wo` = (sin, 0, cos), by the midpoint rule over the normals half way.
 /// The rings hold equal shares of GGX's normals, the outermost finer; for α from 0.05 and cosines from 0.05 the error is below 1e-4.
-pub(super) fn scattered(ggx: &Ggx, cos: f64, bsdf: impl Fn(Vec3, Vec3) -> Rgb) -> Rgb {
+pub(super) fn scattered(ggx: Ggx, cos: f64, bsdf: impl Fn(Vec3, Vec3) -> Rgb) -> Rgb {
     let wo = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
     let alpha2 = ggx.alpha() * ggx.alpha();
     let mut sum = Rgb::BLACK;

@@ -38,7 +38,7 @@ impl Conductor {
         BsdfSample { wi: reflect(wo), weight: self.fresnel(wo.z), density: Density::Delta }
     }
 
-    fn rough(&self, ggx: &Ggx, wo: Vec3, wi: Vec3) -> Rgb {
+    fn rough(&self, ggx: Ggx, wo: Vec3, wi: Vec3) -> Rgb {
         // The cosine at the facet from the sum of the two directions: the same bits when they change places.
         let sum = wo + wi;
         self.fresnel(0.5 * dot(sum, sum).sqrt()) * ggx.reflection(wo, wi)
@@ -49,7 +49,7 @@ impl Bsdf for Conductor {
     /// By the normals that are seen; the weight is F G2/G1, at most 1. `None` where the facet points below the surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
-        let Facets::Rough(ggx) = &self.facets else { return Some(self.reflected(wo)) };
+        let Facets::Rough(ggx) = self.facets else { return Some(self.reflected(wo)) };
         let h = ggx.visible_normal(wo, u);
         let wi = Ggx::mirrored(wo, h);
         let weight = self.fresnel(dot(wo, h)) * ggx.unshadowed(wo, wi);
@@ -57,14 +57,14 @@ impl Bsdf for Conductor {
     }
 
     fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb {
-        match &self.facets {
+        match self.facets {
             Facets::Mirror => Rgb::BLACK,
             Facets::Rough(ggx) => self.rough(ggx, wo, wi),
         }
     }
 
     fn pdf(&self, wo: Vec3, wi: Vec3) -> f64 {
-        match &self.facets {
+        match self.facets {
             Facets::Rough(ggx) if wi.z > 0.0 => ggx.pdf(wo, wi),
             _ => 0.0,
         }
@@ -82,7 +82,7 @@ impl Bsdf for Conductor {
     }
 
     fn albedo_at(&self, cos: f64) -> Option<Rgb> {
-        Some(match &self.facets {
+        Some(match self.facets {
             Facets::Mirror => self.fresnel(cos),
             Facets::Rough(ggx) => scattered(ggx, cos, |wo, wi| self.rough(ggx, wo, wi)),
         })

@@ -44,18 +44,18 @@ impl Ggx {
     }
 
     /// α.
-    pub fn alpha(&self) -> f64 {
+    pub fn alpha(self) -> f64 {
         self.alpha
     }
 
     #[inline(always)]
-    fn r(&self, w: Vec3) -> f64 {
+    fn r(self, w: Vec3) -> f64 {
         (w.z * w.z + self.alpha * self.alpha * (w.x * w.x + w.y * w.y)).sqrt()
     }
 
     /// D: the area of facets with that normal, per steradian and per area of the surface. Relative error below 20 roundings.
     #[inline(always)]
-    pub fn density(&self, h: Vec3) -> f64 {
+    pub fn density(self, h: Vec3) -> f64 {
         if h.z <= 0.0 {
             return 0.0;
         }
@@ -67,20 +67,20 @@ impl Ggx {
 
     /// G1: the share of facets turned towards `w` that is seen from there.
     #[inline(always)]
-    pub fn masking(&self, w: Vec3) -> f64 {
+    pub fn masking(self, w: Vec3) -> f64 {
         if w.z > 0.0 { 2.0 * w.z / (w.z + self.r(w)) } else { 0.0 }
     }
 
     /// G2/G1: the share of facets seen from `wo` that is seen from `wi` too.
     #[inline(always)]
-    pub fn unshadowed(&self, wo: Vec3, wi: Vec3) -> f64 {
+    pub fn unshadowed(self, wo: Vec3, wi: Vec3) -> f64 {
         let (ro, ri) = (self.r(wo), self.r(wi));
         wi.z * (wo.z + ro) / (wi.z * ro + wo.z * ri)
     }
 
     /// D G2 / (4 cos cos): the bsdf of facets that reflect everything. 0 unless both directions are above the surface.
     #[inline(always)]
-    pub fn reflection(&self, wo: Vec3, wi: Vec3) -> f64 {
+    pub fn reflection(self, wo: Vec3, wi: Vec3) -> f64 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
             return 0.0;
         }
@@ -90,7 +90,7 @@ impl Ggx {
     /// The density per steradian of mirror directions `wi` at normals from [`Ggx::visible_normal`]: D G1 / (4 cos). Directions below the
     /// surface have theirs too, so it integrates to 1 over the sphere.
     #[inline(always)]
-    pub fn pdf(&self, wo: Vec3, wi: Vec3) -> f64 {
+    pub fn pdf(self, wo: Vec3, wi: Vec3) -> f64 {
         let sum = wo + wi;
         if wo.z < 0.0 || sum.z <= 0.0 {
             return 0.0;
@@ -102,7 +102,7 @@ impl Ggx {
     /// Caps", Computer Graphics Forum 42(8), 2023, after Heitz, "Sampling the GGX Distribution of Visible Normals", Journal of Computer
     /// Graphics Techniques 7(4), 2018.
     #[inline(always)]
-    pub fn visible_normal(&self, wo: Vec3, [u, v]: [f64; 2]) -> Vec3 {
+    pub fn visible_normal(self, wo: Vec3, [u, v]: [f64; 2]) -> Vec3 {
         // Where the facets are stretched to a half sphere, the mirror directions of what is seen are evenly spread over a cap.
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalized();
         let height = (1.0 - v) * (1.0 + stretched.z);

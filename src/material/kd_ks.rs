@@ -67,13 +67,13 @@ impl KdKs {
     }
 
     #[inline(always)]
-    fn rough(&self, ggx: &Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> Rgb {
+    fn rough(&self, ggx: Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> Rgb {
         let facets = fresnel * ggx.reflection(wo, wi);
         self.kd * ((1.0 - fresnel) * FRAC_1_PI) + Rgb::WHITE * facets
     }
 
     #[inline(always)]
-    fn rough_pdf(&self, ggx: &Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> f64 {
+    fn rough_pdf(&self, ggx: Ggx, fresnel: f64, wo: Vec3, wi: Vec3) -> f64 {
         let cosine = wi.z * FRAC_1_PI;
         match self.sampling {
             Sampling::Cosine => cosine,
@@ -95,7 +95,7 @@ impl Bsdf for KdKs {
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let fresnel = self.fresnel(wo);
-        let Facets::Rough(ggx) = &self.facets else {
+        let Facets::Rough(ggx) = self.facets else {
             // The share of each is its chance, so neither weight holds it.
             let (is_mirrored, u) = Self::choose(u, fresnel);
             return Some(if is_mirrored {
@@ -125,7 +125,7 @@ impl Bsdf for KdKs {
             return Rgb::BLACK;
         }
         let fresnel = self.fresnel(wo);
-        match &self.facets {
+        match self.facets {
             Facets::Mirror => self.kd * ((1.0 - fresnel) * FRAC_1_PI),
             Facets::Rough(ggx) => self.rough(ggx, fresnel, wo, wi),
         }
@@ -136,7 +136,7 @@ impl Bsdf for KdKs {
             return 0.0;
         }
         let fresnel = self.fresnel(wo);
-        match &self.facets {
+        match self.facets {
             Facets::Mirror => (1.0 - fresnel) * wi.z * FRAC_1_PI,
             Facets::Rough(ggx) => self.rough_pdf(ggx, fresnel, wo, wi),
         }
@@ -157,7 +157,7 @@ impl Bsdf for KdKs {
 
     fn albedo_at(&self, cos: f64) -> Option<Rgb> {
         let fresnel = fresnel_dielectric(cos, self.eta);
-        let facets = match &self.facets {
+        let facets = match self.facets {
             Facets::Mirror => Rgb::WHITE,
             Facets::Rough(ggx) => scattered(ggx, cos, |wo, wi| Rgb::WHITE * ggx.reflection(wo, wi)),
         };

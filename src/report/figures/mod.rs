@@ -42,6 +42,7 @@ figures! {
     cost_map, "cost-map", "seconds of each tile over the image";
     generators, "generators", "time by random number generator and threads, with context switches";
     outputs, "outputs", "time and memory by the way pieces get into the film";
+    roughness, "roughness", "a rough material with directions by the cosine and by its facets: images, variance, time";
     openmp, "openmp", "time of each strategy as a multiple of OpenMP's dynamic schedule";
     self_test, "self-test", "how often a cell measured twice seems to differ from itself";
     forecast, "forecast", "simulated speedup on other machines, and how well this one is predicted";
