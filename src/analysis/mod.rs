@@ -11,6 +11,7 @@ pub mod interval;
 pub mod mean;
 pub mod metg;
 pub mod quantile;
+pub mod rank;
 pub mod scaling_law;
 pub mod slope;
 pub mod speedup;

@@ -4,6 +4,7 @@ use crate::analysis::quantile::{median, median_interval};
 use crate::analysis::{Estimate, Interval};
 use crate::error::Result;
 use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file, trace_file};
+use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::measure::{Record, TraceFile, schedule_name};
 use std::collections::BTreeMap;
@@ -170,6 +171,20 @@ impl Results {
     pub(super) fn trace(&self, record: &Record) -> Result<Option<TraceFile>> {
         let path = self.folder.join("traces").join(trace_file(&record.cell, record.repetition));
         if path.is_file() { TraceFile::read(&path).map(Some) } else { Ok(None) }
+    }
+
+    /// The images that were kept of the rows that are wanted, in the order of the rows.
+    pub(super) fn kept_images(&self, is_wanted: impl Fn(&Record) -> bool) -> Result<Vec<(&Record, Image)>> {
+        let cells = self.definition.cells(self.profile())?;
+        let mut images = Vec::new();
+        for record in self.records.iter().filter(|record| record.repetition == 0 && is_wanted(record)) {
+            let cell = cells.iter().find(|cell| cell.id == record.cell);
+            let path = cell.map(|cell| self.folder.join("images").join(cell.image_file()));
+            if let Some(path) = path.filter(|path| path.is_file()) {
+                images.push((record, image_io::read(&path)?));
+            }
+        }
+        Ok(images)
     }
 
     /// The row with the median time, the lower one of two.

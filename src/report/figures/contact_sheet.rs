@@ -3,13 +3,14 @@
 use crate::error::Result;
 use crate::experiment::wanted_references;
 use crate::film::read_film;
+use crate::image_io::Image;
 use crate::image_io::tone_map::quantise_image;
-use crate::image_io::{self, Image};
 use crate::measure::Record;
 use crate::metric::heatmap;
 use crate::plot::{Cell, ColourBar, ContactSheet};
 use crate::report::block::Block;
 use crate::report::results::Results;
+use std::collections::BTreeMap;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some(reference) = reference(results)? else {
@@ -49,20 +50,14 @@ fn cell(image: &Image, caption: Vec<String>) -> Result<Cell> {
 
 /// The kept image of each spp, of the first estimator and the lowest seed, with its record.
 fn renders(results: &Results) -> Result<Vec<(&Record, Image)>> {
-    let mut images = Vec::new();
     let first = results.definition.first_estimator();
-    let cells = results.definition.cells(results.profile())?;
-    for (_, records) in results.by(|record| record.spp) {
-        let kept = records.into_iter().filter(|record| record.repetition == 0 && record.estimator == first);
-        if let Some(record) = kept.min_by_key(|record| record.seed) {
-            let cell = cells.iter().find(|cell| cell.id == record.cell);
-            let path = cell.map(|cell| results.folder.join("images").join(cell.image_file()));
-            if let Some(path) = path.filter(|path| path.is_file()) {
-                images.push((record, image_io::read(&path)?));
-            }
+    let mut by_spp: BTreeMap<u32, (&Record, Image)> = BTreeMap::new();
+    for (record, image) in results.kept_images(|record| record.estimator == first)? {
+        if by_spp.get(&record.spp).is_none_or(|(known, _)| record.seed < known.seed) {
+            by_spp.insert(record.spp, (record, image));
         }
     }
-    Ok(images)
+    Ok(by_spp.into_values().collect())
 }
 
 /// The mean of the two half-references; `None` if they are not there, as in a copied folder.

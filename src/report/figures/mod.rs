@@ -46,6 +46,9 @@ figures! {
     openmp, "openmp", "time of each strategy as a multiple of OpenMP's dynamic schedule";
     self_test, "self-test", "how often a cell measured twice seems to differ from itself";
     forecast, "forecast", "simulated speedup on other machines, and how well this one is predicted";
+    gallery, "gallery", "what every scene looks like, and what it calls for";
+    scene_accuracy, "scene-accuracy", "error, path length and price of accuracy by scene";
+    effects, "effects", "what an effect costs: absent, compiled in but unused, used";
     schedules, "schedules", "time, load imbalance and context switches of each schedule";
 }
 
