@@ -18,7 +18,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--estimator", "magic"], &["estimator", "magic", "smallpt", "bsdf"]),
     (&["--sampler", "dice"], &["sampler", "dice", "independent"]),
     (&["--kernel", "quantum"], &["kernel", "quantum", "scalar"]),
-    (&["--effects", "fog"], &["effects", "fog", "diffuse", "all"]),
+    (&["--effects", "smoke"], &["effects", "smoke", "diffuse", "all"]),
     // A profile that there is, but too small for glass and a mirror.
     (&["--effects", "diffuse"], &["effects", "diffuse", "all"]),
     (&["--spp", "0"], &["spp", "0", "1 to"]),

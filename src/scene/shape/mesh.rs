@@ -5,9 +5,9 @@
 //! shape = { mesh = { file = "box.obj", object = "tall-block" } }
 //! ```
 
+use super::obj::essence;
 use super::{Primitives, Shape, Triangle};
 use crate::error::{InputError, Result};
-use crate::input::coordinate_limit;
 use crate::math::Vec3;
 use crate::scene::library::{Files, Folder};
 use serde::Deserialize;
@@ -32,6 +32,7 @@ impl Shape for Mesh {
     fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
         let text = files.read(&self.file)?;
         let folder = files.folder;
+        let text = essence(&text, &folder.place_of(&self.file))?;
         let options = tobj::LoadOptions { triangulate: true, single_index: true, ..tobj::LoadOptions::default() };
         let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
         let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, no_materials)
@@ -43,10 +44,6 @@ impl Shape for Mesh {
         }
         let before = primitives.triangles.len();
         for model in models.iter().filter(|model| self.object.as_ref().is_none_or(|object| model.name == *object)) {
-            if let Some(x) = model.mesh.positions.iter().find(|x| !coordinate_limit(**x)) {
-                let error = self.error(folder, "v", x, "is out of range");
-                return Err(error.allowed("-1e100 to 1e100 in each coordinate").into());
-            }
             let corner = |index: u32| {
                 let at = 3 * index as usize;
                 let [x, y, z] = [0, 1, 2].map(|k| model.mesh.positions.get(at + k).copied());
