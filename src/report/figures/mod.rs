@@ -45,6 +45,7 @@ figures! {
     openmp, "openmp", "time of each strategy as a multiple of OpenMP's dynamic schedule";
     self_test, "self-test", "how often a cell measured twice seems to differ from itself";
     forecast, "forecast", "simulated speedup on other machines, and how well this one is predicted";
+    acceleration, "acceleration", "time per ray against primitives and gain against spp, by accelerator";
     schedules, "schedules", "time, load imbalance and context switches of each schedule";
 }
 
