@@ -107,11 +107,11 @@ fn integer_vertices_are_hit_exactly() {
 fn only_a_triangle_with_an_area_is_hit() {
     // pbrt's `Triangle.BadCases`: single-precision corners on a line, and a ray as long as its segment.
     let bad = triangle([
-        [-1113.454_59, -79.049_614, -56.243_190_8],
-        [-1113.454_59, -87.092_269_9, -56.243_190_8],
-        [-1113.454_59, -79.209_014_9, -56.243_190_8],
+        [-1_113.454_59, -79.049_614, -56.243_190_8],
+        [-1_113.454_59, -87.092_269_9, -56.243_190_8],
+        [-1_113.454_59, -79.209_014_9, -56.243_190_8],
     ]);
-    let (origin, direction) = ([-1081.479_25, 99.999_954_2, 87.770_111_1], [-32.107_299_8, -183.355_865, -144.607_635]);
+    let (origin, direction) = ([-1_081.479_25, 99.999_954_2, 87.770_111_1], [-32.107_299_8, -183.355_865, -144.607_635]);
     let ray = Ray { origin: Vec3::from(origin), direction: Vec3::from(direction) };
     assert!(bad.is_degenerate() && meet(&bad, &ray).is_none());
 

@@ -93,9 +93,13 @@ fn crossover(results: &Results) -> Vec<Block> {
                 format!("is faster than testing every sphere from the smallest number on, {count}")
             }
             (Some((slower, _)), Some((count, _))) => {
-                format!("is surely faster than testing every sphere from {count} spheres on, and at {slower} it is not")
+                format!(
+                    "is faster than testing every sphere from {count} spheres on (the interval lies above 1), and at {slower} that is not certain"
+                )
             }
-            (_, None) => "is not surely faster than testing every sphere at any number".to_string(),
+            (_, None) => {
+                "is at no number faster than testing every sphere by an interval that lies above 1".to_string()
+            }
         };
         findings.push(Block::Finding(format!(
             "{name} {from}; at {most} spheres it is {:.1} times as fast, {}.",

@@ -109,8 +109,7 @@ impl Slabs {
     #[inline(always)]
     pub(super) fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);
-        for axis in 0..3 {
-            let backward = self.backward[axis];
+        for (axis, backward) in self.backward.into_iter().enumerate() {
             let first = (faces[usize::from(backward)][axis] - self.near[axis]) * self.inverse[axis];
             let last = (faces[usize::from(!backward)][axis] - self.far[axis]) * self.inverse[axis];
             enter = if first > enter { first } else { enter };

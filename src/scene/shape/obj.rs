@@ -1,19 +1,19 @@
 //! What is used of a Wavefront OBJ file: vertices, faces without normals and texture coordinates, and the names of objects. Each is
 //! checked here, because the parser that cuts the faces into triangles does not tell where a mistake stands.
 
-use crate::error::InputError;
+use crate::error::{Error, InputError, Result};
 use crate::input::coordinate_limit;
 use std::fmt::Write;
 
 /// The file with nothing in it but that.
-pub(super) fn essence(text: &str, file: &str) -> Result<String, InputError> {
+pub(super) fn essence(text: &str, file: &str) -> Result<String> {
     let mut essence = String::with_capacity(text.len());
     let mut vertices = 0_i64;
     for (line, words) in (1..).zip(text.lines()) {
         let error = |field: &str, value: &str, problem: &str, allowed: String| {
             let value: String = value.chars().take(80).collect();
             let column = words.find(&value).map_or(1, |at| words[..at].chars().count() + 1);
-            InputError::new(field, value, problem).allowed(allowed).in_file(file, Some((line, column)))
+            Error::from(InputError::new(field, value, problem).allowed(allowed).in_file(file, Some((line, column))))
         };
         let mut words = words.split_whitespace();
         match words.next() {
