@@ -23,7 +23,7 @@ fn kernel(criterion: &mut Criterion) {
         let built = build(&scene, &spec).expect("every listed estimator can be built");
         let mut tile = TileBuffer::new(piece.bounds);
         group.bench_function(BenchmarkId::new("scalar", estimator.name), |bencher| {
-            bencher.iter(|| black_box(built.kernel.render(piece, &mut tile)));
+            bencher.iter(|| black_box(built.render(piece, &mut tile)));
         });
     }
     group.finish();

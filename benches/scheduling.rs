@@ -29,7 +29,7 @@ const EMPTY_JOBS_PER_THREAD: usize = 500;
 /// A job renders a tile into a buffer of its own and forgets it: nothing is shared but the kernel.
 fn render_job(spec: &Spec) -> (usize, Job) {
     let scene = Arc::new(pathmark::scene::load("cornell").expect("cornell is embedded"));
-    let kernel: Arc<dyn Kernel> = Arc::from(build(&scene, spec).expect("the default names exist").kernel);
+    let kernel: Arc<dyn Kernel> = Arc::from(build(&scene, spec).expect("the default names exist"));
     let decomposition = Decomposition::parse("tiles:8x8").expect("tiles can be cut");
     let plan = decomposition.plan(spec.width, spec.height, &(0..SPP));
     let jobs = plan.len();
@@ -134,7 +134,7 @@ fn trace(criterion: &mut Criterion) {
         ..Settings::default()
     };
     let scene = Arc::new(pathmark::scene::load("cornell").expect("cornell is embedded"));
-    let kernel = build(&scene, &spec).expect("the default names exist").kernel;
+    let kernel = build(&scene, &spec).expect("the default names exist");
     let plan = Decomposition::parse(pieces).expect("tiles can be cut").plan(spec.width, spec.height, &(0..1));
     group.throughput(Throughput::Elements(plan.len() as u64));
     let mut tiles: Vec<TileBuffer> = plan.pieces().iter().map(|piece| TileBuffer::new(piece.bounds)).collect();

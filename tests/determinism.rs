@@ -5,8 +5,9 @@ mod scene_text;
 
 use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
 use pathmark::kernel::{self, Spec};
+use pathmark::math::Vec3;
 use pathmark::measure::{Outcome, Settings, Setup};
-use pathmark::scene::{Object, Scene, Sphere, load};
+use pathmark::scene::{Object, Scene, Sphere, Triangle, load};
 use scene_text::{Ball, load_scene};
 use std::ops::Range;
 use std::sync::Arc;
@@ -65,6 +66,15 @@ fn an_unreachable_object_changes_nothing() {
     larger.owners.push(cornell.objects.len() as u32);
     for estimator in ["smallpt", "bsdf"] {
         assert_eq!(checksum(&larger, spec(estimator)), checksum(&cornell, spec(estimator)), "{estimator}");
+    }
+    // Through a hierarchy, too, and if it is a triangle.
+    let mut another = larger.clone();
+    let corners = [[-500.0, 0.0, 0.0], [-500.0, 90.0, 0.0], [-500.0, 0.0, 90.0]].map(Vec3::from);
+    another.primitives.triangles.push(Triangle { corners });
+    another.owners.push(cornell.objects.len() as u32);
+    for accelerator in ["none", "median", "sah"] {
+        let spec = Spec { accelerator: Some(accelerator.into()), ..spec("bsdf") };
+        assert_eq!(checksum(&another, spec.clone()), checksum(&cornell, spec), "{accelerator}");
     }
     // And the checksum does see an object that can be reached.
     larger.primitives.spheres.last_mut().unwrap().center = [50.0, 30.0, 60.0].into();

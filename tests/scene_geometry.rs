@@ -5,7 +5,7 @@ mod scene_text;
 
 use pathmark::kernel::Spec;
 use pathmark::material::Material;
-use pathmark::math::{Frame, Ray, Vec3, dot};
+use pathmark::math::{Frame, Ray, Rgb, Vec3, dot};
 use pathmark::measure::{Outcome, Settings, Setup};
 use pathmark::sampling::{Address, Purpose, SampleKey};
 use pathmark::sampling::{Independent, Sampler};
@@ -117,6 +117,32 @@ fn power_of_two_scaling_changes_no_bit() {
             let scaled = cornell.scaled(libm::exp2(f64::from(k)));
             assert_eq!(scaled.primitives == cornell.primitives, k == 0, "nothing was scaled");
             assert_eq!(render(scaled, estimator, (24, 18), 8).checksum, expected, "{estimator}, 2^{k}");
+        }
+    }
+}
+
+/// S41 for triangles and through a hierarchy: its boxes have a padding in proportion, so they are opened for the same rays.
+#[test]
+fn scaling_changes_no_bit_of_triangles_and_no_box() {
+    let mut furnace = load("furnace:0.6").unwrap();
+    // Out of its equilibrium, in which every pixel is 1.
+    for (index, object) in furnace.objects.iter_mut().enumerate() {
+        object.emission = if index % 3 == 0 { Rgb::WHITE } else { Rgb::BLACK };
+    }
+    assert!(furnace.primitives.triangles.len() >= 12);
+    for accelerator in ["none", "median", "sah"] {
+        let render = |scene: Scene| {
+            let accelerator = Some(accelerator.to_string());
+            let spec =
+                Spec { width: 24, height: 18, seed: 7, estimator: "bsdf".into(), accelerator, ..Spec::default() };
+            let (decomposition, strategy) = ("rows".into(), "serial".into());
+            let settings = Settings { spp: 8, spec, decomposition, strategy, threads: 1, ..Settings::default() };
+            let outcome = Setup::for_scene(Arc::new(scene), settings).unwrap().run(None).unwrap();
+            (outcome.checksum.unwrap(), outcome.counts)
+        };
+        let expected = render(furnace.clone());
+        for k in (-40..=40).step_by(8) {
+            assert_eq!(render(furnace.scaled(libm::exp2(f64::from(k)))), expected, "{accelerator}, 2^{k}");
         }
     }
 }

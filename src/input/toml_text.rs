@@ -6,12 +6,13 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 
-/// No scene or experiment comes near this; a device file or a mistaken path does.
-const LARGEST_FILE: u64 = 16 << 20;
+/// No scene or experiment comes near this; a device file or a mistaken path does. Once parsed, a definition takes 70 times its length of
+/// memory: more objects than fit here belong in a mesh or a generator.
+const LARGEST_DEFINITION: u64 = 3 << 20;
 
 /// The text of a definition.
 pub fn read_text(path: &Path) -> Result<String> {
-    read_text_up_to(path, LARGEST_FILE)
+    read_text_up_to(path, LARGEST_DEFINITION)
 }
 
 /// The text of a user's file of so many bytes at most.

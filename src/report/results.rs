@@ -97,8 +97,13 @@ impl Results {
             .records
             .first()
             .map_or_else(String::new, |record| format!("{}, {}x{}, ", record.scene, record.width, record.height));
+        format!("{size}{}", self.machine_line())
+    }
+
+    /// The machine alone, where the figure's rows differ in scene or size.
+    pub(super) fn machine_line(&self) -> String {
         let machine = &self.run.machine;
-        format!("{size}{} processors, {}", machine.processors, machine.cpu)
+        format!("{} processors, {}", machine.processors, machine.cpu)
     }
 
     /// What is rendered, apart from samples and seed, where the experiment compares several; empty where there is only one.

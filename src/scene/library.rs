@@ -6,7 +6,7 @@ use super::Scene;
 use super::reader::scene_from_text;
 use crate::digest::Fingerprint;
 use crate::error::{InputError, Result};
-use crate::input::read_text;
+use crate::input::{read_text, read_text_up_to};
 use std::path::{Path, PathBuf};
 
 /// Name and definition of the scenes that the binary carries.
@@ -14,6 +14,9 @@ pub const SCENES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/scenes.r
 
 /// Name and text of the meshes that they use.
 const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"));
+
+/// Some hundred thousand triangles.
+const LARGEST_MESH: u64 = 16 << 20;
 
 /// Where a scene's other files are looked for.
 #[derive(Debug, Clone)]
@@ -35,7 +38,7 @@ impl Folder {
 
     fn read(&self, name: &str) -> Result<String> {
         match self {
-            Self::Disk(folder) => read_text(&folder.join(name)),
+            Self::Disk(folder) => read_text_up_to(&folder.join(name), LARGEST_MESH),
             Self::Embedded => match MESHES.iter().find(|(known, _)| *known == name) {
                 Some((_, text)) => Ok((*text).to_string()),
                 None => Err(InputError::new("file", name, "there is no such file in the program").into()),
@@ -96,10 +99,10 @@ pub(super) fn source(name_or_path: &str, folder: &Folder) -> Result<Source> {
 pub fn load(name_or_path: &str) -> Result<Scene> {
     let (base, number) = match name_or_path.rsplit_once(':') {
         Some((base, number)) => match number.parse::<f64>() {
-            Ok(number) => (base, Some(number)),
+            Ok(value) => (base, Some((value, number))),
             Err(_) => (name_or_path, None),
         },
         None => (name_or_path, None),
     };
-    scene_from_text(&source(base, &Folder::Disk(PathBuf::new()))?, number)
+    scene_from_text(source(base, &Folder::Disk(PathBuf::new()))?, number)
 }

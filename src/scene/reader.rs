@@ -23,7 +23,7 @@
 //! an object with the name of one of its objects replaces the fields that it has, and `without` lists objects to leave out.
 
 use super::generator::{Generator, Made};
-use super::library::{Files, Folder, Source, source};
+use super::library::{Files, Source, source};
 use super::shape::{AnyShape, Primitives};
 use super::{Camera, Fog, Object, PointLight, Scene};
 use crate::digest::Fingerprint;
@@ -34,6 +34,7 @@ use crate::math::Rgb;
 use crate::scene::camera::CameraFile;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -71,7 +72,7 @@ fn some_radiance<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Res
 struct Part {
     name: String,
     shapes: Vec<AnyShape>,
-    folder: Folder,
+    source: Rc<Source>,
     material: Material,
     emission: Rgb,
 }
@@ -91,26 +92,28 @@ struct Draft {
 /// A scene that is the base of a base and so on, further than this, is taken for a circle.
 const DEEPEST_BASE: usize = 8;
 
-/// Reads a scene. `number` is for its generator.
-pub(super) fn scene_from_text(source: &Source, number: Option<f64>) -> Result<Scene> {
+/// Reads a scene. `number` is for its generator, with the text that it was given as.
+pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>) -> Result<Scene> {
+    let source = &Rc::new(source);
     let (mut draft, about) = draft(source, 0)?;
     let mut name = source.name.clone();
-    if let Some(number) = number {
-        name = format!("{name}:{number}");
+    if let Some((number, given)) = number {
         let problem = match &mut draft.generator {
             None => Err("nothing: only scenes with a generator take a number"),
             Some(generator) => generator.set_number(number),
         };
         problem.map_err(|allowed| {
-            InputError::new("scene", &name, "the number behind the colon does not fit").allowed(allowed)
+            let given = format!("{name}:{given}");
+            InputError::new("scene", given, "the number behind the colon does not fit").allowed(allowed)
         })?;
+        name = format!("{name}:{number}");
         draft.hash.update(number.to_string().as_bytes());
     }
     let generated =
         draft.generator.iter().flat_map(Generator::make).map(|Made { name, shapes, material, emission }| Part {
             name,
             shapes,
-            folder: source.folder.clone(),
+            source: Rc::clone(source),
             material,
             emission,
         });
@@ -145,9 +148,11 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
     let mut owners: Vec<Vec<u32>> = vec![Vec::new(); scene.primitives.counts().len()];
     for (index, part) in (0u32..).zip(parts) {
         let before = scene.primitives.counts();
-        let mut files = Files { folder: &part.folder, hash };
+        let mut files = Files { folder: &part.source.folder, hash };
         for shape in part.shapes {
-            shape.add_to(&mut scene.primitives, &mut files)?;
+            shape
+                .add_to(&mut scene.primitives, &mut files)
+                .map_err(|problem| at_object(&part.source, &part.name, problem))?;
         }
         for ((owners, before), now) in owners.iter_mut().zip(before).zip(scene.primitives.counts()) {
             owners.extend(std::iter::repeat_n(index, now - before));
@@ -159,6 +164,16 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
     Ok(())
 }
 
+/// A problem with a shape that has no place of its own is one of the object.
+fn at_object(source: &Source, name: &str, problem: Error) -> Error {
+    match problem {
+        Error::Input(problem) if problem.place.is_none() => {
+            problem.in_file(&source.file, locate(&source.text, "name", name)).into()
+        }
+        other => other,
+    }
+}
+
 fn missing(source: &Source, field: &str, problem: &str) -> Error {
     // An empty list has a place; what is not written at all has none.
     let at = locate(&source.text, field, "[]");
@@ -166,8 +181,15 @@ fn missing(source: &Source, field: &str, problem: &str) -> Error {
 }
 
 /// What a file says on top of what its base says.
-fn draft(source: &Source, depth: usize) -> Result<(Draft, String)> {
-    let file: SceneFile = parse(&source.text, &source.file)?;
+fn draft(source: &Rc<Source>, depth: usize) -> Result<(Draft, String)> {
+    let mut file: SceneFile = parse(&source.text, &source.file)?;
+    if let Some(generator) = &mut file.generator {
+        let (field, number) = (generator.field(), generator.number());
+        generator.set_number(number).map_err(|allowed| {
+            let error = InputError::new(field, number.to_string(), "is out of range").allowed(allowed);
+            error.in_file(&source.file, locate(&source.text, field, ""))
+        })?;
+    }
     let mut draft = match &file.base {
         None => Draft {
             estimator: None,
@@ -205,7 +227,7 @@ fn draft(source: &Source, depth: usize) -> Result<(Draft, String)> {
             (Some(index), object) if index < inherited => {
                 let part = &mut draft.parts[index];
                 if let Some(shape) = object.shape {
-                    (part.shapes, part.folder) = (vec![shape], source.folder.clone());
+                    (part.shapes, part.source) = (vec![shape], Rc::clone(source));
                 }
                 part.material = object.material.unwrap_or(part.material.clone());
                 part.emission = object.emission.unwrap_or(part.emission);
@@ -215,9 +237,9 @@ fn draft(source: &Source, depth: usize) -> Result<(Draft, String)> {
                 return Err(error.in_file(&source.file, locate(&source.text, "name", &object.name)).into());
             }
             (None, ObjectFile { name, shape: Some(shape), material: Some(material), emission }) => {
-                let (emission, folder) = (emission.unwrap_or(Rgb::BLACK), source.folder.clone());
+                let (emission, source) = (emission.unwrap_or(Rgb::BLACK), Rc::clone(source));
                 names.insert(name.clone(), draft.parts.len());
-                draft.parts.push(Part { name, shapes: vec![shape], folder, material, emission });
+                draft.parts.push(Part { name, shapes: vec![shape], source, material, emission });
             }
             (None, object) => {
                 let lacks = if object.shape.is_none() { "shape" } else { "material" };
@@ -241,5 +263,5 @@ fn base_of(from: &Source, base: &str, depth: usize) -> Result<Draft> {
         }
         other => other,
     })?;
-    Ok(draft(&source, depth + 1)?.0)
+    Ok(draft(&Rc::new(source), depth + 1)?.0)
 }

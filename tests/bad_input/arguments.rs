@@ -19,7 +19,6 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--sampler", "dice"], &["sampler", "dice", "independent"]),
     (&["--kernel", "quantum"], &["kernel", "quantum", "scalar"]),
     (&["--effects", "smoke"], &["effects", "smoke", "diffuse", "all"]),
-    (&["--effects", "diffuse"], &["effects", "diffuse", "mirror+dielectric", "smallpt"]),
     (&["--accelerator", "octree"], &["accelerator", "octree", "median", "sah"]),
     (&["--max-depth", "70000"], &["--max-depth", "70000"]),
     // A profile that there is, but too small for glass and a mirror.

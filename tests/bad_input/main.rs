@@ -2,10 +2,12 @@
 //! whose turn it is (2 the user's, 3 the system's), nothing panics or hangs, and no file has come, gone or changed.
 
 mod arguments;
+mod bases;
 mod damaged;
 #[path = "../support/experiment.rs"]
 mod experiment;
 mod experiments;
+mod meshes;
 mod outputs;
 #[path = "../support/program.rs"]
 mod program;
@@ -14,10 +16,14 @@ mod scenes;
 mod snapshot;
 mod traces;
 
+use nix::sys::resource::{UsageWho, getrusage};
 use program::{finish, pathmark};
 use snapshot::{assert_untouched, snapshot};
 use std::ffi::OsStr;
 use std::path::Path;
+
+/// What the largest of the refusals so far may have taken: whoever is refused has cost little.
+const MOST_MEMORY_KIB: i64 = 256 << 10;
 
 /// Runs a command that must be refused and returns what it said. `folder` is where it runs and what it may not touch.
 fn refused(folder: &Path, arguments: &[impl AsRef<OsStr>], code: i32, said: &[&str]) -> String {
@@ -28,6 +34,8 @@ fn refused(folder: &Path, arguments: &[impl AsRef<OsStr>], code: i32, said: &[&s
     }
     assert_eq!(finished.out, "", "a refusal belongs on stderr");
     assert_untouched(&before, &snapshot(folder));
+    let peak_kib = getrusage(UsageWho::RUSAGE_CHILDREN).expect("a count of resources").max_rss();
+    assert!(peak_kib < MOST_MEMORY_KIB, "a refusal took {peak_kib} KiB");
     finished.err
 }
 

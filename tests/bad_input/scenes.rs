@@ -38,6 +38,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("radius = 20.0", "radius = 20.0, radius = 21.0", &["radius", "duplicate"]),
     (", radius = 20.0", "", &["radius", "missing"]),
     ("40.0, 80.0]", "nan, 80.0]", &["center", "nan", "-1e100 to 1e100"]),
+    ("40.0, 80.0]", "1e160, 80.0]", &["center", "1e160", "-1e100 to 1e100"]),
     ("40.0, 80.0]", "80.0]", &["center", "3"]),
     ("albedo = [0.5, 0.5, 0.5]", "albedo = [0.5, 1.5, 0.5]", &["albedo", "1.5", "0 to 1"]),
     ("albedo = [0.5, 0.5, 0.5]", "albedo = [0.5, nan, 0.5]", &["albedo", "nan", "0 to 1"]),
@@ -58,6 +59,32 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("about = \"one ball\"", "about = \"one ball\"\nsmoke = 0.5", &["smoke", "objects"]),
     ("about = \"one ball\"", "about = \"one ball\"\nestimator = \"magic\"", &["estimator", "magic", "smallpt"]),
     ("about = \"one ball\"", "about = \"one\0ball\"", &["about"]),
+];
+
+/// Other shapes in the ball's place, and what the message must hold: T05, T17 and what else has no area or direction.
+const SHAPES: &[(&str, &[&str])] = &[
+    ("triangle = { corners = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]] }", &["corners", "on a line", "area"]),
+    ("triangle = { corners = [[1.0, 2.0, 3.0], [1.0, 2.0, 3.0], [1.0, 2.0, 3.0]] }", &["corners", "on a line", "area"]),
+    ("triangle = { corners = [[0.0, 0.0, 0.0], [1.0, nan, 1.0], [2.0, 0.0, 2.0]] }", &["corners", "NaN", "1e100"]),
+    ("triangle = { corners = [[0.0, 0.0, 0.0], [1.0, 1e160, 1.0], [2.0, 0.0, 2.0]] }", &["corners", "1e100"]),
+    ("triangle = { corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]] }", &["corners", "3"]),
+    ("triangle = { corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]] }", &["corners", "3"]),
+    ("quad = { corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 0.0]] }", &["corners", "area"]),
+    ("quad = { corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, inf], [0.0, 1.0, 0.0]] }", &["corners", "inf"]),
+    ("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 0.0] }", &["normal", "zero", "length"]),
+    ("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, nan, 0.0] }", &["normal", "nan"]),
+    ("mesh = { object = \"x\" }", &["file", "missing"]),
+];
+
+/// Other cameras in the place of the first, likewise.
+const CAMERAS: &[(&str, &[&str])] = &[
+    ("look-at = [0.0, 0.0, 0.0]\nfield-of-view = 0.0", &["field-of-view", "0.0", "1e-6 to 179"]),
+    ("look-at = [0.0, 0.0, 0.0]\nfield-of-view = 180.0", &["field-of-view", "180", "1e-6 to 179"]),
+    ("look-at = [0.0, 0.0, 0.0]\nfield-of-view = nan", &["field-of-view", "nan", "1e-6 to 179"]),
+    ("look-at = [0.0, 9.0, 0.0]\nfield-of-view = 40.0", &["upward direction", "another `up`"]),
+    ("look-at = [0.0, 2.0, 0.0]\nfield-of-view = 40.0", &["its own position", "another point"]),
+    ("look-at = [1.0, 2.0, 0.0]\nfield-of-view = 40.0\nup = [0.0, 0.0, 0.0]", &["up", "zero"]),
+    ("look-at = [1.0, 2.0, 0.0]", &["field-of-view", "missing"]),
 ];
 
 const ARGUMENTS: [&str; 8] = ["render", "ball.toml", "--size", "8x8", "--spp", "4", "-o", "image.png"];
@@ -82,6 +109,24 @@ fn each_wrong_scene_is_refused_at_its_place() {
         }
     }
     assert!(failures.is_empty(), "{failures:?}");
+}
+
+#[test]
+fn shapes_without_an_area_and_cameras_without_a_view_are_refused() {
+    let shape = "sphere = { center = [50.0, 40.0, 80.0], radius = 20.0 }";
+    let camera = &BALL[BALL.find("[camera").unwrap()..BALL.find("[[objects]]").unwrap()];
+    let shapes = SHAPES.iter().map(|(text, said)| (BALL.replace(shape, text), "shape = {", said));
+    let cameras = CAMERAS.iter().map(|(text, said)| {
+        let pinhole = format!("[camera.pinhole]\nposition = [0.0, 2.0, 0.0]\n{text}\n\n");
+        (BALL.replace(camera, &pinhole), "[camera.pinhole]", said)
+    });
+    for (text, part, said) in shapes.chain(cameras) {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("ball.toml"), &text).unwrap();
+        let message = refused(folder.path(), &ARGUMENTS, 2, said);
+        let first = line_of(&text, part);
+        assert!(place(&message, "ball.toml").is_some_and(|(line, _)| (first..first + 5).contains(&line)), "{message}");
+    }
 }
 
 /// The column is that of the value, counted in characters.
@@ -124,7 +169,7 @@ fn files_that_are_no_scenes_are_refused() {
     refused_file([0; 64], &["ball.toml:1:"]);
     refused_file(b"about = \"\xff\xfe\"\n", &["UTF-8"]);
     refused_file("about = \"no end", &["ball.toml:1:"]);
-    refused_file(vec![b'#'; 20 << 20], &["16 MiB"]);
+    refused_file(vec![b'#'; 20 << 20], &["3 MiB"]);
 }
 
 #[test]
@@ -155,7 +200,7 @@ fn paths_that_are_no_scene_files_are_refused() {
         ("missing.toml", &["missing.toml", "no such file"]),
         ("./missing", &["missing", "no such file"]),
         // It never ends, so only a limit stops the reading.
-        ("/dev/zero", &["/dev/zero", "16 MiB"]),
+        ("/dev/zero", &["/dev/zero", "3 MiB"]),
     ];
     for (scene, said) in cases.iter().filter(|(scene, _)| !scene.starts_with('/') || Path::new(scene).exists()) {
         println!("{scene}");

@@ -17,6 +17,12 @@ pub(in crate::scene) struct Furnace {
 }
 
 impl Generate for Furnace {
+    const FIELD: &'static str = "albedo";
+
+    fn number(&self) -> f64 {
+        self.albedo
+    }
+
     fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
         if !(0.0..1.0).contains(&number) {
             return Err("an albedo from 0 to below 1");

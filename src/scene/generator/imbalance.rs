@@ -23,6 +23,12 @@ pub(in crate::scene) struct Imbalance {
 }
 
 impl Generate for Imbalance {
+    const FIELD: &'static str = "factor";
+
+    fn number(&self) -> f64 {
+        self.factor
+    }
+
     fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
         if !(7.0..=1000.0).contains(&number) {
             return Err("a factor from 7 to 1000");

@@ -29,6 +29,12 @@ pub(super) struct Made {
 
 /// Makes objects.
 trait Generate {
+    /// The field that the number behind the scene's name stands for.
+    const FIELD: &'static str;
+
+    /// What the file says of it.
+    fn number(&self) -> f64;
+
     /// Replaces what the number behind the scene's name stands for; says what is allowed if it is something else.
     fn set_number(&mut self, number: f64) -> Result<(), &'static str>;
 
@@ -49,6 +55,16 @@ macro_rules! generators {
         }
 
         impl Generator {
+            /// See [`Generate::FIELD`].
+            pub(super) fn field(&self) -> &'static str {
+                match self { $(Self::$Type(_) => $module::$Type::FIELD),* }
+            }
+
+            /// See [`Generate::number`].
+            pub(super) fn number(&self) -> f64 {
+                match self { $(Self::$Type(generator) => generator.number()),* }
+            }
+
             /// See [`Generate::set_number`].
             pub(super) fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
                 match self { $(Self::$Type(generator) => generator.set_number(number)),* }

@@ -27,6 +27,12 @@ pub(in crate::scene) struct Spheres {
 }
 
 impl Generate for Spheres {
+    const FIELD: &'static str = "count";
+
+    fn number(&self) -> f64 {
+        f64::from(self.count)
+    }
+
     fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
         if !(1.0..=MOST).contains(&number) || number.fract() != 0.0 {
             return Err("a whole number from 1 to 10000000");

@@ -1,7 +1,7 @@
 //! A bounding volume hierarchy over the primitives, so that a ray is tested against few of them: `--accelerator median` and `sah`, which
 //! report B describes.
 //!
-//! It finds what testing every primitive finds, to the bit: boxes are tested with a margin that covers the rounding of box and
+//! It finds what testing every primitive finds, to the bit: boxes have a padding that covers the rounding of box and
 //! primitive, a box as far as the nearest hit is still opened, and among equally near primitives the lowest number wins. It is built by
 //! one thread from total orders, so the same scene gives the same tree.
 //!
@@ -15,7 +15,7 @@ mod traverse;
 
 pub use bounds::Bounds;
 
-use bounds::Margin;
+use bounds::Faces;
 
 /// Boxes and primitives that rays were tested against.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,22 +29,19 @@ pub struct Tests {
 /// A node: a box, and where its children or primitives are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
-    bounds: Bounds,
-    /// Of an inner node the second child (the first follows the node); of a leaf its first entry in `order`.
+    faces: Faces,
+    /// Of an inner node the first child, behind which is the second; of a leaf its first entry in `order`.
     at: u32,
     /// Entries of a leaf; 0 in an inner node.
-    count: u16,
-    /// Along which axis the children were separated.
-    axis: u16,
+    count: u32,
 }
 
-/// The tree, depth first.
+/// The tree. Children come in pairs, depth first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hierarchy {
     nodes: Vec<Node>,
     /// Primitives in the order of the leaves.
     order: Vec<u32>,
-    margin: Margin,
 }
 
 /// How a node's primitives are divided between its children.
@@ -54,13 +51,16 @@ trait Split {
     fn split(&mut self, bounds: &[Bounds], node: &Bounds, sorted: [&[u32]; 3]) -> Option<(usize, usize)>;
 }
 
+/// From the boxes of primitives to a tree, if any has a box.
+type Build = fn(&[Option<Bounds>]) -> Option<Hierarchy>;
+
 /// One line of the table of accelerators.
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
     /// What it is, in a line.
     pub about: &'static str,
-    build: Option<fn(&[Option<Bounds>]) -> Option<Hierarchy>>,
+    build: Option<Build>,
 }
 
 macro_rules! accelerators {
@@ -76,8 +76,9 @@ accelerators! {
     "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|bounds| build::build(bounds, sah::Sah::new()));
 }
 
-/// From so many primitives on, a hierarchy is faster than testing all of them, whatever the scene (experiment `acceleration`).
-const WORTH_A_HIERARCHY: usize = 24;
+/// From so many primitives on, a hierarchy is faster than testing all of them (experiment `acceleration`). Of the shipped scenes those with
+/// 12 and more gain, also `furnace` with 12 triangles and 2 spheres and `vista` with spheres in spheres; those with up to 9 lose.
+const WORTH_A_HIERARCHY: usize = 12;
 
 impl Entry {
     /// Whether it needs the code of a hierarchy.
@@ -96,4 +97,20 @@ pub fn accelerator(name: Option<&str>, primitives: usize) -> Option<&'static Ent
     let fitting = if primitives < WORTH_A_HIERARCHY { "none" } else { "sah" };
     let wanted = name.unwrap_or(fitting);
     ACCELERATORS.iter().find(|entry| entry.name == wanted)
+}
+
+impl Hierarchy {
+    /// Levels below the root.
+    pub fn depth(&self) -> usize {
+        let mut deepest = 0;
+        let mut waiting = vec![(0, 0)];
+        while let Some((index, depth)) = waiting.pop() {
+            deepest = deepest.max(depth);
+            let node = &self.nodes[index];
+            if node.count == 0 {
+                waiting.extend([0, 1].map(|child| (node.at as usize + child, depth + 1)));
+            }
+        }
+        deepest
+    }
 }

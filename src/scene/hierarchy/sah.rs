@@ -1,5 +1,5 @@
 //! `--accelerator sah`: every position between two centroids along every axis is tried, and the one with the least expected cost taken:
-//! C = `C_trav` + (S_A/S_N) N_A `C_isect` + (S_B/S_N) N_B `C_isect` (MacDonald and Booth, "Heuristics for Ray Tracing Using Space
+//! `C = C_trav + (S_A / S_N) N_A C_isect + (S_B / S_N) N_B C_isect` (MacDonald and Booth, "Heuristics for Ray Tracing Using Space
 //! Subdivision", 1990; report B), where S are surfaces and N numbers of primitives. A node that no split makes cheaper is a leaf.
 
 use super::{Bounds, Split};

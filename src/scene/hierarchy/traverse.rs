@@ -6,6 +6,34 @@ use super::{Hierarchy, Tests};
 use crate::math::Ray;
 use crate::scene::shape::Nearest;
 
+/// Nodes to come back to, and where the ray enters their boxes.
+struct Waiting {
+    nodes: [u32; DEEPEST],
+    distances: [f64; DEEPEST],
+    count: usize,
+}
+
+impl Waiting {
+    #[inline(always)]
+    fn push(&mut self, node: u32, distance: f64) {
+        self.nodes[self.count] = node;
+        self.distances[self.count] = distance;
+        self.count += 1;
+    }
+
+    /// The last one whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
+    #[inline(always)]
+    fn pop(&mut self, limit: f64) -> Option<u32> {
+        while self.count > 0 {
+            self.count -= 1;
+            if self.distances[self.count] <= limit {
+                return Some(self.nodes[self.count]);
+            }
+        }
+        None
+    }
+}
+
 impl Hierarchy {
     /// The nearest primitive, if it beats `nearest`; `distance` tests one.
     #[inline(always)]
@@ -16,31 +44,40 @@ impl Hierarchy {
         tests: &mut Tests,
         mut distance: impl FnMut(u32) -> f64,
     ) -> Nearest {
-        let slabs = Slabs::new(ray, self.margin);
-        let mut waiting = [0_u32; DEEPEST + 1];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let index = waiting[depth];
+        let slabs = Slabs::new(ray);
+        // One node waits for each level above the one that is looked at.
+        let mut waiting = Waiting { nodes: [0; DEEPEST], distances: [0.0; DEEPEST], count: 0 };
+        tests.boxes += 1;
+        let mut next = slabs.enter(&self.nodes[0].faces, nearest.t).map(|_| 0);
+        while let Some(index) = next {
             let node = &self.nodes[index as usize];
-            tests.boxes += 1;
-            // A box exactly as far as the nearest so far is opened: a lower number wins a tie.
-            if !slabs.enters(&node.bounds, nearest.t) {
-                continue;
-            }
             if node.count == 0 {
-                let (first, second) = (index + 1, node.at);
-                let (near, far) = if slabs.backward[node.axis as usize] { (second, first) } else { (first, second) };
-                waiting[depth] = far;
-                waiting[depth + 1] = near;
-                depth += 2;
+                tests.boxes += 2;
+                let (first, second) = (node.at, node.at + 1);
+                // Written out: as a closure it is a call for each box, with everything that the loop holds put away and fetched.
+                let a = slabs.enter(&self.nodes[first as usize].faces, nearest.t);
+                let b = slabs.enter(&self.nodes[second as usize].faces, nearest.t);
+                next = match (a, b) {
+                    (Some(a), Some(b)) if b < a => {
+                        waiting.push(first, a);
+                        Some(second)
+                    }
+                    (Some(_), Some(b)) => {
+                        waiting.push(second, b);
+                        Some(first)
+                    }
+                    (Some(_), None) => Some(first),
+                    (None, Some(_)) => Some(second),
+                    (None, None) => waiting.pop(nearest.t),
+                };
                 continue;
             }
-            let leaf = node.at as usize..node.at as usize + usize::from(node.count);
+            let leaf = node.at as usize..node.at as usize + node.count as usize;
             tests.primitives += u64::from(node.count);
             for &primitive in &self.order[leaf] {
                 nearest = nearest.or_in_any_order(distance(primitive), primitive);
             }
+            next = waiting.pop(nearest.t);
         }
         nearest
     }

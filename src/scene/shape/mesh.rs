@@ -5,9 +5,9 @@
 //! shape = { mesh = { file = "box.obj", object = "tall-block" } }
 //! ```
 
+use super::obj::essence;
 use super::{Primitives, Shape, Triangle};
 use crate::error::{InputError, Result};
-use crate::input::coordinate_limit;
 use crate::math::Vec3;
 use crate::scene::library::{Files, Folder};
 use serde::Deserialize;
@@ -23,8 +23,8 @@ pub(in crate::scene) struct Mesh {
 }
 
 impl Mesh {
-    fn error(&self, folder: &Folder, field: &str, value: impl ToString, problem: impl ToString) -> InputError {
-        InputError::new(field, value.to_string(), problem.to_string()).in_file(folder.place_of(&self.file), None)
+    fn error(&self, folder: &Folder, field: &str, value: &str, problem: &str) -> InputError {
+        InputError::new(field, value, problem).in_file(folder.place_of(&self.file), None)
     }
 }
 
@@ -32,10 +32,11 @@ impl Shape for Mesh {
     fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
         let text = files.read(&self.file)?;
         let folder = files.folder;
+        let text = essence(&text, &folder.place_of(&self.file))?;
         let options = tobj::LoadOptions { triangulate: true, single_index: true, ..tobj::LoadOptions::default() };
         let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
         let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, no_materials)
-            .map_err(|problem| self.error(folder, "mesh", "", problem))?;
+            .map_err(|problem| self.error(folder, "mesh", "", &problem.to_string()))?;
         if let Some(object) = self.object.as_ref().filter(|object| !models.iter().any(|model| model.name == **object)) {
             let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
             let error = self.error(folder, "object", object, "there is no object of that name");
@@ -43,10 +44,6 @@ impl Shape for Mesh {
         }
         let before = primitives.triangles.len();
         for model in models.iter().filter(|model| self.object.as_ref().is_none_or(|object| model.name == *object)) {
-            if let Some(x) = model.mesh.positions.iter().find(|x| !coordinate_limit(**x)) {
-                let error = self.error(folder, "v", x, "is out of range");
-                return Err(error.allowed("-1e100 to 1e100 in each coordinate").into());
-            }
             let corner = |index: u32| {
                 let at = 3 * index as usize;
                 let [x, y, z] = [0, 1, 2].map(|k| model.mesh.positions.get(at + k).copied());
@@ -54,7 +51,9 @@ impl Shape for Mesh {
             };
             for face in model.mesh.indices.chunks_exact(3) {
                 let [Some(a), Some(b), Some(c)] = [face[0], face[1], face[2]].map(corner) else {
-                    return Err(self.error(folder, "f", face[0], "names a vertex that is not there").into());
+                    return Err(self
+                        .error(folder, "f", &face[0].to_string(), "names a vertex that is not there")
+                        .into());
                 };
                 let triangle = Triangle { corners: [a, b, c] };
                 if triangle.is_degenerate() {

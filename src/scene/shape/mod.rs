@@ -8,6 +8,7 @@
 //! the lowest number is hit, whatever structure accelerates the search.
 
 mod mesh;
+mod obj;
 mod quad;
 
 use super::hierarchy::{Bounds, Hierarchy, Tests};
@@ -247,11 +248,12 @@ impl Nearest {
         }
     }
 
-    /// Likewise, for primitives in any order.
+    /// Likewise, for primitives in any order. What is exactly as far as a limit, at which no primitive is, does not beat it.
     #[inline(always)]
     pub(super) fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
         let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
-        let wins = ahead < self.t || (ahead == self.t && primitive < self.primitive && ahead < f64::INFINITY);
+        let comes_first = primitive < self.primitive && self.primitive != u32::MAX;
+        let wins = ahead < self.t || (ahead == self.t && comes_first);
         if wins { Self { t: ahead, primitive } } else { self }
     }
 }

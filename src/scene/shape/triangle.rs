@@ -97,7 +97,7 @@ impl Primitive for Triangle {
 
     #[inline(always)]
     fn meet(&self, ray: &Ray, sheared: &Sheared) -> f64 {
-        let [a, b, c] = [0, 1, 2].map(|k| self.sheared(k, ray, sheared));
+        let (a, b, c) = (self.sheared(0, ray, sheared), self.sheared(1, ray, sheared), self.sheared(2, ray, sheared));
         let u = c[0] * b[1] - c[1] * b[0];
         let v = a[0] * c[1] - a[1] * c[0];
         let w = b[0] * a[1] - b[1] * a[0];

@@ -1,0 +1,101 @@
+//! Scenes with a mesh whose file is wrong, and one whose file only looks wrong.
+
+use super::program::{finish, pathmark};
+use super::{place, refused};
+use std::fs;
+
+const SCENE: &str = r#"about = "a mesh"
+background = [1.0, 1.0, 1.0]
+
+[camera.pinhole]
+position = [0.0, 0.0, 5.0]
+look-at = [0.0, 0.0, 0.0]
+field-of-view = 40.0
+
+[[objects]]
+name = "thing"
+shape = { mesh = { file = "thing.obj" } }
+material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
+"#;
+
+const OBJ: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf -4 -2 -1\n";
+
+const ARGUMENTS: [&str; 8] = ["render", "mesh.toml", "--size", "8x8", "--spp", "4", "-o", "image.png"];
+
+/// What is put in the place of what, the line of the mistake, and what the message must hold.
+const WRONG: &[(&str, &str, usize, &[&str])] = &[
+    ("v 1 1 0", "v 1 nan 0", 4, &["v = nan", "-1e100 to 1e100"]),
+    ("v 1 1 0", "v 1 inf 0", 4, &["v = inf", "-1e100 to 1e100"]),
+    ("v 1 1 0", "v 1 1e160 0", 4, &["v = 1e160", "-1e100 to 1e100"]),
+    ("v 1 1 0", "v 1 one 0", 4, &["v = one", "-1e100 to 1e100"]),
+    ("v 1 1 0", "v 1 1", 4, &["v = 1 1", "three coordinates"]),
+    ("f 1 2 3", "f 1 2 5", 6, &["f = 5", "1 to 4", "-4 to -1"]),
+    ("f 1 2 3", "f 1 2 0", 6, &["f = 0", "1 to 4"]),
+    ("f 1 2 3", "f 1 2 99999999999999999999", 6, &["f = 99999999999999999999", "1 to 4"]),
+    ("f 1 2 3", "f 1 2 -9223372036854775808", 6, &["f = -9223372036854775808", "1 to 4"]),
+    ("f 1 2 3", "f 1 2 x", 6, &["f = x", "1 to 4"]),
+    ("f 1 2 3", "f 1 2 /1/1", 6, &["f = /1/1", "1 to 4"]),
+    ("f 1 2 3", "f 1 2", 6, &["f = 1 2", "three corners"]),
+    ("f -4 -2 -1", "f -5 -2 -1", 7, &["f = -5", "-4 to -1"]),
+    ("o square\n", "f 1 2 3\n", 1, &["f = 1", "a vertex in a line above it"]),
+];
+
+fn folder(scene: &str, obj: Option<&[u8]>) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("mesh.toml"), scene).unwrap();
+    if let Some(obj) = obj {
+        fs::write(folder.path().join("thing.obj"), obj).unwrap();
+    }
+    folder
+}
+
+#[test]
+fn each_wrong_line_is_named() {
+    for (right, wrong, line, said) in WRONG {
+        assert!(OBJ.contains(right), "{right:?}");
+        let folder = folder(SCENE, Some(OBJ.replacen(right, wrong, 1).as_bytes()));
+        let message = refused(folder.path(), &ARGUMENTS, 2, said);
+        assert_eq!(place(&message, "thing.obj").map(|at| at.0), Some(*line), "{wrong}: {message}");
+    }
+}
+
+/// T05: corners on a line are left out; if that is all there is, the mesh is none.
+#[test]
+fn a_mesh_without_a_triangle_is_refused() {
+    let flat = OBJ.replace("v 1 -1 0", "v 0 0 0").replace("v -1 1 0", "v 2 2 0");
+    for obj in ["", "v 0 0 0\nv 1 0 0\nv 0 1 0\n", "f", "\0\0\0\0", &flat] {
+        let folder = folder(SCENE, Some(obj.as_bytes()));
+        refused(folder.path(), &ARGUMENTS, 2, &["thing.obj"]);
+    }
+    let one_left = OBJ.replace("v 1 -1 0", "v 0 0 0");
+    finish(pathmark(folder(SCENE, Some(one_left.as_bytes())).path(), &ARGUMENTS)).with_code(0);
+}
+
+/// What concerns the file as a whole stands where the scene names it.
+#[test]
+fn files_that_are_no_meshes_are_refused() {
+    let missing = folder(SCENE, None);
+    let message = refused(missing.path(), &ARGUMENTS, 2, &["thing.obj", "no such file"]);
+    assert_eq!(place(&message, "mesh.toml").map(|at| at.0), Some(10), "{message}");
+
+    let directory = folder(SCENE, None);
+    fs::create_dir(directory.path().join("thing.obj")).unwrap();
+    let message = refused(directory.path(), &ARGUMENTS, 2, &["thing.obj", "directory"]);
+    assert_eq!(place(&message, "mesh.toml").map(|at| at.0), Some(10), "{message}");
+
+    refused(folder(SCENE, Some(b"v 0 0 \xff\n")).path(), &ARGUMENTS, 2, &["thing.obj", "UTF-8"]);
+    refused(folder(SCENE, Some(&vec![b'\n'; 20 << 20])).path(), &ARGUMENTS, 2, &["thing.obj", "16 MiB"]);
+
+    let other = SCENE.replace("\"thing.obj\"", "\"thing.obj\", object = \"circle\"");
+    refused(folder(&other, Some(OBJ.as_bytes())).path(), &ARGUMENTS, 2, &["thing.obj", "circle", "square"]);
+    let unknown = SCENE.replace("\"thing.obj\"", "\"thing.obj\", smooth = true");
+    refused(folder(&unknown, Some(OBJ.as_bytes())).path(), &ARGUMENTS, 2, &["smooth", "file", "object"]);
+}
+
+/// Line ends of Windows, normals, texture coordinates that are not there, polygons, materials and comments are no mistakes.
+#[test]
+fn what_is_not_used_is_not_judged() {
+    let full = "# a square\r\nmtllib none.mtl\r\no square\r\nv -1 -1 0 1.0\r\nv 1 -1 0\r\nv 1 1 0\r\nv -1 1 0\r\n\
+                vt 0 0\r\nusemtl none\r\ns off\r\nf 1/-5/7 2/9/9 3//3 4\r\n";
+    finish(pathmark(folder(SCENE, Some(full.as_bytes())).path(), &ARGUMENTS)).with_code(0);
+}
