@@ -63,7 +63,7 @@ fn diffuse(eta: f64) -> f64 {
     (0..n).map(mean).sum::<f64>() / f64::from(n)
 }
 
-/// The diffuse reflectances of n = 1.5 from either side, and 1 - r_inside = (1 - r_outside)/n², which ties them together.
+/// The diffuse reflectances of n = 1.5 from either side, and 1 - r(inside) = (1 - r(outside))/n², which ties them together.
 #[test]
 fn diffuse_reflectances() {
     let (outside, inside) = (diffuse(N), diffuse(1.0 / N));

@@ -1,10 +1,10 @@
-//! H22: GGX's density of normals is right to 20 roundings at every roughness, against double-double arithmetic on the same inputs. The form with
+//! H22: GGX's density of normals and its masking are right to 20 roundings at every roughness, against double-double arithmetic on the same inputs. The form with
 //! 1 + cos²(α² - 1), which loses its digits, would not pass.
 
 #[path = "support/double_double.rs"]
 mod double_double;
 
-use double_double::{Dd, two_product};
+use double_double::two_product;
 use pathmark::material::Ggx;
 use pathmark::math::{Vec3, sin_cos_turns};
 use std::f64::consts::PI;
@@ -16,6 +16,13 @@ fn exact(alpha: f64, h: Vec3) -> f64 {
     let alpha2 = two_product(alpha, alpha);
     let sum = two_product(h.x, h.x) + two_product(h.y, h.y) + alpha2 * two_product(h.z, h.z);
     alpha2.over(sum * sum * two_product(PI, 1.0))
+}
+
+/// G1 = 2z/(z + sqrt(z² + α²(x² + y²))).
+fn exact_masking(alpha: f64, w: Vec3) -> f64 {
+    let z = two_product(w.z, 1.0);
+    let flat = two_product(w.x, w.x) + two_product(w.y, w.y);
+    (z + z).over(z + (z * z + two_product(alpha, alpha) * flat).sqrt())
 }
 
 #[test]
@@ -31,6 +38,8 @@ fn twenty_roundings() {
             let right = exact(alpha, h);
             let error = |found: f64| (found / right - 1.0).abs() / (0.5 * f64::EPSILON);
             worst = worst.max(error(ggx.density(h)));
+            let masking = (ggx.masking(h) / exact_masking(alpha, h) - 1.0).abs() / (0.5 * f64::EPSILON);
+            worst = worst.max(masking);
             let divisor = 1.0 + h.z * h.z * (alpha * alpha - 1.0);
             cancelling = cancelling.max(error(alpha * alpha / (PI * divisor * divisor)));
         }

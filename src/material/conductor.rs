@@ -107,6 +107,20 @@ mod tests {
         assert_eq!(gold.delta_lobes(wo, false), [Some(sample), None]);
     }
 
+    /// Lobes narrower than directions are exact, wider than GGX has them, and what is no number are refused with what is allowed.
+    #[test]
+    fn roughness_is_checked() {
+        let read = |alpha: &str| toml::from_str::<Conductor>(&format!("alpha = {alpha}\nf0 = [1.0, 1.0, 1.0]"));
+        for alpha in ["-0.1", "5e-5", "1.0000001", "nan", "inf"] {
+            let problem = read(alpha).unwrap_err().to_string();
+            assert!(problem.contains("allowed: 0, or 1e-4 to 1"), "{alpha}: {problem}");
+        }
+        assert_eq!(read("0.0").unwrap().facets, Facets::Mirror);
+        for alpha in [1e-4, 1.0] {
+            assert_eq!(read(&format!("{alpha:?}")).unwrap().facets, Facets::Rough(Ggx::new(alpha).unwrap()));
+        }
+    }
+
     /// The mean of Schlick's polynomial over the hemisphere: its integral with 2 cos by the midpoint rule.
     #[test]
     fn the_average_is_the_average() {

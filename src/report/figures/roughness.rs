@@ -120,9 +120,11 @@ fn table(results: &Results, scenes: &[&str]) -> Table {
         let number = |value: Option<f64>, digits: usize| {
             value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
         };
+        // A mirror has one direction, however one looks for it.
+        let is_compared = results.records.iter().any(|record| record.scene.strip_suffix(BY_FACETS) == Some(*scene));
         rows.push(vec![
             (*scene).to_string(),
-            directions.to_string(),
+            if is_compared { directions } else { "the mirror's" }.to_string(),
             records.len().to_string(),
             number(error.map(f64::sqrt), 4),
             format!("{time:.0}"),
