@@ -15,7 +15,7 @@ fn slab() {
         object(&plane([0.0, 5.0, 0.0], up), &diffuse(0.0), [0.0, 1.0, 1.0]),
     ]);
     for estimator in full_estimators() {
-        let outcome = render(&scene, estimator, 4_000_000, None);
+        let outcome = render(&scene, estimator, 3_000_000, None);
         for (channel, exact) in [12.0 / 13.0, 1.0 / 13.0, 1.0].into_iter().enumerate() {
             assert_exact(&format!("channel {channel}, {estimator}"), &outcome, channel, exact, 12);
         }

@@ -1,6 +1,6 @@
 //! Point lights over a plane, where nothing is left to chance, by every estimator.
 
-use super::estimate::{assert_exact, camera, diffuse, mean, object, plane, point_light, render, scene};
+use super::estimate::{assert_exact, camera, diffuse, mean, object, plane, point_light, render, scene, view};
 use pathmark::estimator::ESTIMATORS;
 use std::f64::consts::PI;
 
@@ -42,21 +42,38 @@ fn light_falls_off_by_the_square() {
     }
 }
 
-/// Lights add up, each is hidden on its own, a light lights both sides of a plane from where it is only, and one that lies in a surface
-/// is not hidden by it.
+/// Lights add up, each is hidden on its own, and what is below the floor does not light it from above.
 #[test]
 fn lights_add_up_and_are_hidden() {
     let ball = object("{ sphere = { center = [1.0, 1.0, 0.0], radius = 0.25 } }", &diffuse(0.0), [0.0; 3]);
-    let lights = [
+    let parts = [
+        camera([0.0, 0.5, 0.5], [0.0; 3]),
         point_light([0.0, 1.0, 0.0], 1.0),
-        point_light([2.0, 2.0, 0.0], 1000.0),  // behind the ball
-        point_light([0.0, -1.0, 0.0], 1000.0), // below the floor
         point_light([0.0, 2.0, 0.0], 2.0),
+        point_light([2.0, 2.0, 0.0], 1000.0), // behind the ball
+        point_light([0.0, -1.0, 0.0], 1000.0),
+        floor(0.5),
+        ball,
     ];
-    let ceiling = object(&plane([0.0, 2.0, 0.0], [0.6, 0.8, 0.0]), &diffuse(0.0), [0.0; 3]);
-    let parts = [vec![camera([0.0, 0.5, 0.5], [0.0; 3])], lights.to_vec(), vec![floor(0.5), ball, ceiling]].concat();
     let exact = 0.5 / PI * (1.0 + 2.0 / 4.0);
     for entry in ESTIMATORS {
         assert_exact(entry.name, &render(&scene(&parts), entry.name, 4096, None), 0, exact, 4);
+    }
+}
+
+/// A light that lies in a surface is hidden by it nowhere: by rounding alone the surface would be nearer for half of the floor.
+#[test]
+fn a_light_in_a_surface_is_not_hidden_by_it() {
+    let ceiling = object(&plane([0.0, 2.0, 0.0], [0.6, 0.8, 0.0]), &diffuse(0.0), [0.0; 3]);
+    let wide = view([-0.5, 1.0, 0.5], [-0.5, 0.0, 0.4], [0.0, 0.0, 1.0], 60.0);
+    let scene = scene(&[wide, point_light([0.0, 2.0, 0.0], 1.0), floor(0.5), ceiling]);
+    for entry in ESTIMATORS {
+        let outcome = render(&scene, entry.name, 4096, None);
+        // Every sample is lit from about the same distance, so a hidden one would show in its pixel's mean.
+        for pixel in outcome.film.pixels() {
+            let mean = pixel.sum[0] / f64::from(pixel.count);
+            let spread = pixel.square[0] / f64::from(pixel.count) - mean * mean;
+            assert!(mean > 0.0 && spread < 0.01 * mean * mean, "{}: mean {mean}, spread {spread}", entry.name);
+        }
     }
 }
