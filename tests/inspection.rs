@@ -64,16 +64,26 @@ fn a_sample_looked_into_is_the_image_s_own() {
     }
 }
 
-/// The effect profile and the hierarchy that an image is rendered with change no sample.
+/// The effect profile and the hierarchy that an image is rendered with change no sample, and a limit cuts it in both.
 #[test]
 fn profile_and_hierarchy_do_not_matter() {
     let scene = Arc::new(load("cornell").unwrap());
-    for (effects, accelerator) in [(None, None), (Some("all"), Some("none")), (Some("all"), Some("sah"))] {
-        let own = |name: Option<&str>| name.map(str::to_string);
-        let spec = Spec { effects: own(effects), accelerator: own(accelerator), ..spec("smallpt", (32, 24), 2) };
-        let radiance = kernel::inspect(&scene, &spec).unwrap().estimate(20, 16, 7, &mut PathLog::default());
-        assert_eq!(radiance.channels().map(f64::to_bits), given(&scene, &spec, (20, 16), 7), "{effects:?}");
+    let own = |name: &str| Some(name.to_string());
+    let mut found = Vec::new();
+    for (effects, accelerator, max_depth) in
+        [(None, None, None), (own("all"), own("none"), None), (own("all"), own("sah"), None), (None, None, Some(0))]
+    {
+        let spec = Spec { effects, accelerator, max_depth, ..spec("smallpt", (32, 24), 2) };
+        let inspector = kernel::inspect(&scene, &spec).unwrap();
+        let samples = (0..32).map(|sample| {
+            let radiance = inspector.estimate(16, 19, sample, &mut PathLog::default());
+            let bits = radiance.channels().map(f64::to_bits);
+            assert_eq!(bits, given(&scene, &spec, (16, 19), sample), "{spec:?}, sample {sample}");
+            bits
+        });
+        found.push(samples.collect::<Vec<_>>());
     }
+    assert!(found[0] == found[1] && found[0] == found[2] && found[0] != found[3], "{found:?}");
 }
 
 /// One after another: what a path does is told in the order in which it happens, and the points are on the ray.
