@@ -10,7 +10,7 @@ use super::medium::Medium;
 use super::{Estimator, Options, Probe};
 use crate::effect::EffectSet;
 use crate::material::BsdfSample;
-use crate::math::{Frame, Ray, Rgb};
+use crate::math::{Frame, Ray, Rgb, dot};
 use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
 
@@ -118,7 +118,8 @@ impl Whitted {
         };
         let object = &scene.objects[hit.object as usize];
         probe.vertex(part.bounces, &part.ray, &hit, part.throughput);
-        add(probe, part.bounces, part.throughput * object.emission);
+        let emitted = object.emitted::<X>(dot(hit.normal, part.ray.direction).abs());
+        add(probe, part.bounces, part.throughput * emitted);
         if part.bounces == self.max_depth {
             probe.truncated();
             probe.ended(part.bounces);

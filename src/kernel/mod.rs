@@ -148,14 +148,14 @@ impl Choice {
     }
 }
 
-fn unknown(field: &str, value: &str, names: Vec<&str>) -> InputError {
-    InputError::new(field, value, "there is none of that name").allowed(names.join(", "))
+fn unknown(field: &str, value: &str, names: impl Iterator<Item = &'static str>) -> InputError {
+    InputError::new(field, value, "there is none of that name").allowed(names.collect::<Vec<_>>().join(", "))
 }
 
 /// Checks every name of the spec and chooses what it leaves open.
 pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len()) else {
-        let names = ACCELERATORS.iter().map(|entry| entry.name).collect();
+        let names = ACCELERATORS.iter().map(|entry| entry.name);
         return Err(unknown("accelerator", spec.accelerator.as_deref().unwrap_or_default(), names).into());
     };
     let mut effects = scene.effects();
@@ -166,7 +166,7 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     let fitting = if is_stateful { AllEffects::NAME } else { smallest_profile(effects) };
     let wanted = spec.effects.as_deref().unwrap_or(fitting);
     let Some(profile) = PROFILES.iter().find(|entry| entry.name == wanted) else {
-        return Err(unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name).collect()).into());
+        return Err(unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name)).into());
     };
     if !profile.effects.cover(effects) {
         let problem = format!("does not cover the scene, which calls for {}", effect_names(effects));
@@ -177,10 +177,10 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
     if !SAMPLERS.iter().any(|entry| entry.name == spec.sampler) {
-        return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name).collect()).into());
+        return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name)).into());
     }
     let Some(estimator) = ESTIMATORS.iter().find(|entry| entry.name == spec.estimator) else {
-        return Err(unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name).collect()).into());
+        return Err(unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name)).into());
     };
     if let Some(depth) = spec.max_depth.filter(|depth| *depth > estimator.largest_depth) {
         let problem = format!("is more than {} can follow", estimator.name);
@@ -200,7 +200,7 @@ pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
         None => with_profile(choice.effects(), ByProfile { scene, spec: spec.clone() }).flatten().flatten(),
     };
     // Every name has been checked, so there is a kernel.
-    kernel.ok_or_else(|| unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name).collect()).into())
+    kernel.ok_or_else(|| unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into())
 }
 
 /// From the profile's name to a type, then from the sampler's.

@@ -30,6 +30,9 @@ fn texts(name: &str) -> Vec<String> {
         "dielectric" => ["schlick", "exact"]
             .map(|kind| format!("{{ dielectric = {{ eta = 1.5, tint = [0.9, 0.8, 0.7], fresnel = '{kind}' }} }}"))
             .to_vec(),
+        "polished" => [0.0, 0.3, 0.8]
+            .map(|share| format!("{{ polished = {{ albedo = [0.75, 0.5, 0.25], reflectivity = {share:?} }} }}"))
+            .to_vec(),
         "fresnel-mirror" => vec!["{ fresnel-mirror = { eta = 12.85 } }".to_string()],
         "conductor" => rough()
             .map(|alpha| format!("{{ conductor = {{ alpha = {alpha:?}, f0 = [1.0, 0.77, 0.34] }} }}"))

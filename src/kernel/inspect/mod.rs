@@ -33,9 +33,7 @@ pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Inspect>> {
     let scene = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
     let inspector = with_keyed_sampler(&spec.sampler, BySampler { scene, spec }).flatten();
     // Every name has been checked, so there is one.
-    inspector.ok_or_else(|| {
-        unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name).collect()).into()
-    })
+    inspector.ok_or_else(|| unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name)).into())
 }
 
 /// From the sampler's name to one type for all samplers, then from the estimator's.
