@@ -67,6 +67,36 @@ const PRICES: &[Price] = &[
         used: Kind { hierarchy: true, ..kind("cornell", "scenery") },
     },
     Price {
+        effect: "planes, polished, point lights",
+        absent: kind("cornell", "smallpt"),
+        unused: kind("cornell", "scenery"),
+        used: kind("report-c", "scenery"),
+    },
+    Price {
+        effect: "triangles",
+        absent: kind("cornell", "smallpt"),
+        unused: kind("cornell", "surfaces"),
+        used: Kind { hierarchy: true, ..kind("cornell-mesh", "surfaces") },
+    },
+    Price {
+        effect: "triangles and a Fresnel mirror",
+        absent: kind("cornell", "smallpt"),
+        unused: kind("cornell", "surfaces"),
+        used: Kind { hierarchy: true, ..kind("cornell-mesh-mirror", "surfaces") },
+    },
+    Price {
+        effect: "triangles and rough metal",
+        absent: kind("cornell", "smallpt"),
+        unused: kind("cornell", "surfaces"),
+        used: Kind { hierarchy: true, ..kind("conductor-25", "surfaces") },
+    },
+    Price {
+        effect: "triangles and Kd + Ks",
+        absent: kind("cornell", "smallpt"),
+        unused: kind("cornell", "surfaces"),
+        used: Kind { hierarchy: true, ..kind("kd-ks-25-vndf", "surfaces") },
+    },
+    Price {
         effect: "all",
         absent: kind("cornell-diffuse", "diffuse"),
         unused: kind("cornell-diffuse", LARGEST),
