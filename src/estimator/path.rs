@@ -209,6 +209,7 @@ impl<S: Sampler> Walk<'_, S> {
     }
 
     /// What happens where fog scatters light, evenly in all directions. Absorption on the way is the survival of roulette.
+    #[inline(never)]
     fn scatter<X: EffectSet, P: Probe>(
         &self,
         part: Part,

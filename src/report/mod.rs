@@ -4,6 +4,7 @@ mod block;
 mod figures;
 pub mod forecasts;
 mod page;
+mod reference_image;
 mod results;
 pub mod timeline;
 

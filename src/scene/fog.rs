@@ -39,6 +39,16 @@ fn kept(sigma: f64, t: f64) -> f64 {
     if sigma > 0.0 { libm::exp(-sigma * t) } else { 1.0 }
 }
 
+/// A function of σ in every channel, worked out once where they are alike.
+#[inline(always)]
+fn by_channel(sigma: Rgb, f: impl Fn(f64) -> f64) -> Rgb {
+    if sigma.r == sigma.g && sigma.g == sigma.b {
+        let grey = f(sigma.r);
+        return Rgb { r: grey, g: grey, b: grey };
+    }
+    sigma.map(f)
+}
+
 /// 1 - exp(-σt), exact also for thin fog.
 #[inline(always)]
 fn lost(sigma: f64, t: f64) -> f64 {
@@ -56,7 +66,7 @@ impl Fog {
     /// The share of light that is not absorbed over a distance, per channel.
     #[inline(always)]
     pub fn transmittance(&self, t: f64) -> Rgb {
-        self.absorption.map(|sigma| kept(sigma, t))
+        by_channel(self.absorption, |sigma| kept(sigma, t))
     }
 
     /// The share of light that is neither absorbed nor scattered over a distance, per channel.
@@ -68,17 +78,23 @@ impl Fog {
     /// The radiance that the fog adds over a distance on which nothing is scattered, per channel: emission (1 - exp(-σa t)).
     #[inline(always)]
     pub fn glow(&self, t: f64) -> Rgb {
-        self.emission * self.absorption.map(|sigma| lost(sigma, t))
+        if self.emission.is_black() {
+            return Rgb::BLACK;
+        }
+        self.emission * by_channel(self.absorption, |sigma| lost(sigma, t))
     }
 
     /// What arrives unscattered of the radiance that the fog gives off over a distance: emission σa/σt (1 - exp(-σt t)) for σt = σa + σs.
     #[inline(always)]
     pub fn unhindered_glow(&self, t: f64) -> Rgb {
+        if self.emission.is_black() {
+            return Rgb::BLACK;
+        }
         let share = |sigma: f64| {
             let all = sigma + self.scattering;
             if sigma > 0.0 { sigma / all * lost(all, t) } else { 0.0 }
         };
-        self.emission * self.absorption.map(share)
+        self.emission * by_channel(self.absorption, share)
     }
 
     /// The same fog with every length multiplied.

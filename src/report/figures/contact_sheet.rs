@@ -1,19 +1,18 @@
 //! The renders at growing spp beside their reference, and where they are wrong.
 
 use crate::error::Result;
-use crate::experiment::wanted_references;
-use crate::film::read_film;
 use crate::image_io::Image;
 use crate::image_io::tone_map::quantise_image;
 use crate::measure::Record;
 use crate::metric::heatmap;
 use crate::plot::{Cell, ColourBar, ContactSheet};
 use crate::report::block::Block;
+use crate::report::reference_image::reference_image;
 use crate::report::results::Results;
 use std::collections::BTreeMap;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Some(reference) = reference(results)? else {
+    let Some(reference) = reference_image(results, None)? else {
         let text =
             "There is no contact sheet: the films of the references are not in the folder beside this experiment.";
         return Ok(vec![Block::Finding(text.to_string())]);
@@ -58,23 +57,4 @@ fn renders(results: &Results) -> Result<Vec<(&Record, Image)>> {
         }
     }
     Ok(by_spp.into_values().collect())
-}
-
-/// The mean of the two half-references; `None` if they are not there, as in a copied folder.
-fn reference(results: &Results) -> Result<Option<Image>> {
-    let profile = results.profile();
-    let cells = results.definition.cells(profile)?;
-    let Some(wanted) = wanted_references(&results.definition, profile, &cells)?.into_iter().next() else {
-        return Ok(None);
-    };
-    let [first, second] = wanted.paths(&results.out.join("references"))?;
-    if !(first.is_file() && second.is_file()) {
-        return Ok(None);
-    }
-    let ((_, first), (_, second)) = (read_film(&first)?, read_film(&second)?);
-    let mut image = first.image();
-    for (pixel, other) in image.pixels.iter_mut().zip(second.image().pixels) {
-        *pixel = std::array::from_fn(|channel| 0.5 * (pixel[channel] + other[channel]));
-    }
-    Ok(Some(image))
 }

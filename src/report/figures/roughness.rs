@@ -5,13 +5,13 @@
 use crate::analysis::Interval;
 use crate::analysis::quantile::median;
 use crate::error::Result;
-use crate::image_io;
 use crate::image_io::tone_map::quantise_image;
 use crate::measure::Record;
 use crate::plot::dot_plot::{Dot, DotPlot, Group, Row};
 use crate::plot::style::Look;
 use crate::plot::{Axis, Cell, ContactSheet};
 use crate::report::block::{Block, Table};
+use crate::report::reference_image::reference_image;
 use crate::report::results::{Results, confidence, median_with_interval, with_level};
 use std::collections::BTreeMap;
 
@@ -81,7 +81,7 @@ fn plot(results: &Results, pairs: &[Pair<'_>]) -> DotPlot {
     let group = |(index, name): (usize, &str)| Group { name: name.to_string(), look: Look::nth(index) };
     plot.groups = names.into_iter().enumerate().map(group).collect();
     plot.guides = vec![(1.0, "the same".to_string())];
-    plot.subtitle = results.workload();
+    plot.subtitle = results.machine_line();
     let intervals: Vec<Interval> = pairs.iter().flat_map(|pair| [pair.error.1, pair.time.1]).flatten().collect();
     plot.caption = format!("Median of ratios of runs with the same seed. Bars: {}.", confidence(&intervals));
     plot
@@ -135,25 +135,15 @@ fn table(results: &Results, scenes: &[&str]) -> Table {
     Table { title: "Roughness: medians over seeds".to_string(), columns: columns.map(String::from).to_vec(), rows }
 }
 
-/// The kept images of the lowest seed: a column a scene, the cosine above the facets.
+/// The references, on which the material can be seen; the renders themselves are too short for that.
 fn sheet(results: &Results, scenes: &[&str]) -> Result<Option<Block>> {
-    let cells = results.definition.cells(results.profile())?;
-    let shown = |scene: &str| -> Result<Option<Cell>> {
-        let first = results.records.iter().filter(|record| record.scene == scene && record.repetition == 0);
-        let Some(record) = first.min_by_key(|record| record.seed) else { return Ok(None) };
-        let cell = cells.iter().find(|cell| cell.id == record.cell);
-        let path = cell.map(|cell| results.folder.join("images").join(cell.image_file()));
-        let Some(path) = path.filter(|path| path.is_file()) else { return Ok(None) };
-        let image = image_io::read(&path)?;
-        let caption = vec![scene.to_string(), format!("{} spp", record.spp)];
-        Ok(Some(Cell { caption, width: image.width, height: image.height, rgb: quantise_image(&image)? }))
-    };
-    let row = |ending: &str| scenes.iter().map(|scene| shown(&format!("{scene}{ending}"))).collect::<Result<Vec<_>>>();
-    let rows = vec![row("")?, row(BY_FACETS)?];
-    if rows.iter().flatten().all(Option::is_none) {
-        return Ok(None);
+    let mut cells = Vec::new();
+    for scene in scenes {
+        let Some(image) = reference_image(results, Some(scene))? else { return Ok(None) };
+        let caption = vec![(*scene).to_string(), "reference".to_string()];
+        cells.push(Some(Cell { caption, width: image.width, height: image.height, rgb: quantise_image(&image)? }));
     }
-    let title = "Report B's material by roughness: directions by the cosine, and by the facets below".to_string();
-    let sheet = ContactSheet { title: title.clone(), subtitle: results.workload(), rows, bar: None };
+    let title = "Report B's material by roughness".to_string();
+    let sheet = ContactSheet { title: title.clone(), subtitle: results.machine_line(), rows: vec![cells], bar: None };
     Ok(Some(Block::Picture { stem: "roughness-images", title, png: sheet.png()? }))
 }
