@@ -92,7 +92,7 @@ fn mean_weights_are_albedos() {
     for (name, material) in &materials {
         for cos in cosines {
             let (found, error) = mean_weight(material, cos, 100_000, 32);
-            let albedo = material.albedo_at(cos).unwrap_or(material.albedo());
+            let albedo = material.albedo_at(cos).unwrap_or(material.albedo::<AllEffects>());
             assert!((0.0..=1.0 + 1e-4).contains(&albedo.max_channel()), "{name}, cosine {cos}: {albedo:?}");
             // The quadrature has an error too.
             let far = (found - albedo.r).abs();

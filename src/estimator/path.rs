@@ -170,7 +170,7 @@ impl<S: Sampler> Walk<'_, S> {
 
         let mut throughput = part.throughput;
         if vertices > ROULETTE_AFTER {
-            let survival = object.material.albedo().max_channel();
+            let survival = object.material.albedo::<X>().max_channel();
             // A number equal to the chance ends the path, so a black surface ends every path, whatever the number.
             if self.pair(&part, Purpose::Roulette)[0] >= survival {
                 probe.roulette();

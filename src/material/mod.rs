@@ -94,8 +94,11 @@ macro_rules! materials {
 
             /// [`Bsdf::albedo`] of the material.
             #[inline(always)]
-            pub fn albedo(&self) -> Rgb {
-                match self { $(Self::$Type(material) => material.albedo()),* }
+            pub fn albedo<X: EffectSet>(&self) -> Rgb {
+                match self {
+                    $(Self::$Type(material) if X::EFFECTS.cover($Type::EFFECT) => material.albedo(),)*
+                    _ => Rgb::BLACK,
+                }
             }
 
             /// [`Bsdf::albedo_at`] of the material.

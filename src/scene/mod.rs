@@ -168,7 +168,7 @@ impl Scene {
         let rest = |share: Rgb| Rgb { r: 1.0 - share.r, g: 1.0 - share.g, b: 1.0 - share.b };
         let mut scene = self.clone();
         for object in &mut scene.objects {
-            object.emission = rest(object.material.albedo());
+            object.emission = rest(object.material.albedo::<AllEffects>());
             object.angular_emission = AngularEmission::tabulate(|cos| object.material.albedo_at(cos).map(rest));
         }
         scene.background = scene.background.map(|_| Rgb::WHITE);
