@@ -41,16 +41,6 @@ impl Effects {
     pub const fn cover(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
-
-    /// How many there are.
-    pub const fn len(self) -> u32 {
-        self.0.count_ones()
-    }
-
-    /// Whether there is none.
-    pub const fn is_empty(self) -> bool {
-        self.0 == 0
-    }
 }
 
 /// The effects that a kernel is compiled for. What is not in it costs no branch: the test is on a constant.

@@ -172,8 +172,9 @@ fn is_one_everywhere(max_depth: Option<u16>) {
         let excused = NOISY.iter().find(|(noisy, _)| noisy == name && !is_thorough);
         let power = excused.map_or(POWER, |(_, power)| *power);
         // Their spread is that of a few bright samples, which a short run does not meet.
-        let pilot = if NOISY.iter().any(|(noisy, _)| noisy == name) { 10.0 * pilot } else { pilot };
-        let root = 1.2 * limit * Tally::of(&scene, max_depth, 41, pilot as u32).deviation() / power;
+        let is_noisy = NOISY.iter().any(|(noisy, _)| noisy == name);
+        let (pilot, margin) = if is_noisy { (10.0 * pilot, 1.6) } else { (pilot, 1.2) };
+        let root = margin * limit * Tally::of(&scene, max_depth, 41, pilot as u32).deviation() / power;
         let samples = (root * root).max(pilot);
         assert!(samples <= most, "{name} takes {samples} samples: give it a line in `NOISY`");
         let found = Tally::of(&scene, max_depth, 42, samples as u32);

@@ -5,12 +5,13 @@
 
 use super::direct::{light_at_fog, light_at_surface};
 use super::medium::Medium;
-use super::{Estimator, Probe};
+use super::{Estimator, Options, Probe};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3, dot};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler, uniform_sphere};
 use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
+use std::marker::PhantomData;
 
 /// Where a path is cut whatever its throughput: only a closed scene that absorbs nothing comes here, and it is counted.
 pub const MAX_BOUNCES: u16 = u16::MAX;
@@ -22,16 +23,28 @@ const ROULETTE_AFTER: u16 = 5;
 const LARGEST_STACK: usize = 3;
 
 /// What tells the estimators of this file apart.
-pub(super) trait Rules: Send + Sync {
+pub trait Rules: Send + Sync {
     /// At this many vertices, counted from the first, a surface that reflects and transmits is followed both ways; at most 2.
     const SPLITS: u16;
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
-    /// After so many bounces a path is cut.
-    fn max_depth(&self) -> u16;
 }
 
-impl<R: Rules> Estimator for R {
+/// An estimator that follows paths by these rules.
+#[derive(Debug, Clone, Copy)]
+pub struct Path<R> {
+    max_depth: u16,
+    rules: PhantomData<R>,
+}
+
+impl<R> Path<R> {
+    /// The estimator; without a depth of its own it follows paths to [`MAX_BOUNCES`].
+    pub fn new(options: Options) -> Self {
+        Self { max_depth: options.max_depth.unwrap_or(MAX_BOUNCES), rules: PhantomData }
+    }
+}
+
+impl<R: Rules> Estimator for Path<R> {
     const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;
 
     #[inline(always)]
@@ -43,7 +56,7 @@ impl<R: Rules> Estimator for R {
         sampler: &S,
         probe: &mut P,
     ) -> Rgb {
-        let walk = Walk { scene, key, sampler, max_depth: self.max_depth() };
+        let walk = Walk { scene, key, sampler, max_depth: self.max_depth };
         let mut collected = Rgb::BLACK;
         let mut part =
             Part { ray, from: None, throughput: Rgb::WHITE, vertices: 0, branch: 0, medium: Medium::OUTSIDE };

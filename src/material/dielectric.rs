@@ -88,14 +88,6 @@ impl Bsdf for Dielectric {
         })
     }
 
-    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
-        Rgb::BLACK
-    }
-
-    fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
-        0.0
-    }
-
     #[inline(always)]
     fn delta_lobes(&self, wo: Vec3, inside: bool) -> [Option<BsdfSample>; 2] {
         match self.interface(wo, inside) {

@@ -37,14 +37,6 @@ impl Bsdf for FresnelMirror {
         Some(self.reflected(wo))
     }
 
-    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
-        Rgb::BLACK
-    }
-
-    fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
-        0.0
-    }
-
     #[inline(always)]
     fn delta_lobes(&self, wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
         [Some(self.reflected(wo)), None]

@@ -24,14 +24,6 @@ impl Bsdf for Mirror {
         Some(BsdfSample { wi: reflect(wo), weight: self.albedo, density: Density::Delta })
     }
 
-    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
-        Rgb::BLACK
-    }
-
-    fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
-        0.0
-    }
-
     #[inline(always)]
     fn delta_lobes(&self, wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
         [Some(BsdfSample { wi: reflect(wo), weight: self.albedo, density: Density::Delta }), None]

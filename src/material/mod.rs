@@ -39,10 +39,16 @@ pub trait Bsdf {
     fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample>;
 
     /// The bsdf's value per steradian for a pair of directions; black for delta lobes.
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Rgb;
+    #[inline(always)]
+    fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
+        Rgb::BLACK
+    }
 
     /// The density per steradian with which [`Bsdf::sample`] chooses `wi`; 0 for delta lobes.
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f64;
+    #[inline(always)]
+    fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
+        0.0
+    }
 
     /// The directions of its delta lobes, each weighted by its share of the light, for estimators that follow all of them.
     #[inline(always)]

@@ -315,6 +315,10 @@ impl Setup {
         if self.scene.camera.filter == Filter::Subpixels && !self.settings.spp.is_multiple_of(SUBPIXELS) {
             warnings.push(Warning::PartialSubpixels);
         }
+        let left_out = self.scene.primitives.degenerate;
+        if left_out > 0 {
+            warnings.push(Warning::LeftOut(left_out));
+        }
         if self.settings.spec.is_biased() {
             warnings.push(Warning::Biased);
         }

@@ -44,6 +44,8 @@ pub enum Warning {
     Escaped(u64),
     /// Paths were cut at the bounce limit.
     Truncated(u64),
+    /// Triangles of the scene's meshes were left out because they have no area.
+    LeftOut(usize),
     /// Samples were NaN, infinite or negative.
     InvalidSamples(u64),
     /// The program was built without optimisation for measuring.
@@ -63,6 +65,7 @@ impl fmt::Display for Warning {
             Self::Biased => f.write_str("biased"),
             Self::Escaped(count) => write!(f, "escaped({count})"),
             Self::Truncated(count) => write!(f, "truncated({count})"),
+            Self::LeftOut(count) => write!(f, "left-out-triangles({count})"),
             Self::InvalidSamples(count) => write!(f, "invalid-samples({count})"),
             Self::DebugBuild => f.write_str("debug-build"),
         }
