@@ -21,7 +21,7 @@ const SIZE: (u32, u32) = (64, 48);
 const POWER: f64 = 1e-3;
 /// Samples of a scene at most, unless the test is to be thorough.
 const MOST: f64 = 3e6;
-/// Scenes that take more than these on paths of any length, and what they are then held to: mirrors without end, and a gloss that is looked for
+/// Scenes that take more than these, and what they are then held to: mirrors without end, and a gloss that is looked for
 /// by the cosine. The same gloss by its facets, `kd-ks-25-vndf`, is not excused.
 const NOISY: [(&str, f64); 2] = [("wada2", 2e-3), ("kd-ks-25", 2e-3)];
 /// Glass in a mirror ball. smallpt refracts with probability 3/4 - Re/2 what has the weight 1 - Re, so every such vertex multiplies the
@@ -202,10 +202,22 @@ fn ordinary() -> Look {
     Look { power: POWER, pilot: if is_thorough() { THOROUGH_PILOT } else { PILOT }, margin: 1.2 }
 }
 
+/// For scenes whose spread is that of a few bright samples, which a short run does not meet.
+fn wary(power: f64) -> Look {
+    Look { power, pilot: 10.0 * ordinary().pilot, margin: 1.6 }
+}
+
+fn look_at(name: &str) -> Look {
+    match NOISY.iter().find(|(noisy, _)| *noisy == name) {
+        Some((_, power)) => wary(if is_thorough() { POWER } else { *power }),
+        None => ordinary(),
+    }
+}
+
 #[test]
 fn every_scene_is_one_within_a_thousandth() {
     for (name, _) in SCENES {
-        is_one(name, Some(CUT), &ordinary());
+        is_one(name, Some(CUT), &look_at(name));
     }
 }
 
@@ -213,23 +225,12 @@ fn every_scene_is_one_within_a_thousandth() {
 #[test]
 fn paths_of_any_length() {
     for (name, _) in SCENES {
-        let noisy = NOISY.iter().find(|(noisy, _)| noisy == name);
-        let mut look = ordinary();
-        if let Some((_, power)) = noisy.or((*name == UNBOUNDED.0).then_some(&UNBOUNDED)) {
-            // Their spread is that of a few bright samples, which a short run does not meet.
-            look = Look { power: *power, pilot: 10.0 * look.pilot, margin: 1.6 };
-        }
-        if noisy.is_some() && is_thorough() {
-            look.power = POWER;
-        }
-        is_one(name, None, &look);
+        is_one(name, None, &if *name == UNBOUNDED.0 { wary(UNBOUNDED.1) } else { look_at(name) });
     }
 }
 
 /// Roulette is in these paths, and what comes after them is not.
 #[test]
 fn long_paths_where_those_of_any_length_have_no_bound() {
-    let pilot = 10.0 * ordinary().pilot;
-    let power = if is_thorough() { POWER } else { 5e-3 };
-    is_one(UNBOUNDED.0, Some(LONG), &Look { power, pilot, margin: 1.6 });
+    is_one(UNBOUNDED.0, Some(LONG), &wary(if is_thorough() { POWER } else { 5e-3 }));
 }
