@@ -37,6 +37,9 @@ pub struct FilmKey {
     /// Where paths are cut, if they are.
     #[serde(default)]
     pub max_depth: Option<u16>,
+    /// How chance ends paths, if not by the estimator's own rule.
+    #[serde(default)]
+    pub roulette: Option<String>,
     /// Revision of the arithmetic: films of another one are rendered anew.
     pub revision: u32,
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
@@ -45,6 +45,8 @@ pub struct Record {
     pub accelerator: String,
     /// After so many bounces paths were cut; empty if only their throughput ended them.
     pub max_depth: Option<u16>,
+    /// How chance ended paths; empty if it did not.
+    pub roulette: String,
     /// Whether an option was on that changes what the image converges to.
     pub biased: bool,
     /// How the film was cut.
@@ -159,6 +161,7 @@ fn described(settings: &Settings) -> Record {
         kernel: spec.kernel.clone(),
         precision: "f64".to_string(),
         max_depth: spec.depth(),
+        roulette: spec.roulette().unwrap_or_default(),
         biased: spec.is_biased(),
         decomposition: settings.decomposition.clone(),
         strategy: settings.strategy.clone(),

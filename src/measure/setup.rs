@@ -185,6 +185,7 @@ impl Setup {
             width: spec.width,
             height: spec.height,
             max_depth: spec.max_depth,
+            roulette: spec.roulette.clone(),
             revision: kernel::REVISION,
         }
     }

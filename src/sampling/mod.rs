@@ -43,6 +43,10 @@ pub enum Purpose {
     Lens = 3,
     /// How far light gets through a medium.
     Medium = 4,
+    /// The point of a light that is aimed at.
+    Light = 5,
+    /// Which light is aimed at.
+    LightChoice = 6,
 }
 
 /// Where a pair of numbers is used.
