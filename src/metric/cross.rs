@@ -24,6 +24,18 @@ pub fn cross_mse_display(test: &Image, reference1: &Image, reference2: &Image) -
     mean_product(test, reference1, reference2, tone_map::display)
 }
 
+/// The mean of (T1 - R1)(T2 - R2): the squared bias alone, for two test pictures of different seeds. The variance of the tests cancels as the
+/// references' does, so the result scatters around zero for an estimator without bias.
+pub fn bias_squared(tests: [&Image; 2], references: [&Image; 2]) -> Result<f64> {
+    for other in [tests[1], references[0], references[1]] {
+        check_sizes(tests[0], other)?;
+    }
+    let [t1, t2] = tests.map(|image| image.pixels.as_flattened());
+    let [r1, r2] = references.map(|image| image.pixels.as_flattened());
+    let products = t1.iter().zip(r1).zip(t2.iter().zip(r2)).map(|((t1, r1), (t2, r2))| (t1 - r1) * (t2 - r2));
+    Ok(products.sum::<f64>() / t1.len() as f64)
+}
+
 /// The root of a cross mean squared error, to be drawn last: average over seeds first. `None` for a negative one, which says
 /// that the references are too noisy to tell the error, and for NaN.
 pub fn root(mse: f64) -> Option<f64> {
