@@ -5,6 +5,7 @@
 mod assembly;
 mod decomposition;
 mod film_file;
+mod growth;
 mod order;
 mod plan;
 mod sum;
@@ -14,6 +15,7 @@ mod whole;
 pub use assembly::Assembly;
 pub use decomposition::{DECOMPOSITIONS, Decomposition, Entry};
 pub use film_file::{FilmKey, read_film, write_film};
+pub use growth::{GrowingFilm, Sections, sections};
 pub use order::TileOrder;
 pub use plan::{Bounds, Piece, Plan};
 pub use sum::{PixelSum, SAMPLE_BLOCK, SampleSum};

@@ -63,6 +63,15 @@ impl Film {
         }
     }
 
+    /// The sum of two ranges of samples of the same image; `self` is the earlier one.
+    #[must_use]
+    pub fn plus(mut self, later: &Self) -> Self {
+        for (pixel, part) in self.pixels.iter_mut().zip(&later.pixels) {
+            *pixel = pixel.plus(part);
+        }
+        self
+    }
+
     /// The estimate of each pixel's radiance.
     pub fn image(&self) -> Image {
         let mut image = Image::new(self.width, self.height);

@@ -194,6 +194,7 @@ impl Record {
         let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
         let counts = &outcome.counts;
         let mut record = described(setup.settings());
+        record.spp = outcome.spp;
         record.started_utc.clone_from(&outcome.started_utc);
         record.scene.clone_from(&setup.scene().name);
         record.scene_hash.clone_from(&setup.scene().hash);
