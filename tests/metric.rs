@@ -1,7 +1,9 @@
 //! Metrics against numbers that can be worked out by hand.
 
 use pathmark::image_io::{self, Image, tone_map};
-use pathmark::metric::{self, METRICS, REL_MSE_EPSILON, bias_squared, cross_mse, cross_mse_display, heatmap, root};
+use pathmark::metric::{
+    self, METRICS, REL_MSE_EPSILON, bias_squared, cross_mse, cross_mse_display, cross_rel_mse, heatmap, root,
+};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
@@ -190,6 +192,9 @@ fn a_reference_of_four_times_the_samples_is_enough_for_the_cross_form() {
     let halves = [noisy(&truth, 0.5 * sigma, &mut random), noisy(&truth, 0.5 * sigma, &mut random)];
     let cross = root(cross_mse(&test, &halves[0], &halves[1]).unwrap()).unwrap() / sigma;
     let naive = value("rmse", &test, &halves[0]) / sigma;
+    let relative = |image: &Image| cross_rel_mse(image, &halves[0], &halves[1]).unwrap();
+    let exact = value("rel-mse", &test, &truth);
+    assert!((relative(&test) / exact - 1.0).abs() < 0.02, "{} {exact}", relative(&test));
     // 147456 values: a standard deviation of 0.2 %.
     assert!((cross - 1.0).abs() < 0.01, "{cross}");
     assert!(naive > 1.1 && (naive - 1.25_f64.sqrt()).abs() < 0.01, "{naive}");
@@ -252,13 +257,17 @@ fn pictures_of_two_sizes_are_refused_with_both() {
     errors.push(cross_mse(&a, &a, &b).unwrap_err());
     errors.push(bias_squared([&a, &a], [&a, &b]).unwrap_err());
     errors.push(cross_mse_display(&a, &b, &a).unwrap_err());
+    errors.push(cross_rel_mse(&a, &a, &b).unwrap_err());
     errors.push(heatmap(&a, &b, None).unwrap_err());
     for error in errors {
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("4x3") && error.to_string().contains("3x4"), "{error}");
     }
     let error = metric::find("flip").unwrap_err().to_string();
-    assert!(error.contains("mse, rmse, rel-mse, mae, error-50, error-90, error-99, error-100, rmse-display, psnr, ssim"), "{error}");
+    assert!(
+        error.contains("mse, rmse, rel-mse, mae, error-50, error-90, error-99, error-100, rmse-display, psnr, ssim"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -16,7 +16,8 @@
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
 //! # There may be several, each under [[matrix]]. Optional: sampler, output, effects, accelerator, max-depth, size (instead of the
-//! # profile's), and weak = true, which gives each cell spp times its threads.
+//! # profile's), weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
+//! # fewest samples on the way to each spp. subpixel-clamp = true clamps each subpixel's mean before averaging.
 //!
 //! [reference]                    # optional: measures errors
 //! estimator = "bsdf"
@@ -161,6 +162,17 @@ impl Definition {
         self.matrix.iter().flat_map(|matrix| &matrix.estimator).next().map_or("", String::as_str)
     }
 
+    /// The estimators, in the order in which they are named.
+    pub fn estimator_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for name in self.matrix.iter().flat_map(|matrix| &matrix.estimator) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
     /// The first feature that it needs and that this program was built without.
     pub fn missing_feature(&self) -> Option<&str> {
         let built_with = |feature: &str| FEATURES.iter().any(|(name, there)| *name == feature && *there);
@@ -183,12 +195,14 @@ impl Definition {
         let scale = self.scale(profile);
         let own = || self.matrix.iter().flat_map(|matrix| &matrix.spp).max();
         let largest = scale.spp.as_ref().map_or_else(own, |spp| spp.iter().max()).copied().unwrap_or(0);
-        let needed = largest.saturating_mul(10);
+        // Seeds share the references' noise, which the cross form removes in the mean only. A curve's end is one of many points.
+        let times = if self.matrix.iter().all(|matrix| matrix.curve) { 4 } else { 10 };
+        let needed = largest.saturating_mul(times);
         match scale.reference_spp {
             Some(spp) if spp >= needed => Ok(Some((table.estimator.clone(), spp))),
             given => {
                 let value = given.map_or_else(String::new, |spp| spp.to_string());
-                let problem = "each half-reference needs ten times the samples of the largest spp";
+                let problem = format!("each half-reference needs {times} times the samples of the largest spp");
                 Err(self.located(
                     profile,
                     InputError::new("reference-spp", value, problem).allowed(format!("from {needed}")),

@@ -41,6 +41,12 @@ pub(super) struct Matrix {
     /// Whether samples per pixel are for each thread.
     #[serde(default)]
     pub(super) weak: bool,
+    /// Whether each cell is a curve: a render that is measured on its way.
+    #[serde(default)]
+    pub(super) curve: bool,
+    /// Whether each subpixel's mean is clamped before averaging.
+    #[serde(default, rename = "subpixel-clamp")]
+    pub(super) subpixel_clamp: bool,
 }
 
 fn independent() -> Vec<String> {
@@ -185,6 +191,7 @@ impl Definition {
                             estimator: estimator.clone(),
                             sampler: sampler.clone(),
                             max_depth,
+                            subpixel_clamp: matrix.subpixel_clamp,
                             ..Spec::default()
                         };
                         let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };
@@ -249,7 +256,7 @@ impl Definition {
                             Error::Input(input) if input.place.is_none() => self.located(profile, *input),
                             other => other,
                         })?;
-                        let cell = Cell::new(&setup);
+                        let cell = if matrix.curve { Cell::curve(&setup) } else { Cell::new(&setup) };
                         if !cells.iter().any(|known| known.id == cell.id) {
                             cells.push(cell);
                         }

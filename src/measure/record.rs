@@ -2,12 +2,14 @@
 
 use super::{Outcome, Settings, Setup, Warning};
 use crate::analysis::quantile::median;
+use crate::error::Result;
+use crate::image_io::Image;
 use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
@@ -121,6 +123,13 @@ pub struct Record {
     pub mse_display: Option<f64>,
     /// Its square root, where there is one.
     pub rmse_display: Option<f64>,
+    /// Mean squared error over the squared reference, cross form.
+    pub rel_mse: Option<f64>,
+    /// What the samples themselves say of the squared error: the mean over pixels of the variance of a pixel's mean, for independent samples. Where
+    /// subpixels or a sampler spread the samples evenly, the true error is below it.
+    pub variance: Option<f64>,
+    /// Mean radiance over pixels and channels.
+    pub mean_radiance: Option<f64>,
     /// Checksum of the film; empty if the sampler gives other numbers in each run.
     pub checksum: String,
     /// Doubts, separated by semicolons.
@@ -142,6 +151,19 @@ pub struct Measured {
     pub mse: Option<f64>,
     /// See [`Record::mse_display`].
     pub mse_display: Option<f64>,
+    /// See [`Record::rel_mse`].
+    pub rel_mse: Option<f64>,
+}
+
+impl Measured {
+    /// The errors of an image against two half-references, which share no samples with it or each other.
+    pub fn against(image: &Image, first: &Image, second: &Image) -> Result<Self> {
+        Ok(Self {
+            mse: Some(metric::cross_mse(image, first, second)?),
+            mse_display: Some(metric::cross_mse_display(image, first, second)?),
+            rel_mse: Some(metric::cross_rel_mse(image, first, second)?),
+        })
+    }
 }
 
 fn described(settings: &Settings) -> Record {
@@ -237,6 +259,9 @@ impl Record {
         record.rmse = errors.mse.and_then(metric::root);
         record.mse_display = errors.mse_display;
         record.rmse_display = errors.mse_display.and_then(metric::root);
+        record.rel_mse = errors.rel_mse;
+        record.variance = Some(outcome.film.mean_variance());
+        record.mean_radiance = Some(outcome.film.image().mean().iter().sum::<f64>() / 3.0);
         record.checksum = outcome.checksum.clone().unwrap_or_default();
         record.warnings = outcome.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";");
         record

@@ -13,7 +13,7 @@ mod percentile;
 mod pointwise;
 mod ssim;
 
-pub use cross::{bias_squared, cross_mse, cross_mse_display, root};
+pub use cross::{bias_squared, cross_mse, cross_mse_display, cross_rel_mse, root};
 pub use heatmap::{Heatmap, heat_colour, heatmap};
 pub use pointwise::REL_MSE_EPSILON;
 
@@ -43,12 +43,7 @@ impl Entry {
 
 /// Every metric.
 pub const METRICS: &[Entry] = &[
-    Entry {
-        name: "mse",
-        about: "mean squared error over pixels and channels",
-        linear: true,
-        formula: pointwise::mse,
-    },
+    Entry { name: "mse", about: "mean squared error over pixels and channels", linear: true, formula: pointwise::mse },
     Entry {
         name: "rmse",
         about: "root of the mean squared error over pixels and channels",
@@ -80,12 +75,7 @@ pub const METRICS: &[Entry] = &[
         linear: true,
         formula: percentile::all_but_a_hundredth,
     },
-    Entry {
-        name: "error-100",
-        about: "the largest error of a pixel",
-        linear: true,
-        formula: percentile::largest,
-    },
+    Entry { name: "error-100", about: "the largest error of a pixel", linear: true, formula: percentile::largest },
     Entry {
         name: "rmse-display",
         about: "rmse of display values in [0, 1]",
