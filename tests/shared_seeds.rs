@@ -38,6 +38,7 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
             ..Settings::default()
         },
         references: Some(references),
+        external: None,
         trace: None,
     };
     let mut command = pathmark(folder, &["cell"]);

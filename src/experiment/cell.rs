@@ -1,5 +1,6 @@
 //! A cell: settings that are run some number of times.
 
+use super::External;
 use crate::error::{InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads, schedule_name};
@@ -16,6 +17,8 @@ pub struct Cell {
     pub points: Vec<CellPoint>,
     /// Samples that one of this machine's processors has to render: how long it takes, in the same unit for all cells.
     pub weight: u64,
+    /// The other program that renders it, if it is not this one.
+    pub external: Option<External>,
 }
 
 /// A row that a cell gives.
@@ -71,7 +74,7 @@ impl Cell {
         let points = points.iter().map(|spp| point(*spp)).collect();
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.threads.min(available_threads()) as u64;
-        Self { id, points, weight: weight.max(1), settings }
+        Self { id, points, weight: weight.max(1), external: None, settings }
     }
 
     /// Whether it has the value that a filter `field=value` asks for.

@@ -5,13 +5,18 @@
 //! rows as JSON on its standard output. A child whose input ends has lost its parent and stops, so that no orphan disturbs the sweep that goes on
 //! in its place.
 
+use super::External;
+use super::external::filled;
 use crate::error::{Error, InputError, Result};
 use crate::film::{SAMPLE_BLOCK, read_film};
 use crate::image_io::{self, Image};
-use crate::measure::{Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure};
+use crate::measure::{
+    Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure, missing_external, run_external,
+};
+use crate::scene::load;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// What a child is asked to do.
@@ -29,6 +34,8 @@ pub struct CellJob {
     pub settings: Settings,
     /// The two half-references, if errors are to be measured.
     pub references: Option<[PathBuf; 2]>,
+    /// The other program that renders it, and the folder where that was made.
+    pub external: Option<(External, PathBuf)>,
     /// Where to keep the trace; of a curve there is none.
     pub trace: Option<PathBuf>,
 }
@@ -95,6 +102,9 @@ impl CellJob {
 
     fn run(&self) -> Result<Vec<Record>> {
         let references = self.references.as_ref().map(|paths| self.read_references(paths)).transpose()?;
+        if let Some((external, folder)) = &self.external {
+            return self.other_program(external, folder, references.as_ref());
+        }
         if let [point] = self.points.as_slice() {
             let setup = Setup::prepare(self.settings.clone())?;
             let outcome = setup.run(None)?;
@@ -119,6 +129,40 @@ impl CellJob {
             rows.push(self.row(point, growing.setup(), &growing.outcome(), references)?);
         }
         Ok(rows)
+    }
+
+    fn other_program(
+        &self,
+        external: &External,
+        folder: &Path,
+        references: Option<&[Image; 2]>,
+    ) -> Result<Vec<Record>> {
+        let own = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
+        let (spec, out) = (&self.settings.spec, own.path().join(format!("image.{}", external.format())));
+        let scene = load(&self.settings.scene)?;
+        let values = [
+            ("spp", self.settings.spp.to_string()),
+            ("seed", spec.seed.to_string()),
+            ("out", out.display().to_string()),
+            ("width", spec.width.to_string()),
+            ("height", spec.height.to_string()),
+            ("folder", folder.display().to_string()),
+        ];
+        let found = run_external(&filled(&external.command, &values), &out)?;
+        let row = |point: &PointJob| {
+            let Some(run) = &found else {
+                return Ok(self.label(point, missing_external(&self.settings, &scene.hash)));
+            };
+            if let Some(path) = &point.image {
+                image_io::write(path, &run.image)?;
+            }
+            let errors = match references {
+                Some([first, second]) => Measured::against(&run.image, first, second)?,
+                None => Measured::default(),
+            };
+            Ok(self.label(point, run.record(&self.settings, &scene.hash, errors)))
+        };
+        self.points.iter().map(row).collect()
     }
 
     fn row(

@@ -33,6 +33,7 @@
 //! reference-spp = 2000
 //! ```
 
+use super::External;
 use super::matrix::{Matrix, Scale, one_or_many};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
@@ -113,6 +114,9 @@ pub struct Definition {
     pub requires: Vec<String>,
     #[serde(deserialize_with = "one_or_many")]
     pub(super) matrix: Vec<Matrix>,
+    /// Other programs.
+    #[serde(default)]
+    pub external: Vec<External>,
     reference: Option<ReferenceTable>,
     quick: Scale,
     full: Scale,
@@ -162,10 +166,11 @@ impl Definition {
         self.matrix.iter().flat_map(|matrix| &matrix.estimator).next().map_or("", String::as_str)
     }
 
-    /// The estimators, in the order in which they are named.
+    /// The estimators, in the order in which they are named, and then the other programs.
     pub fn estimator_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        for name in self.matrix.iter().flat_map(|matrix| &matrix.estimator) {
+        let own = self.matrix.iter().flat_map(|matrix| &matrix.estimator);
+        for name in own.chain(self.external.iter().map(|external| &external.name)) {
             if !names.contains(name) {
                 names.push(name.clone());
             }

@@ -147,6 +147,7 @@ impl Definition {
         for matrix in &self.matrix {
             self.add_images(profile, matrix, &mut cells)?;
         }
+        cells.extend(self.external_cells(profile)?);
         Ok(cells)
     }
 

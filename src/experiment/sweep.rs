@@ -69,6 +69,11 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
         write_calibration(&calibration)?;
     }
     let references = references(&wanted, options, progress)?;
+    let programs = folder.join("external");
+    for external in &definition.external {
+        std::fs::create_dir_all(&programs).map_err(|e| Error::system("creating", &programs, e))?;
+        external.make(&programs, progress);
+    }
     let (images, traces) = (folder.join("images"), folder.join("traces"));
     for (wanted, folder) in [(Keep::Images, &images), (Keep::Traces, &traces)] {
         if definition.keeps(wanted) {
@@ -114,6 +119,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
                     order,
                     settings: cell.settings.clone(),
                     references: references.get(cell.settings.scene.as_str()).cloned(),
+                    external: cell.external.clone().map(|external| (external, programs.clone())),
                     trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
                 };
                 // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.

@@ -5,6 +5,7 @@
 
 mod calibration;
 mod chrome_trace;
+mod external;
 mod ledger;
 mod machine;
 mod output;
@@ -21,6 +22,7 @@ mod warning;
 
 pub use calibration::{CalibrationRow, calibrate};
 pub use chrome_trace::chrome_trace;
+pub use external::{ExternalRun, missing_external, run_external};
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};

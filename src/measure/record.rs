@@ -198,7 +198,21 @@ pub fn failure(settings: &Settings, error: &str) -> Record {
     Record { error: error.replace('\n', "; "), ..described(settings) }
 }
 
+/// The row of another program, with its errors.
+pub(super) fn external_row(settings: &Settings, errors: Measured) -> Record {
+    described(settings).with_errors(errors)
+}
+
 impl Record {
+    fn with_errors(mut self, errors: Measured) -> Self {
+        self.mse = errors.mse;
+        self.rmse = errors.mse.and_then(metric::root);
+        self.mse_display = errors.mse_display;
+        self.rmse_display = errors.mse_display.and_then(metric::root);
+        self.rel_mse = errors.rel_mse;
+        self
+    }
+
     /// CPU seconds during the makespan, in the program and in the system.
     pub fn cpu_s(&self) -> Option<f64> {
         Some(self.cpu_user_s? + self.cpu_system_s?)
@@ -215,7 +229,7 @@ impl Record {
         let durations = outcome.trace.durations_s();
         let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
         let counts = &outcome.counts;
-        let mut record = described(setup.settings());
+        let mut record = described(setup.settings()).with_errors(errors);
         record.spp = outcome.spp;
         record.started_utc.clone_from(&outcome.started_utc);
         record.scene.clone_from(&setup.scene().name);
@@ -255,11 +269,6 @@ impl Record {
         record.escaped = Some(counts.escaped);
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);
-        record.mse = errors.mse;
-        record.rmse = errors.mse.and_then(metric::root);
-        record.mse_display = errors.mse_display;
-        record.rmse_display = errors.mse_display.and_then(metric::root);
-        record.rel_mse = errors.rel_mse;
         record.variance = Some(outcome.film.mean_variance());
         record.mean_radiance = Some(outcome.film.image().mean().iter().sum::<f64>() / 3.0);
         record.checksum = outcome.checksum.clone().unwrap_or_default();

@@ -48,6 +48,8 @@ pub enum Warning {
     LeftOut(usize),
     /// Samples were NaN, infinite or negative.
     InvalidSamples(u64),
+    /// The other program that was to be run is not there.
+    NoProgram,
     /// The program was built without optimisation for measuring.
     DebugBuild,
 }
@@ -67,6 +69,7 @@ impl fmt::Display for Warning {
             Self::Truncated(count) => write!(f, "truncated({count})"),
             Self::LeftOut(count) => write!(f, "left-out-triangles({count})"),
             Self::InvalidSamples(count) => write!(f, "invalid-samples({count})"),
+            Self::NoProgram => f.write_str("no-program"),
             Self::DebugBuild => f.write_str("debug-build"),
         }
     }

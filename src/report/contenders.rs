@@ -1,13 +1,14 @@
 //! The ways to render a scene that an experiment compares, as prices see them: error curves over seeds, and seconds per sample.
 
+use super::block::Block;
 use super::results::{LEVEL, Results, Schedule};
 use crate::analysis::Interval;
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::mean::t_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
-use crate::experiment::law_of;
-use crate::measure::Record;
+use crate::experiment::{EXTERNAL, law_of};
+use crate::measure::{Record, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An estimator with a sampler and a schedule, on a scene.
@@ -118,6 +119,19 @@ fn curves_of_seeds(records: &[&Record]) -> Vec<(Curve, f64)> {
     seeds.iter().filter_map(of_seed).collect()
 }
 
+/// What is said of other programs that were not there.
+pub(super) fn missing(results: &Results) -> Option<Block> {
+    let names: BTreeSet<&str> = results
+        .records
+        .iter()
+        .filter(|record| record.warnings.contains(&Warning::NoProgram.to_string()))
+        .map(|record| record.estimator.as_str())
+        .collect();
+    let list: Vec<&str> = names.into_iter().collect();
+    let text = format!("Left out, because the program is not there: {}. The definition says how it is made.", list.join(", "));
+    (!list.is_empty()).then_some(Block::Finding(text))
+}
+
 /// The contenders of each scene, scenes by name and contenders in the order in which the estimators are listed. What cannot be priced, such as a single seed,
 /// is left out.
 pub(super) fn contenders(results: &Results) -> BTreeMap<String, Vec<Contender>> {
@@ -128,10 +142,12 @@ pub(super) fn contenders(results: &Results) -> BTreeMap<String, Vec<Contender>> 
         |record| if record.biased && record.max_depth.is_none() { "biased".to_string() } else { String::new() },
         |record| Schedule::of(record).label(),
     ];
+    // Of another program there is nothing but its name.
+    let is_own = |record: &Record| record.strategy != EXTERNAL;
     let rows = || results.records.iter().filter(|record| record.mse.is_some());
-    let differs: Vec<bool> = parts.iter().map(|part| rows().map(part).collect::<BTreeSet<_>>().len() > 1).collect();
+    let differs: Vec<bool> = parts.iter().map(|part| rows().filter(|row| is_own(row)).map(part).collect::<BTreeSet<_>>().len() > 1).collect();
     let name = |record: &Record| {
-        let shown = parts.iter().zip(&differs).enumerate().filter(|(index, (_, differs))| *index == 0 || **differs);
+        let shown = parts.iter().zip(&differs).enumerate().filter(|(index, (_, differs))| *index == 0 || (**differs && is_own(record)));
         let words: Vec<String> = shown.map(|(_, (part, _))| part(record)).filter(|word| !word.is_empty()).collect();
         words.join(" + ")
     };

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Dot, DotPlot, Group, Row};
 use crate::report::block::{Block, Table};
-use crate::report::contenders::{Contender, contenders};
+use crate::report::contenders::{Check, Contender, contenders, missing};
 use crate::report::results::Results;
 
 /// The accuracies that are priced, in linear radiance.
@@ -23,6 +23,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         if several { format!("{}: {}", contender.scene, contender.name) } else { contender.name.clone() }
     };
     let mut blocks = vec![Block::Figure { stem: "price-list", figure: Box::new(plot(results, &all, &name)) }];
+    blocks.extend(missing(results));
     blocks.extend(checked(&all));
     let rows = all.iter().map(|contender| row(contender, name(contender))).collect();
     let goals = GOALS.iter().map(|goal| format!("seconds to an RMSE of {goal}"));
@@ -91,8 +92,8 @@ fn short(value: f64) -> String {
 /// How far predictions are off at worst.
 fn checked(all: &[&Contender]) -> Option<Block> {
     let checks: Vec<_> = all.iter().filter_map(|contender| Some((contender, contender.check()?))).collect();
-    let worst = |of: &dyn Fn(&crate::report::contenders::Check) -> f64| {
-        let far = |(contender, check): &(&&Contender, crate::report::contenders::Check)| {
+    let worst = |of: &dyn Fn(&Check) -> f64| {
+        let far = |(contender, check): &(&&Contender, Check)| {
             (contender.name.clone(), 100.0 * (of(check) - 1.0))
         };
         checks.iter().map(far).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
