@@ -7,6 +7,7 @@ mod cell;
 mod cell_process;
 mod definition;
 mod drift;
+mod half;
 mod matrix;
 mod records_file;
 mod reference;
@@ -18,8 +19,9 @@ pub use calibration_file::read_calibration;
 pub use cell::{Cell, trace_file};
 pub use cell_process::{CellJob, child_main};
 pub use definition::{Definition, EXPERIMENTS, Keep, Profile};
+pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use records_file::{RecordsFile, read_records};
-pub use reference::{Reference, reference_seed, render_reference, wanted_references};
+pub use reference::{Reference, reference_seed, wanted_references};
 pub use run_file::{RunFile, read_run_file};
 pub use sweep::{Options, Summary, sweep};
 
