@@ -221,7 +221,9 @@ fn resuming_with_another_definition_or_machine_is_refused() {
 /// its rows and resumed, it has all of them once.
 #[test]
 fn a_curve_cut_off_among_its_rows_is_resumed() {
-    let curve = TINY.replace("spp = [4]", "spp = [40]\ncurve = true").replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
+    let curve = TINY
+        .replace("spp = [4]", "spp = [40]\ncurve = true")
+        .replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
     let (head, scales) = curve.split_once("[quick]").unwrap();
     let (head, matrix) = head.split_once("[matrix]").unwrap();
     let single = matrix.replace("spp = [40]\ncurve = true", "spp = [4, 8, 16, 32, 40]");

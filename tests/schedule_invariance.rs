@@ -104,6 +104,23 @@ fn rounds() {
     }
 }
 
+/// Samples where the noise is: as many in each pixel, and the same bits, whoever renders them in which pieces.
+#[test]
+fn adaptive() {
+    let run = |settings| Setup::for_scene(Arc::clone(&SCENE), settings).unwrap().run_adaptive(None).unwrap();
+    let expected = run(settings());
+    for strategy in STRATEGIES {
+        for decomposition in DECOMPOSITIONS {
+            let what = format!("{} on {decomposition}", strategy.name);
+            let (strategy, decomposition) = (strategy.name.into(), decomposition.into());
+            assert_same(&run(Settings { strategy, threads: 3, decomposition, ..settings() }), &expected, &what);
+        }
+    }
+    for output in OUTPUTS {
+        assert_same(&run(Settings { output: output.name.into(), threads: 3, ..settings() }), &expected, output.name);
+    }
+}
+
 /// What rounds cannot render they refuse, and a film never shrinks.
 #[test]
 fn rounds_refuse() {

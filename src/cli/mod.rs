@@ -14,6 +14,7 @@ mod render;
 mod replay;
 mod report;
 mod reproduce;
+mod rounds;
 mod run;
 mod simulate;
 mod trace;

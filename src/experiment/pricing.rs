@@ -9,7 +9,7 @@ use crate::analysis::price::{Law, Renderer};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Rounds, Settings, Setup};
-use crate::sampling::REFERENCE_SEEDS;
+use crate::sampling::{REFERENCE_SEEDS, is_spread};
 
 /// Seeds from here on are for pilots.
 const PILOT_SEEDS: u64 = REFERENCE_SEEDS >> 1;
@@ -34,12 +34,9 @@ pub struct Paid {
     pub rmse: f64,
 }
 
-/// Samplers that spread a pixel's samples more evenly than chance does.
-const EVEN: [&str; 2] = ["stratified", "sobol"];
-
 /// How the error falls with a sampler of that name.
 pub fn law_of(sampler: &str) -> Law {
-    if EVEN.contains(&sampler) { Law::Fitted } else { Law::Independent }
+    if is_spread(sampler) { Law::Fitted } else { Law::Independent }
 }
 
 fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {

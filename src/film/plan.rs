@@ -60,6 +60,11 @@ impl Plan {
         Self { pieces }
     }
 
+    /// Pieces that are known to be disjoint and complete.
+    pub(super) fn from_pieces(pieces: Vec<Piece>) -> Self {
+        Self { pieces }
+    }
+
     /// The same pieces in another order; `order` must be a permutation.
     pub(super) fn reordered(self, order: &[usize]) -> Self {
         debug_assert_eq!(order.len(), self.pieces.len());

@@ -81,21 +81,6 @@ impl Film {
         image
     }
 
-    /// The mean over pixels of the variance of a pixel's estimate, averaged over channels: the square of the RMSE to expect.
-    pub fn mean_variance(&self) -> f64 {
-        let mut total = 0.0;
-        for pixel in &self.pixels {
-            let n = f64::from(pixel.count);
-            if pixel.count >= 2 {
-                for channel in 0..3 {
-                    let spread = (pixel.square[channel] - pixel.sum[channel] * pixel.sum[channel] / n).max(0.0);
-                    total += spread / (n * (n - 1.0));
-                }
-            }
-        }
-        total / (3.0 * self.pixels.len() as f64)
-    }
-
     /// SHA-256 over size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero does not count.
     pub fn checksum(&self) -> String {
         let mut hash = Fingerprint::default();

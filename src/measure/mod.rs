@@ -3,9 +3,12 @@
 //! [`Settings`] say what to render, in which pieces, and who does it; [`Setup::prepare`] checks them; [`Setup::run`] renders, times and
 //! verifies; the result is a film, a [`Trace`] and a [`Record`]. [`Rounds`] add more samples to a film that is there. [`calibrate`] times strategies on empty jobs, for the simulator.
 
+mod adaptive;
 mod calibration;
+mod checkpoint;
 mod chrome_trace;
 mod external;
+mod goal;
 mod ledger;
 mod machine;
 mod output;
@@ -21,8 +24,10 @@ mod usage;
 mod warning;
 
 pub use calibration::{CalibrationRow, calibrate};
+pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;
 pub use external::{ExternalRun, missing_external, run_external};
+pub use goal::{Between, CONFIDENCE, Goal, Progress};
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};

@@ -47,6 +47,14 @@ pub struct Record {
     pub accelerator: String,
     /// After so many bounces paths were cut; empty if only their throughput ended them.
     pub max_depth: Option<u16>,
+    /// Whether tiles had as many samples as their noise called for; `spp` is their mean then.
+    pub adaptive: bool,
+    /// RMSE at which the render was to stop; empty if it went by samples or time alone.
+    pub target_error: Option<f64>,
+    /// Seconds of rendering after which it was to stop.
+    pub time_limit_s: Option<f64>,
+    /// How often jobs were handed out.
+    pub rounds: Option<u32>,
     /// Whether an option was on that changes what the image converges to.
     pub biased: bool,
     /// How the film was cut.
@@ -115,6 +123,8 @@ pub struct Record {
     pub truncated: Option<u64>,
     /// Samples that were NaN, infinite or negative.
     pub invalid_samples: Option<u64>,
+    /// RMSE in linear radiance as the samples' own variance tells it; too large where samples are stratified.
+    pub estimated_rmse: Option<f64>,
     /// Mean squared error in linear radiance, cross form: free of the reference's noise, and so sometimes below zero.
     pub mse: Option<f64>,
     /// Its square root, where there is one.
@@ -231,6 +241,9 @@ impl Record {
         let counts = &outcome.counts;
         let mut record = described(setup.settings()).with_errors(errors);
         record.spp = outcome.spp;
+        record.adaptive = outcome.adaptive;
+        record.rounds = Some(outcome.rounds);
+        record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());
         record.started_utc.clone_from(&outcome.started_utc);
         record.scene.clone_from(&setup.scene().name);
         record.scene_hash.clone_from(&setup.scene().hash);

@@ -1,13 +1,13 @@
 //! Several rounds into one film: first some samples a pixel, then more. The film is the one that all samples at once give, bit for bit.
 //!
 //! Each round is a plan of its own for the same strategy, which is made once. Only rendering is timed. Rounds that end inside a block of
-//! [`SAMPLE_BLOCK`] samples are possible, but what they rendered of that block is rendered again by the next.
+//! [`crate::film::SAMPLE_BLOCK`] samples are possible, but what they rendered of that block is rendered again by the next.
 
 use super::run::{Account, RoundTimes, Watch};
 use super::settings::check_spp;
 use super::{Outcome, Setup};
 use crate::error::{InputError, Result};
-use crate::film::{Film, FilmKey, GrowingFilm, SAMPLE_BLOCK};
+use crate::film::{Film, FilmKey, GrowingFilm};
 
 /// A render that can go on.
 pub struct Rounds {
@@ -20,17 +20,17 @@ impl Rounds {
     /// Nothing rendered yet. The samples that the settings ask for do not matter.
     pub fn new(setup: Setup) -> Result<Self> {
         let spec = &setup.settings().spec;
-        let film = GrowingFilm::new(spec.width, spec.height);
-        Self::from_film(setup, film)
-    }
-
-    /// Goes on with a film of the same settings.
-    pub fn from_film(setup: Setup, film: GrowingFilm) -> Result<Self> {
-        if setup.settings().spec.subpixel_clamp {
+        if spec.subpixel_clamp {
             let problem = "needs all samples of a pixel at once, and so cannot be rendered in rounds";
             return Err(InputError::new("subpixel-clamp", "true", problem).into());
         }
+        let film = GrowingFilm::new(spec.width, spec.height);
         Ok(Self { setup, account: Account::new(), film })
+    }
+
+    /// Goes on with a film of the same settings instead of what was rendered so far.
+    pub fn adopt(&mut self, film: GrowingFilm) {
+        self.film = film;
     }
 
     /// Renders until there are `spp` samples a pixel. If there are as many already nothing happens: films do not shrink.
@@ -48,11 +48,6 @@ impl Rounds {
         Ok(self.account.last)
     }
 
-    /// How many jobs a round to `spp` samples would have.
-    pub fn jobs(&self, spp: u32) -> usize {
-        self.film.missing(spp).len() * self.setup.jobs_per_section()
-    }
-
     /// What was asked for.
     pub fn setup(&self) -> &Setup {
         &self.setup
@@ -61,11 +56,6 @@ impl Rounds {
     /// Samples per pixel so far.
     pub fn spp(&self) -> u32 {
         self.film.spp()
-    }
-
-    /// Whether the next round can go on where the last one ended, without rendering samples again.
-    pub fn is_at_block(&self) -> bool {
-        self.spp().is_multiple_of(SAMPLE_BLOCK)
     }
 
     /// The sums of all samples so far.
@@ -83,9 +73,9 @@ impl Rounds {
         FilmKey { spp: self.spp(), ..self.setup.film_key() }
     }
 
-    /// Seconds of rendering so far, the putting together left out.
-    pub fn makespan_s(&self) -> f64 {
-        self.account.makespan_s
+    /// What was asked for, when there are no more rounds.
+    pub fn into_setup(self) -> Setup {
+        self.setup
     }
 
     /// What all rounds came to.

@@ -9,6 +9,7 @@ use crate::film::{Film, Plan};
 use crate::kernel::{Counts, Kernel};
 use crate::strategy::Strategy;
 use std::ops::Range;
+use std::slice::from_ref;
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant, SystemTime};
@@ -27,8 +28,12 @@ pub type Watch<'a> = Option<&'a (dyn Fn(u64) + Sync)>;
 pub struct Outcome {
     /// The image's sums.
     pub film: Film,
-    /// Samples per pixel.
+    /// Samples per pixel; their mean if the run was adaptive.
     pub spp: u32,
+    /// Whether tiles had as many samples as their noise called for.
+    pub adaptive: bool,
+    /// How often jobs were handed out.
+    pub rounds: u32,
     /// The pieces, in the order in which they were handed out.
     pub plan: Arc<Plan>,
     /// Who did what when. Where there were several rounds, the time between them is left out.
@@ -70,9 +75,8 @@ impl Setup {
     /// Renders, times and verifies.
     pub fn run(&self, watch: Watch<'_>) -> Result<Outcome> {
         let (spec, spp) = (&self.settings().spec, self.settings().spp);
-        let sections = [0..spp];
         let mut account = Account::new();
-        let films = account.round(self, self.plan(), &sections, watch)?;
+        let films = account.round(self, self.plan(), from_ref(&(0..spp)), watch)?;
         let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
         Ok(account.outcome(self, spp, film))
     }
@@ -94,6 +98,7 @@ pub struct RoundTimes {
 /// What all rounds of a run came to so far. The strategy is made for the first and kept.
 pub(super) struct Account {
     strategy: Option<Box<dyn Strategy>>,
+    rounds: u32,
     plan: Plan,
     spans: Vec<JobSpan>,
     job_counts: Vec<Counts>,
@@ -114,6 +119,7 @@ impl Account {
     pub(super) fn new() -> Self {
         Self {
             strategy: None,
+            rounds: 0,
             plan: Plan::default(),
             spans: Vec::new(),
             job_counts: Vec::new(),
@@ -176,12 +182,14 @@ impl Account {
             (self.asked, self.workers_used) = (asked, workers);
         }
         let offset_s = self.makespan_s;
+        self.rounds += 1;
         self.spans.extend(entries.iter().map(|entry| entry.span.later_by(offset_s)));
         self.job_counts.extend(entries.iter().map(|entry| entry.counts));
         self.plan.append(&plan);
         self.makespan_s += timed.makespan_s;
         self.merge_s += merge_s;
-        self.cpu = if offset_s == 0.0 { timed.cpu } else { self.cpu.zip(timed.cpu).map(|(sum, more)| sum.plus(&more)) };
+        self.cpu =
+            if self.rounds == 1 { timed.cpu } else { self.cpu.zip(timed.cpu).map(|(sum, more)| sum.plus(&more)) };
         self.last = RoundTimes {
             makespan_s: timed.makespan_s,
             merge_s,
@@ -207,6 +215,8 @@ impl Account {
             warnings,
             film,
             spp,
+            adaptive: false,
+            rounds: self.rounds,
             plan: Arc::new(self.plan.clone()),
             trace: Trace { jobs: self.spans.clone() },
             job_counts: self.job_counts.clone(),

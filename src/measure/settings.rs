@@ -77,15 +77,20 @@ pub fn strategy_named(text: &str) -> Result<(&'static Entry, Option<String>)> {
     }
 }
 
+/// Samples per pixel are a multiple of this.
+pub(super) fn spp_multiple(estimator: &str) -> u32 {
+    ESTIMATORS.iter().find(|entry| entry.name == estimator).map_or(1, |entry| entry.spp_multiple)
+}
+
 /// Refuses numbers of samples that no image of the estimator can have.
 pub(super) fn check_spp(spp: u32, estimator: &str) -> Result<()> {
     if !(1..=LARGEST_SPP).contains(&spp) {
         let allowed = format!("1 to {LARGEST_SPP}");
         return Err(InputError::new("spp", spp.to_string(), "is out of range").allowed(allowed).into());
     }
-    let multiple = ESTIMATORS.iter().find(|entry| entry.name == estimator).map_or(1, |entry| entry.spp_multiple);
+    let multiple = spp_multiple(estimator);
     if !spp.is_multiple_of(multiple) {
-        let problem = format!("is no multiple of {multiple}, which {} needs for its subpixels", estimator);
+        let problem = format!("is no multiple of {multiple}, which {estimator} needs for its subpixels");
         let near = spp.next_multiple_of(multiple);
         let below = near - multiple;
         let allowed = if below == 0 { near.to_string() } else { format!("{below} or {near}") };

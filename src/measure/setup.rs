@@ -77,6 +77,11 @@ impl Setup {
         &self.scene
     }
 
+    /// The scene, to be kept.
+    pub(super) fn shared_scene(&self) -> &Arc<Scene> {
+        &self.scene
+    }
+
     /// Name of the effect profile.
     pub fn effects(&self) -> &'static str {
         self.choice.effects()
@@ -94,13 +99,12 @@ impl Setup {
 
     /// The kernel, which the first to ask has to wait for, and how many seconds that took.
     pub(super) fn kernel(&self) -> Result<(Arc<dyn Kernel>, f64)> {
-        let built = match self.built.get() {
-            Some(built) => built,
-            None => {
-                let before = Instant::now();
-                let kernel = Arc::from(kernel::build(&self.scene, &self.settings.spec)?);
-                self.built.get_or_init(|| Built { kernel, build_s: before.elapsed().as_secs_f64() })
-            }
+        let built = if let Some(built) = self.built.get() {
+            built
+        } else {
+            let before = Instant::now();
+            let kernel = Arc::from(kernel::build(&self.scene, &self.settings.spec)?);
+            self.built.get_or_init(|| Built { kernel, build_s: before.elapsed().as_secs_f64() })
         };
         Ok((Arc::clone(&built.kernel), built.build_s))
     }
@@ -108,12 +112,6 @@ impl Setup {
     /// How many jobs there are.
     pub fn jobs(&self) -> usize {
         self.plan.len()
-    }
-
-    /// How many pieces a range of samples is cut into where none is cut by its samples.
-    pub(super) fn jobs_per_section(&self) -> usize {
-        let (width, height) = (self.settings.spec.width, self.settings.spec.height);
-        self.decomposition.plan(width, height, &(0..1)).len()
     }
 
     /// How many workers there will be: what was asked for, unless the strategy has its own rule.
@@ -146,6 +144,7 @@ impl Setup {
             width: spec.width,
             height: spec.height,
             max_depth: spec.max_depth,
+            adaptive: false,
             revision: kernel::REVISION,
         }
     }
@@ -172,8 +171,18 @@ impl Setup {
         for samples in sections {
             plan.append(&self.decomposition.plan(width, height, samples));
         }
-        check_jobs(plan.len(), self.strategy, &self.settings.decomposition)?;
+        self.check_jobs(plan.len())?;
         Ok(plan)
+    }
+
+    /// Refuses more jobs than the strategy may start threads.
+    pub(super) fn check_jobs(&self, jobs: usize) -> Result<()> {
+        check_jobs(jobs, self.strategy, &self.settings.decomposition)
+    }
+
+    /// How the film is cut.
+    pub(super) fn decomposition(&self) -> &Decomposition {
+        &self.decomposition
     }
 
     /// Whether the order of the pieces depends on what they cost.

@@ -128,7 +128,8 @@ pub(super) fn missing(results: &Results) -> Option<Block> {
         .map(|record| record.estimator.as_str())
         .collect();
     let list: Vec<&str> = names.into_iter().collect();
-    let text = format!("Left out, because the program is not there: {}. The definition says how it is made.", list.join(", "));
+    let text =
+        format!("Left out, because the program is not there: {}. The definition says how it is made.", list.join(", "));
     (!list.is_empty()).then_some(Block::Finding(text))
 }
 
@@ -145,9 +146,16 @@ pub(super) fn contenders(results: &Results) -> BTreeMap<String, Vec<Contender>> 
     // Of another program there is nothing but its name.
     let is_own = |record: &Record| record.strategy != EXTERNAL;
     let rows = || results.records.iter().filter(|record| record.mse.is_some());
-    let differs: Vec<bool> = parts.iter().map(|part| rows().filter(|row| is_own(row)).map(part).collect::<BTreeSet<_>>().len() > 1).collect();
+    let differs: Vec<bool> = parts
+        .iter()
+        .map(|part| rows().filter(|row| is_own(row)).map(part).collect::<BTreeSet<_>>().len() > 1)
+        .collect();
     let name = |record: &Record| {
-        let shown = parts.iter().zip(&differs).enumerate().filter(|(index, (_, differs))| *index == 0 || (**differs && is_own(record)));
+        let shown = parts
+            .iter()
+            .zip(&differs)
+            .enumerate()
+            .filter(|(index, (_, differs))| *index == 0 || (**differs && is_own(record)));
         let words: Vec<String> = shown.map(|(_, (part, _))| part(record)).filter(|word| !word.is_empty()).collect();
         words.join(" + ")
     };

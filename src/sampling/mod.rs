@@ -131,6 +131,11 @@ macro_rules! samplers {
             Some(visitor.visit(sampler))
         }
 
+        /// Whether the sampler of that name spreads a pixel's samples more evenly than chance does.
+        pub fn is_spread(name: &str) -> bool {
+            [$($spread),*].contains(&name)
+        }
+
         /// The sampler of that name that keeps a state, made for an image's seed; `None` if there is none. Kernels are compiled once for
         /// all of them: what a call through a table costs is little beside their locks.
         pub fn stateful_sampler(name: &str, seed: u64) -> Option<Box<dyn Sampler>> {

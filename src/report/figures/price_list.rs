@@ -93,9 +93,7 @@ fn short(value: f64) -> String {
 fn checked(all: &[&Contender]) -> Option<Block> {
     let checks: Vec<_> = all.iter().filter_map(|contender| Some((contender, contender.check()?))).collect();
     let worst = |of: &dyn Fn(&Check) -> f64| {
-        let far = |(contender, check): &(&&Contender, Check)| {
-            (contender.name.clone(), 100.0 * (of(check) - 1.0))
-        };
+        let far = |(contender, check): &(&&Contender, Check)| (contender.name.clone(), 100.0 * (of(check) - 1.0));
         checks.iter().map(far).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     };
     let ((by_error, error), (by_time, time)) = (worst(&|check| check.rmse)?, worst(&|check| check.seconds)?);
