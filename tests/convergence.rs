@@ -1,6 +1,7 @@
 //! How the error falls with the number of samples, and that the references' noise does not bend it.
 
-use pathmark::analysis::slope::clustered;
+use pathmark::analysis::jackknife::{Curve, SeedCurves};
+use pathmark::analysis::slope::power_law;
 use pathmark::experiment::reference_seed;
 use pathmark::image_io::Image;
 use pathmark::kernel::Spec;
@@ -24,12 +25,12 @@ fn render(spp: u32, seed: u64) -> Image {
 #[test]
 fn the_error_falls_with_the_root_of_the_samples() {
     let halves = [0, 1].map(|half| render(1000, reference_seed(half)));
-    let curve = |seed: u64| -> Vec<(f64, f64)> {
+    let curve = |seed: u64| -> Curve {
         let error = |spp: u32| cross_mse(&render(spp, seed), &halves[0], &halves[1]).unwrap();
-        [4, 12, 36, 100].map(|spp| (f64::from(spp), error(spp).sqrt())).to_vec()
+        [4, 12, 36, 100].map(|spp| (f64::from(spp), error(spp))).to_vec()
     };
-    let curves: Vec<Vec<(f64, f64)>> = (1..=10).map(curve).collect();
-    let law = clustered(&curves, 0.95).unwrap();
+    let curves: Vec<Curve> = (1..=10).map(curve).collect();
+    let law = power_law(&SeedCurves::of_errors(&curves).unwrap(), 0.95).unwrap();
     let (slope, interval) = (law.exponent.value, law.exponent.interval);
     assert!((slope + 0.5).abs() < 0.03, "slope {slope}");
     assert!(interval.contains(-0.5), "slope {slope}, interval {interval:?}");

@@ -1,7 +1,9 @@
 //! Metrics against numbers that can be worked out by hand.
 
 use pathmark::image_io::{self, Image, tone_map};
-use pathmark::metric::{self, METRICS, REL_MSE_EPSILON, cross_mse, cross_mse_display, heatmap, root};
+use pathmark::metric::{
+    self, METRICS, REL_MSE_EPSILON, bias_squared, cross_mse, cross_mse_display, cross_rel_mse, heatmap, root,
+};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
@@ -44,6 +46,7 @@ fn a_constant_offset_is_its_own_error() {
         let test = map(&reference, |v| v + offset);
         assert_close(value("rmse", &test, &reference), 0.25);
         assert_close(value("mae", &test, &reference), 0.25);
+        assert_close(value("mse", &test, &reference), 0.0625);
     }
     // One channel of one of four pixels is 3 off: sqrt(9 / 12) and 3 / 12.
     let reference = Image::new(2, 2);
@@ -178,6 +181,52 @@ fn the_cross_form_does_not_see_the_noise_of_the_references() {
     assert!((display - 1.0).abs() < 0.1, "nearly unbiased: {display}");
 }
 
+/// M03, with references of only four times the test's samples, so a quarter of its variance each: measured plainly the RMSE is
+/// sqrt(1 + 1/4) times the truth, in the cross form it is right.
+#[test]
+fn a_reference_of_four_times_the_samples_is_enough_for_the_cross_form() {
+    let truth = scene(256, 192);
+    let mut random = Pcg64Mcg::new(5);
+    let sigma = 0.05;
+    let test = noisy(&truth, sigma, &mut random);
+    let halves = [noisy(&truth, 0.5 * sigma, &mut random), noisy(&truth, 0.5 * sigma, &mut random)];
+    let cross = root(cross_mse(&test, &halves[0], &halves[1]).unwrap()).unwrap() / sigma;
+    let naive = value("rmse", &test, &halves[0]) / sigma;
+    let relative = |image: &Image| cross_rel_mse(image, &halves[0], &halves[1]).unwrap();
+    let exact = value("rel-mse", &test, &truth);
+    assert!((relative(&test) / exact - 1.0).abs() < 0.02, "{} {exact}", relative(&test));
+    // 147456 values: a standard deviation of 0.2 %.
+    assert!((cross - 1.0).abs() < 0.01, "{cross}");
+    assert!(naive > 1.1 && (naive - 1.25_f64.sqrt()).abs() < 0.01, "{naive}");
+}
+
+#[test]
+fn two_tests_and_two_references_leave_the_bias_alone() {
+    let truth = scene(256, 192);
+    let mut random = Pcg64Mcg::new(6);
+    let (sigma, bias) = (0.1, 0.05);
+    let biased = map(&truth, |v| v + bias);
+    let [t1, t2, r1, r2] = [&biased, &biased, &truth, &truth].map(|image| noisy(image, sigma, &mut random));
+    let found = bias_squared([&t1, &t2], [&r1, &r2]).unwrap();
+    // The mean of 147456 products of deviation 2 sigma^2: 5e-5, and of bias times noise 4e-5.
+    assert!((found - bias * bias).abs() < 3e-4, "{found}");
+    let without = bias_squared([&noisy(&truth, sigma, &mut random), &t2], [&r1, &r2]).unwrap();
+    assert!(without.abs() < 3e-4, "one of the two without bias: {without}");
+}
+
+#[test]
+fn percentiles_count_pixels() {
+    let reference = Image::new(20, 10);
+    let mut test = reference.clone();
+    for (index, pixel) in test.pixels.iter_mut().enumerate() {
+        // Errors 1 to 200 in another order, all in one channel and so divided by the root of 3.
+        *pixel = [0.0, ((index * 77) % 200 + 1) as f64 * 3.0_f64.sqrt(), 0.0];
+    }
+    for (name, expected) in [("error-50", 100.0), ("error-90", 180.0), ("error-99", 198.0), ("error-100", 200.0)] {
+        assert_close(value(name, &test, &reference), expected);
+    }
+}
+
 #[test]
 fn a_negative_cross_error_has_no_root() {
     let zero = Image::new(2, 2);
@@ -206,14 +255,19 @@ fn pictures_of_two_sizes_are_refused_with_both() {
     let (a, b) = (Image::new(4, 3), Image::new(3, 4));
     let mut errors: Vec<_> = METRICS.iter().map(|entry| entry.compute(&a, &b).unwrap_err()).collect();
     errors.push(cross_mse(&a, &a, &b).unwrap_err());
+    errors.push(bias_squared([&a, &a], [&a, &b]).unwrap_err());
     errors.push(cross_mse_display(&a, &b, &a).unwrap_err());
+    errors.push(cross_rel_mse(&a, &a, &b).unwrap_err());
     errors.push(heatmap(&a, &b, None).unwrap_err());
     for error in errors {
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("4x3") && error.to_string().contains("3x4"), "{error}");
     }
     let error = metric::find("flip").unwrap_err().to_string();
-    assert!(error.contains("rmse, rel-mse, mae, rmse-display, psnr, ssim"), "{error}");
+    assert!(
+        error.contains("mse, rmse, rel-mse, mae, error-50, error-90, error-99, error-100, rmse-display, psnr, ssim"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -216,3 +216,39 @@ fn resuming_with_another_definition_or_machine_is_refused() {
         refused(&RESUME, &format!("{field} = another"));
     }
 }
+
+/// A curve gives a row at 4, 8, 16, 32 and 40 samples, each with the checksum of an image rendered at once: the second matrix has those. Cut off among
+/// its rows and resumed, it has all of them once.
+#[test]
+fn a_curve_cut_off_among_its_rows_is_resumed() {
+    let curve = TINY
+        .replace("spp = [4]", "spp = [40]\ncurve = true")
+        .replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
+    let (head, scales) = curve.split_once("[quick]").unwrap();
+    let (head, matrix) = head.split_once("[matrix]").unwrap();
+    let single = matrix.replace("spp = [40]\ncurve = true", "spp = [4, 8, 16, 32, 40]");
+    let text = format!("{head}[[matrix]]{matrix}[[matrix]]{single}[quick]{scales}");
+    let (folder, records) = prepared(&text);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let expected = results(&records);
+    assert_eq!(expected.len(), (5 + 5) * 3);
+    let spp: Vec<u32> = rows(&records)
+        .iter()
+        .filter(|row| row["cell"].ends_with("curve-40") && row["repetition"] == "0")
+        .map(|row| row["spp"].parse().unwrap())
+        .collect();
+    assert_eq!(spp, [4, 8, 16, 32, 40]);
+    let seconds: Vec<f64> = rows(&records)
+        .iter()
+        .filter(|row| row["cell"].ends_with("curve-40") && row["repetition"] == "1" && row["spp"] != "4")
+        .map(|row| row["makespan_s"].parse().unwrap())
+        .collect();
+    assert!(seconds[1] < seconds[2] && seconds[2] < seconds[3], "cumulative: {seconds:?}");
+
+    let whole = fs::read_to_string(&records).unwrap();
+    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+    let inside = lines.windows(2).position(|pair| pair.iter().all(|line| line.contains("curve-40"))).unwrap() + 1;
+    fs::write(&records, lines[..inside].concat()).unwrap();
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    assert_eq!(results(&records), expected);
+}

@@ -1,7 +1,7 @@
 //! Who renders what when, in which pieces and delivered how, changes no bit (METHODOLOGY, Determinism).
 
 use pathmark::kernel::Spec;
-use pathmark::measure::{OUTPUTS, Outcome, Settings, Setup};
+use pathmark::measure::{OUTPUTS, Outcome, Rounds, Settings, Setup};
 use pathmark::sampling::SAMPLERS;
 use pathmark::scene::{Scene, load};
 use pathmark::strategy::{STRATEGIES, Workers};
@@ -70,6 +70,69 @@ fn outputs() {
             }
         }
     }
+}
+
+/// The rounds: up to one of the numbers of samples after the other. The last is [`SPP`], so that the expected film is the same.
+fn run_in_rounds(settings: Settings, rounds: &[u32]) -> Outcome {
+    let mut film = Rounds::new(Setup::for_scene(Arc::clone(&SCENE), settings).unwrap()).unwrap();
+    for &spp in rounds {
+        let times = film.extend_to(spp, None).unwrap();
+        assert_eq!((film.spp(), times.paths > 0), (spp, true));
+    }
+    film.outcome()
+}
+
+/// Several rounds give the bits of one, whoever renders them in which pieces, wherever they end.
+#[test]
+fn rounds() {
+    let expected = run(settings());
+    for strategy in STRATEGIES {
+        for decomposition in DECOMPOSITIONS {
+            let what = format!("{} on {decomposition}", strategy.name);
+            let (strategy, decomposition) = (strategy.name.into(), decomposition.into());
+            let found = run_in_rounds(Settings { strategy, threads: 3, decomposition, ..settings() }, &[16, SPP]);
+            assert_same(&found, &expected, &what);
+        }
+    }
+    for output in OUTPUTS {
+        let settings = Settings { output: output.name.into(), threads: 3, ..settings() };
+        assert_same(&run_in_rounds(settings, &[32, SPP]), &expected, output.name);
+    }
+    // Rounds that end inside a block render its samples again, so that only the image is the same.
+    for rounds in [&[4, 8, 12, 16, 20, SPP][..], &[4, 36, SPP], &[20, 28, SPP]] {
+        assert_eq!(run_in_rounds(settings(), rounds).film, expected.film, "{rounds:?}");
+    }
+}
+
+/// Samples where the noise is: as many in each pixel, and the same bits, whoever renders them in which pieces.
+#[test]
+fn adaptive() {
+    let run = |settings| Setup::for_scene(Arc::clone(&SCENE), settings).unwrap().run_adaptive(None).unwrap();
+    let expected = run(settings());
+    for strategy in STRATEGIES {
+        for decomposition in DECOMPOSITIONS {
+            let what = format!("{} on {decomposition}", strategy.name);
+            let (strategy, decomposition) = (strategy.name.into(), decomposition.into());
+            assert_same(&run(Settings { strategy, threads: 3, decomposition, ..settings() }), &expected, &what);
+        }
+    }
+    for output in OUTPUTS {
+        assert_same(&run(Settings { output: output.name.into(), threads: 3, ..settings() }), &expected, output.name);
+    }
+}
+
+/// What rounds cannot render they refuse, and a film never shrinks.
+#[test]
+fn rounds_refuse() {
+    let prepared = |settings| Setup::for_scene(Arc::clone(&SCENE), settings).unwrap();
+    let clamped = Settings { spec: Spec { subpixel_clamp: true, ..settings().spec }, ..settings() };
+    assert!(Rounds::new(prepared(clamped)).is_err());
+    let mut film = Rounds::new(prepared(settings())).unwrap();
+    assert!(film.extend_to(18, None).is_err() && film.extend_to(0, None).is_err() && film.spp() == 0);
+    film.extend_to(20, None).unwrap();
+    let before = film.film();
+    assert_eq!(film.extend_to(16, None).unwrap().paths, 0);
+    assert_eq!((film.spp(), film.film()), (20, before));
 }
 
 /// A sampler that is said not to be deterministic gives no checksum, and one that is said to be gives the same twice.

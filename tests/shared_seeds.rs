@@ -4,7 +4,7 @@
 #[path = "support/program.rs"]
 mod program;
 
-use pathmark::experiment::{CellJob, reference_seed};
+use pathmark::experiment::{CellJob, PointJob, reference_seed};
 use pathmark::kernel::Spec;
 use pathmark::measure::Settings;
 use program::{Finished, finish, pathmark, wait};
@@ -25,7 +25,7 @@ fn halves(folder: &Path) -> [PathBuf; 2] {
 fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
     let job = CellJob {
         experiment: "shared-seeds".to_string(),
-        cell: "one".to_string(),
+        points: vec![PointJob { cell: "one".to_string(), spp: 4, image: None }],
         repetition: 0,
         order: 0,
         settings: Settings {
@@ -38,7 +38,7 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
             ..Settings::default()
         },
         references: Some(references),
-        image: None,
+        external: None,
         trace: None,
     };
     let mut command = pathmark(folder, &["cell"]);

@@ -39,6 +39,30 @@ pub struct Estimate {
     pub interval: Interval,
 }
 
+impl Estimate {
+    /// The product of two independent estimates of positive numbers: the ends of the intervals, taken as distances of logarithms, add up as
+    /// errors do. `None` for a number or an end that is not positive, or two levels.
+    pub fn times(&self, other: &Self) -> Option<Self> {
+        let level = Some(self.interval.level).filter(|&level| level == other.interval.level)?;
+        let ends = |estimate: &Self| {
+            let all = [estimate.interval.low, estimate.value, estimate.interval.high];
+            all.iter().all(|&end| end > 0.0).then(|| all.map(libm::log))
+        };
+        let ([low, value, high], [other_low, other_value, other_high]) = (ends(self)?, ends(other)?);
+        let centre = value + other_value;
+        let (down, up) =
+            (libm::hypot(value - low, other_value - other_low), libm::hypot(high - value, other_high - other_value));
+        let interval = Interval::between(libm::exp(centre - down), libm::exp(centre + up), level)?;
+        Some(Self { value: libm::exp(centre), interval })
+    }
+
+    /// One over it; `None` for a number or an end that is not positive.
+    pub fn inverse(&self) -> Option<Self> {
+        let interval = Interval::between(1.0 / self.interval.high, 1.0 / self.interval.low, self.interval.level)?;
+        (self.value > 0.0 && self.interval.low > 0.0).then(|| Self { value: 1.0 / self.value, interval })
+    }
+}
+
 /// Whether `level` can be a confidence: in (0, 1), ends excluded.
 pub(crate) fn is_level(level: f64) -> bool {
     level > 0.0 && level < 1.0
@@ -66,5 +90,23 @@ mod tests {
         assert_eq!(Interval::around(1.0, f64::INFINITY, 0.95), None);
         assert_eq!(Interval::between(2.0, 1.0, 0.95), None);
         assert!(!is_level(0.0) && !is_level(1.0) && !is_level(f64::NAN) && is_level(0.95));
+    }
+
+    #[test]
+    fn errors_of_factors_add_up_in_squares() {
+        // 30 % and 40 % up make a factor of exp of the root of the sum of squared logarithms.
+        let estimate = |value: f64, factor: f64| Estimate {
+            value,
+            interval: Interval { low: value / factor, high: value * factor, level: 0.95 },
+        };
+        let product = estimate(2.0, libm::exp(0.3)).times(&estimate(5.0, libm::exp(0.4))).unwrap();
+        assert!((product.value - 10.0).abs() < 1e-12 && (product.interval.high - 10.0 * libm::exp(0.5)).abs() < 1e-12);
+        assert!((product.interval.low - 10.0 * libm::exp(-0.5)).abs() < 1e-12);
+        let inverse = product.inverse().unwrap();
+        assert!(
+            (inverse.value - 0.1).abs() < 1e-15 && (inverse.interval.high * product.interval.low - 1.0).abs() < 1e-12
+        );
+        let zero = Estimate { value: 0.0, interval: Interval { low: -1.0, high: 1.0, level: 0.95 } };
+        assert_eq!((zero.times(&product), product.times(&zero), zero.inverse()), (None, None, None));
     }
 }

@@ -3,7 +3,6 @@
 //! The recurrence is B. P. Welford, "Note on a method for calculating corrected sums of squares and products", Technometrics 4
 //! (1962): it keeps its digits where the difference of two sums of squares loses them.
 
-use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::interval::{Estimate, Interval, is_level};
@@ -82,63 +81,6 @@ pub fn t_interval(values: &[f64], level: f64) -> Option<Estimate> {
     Some(Estimate { value, interval: Interval::around(value, half_width, level)? })
 }
 
-/// On which scale an interval of the RMSE was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RmseMethod {
-    /// t-interval of the mean squared error, then the square root of its ends.
-    Mse,
-    /// Interval of a log-normal mean squared error, for seeds that scatter widely.
-    LogMse,
-}
-
-/// Root mean squared error over several seeds.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Rmse {
-    /// Square root of the mean of the seeds' MSE, and its interval.
-    pub estimate: Estimate,
-    /// How the interval was made.
-    pub method: RmseMethod,
-    /// Standard deviation of the seeds' MSE over their mean.
-    pub variation: f64,
-}
-
-/// Above this coefficient of variation the t-interval of the MSE covers noticeably less than it says.
-pub const LOG_ABOVE_VARIATION: f64 = 0.3;
-
-/// The RMSE from one MSE a seed. `None` below two seeds, for equal MSE, or for one that is not positive and finite.
-///
-/// The t-interval of the MSE is used while the seeds agree. When their coefficient of variation exceeds
-/// [`LOG_ABOVE_VARIATION`], the MSE is taken to be log-normal, and the interval is U. Olsson's modified Cox interval of a log-normal
-/// mean, "Confidence intervals for the mean of a log-normal distribution", Journal of Statistics Education 13 (2005):
-/// m + s^2/2 +- t sqrt(s^2/n + s^4/(2 (n - 1))), with m and s those of ln MSE.
-pub fn rmse_interval(mse: &[f64], level: f64) -> Option<Rmse> {
-    if mse.iter().any(|&value| !(value > 0.0 && value.is_finite())) {
-        return None;
-    }
-    let plain = t_interval(mse, level)?;
-    let variation = Moments::of(mse).sample_variance()?.sqrt() / plain.value;
-    let (method, of_mse) = if variation > LOG_ABOVE_VARIATION {
-        (RmseMethod::LogMse, log_normal_mean(mse, level)?)
-    } else {
-        (RmseMethod::Mse, plain.interval)
-    };
-    // A few seeds that just agree to 30 % can have a lower end below zero, where an MSE can't be.
-    let interval = Interval::between(of_mse.low.max(0.0).sqrt(), of_mse.high.sqrt(), level)?;
-    Some(Rmse { estimate: Estimate { value: plain.value.sqrt(), interval }, method, variation })
-}
-
-/// The modified Cox interval of the mean of positive, log-normal values.
-fn log_normal_mean(values: &[f64], level: f64) -> Option<Interval> {
-    let logs: Vec<f64> = values.iter().map(|&value| libm::log(value)).collect();
-    let moments = Moments::of(&logs);
-    let (n, variance) = (logs.len() as f64, moments.sample_variance()?);
-    let centre = moments.mean()? + 0.5 * variance;
-    let standard_error = (variance / n + variance * variance / (2.0 * (n - 1.0))).sqrt();
-    let half_width = t_quantile(level, logs.len() - 1)? * standard_error;
-    Interval::between(libm::exp(centre - half_width), libm::exp(centre + half_width), level)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,33 +133,6 @@ mod tests {
     }
 
     #[test]
-    fn rmse_of_agreeing_seeds_is_the_root_of_the_t_interval() {
-        let mse = [0.9, 1.0, 1.1, 1.05, 0.95];
-        let rmse = rmse_interval(&mse, 0.95).unwrap();
-        let plain = t_interval(&mse, 0.95).unwrap();
-        assert_eq!(rmse.method, RmseMethod::Mse);
-        assert!((rmse.estimate.value - plain.value.sqrt()).abs() < 1e-12);
-        assert!((rmse.estimate.interval.high - plain.interval.high.sqrt()).abs() < 1e-12);
-    }
-
-    #[test]
-    fn rmse_of_scattered_seeds_covers_better_on_the_log_scale() {
-        // Log-normal MSE with coefficient of variation 1 (sigma^2 = ln 2), five seeds: the plain t-interval covers 85.8 %.
-        let sigma = std::f64::consts::LN_2.sqrt();
-        let truth = std::f64::consts::SQRT_2.sqrt();
-        let mut generator = Pcg64Dxsm::new(3, 7);
-        let (mut hits, mut plain_hits) = (0, 0);
-        for _ in 0..4000 {
-            let mse: Vec<f64> = (0..5).map(|_| libm::exp(sigma * normal(&mut generator))).collect();
-            hits += usize::from(rmse_interval(&mse, 0.95).unwrap().estimate.interval.contains(truth));
-            plain_hits += usize::from(t_interval(&mse, 0.95).unwrap().interval.contains(truth * truth));
-        }
-        let (share, plain_share) = (f64::from(hits as u32) / 4000.0, f64::from(plain_hits as u32) / 4000.0);
-        assert!((plain_share - 0.858).abs() < 0.015, "{plain_share}");
-        assert!((0.93..0.985).contains(&share), "{share}");
-    }
-
-    #[test]
     fn degenerate_input_has_no_answer() {
         assert_eq!(Moments::default().mean(), None);
         assert_eq!(Moments::of(&[1.0]).sample_variance(), None);
@@ -230,8 +145,5 @@ mod tests {
         assert_eq!(t_interval(&[1.0, f64::NAN], 0.95), None);
         assert_eq!(t_interval(&[1.0, 2.0], 1.0), None);
         assert_eq!(t_quantile(0.95, 0), None);
-        assert_eq!(rmse_interval(&[1.0, 0.0], 0.95), None);
-        assert_eq!(rmse_interval(&[1.0, 1.0], 0.95), None);
-        assert_eq!(rmse_interval(&[f64::NAN, 1.0], 0.95), None);
     }
 }

@@ -7,12 +7,14 @@ mod bounces;
 mod compare;
 mod list;
 mod output;
+mod price;
 mod progress;
 mod reference;
 mod render;
 mod replay;
 mod report;
 mod reproduce;
+mod rounds;
 mod run;
 mod simulate;
 mod trace;
@@ -43,6 +45,8 @@ enum Verb {
     Run(run::Arguments),
     /// Measure the error of an image against a reference image.
     Compare(compare::Arguments),
+    /// Predict what accuracies cost in samples and seconds, and check it by paying.
+    Price(price::Arguments),
     /// Render the two half-references of a scene.
     Reference(reference::Arguments),
     /// Draw the figures and the page again from the records in a folder.
@@ -71,6 +75,7 @@ pub fn main() -> ExitCode {
         Verb::Render(arguments) => render::run(&arguments, &talk),
         Verb::Run(arguments) => run::run(&arguments, &talk),
         Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Price(arguments) => price::run(&arguments, &talk),
         Verb::Reference(arguments) => reference::run(&arguments, &talk),
         Verb::Report(arguments) => report::run(&arguments),
         Verb::Simulate(arguments) => simulate::run(&arguments, &talk),

@@ -4,7 +4,7 @@ use super::axes::parse_size;
 use super::output::print;
 use super::progress::Talk;
 use crate::error::{Error, Result};
-use crate::experiment::{Reference, render_reference};
+use crate::experiment::{Reference, ReferenceError, check_until, refine_reference, render_reference};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -14,8 +14,11 @@ pub(super) struct Arguments {
     /// A scene of `pathmark list scenes`, or the path of a .toml file
     scene: String,
     /// Samples per pixel of each half
-    #[arg(long, value_name = "N")]
-    spp: u32,
+    #[arg(long, value_name = "N", required_unless_present = "until", conflicts_with = "until")]
+    spp: Option<u32>,
+    /// Double both halves until the estimated RMSE of their average is at most this; goes on from what is cached
+    #[arg(long, value_name = "RMSE", allow_negative_numbers = true)]
+    until: Option<f64>,
     /// Columns and rows
     #[arg(long, value_name = "WxH", default_value = "512x384")]
     size: String,
@@ -30,6 +33,9 @@ pub(super) struct Arguments {
     out: PathBuf,
 }
 
+/// Where refining starts.
+const FIRST_SPP: u32 = 16;
+
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let (width, height) = parse_size(&arguments.size)?;
     let reference = Reference {
@@ -37,13 +43,16 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         estimator: arguments.estimator.clone(),
         sampler: arguments.sampler.clone(),
         size: [width, height],
-        spp: arguments.spp,
+        spp: arguments.spp.unwrap_or(FIRST_SPP),
     };
+    arguments.until.map_or(Ok(()), check_until)?;
     reference.check()?;
     reference.check_cache(&arguments.out)?;
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
-    let [(first, a), (second, b)] = render_reference(&reference, &arguments.out, talk)?;
-    // The variance of the average of two independent halves is a quarter of the sum of theirs.
-    let noise = ((a.mean_variance() + b.mean_variance()) / 4.0).sqrt();
-    print(&format!("{}\n{}\nestimated RMSE of their average: {noise:.3e}", first.display(), second.display()))
+    let halves = match arguments.until {
+        Some(rmse) => refine_reference(&reference, rmse, &arguments.out, talk)?,
+        None => render_reference(&reference, &arguments.out, talk)?,
+    };
+    let [(first, a), (second, b)] = &halves;
+    print(&format!("{}\n{}\n{}", first.display(), second.display(), ReferenceError::of(a, b)))
 }

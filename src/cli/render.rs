@@ -3,11 +3,12 @@
 use super::axes::Axes;
 use super::output::{print, print_json};
 use super::progress::Talk;
+use super::rounds;
 use crate::atomic_file;
 use crate::error::Result;
 use crate::experiment::Progress;
 use crate::image_io;
-use crate::measure::{Measured, Record, Setup, TraceFile};
+use crate::measure::{Measured, Outcome, Record, Setup, TraceFile};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -16,9 +17,14 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A scene of `pathmark list scenes`, or the path of a .toml file
     scene: String,
-    /// Samples per pixel
-    #[arg(long, value_name = "N", default_value_t = 16)]
-    spp: u32,
+    /// Samples per pixel [default: 16]
+    #[arg(long, value_name = "N", conflicts_with_all = ["target_error", "time_limit"])]
+    spp: Option<u32>,
+    #[command(flatten)]
+    rounds: rounds::Until,
+    /// Give each tile of 16x16 pixels as many samples as its noise calls for, --spp on average
+    #[arg(long, conflicts_with_all = ["target_error", "time_limit", "checkpoint"])]
+    adaptive: bool,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -38,8 +44,14 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+const DEFAULT_SPP: u32 = 16;
+
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
-    let setup = Setup::prepare(arguments.axes.settings(&arguments.scene, arguments.spp, arguments.seed)?)?;
+    let spp = arguments.spp.unwrap_or(DEFAULT_SPP);
+    let setup = Setup::prepare(arguments.axes.settings(&arguments.scene, spp, arguments.seed)?)?;
+    if arguments.adaptive {
+        setup.check_adaptive()?;
+    }
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.scene().name)));
     let format = image_io::check_format(&path)?;
     atomic_file::check_writable(&path)?;
@@ -47,9 +59,16 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         atomic_file::check_writable(trace)?;
     }
 
-    talk.begin(&format!("{} at {} spp", setup.scene().name, arguments.spp), setup.jobs() as u64);
-    let outcome = setup.run(Some(&|done| talk.advance(done)))?;
-    talk.end();
+    let (setup, outcome) = if arguments.rounds.are_asked_for() {
+        let goal_spp = (!arguments.rounds.have_a_goal()).then_some(spp);
+        rounds::render(&arguments.rounds, setup, goal_spp, talk)?
+    } else {
+        talk.begin(&format!("{} at {spp} spp", setup.scene().name), setup.jobs() as u64);
+        let watch = |done| talk.advance(done);
+        let outcome = if arguments.adaptive { setup.run_adaptive(Some(&watch)) } else { setup.run(Some(&watch)) }?;
+        talk.end();
+        (setup, outcome)
+    };
     let image = outcome.film.image();
     let shown = if arguments.auto_exposure && !format.linear { image_io::auto_exposed(&image) } else { image };
     image_io::write(&path, &shown)?;
@@ -57,31 +76,36 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         TraceFile::new(&setup, &outcome).write(trace)?;
     }
 
-    let record = Record::new(&setup, &outcome, Measured::default());
+    let mut record = Record::new(&setup, &outcome, Measured::default());
+    arguments.rounds.label(&mut record);
     for warning in &outcome.warnings {
         talk.note(&format!("warning: {warning}"));
     }
     if arguments.json {
         return print_json(&record);
     }
+    print(&format!("{}: {}", path.display(), summary(&record, &outcome)))
+}
+
+/// What a reader wants to know first.
+fn summary(record: &Record, outcome: &Outcome) -> String {
+    let Record { width, height, spp, estimator, effects, strategy, decomposition, .. } = record;
+    let what = format!("{width}x{height}, {spp} spp, {estimator}, effects {effects}");
+    let noise = record.estimated_rmse.map_or_else(String::new, |rmse| format!(", estimated RMSE {rmse:.3e}"));
+    let checksum = outcome.checksum.as_ref().map_or_else(
+        || format!("no checksum: {} gives other numbers in each run", record.sampler),
+        |checksum| format!("checksum {checksum}"),
+    );
     let (paths, rays) = (outcome.counts.paths as f64, outcome.counts.rays as f64);
-    print(&format!(
-        "{}: {}x{}, {} spp, {}, effects {}\n{} on {}, {} workers: {:.3} s, {:.3} Msamples/s, {:.2} rays per sample\n{}",
-        path.display(),
-        record.width,
-        record.height,
-        record.spp,
-        record.estimator,
-        record.effects,
-        record.strategy,
-        record.decomposition,
-        outcome.workers_used,
-        outcome.makespan_s,
-        paths / outcome.makespan_s * 1e-6,
-        rays / paths,
-        outcome.checksum.as_ref().map_or_else(
-            || format!("no checksum: {} gives other numbers in each run", record.sampler),
-            |checksum| format!("checksum {checksum}")
-        ),
-    ))
+    let makespan_s = outcome.makespan_s;
+    let how = if outcome.rounds == 0 {
+        "nothing was left to render".to_string()
+    } else {
+        let (speed, length) = (paths / makespan_s * 1e-6, rays / paths);
+        let workers = outcome.workers_used;
+        format!(
+            "{strategy} on {decomposition}, {workers} workers: {makespan_s:.3} s, {speed:.3} Msamples/s, {length:.2} rays per sample"
+        )
+    };
+    format!("{what}{noise}\n{how}\n{checksum}")
 }

@@ -1,5 +1,6 @@
 //! A cell: settings that are run some number of times.
 
+use super::External;
 use crate::error::{InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads, schedule_name};
@@ -12,31 +13,68 @@ pub struct Cell {
     pub id: String,
     /// The settings.
     pub settings: Settings,
-    /// What tells images apart: cells with the same word must have the same checksum.
-    pub image: String,
+    /// Its rows: one, or the points of its curve, by samples per pixel.
+    pub points: Vec<CellPoint>,
     /// Samples that one of this machine's processors has to render: how long it takes, in the same unit for all cells.
     pub weight: u64,
+    /// The other program that renders it, if it is not this one.
+    pub external: Option<External>,
+}
+
+/// A row that a cell gives.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CellPoint {
+    /// Its key: the cell's, or for a point of a curve what the cell of so many samples would have, and which curve it is of.
+    pub id: String,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// What tells images apart: rows with the same word must have the same checksum.
+    pub image: String,
+}
+
+impl CellPoint {
+    /// The file name of its image.
+    pub fn image_file(&self) -> String {
+        format!("{}.pfm", self.image.replace(['/', ':'], "-"))
+    }
 }
 
 impl Cell {
     /// The cell of a setup. What a strategy ignores does not tell cells apart.
     pub fn new(setup: &Setup) -> Self {
+        Self::with_points(setup, &[setup.settings().spp], "")
+    }
+
+    /// The cell of a curve: one long render that is measured at 1, 2, 4 ... times the fewest samples that make an image, and at its end.
+    pub fn curve(setup: &Setup) -> Self {
+        let (spp, multiple) = (setup.settings().spp, setup.fewest_spp());
+        let doubled = std::iter::successors(Some(multiple), |spp| spp.checked_mul(2)).take_while(|own| *own < spp);
+        let points: Vec<u32> = doubled.chain([spp]).collect();
+        Self::with_points(setup, &points, &format!("/curve-{spp}"))
+    }
+
+    fn with_points(setup: &Setup, points: &[u32], of: &str) -> Self {
         let mut settings = setup.settings().clone();
         settings.threads = setup.threads();
-        let image = image_word(setup.scene(), &settings.spec, settings.spp);
         let spec = &settings.spec;
-        let mut id = format!("{image}/{}/{}/{}t", settings.decomposition, settings.strategy, settings.threads);
+        let mut schedule = format!("{}/{}/{}t", settings.decomposition, settings.strategy, settings.threads);
         if settings.output != Settings::default().output {
-            id = format!("{id}/{}", settings.output);
+            schedule = format!("{schedule}/{}", settings.output);
         }
         for (axis, value) in [("effects", &spec.effects), ("accelerator", &spec.accelerator)] {
             if let Some(value) = value {
-                id = format!("{id}/{axis}-{value}");
+                schedule = format!("{schedule}/{axis}-{value}");
             }
         }
+        let point = |spp: u32| {
+            let image = image_word(setup.scene(), spec, spp);
+            CellPoint { id: format!("{image}/{schedule}{of}"), spp, image }
+        };
+        let id = point(settings.spp).id;
+        let points = points.iter().map(|spp| point(*spp)).collect();
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.threads.min(available_threads()) as u64;
-        Self { id, settings, image, weight: weight.max(1) }
+        Self { id, points, weight: weight.max(1), external: None, settings }
     }
 
     /// Whether it has the value that a filter `field=value` asks for.
@@ -66,11 +104,6 @@ impl Cell {
                 .into()
         })
     }
-
-    /// The file name of its image.
-    pub fn image_file(&self) -> String {
-        format!("{}.pfm", self.image.replace(['/', ':'], "-"))
-    }
 }
 
 /// The file name of the trace of a cell's repetition.
@@ -83,5 +116,6 @@ fn image_word(scene: &Scene, spec: &Spec, spp: u32) -> String {
     let what = format!("{}-{}/{}/{}", scene.name, scene.hash, spec.estimator, spec.sampler);
     let depth = spec.max_depth.map(|depth| format!("/depth{depth}")).unwrap_or_default();
     let roulette = spec.roulette.as_ref().map(|rule| format!("/{rule}")).unwrap_or_default();
-    format!("{what}/{}x{}/{spp}spp/seed{}{depth}{roulette}", spec.width, spec.height, spec.seed)
+    let clamp = if spec.subpixel_clamp { "/clamp" } else { "" };
+    format!("{what}/{}x{}/{spp}spp/seed{}{depth}{roulette}{clamp}", spec.width, spec.height, spec.seed)
 }

@@ -1,18 +1,22 @@
 //! One repetition of one cell, in a process of its own: memory, caches, CPU time and thread counts of one run are not those of another,
 //! and a crash is a row instead of the end of the sweep.
 //!
-//! The parent writes a [`CellJob`] as a line of JSON to the child's standard input and keeps that open; the child answers with a record as
-//! JSON on its standard output. A child whose input ends has lost its parent and stops, so that no orphan disturbs the sweep that goes on
+//! The parent writes a [`CellJob`] as a line of JSON to the child's standard input and keeps that open; the child answers with its
+//! rows as JSON on its standard output. A child whose input ends has lost its parent and stops, so that no orphan disturbs the sweep that goes on
 //! in its place.
 
+use super::External;
+use super::external::filled;
 use crate::error::{Error, InputError, Result};
-use crate::film::{Film, read_film};
-use crate::image_io;
-use crate::measure::{Measured, Record, Settings, Setup, TraceFile, failure};
-use crate::metric;
+use crate::film::{SAMPLE_BLOCK, read_film};
+use crate::image_io::{self, Image};
+use crate::measure::{
+    Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure, missing_external, run_external,
+};
+use crate::scene::load;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 /// What a child is asked to do.
@@ -20,8 +24,8 @@ use std::process::{Command, Stdio};
 pub struct CellJob {
     /// The experiment's name.
     pub experiment: String,
-    /// The cell's word.
-    pub cell: String,
+    /// The rows that it gives, by samples per pixel: one, or those of a curve.
+    pub points: Vec<PointJob>,
     /// Which repetition.
     pub repetition: u32,
     /// Position in the sweep.
@@ -30,29 +34,50 @@ pub struct CellJob {
     pub settings: Settings,
     /// The two half-references, if errors are to be measured.
     pub references: Option<[PathBuf; 2]>,
-    /// Where to keep the image.
-    pub image: Option<PathBuf>,
-    /// Where to keep the trace.
+    /// The other program that renders it, and the folder where that was made.
+    pub external: Option<(External, PathBuf)>,
+    /// Where to keep the trace; of a curve there is none.
     pub trace: Option<PathBuf>,
 }
 
+/// One row of a cell.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PointJob {
+    /// The row's word.
+    pub cell: String,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Where to keep the image.
+    pub image: Option<PathBuf>,
+}
+
 impl CellJob {
-    fn label(&self, record: Record) -> Record {
+    fn label(&self, point: &PointJob, record: Record) -> Record {
         Record {
             experiment: self.experiment.clone(),
-            cell: self.cell.clone(),
+            cell: point.cell.clone(),
             repetition: self.repetition,
             order: self.order,
             ..record
         }
     }
 
-    /// Runs the cell in a child; whatever goes wrong there becomes a failed row.
-    pub(super) fn run_in_child(&self) -> Record {
-        self.label(self.child().unwrap_or_else(|error| failure(&self.settings, &error)))
+    /// Runs the cell in a child and gives a row for each point; whatever goes wrong there becomes failed rows.
+    pub(super) fn run_in_child(&self) -> Vec<Record> {
+        let rows = self.child().and_then(|rows| {
+            let wrong = || format!("the cell's process gave {} rows instead of {}", rows.len(), self.points.len());
+            if rows.len() == self.points.len() { Ok(rows) } else { Err(wrong()) }
+        });
+        rows.unwrap_or_else(|error| {
+            let failed = |point: &PointJob| {
+                let settings = Settings { spp: point.spp, ..self.settings.clone() };
+                self.label(point, failure(&settings, &error))
+            };
+            self.points.iter().map(failed).collect()
+        })
     }
 
-    fn child(&self) -> std::result::Result<Record, String> {
+    fn child(&self) -> std::result::Result<Vec<Record>, String> {
         let program = std::env::current_exe().map_err(|e| format!("finding this program: {e}"))?;
         let mut child = Command::new(program)
             .arg("cell")
@@ -75,37 +100,101 @@ impl CellJob {
         serde_json::from_slice(&output.stdout).map_err(|e| format!("reading what the cell's process said: {e}"))
     }
 
-    fn run(&self) -> Result<Record> {
-        let setup = Setup::prepare(self.settings.clone())?;
-        let outcome = setup.run(None)?;
-        let errors = match &self.references {
-            Some(references) => self.errors(&outcome.film, references)?,
-            None => Measured::default(),
-        };
-        if let Some(path) = &self.image {
-            image_io::write(path, &outcome.film.image())?;
+    fn run(&self) -> Result<Vec<Record>> {
+        let references = self.references.as_ref().map(|paths| self.read_references(paths)).transpose()?;
+        if let Some((external, folder)) = &self.external {
+            return self.other_program(external, folder, references.as_ref());
         }
-        if let Some(path) = &self.trace {
-            TraceFile::new(&setup, &outcome).write(path)?;
+        if let [point] = self.points.as_slice() {
+            let setup = Setup::prepare(self.settings.clone())?;
+            let outcome = setup.run(None)?;
+            if let Some(path) = &self.trace {
+                TraceFile::new(&setup, &outcome).write(path)?;
+            }
+            return Ok(vec![self.row(point, &setup, &outcome, references.as_ref())?]);
         }
-        Ok(self.label(Record::new(&setup, &outcome, errors)))
+        self.curve(references.as_ref())
     }
 
-    fn errors(&self, film: &Film, references: &[PathBuf; 2]) -> Result<Measured> {
-        let [(first_key, first), (second_key, second)] = [read_film(&references[0])?, read_film(&references[1])?];
+    /// The rows of a curve. Rounds that end inside a block of samples would render its samples twice and time them twice, so an image of fewer
+    /// samples than a block is rendered by itself; from there on one render grows.
+    fn curve(&self, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
+        let rounds = |spp: u32| Rounds::new(Setup::prepare(Settings { spp, ..self.settings.clone() })?);
+        let mut long = rounds(self.settings.spp)?;
+        let mut rows = Vec::new();
+        for point in &self.points {
+            let mut short = if point.spp < SAMPLE_BLOCK { Some(rounds(point.spp)?) } else { None };
+            let growing = short.as_mut().unwrap_or(&mut long);
+            growing.extend_to(point.spp, None)?;
+            rows.push(self.row(point, growing.setup(), &growing.outcome(), references)?);
+        }
+        Ok(rows)
+    }
+
+    fn other_program(
+        &self,
+        external: &External,
+        folder: &Path,
+        references: Option<&[Image; 2]>,
+    ) -> Result<Vec<Record>> {
+        let own = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
+        let (spec, out) = (&self.settings.spec, own.path().join(format!("image.{}", external.format())));
+        let scene = load(&self.settings.scene)?;
+        let values = [
+            ("spp", self.settings.spp.to_string()),
+            ("seed", spec.seed.to_string()),
+            ("out", out.display().to_string()),
+            ("width", spec.width.to_string()),
+            ("height", spec.height.to_string()),
+            ("folder", folder.display().to_string()),
+        ];
+        let found = run_external(&filled(&external.command, &values), &out)?;
+        let row = |point: &PointJob| {
+            let Some(run) = &found else {
+                return Ok(self.label(point, missing_external(&self.settings, &scene.hash)));
+            };
+            if let Some(path) = &point.image {
+                image_io::write(path, &run.image)?;
+            }
+            let errors = match references {
+                Some([first, second]) => Measured::against(&run.image, first, second)?,
+                None => Measured::default(),
+            };
+            Ok(self.label(point, run.record(&self.settings, &scene.hash, errors)))
+        };
+        self.points.iter().map(row).collect()
+    }
+
+    fn row(
+        &self,
+        point: &PointJob,
+        setup: &Setup,
+        outcome: &Outcome,
+        references: Option<&[Image; 2]>,
+    ) -> Result<Record> {
+        let image = outcome.film.image();
+        if let Some(path) = &point.image {
+            image_io::write(path, &image)?;
+        }
+        let errors = match references {
+            Some([first, second]) => Measured::against(&image, first, second)?,
+            None => Measured::default(),
+        };
+        Ok(self.label(point, Record::new(setup, outcome, errors)))
+    }
+
+    fn read_references(&self, paths: &[PathBuf; 2]) -> Result<[Image; 2]> {
+        let [(first_key, first), (second_key, second)] = [read_film(&paths[0])?, read_film(&paths[1])?];
         let seed = self.settings.spec.seed;
         if first_key.seed == second_key.seed || [first_key.seed, second_key.seed].contains(&seed) {
             let problem = "the image and its two half-references must have three different seeds";
             return Err(InputError::new("seed", seed.to_string(), problem).into());
         }
-        let (image, first, second) = (film.image(), first.image(), second.image());
-        let mse = metric::cross_mse(&image, &first, &second)?;
-        let mse_display = metric::cross_mse_display(&image, &first, &second)?;
-        Ok(Measured { mse: Some(mse), mse_display: Some(mse_display) })
+        Ok([first.image(), second.image()])
     }
 }
 
-/// The child's side: reads a job, answers with a record.
+/// The child's side: reads a job, answers with its rows.
 pub fn child_main() -> Result<()> {
     let mut text = String::new();
     std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
@@ -116,7 +205,7 @@ pub fn child_main() -> Result<()> {
         let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
         std::process::exit(3);
     });
-    let record = job.run()?;
-    let answer = serde_json::to_string(&record).map_err(|e| Error::system("writing", "standard output", e.into()))?;
+    let rows = job.run()?;
+    let answer = serde_json::to_string(&rows).map_err(|e| Error::system("writing", "standard output", e.into()))?;
     writeln!(std::io::stdout(), "{answer}").map_err(|e| Error::system("writing", "standard output", e))
 }

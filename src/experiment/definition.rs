@@ -16,7 +16,8 @@
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
 //! # There may be several, each under [[matrix]]. Optional: sampler, output, effects, accelerator, roulette, max-depth, size (instead of the
-//! # profile's), and weak = true, which gives each cell spp times its threads.
+//! # profile's), weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
+//! # fewest samples on the way to each spp. subpixel-clamp = true clamps each subpixel's mean before averaging.
 //!
 //! [reference]                    # optional: measures errors
 //! estimator = "bsdf"
@@ -32,6 +33,7 @@
 //! reference-spp = 2000
 //! ```
 
+use super::External;
 use super::matrix::{Matrix, Scale, one_or_many};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
@@ -112,6 +114,9 @@ pub struct Definition {
     pub requires: Vec<String>,
     #[serde(deserialize_with = "one_or_many")]
     pub(super) matrix: Vec<Matrix>,
+    /// Other programs.
+    #[serde(default)]
+    pub external: Vec<External>,
     reference: Option<ReferenceTable>,
     quick: Scale,
     full: Scale,
@@ -161,6 +166,18 @@ impl Definition {
         self.matrix.iter().flat_map(|matrix| &matrix.estimator).next().map_or("", String::as_str)
     }
 
+    /// The estimators, in the order in which they are named, and then the other programs.
+    pub fn estimator_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        let own = self.matrix.iter().flat_map(|matrix| &matrix.estimator);
+        for name in own.chain(self.external.iter().map(|external| &external.name)) {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
     /// The first feature that it needs and that this program was built without.
     pub fn missing_feature(&self) -> Option<&str> {
         let built_with = |feature: &str| FEATURES.iter().any(|(name, there)| *name == feature && *there);
@@ -183,12 +200,14 @@ impl Definition {
         let scale = self.scale(profile);
         let own = || self.matrix.iter().flat_map(|matrix| &matrix.spp).max();
         let largest = scale.spp.as_ref().map_or_else(own, |spp| spp.iter().max()).copied().unwrap_or(0);
-        let needed = largest.saturating_mul(10);
+        // Seeds share the references' noise, which the cross form removes in the mean only. A curve's end is one of many points.
+        let times = if self.matrix.iter().all(|matrix| matrix.curve) { 4 } else { 10 };
+        let needed = largest.saturating_mul(times);
         match scale.reference_spp {
             Some(spp) if spp >= needed => Ok(Some((table.estimator.clone(), spp))),
             given => {
                 let value = given.map_or_else(String::new, |spp| spp.to_string());
-                let problem = "each half-reference needs ten times the samples of the largest spp";
+                let problem = format!("each half-reference needs {times} times the samples of the largest spp");
                 Err(self.located(
                     profile,
                     InputError::new("reference-spp", value, problem).allowed(format!("from {needed}")),

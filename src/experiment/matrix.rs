@@ -43,6 +43,12 @@ pub(super) struct Matrix {
     /// Whether samples per pixel are for each thread.
     #[serde(default)]
     pub(super) weak: bool,
+    /// Whether each cell is a curve: a render that is measured on its way.
+    #[serde(default)]
+    pub(super) curve: bool,
+    /// Whether each subpixel's mean is clamped before averaging.
+    #[serde(default, rename = "subpixel-clamp")]
+    pub(super) subpixel_clamp: bool,
 }
 
 fn independent() -> Vec<String> {
@@ -143,6 +149,7 @@ impl Definition {
         for matrix in &self.matrix {
             self.add_images(profile, matrix, &mut cells)?;
         }
+        cells.extend(self.external_cells(profile)?);
         Ok(cells)
     }
 
@@ -187,6 +194,7 @@ impl Definition {
                             estimator: estimator.clone(),
                             sampler: sampler.clone(),
                             max_depth,
+                            subpixel_clamp: matrix.subpixel_clamp,
                             ..Spec::default()
                         };
                         let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };
@@ -253,7 +261,7 @@ impl Definition {
                             Error::Input(input) if input.place.is_none() => self.located(profile, *input),
                             other => other,
                         })?;
-                        let cell = Cell::new(&setup);
+                        let cell = if matrix.curve { Cell::curve(&setup) } else { Cell::new(&setup) };
                         if !cells.iter().any(|known| known.id == cell.id) {
                             cells.push(cell);
                         }

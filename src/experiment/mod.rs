@@ -7,7 +7,10 @@ mod cell;
 mod cell_process;
 mod definition;
 mod drift;
+mod external;
+mod half;
 mod matrix;
+mod pricing;
 mod records_file;
 mod reference;
 mod run_file;
@@ -15,11 +18,14 @@ mod shuffle;
 mod sweep;
 
 pub use calibration_file::read_calibration;
-pub use cell::{Cell, trace_file};
-pub use cell_process::{CellJob, child_main};
+pub use cell::{Cell, CellPoint, trace_file};
+pub use cell_process::{CellJob, PointJob, child_main};
 pub use definition::{Definition, EXPERIMENTS, Keep, Profile};
+pub use external::{EXTERNAL, External};
+pub use half::{ReferenceError, check_until, refine_reference, render_reference};
+pub use pricing::{Paid, Pilot, law_of, pay};
 pub use records_file::{RecordsFile, read_records};
-pub use reference::{Reference, reference_seed, render_reference, wanted_references};
+pub use reference::{Reference, reference_seed, wanted_references};
 pub use run_file::{RunFile, read_run_file};
 pub use sweep::{Options, Summary, sweep};
 

@@ -3,9 +3,9 @@
 //! With two halves R₁ and R₂ the mean of (T - R₁)(T - R₂) is the image's squared error without the references' own noise
 //! (METHODOLOGY: cross form).
 
-use super::{Cell, Definition, Profile, Progress};
+use super::{Cell, Definition, Profile};
 use crate::error::{InputError, Result};
-use crate::film::{Film, FilmKey, read_film, write_film};
+use crate::film::{FilmKey, read_film};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads};
 use crate::sampling::{REFERENCE_SEEDS, SAMPLERS, is_deterministic};
@@ -32,7 +32,7 @@ pub struct Reference {
 }
 
 impl Reference {
-    fn half(&self, half: u32) -> Settings {
+    pub(super) fn half(&self, half: u32) -> Settings {
         Settings {
             scene: self.scene.clone(),
             spp: self.spp,
@@ -53,7 +53,7 @@ impl Reference {
 }
 
 /// Where a film of that key is cached.
-fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
+pub(super) fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
     let half = key.seed - REFERENCE_SEEDS;
     folder.join(format!(
         "{}-{}-{}-{}-{}x{}-{}spp-r{}-half{half}.film",
@@ -89,28 +89,6 @@ impl Reference {
         }
         Ok(())
     }
-}
-
-/// The two halves, from the cache in `folder` where they are there and whole, rendered otherwise.
-pub fn render_reference(reference: &Reference, folder: &Path, progress: &dyn Progress) -> Result<[(PathBuf, Film); 2]> {
-    let half = |index: u32| -> Result<(PathBuf, Film)> {
-        let setup = Setup::prepare(reference.half(index))?;
-        let key = setup.film_key();
-        let path = reference_path(folder, &key);
-        if path.is_file() {
-            // A damaged file is an error, never quietly replaced: it may be the user's only copy.
-            let (found, film) = read_film(&path)?;
-            if found == key {
-                return Ok((path, film));
-            }
-        }
-        progress.begin(&format!("reference {} of 2: {} at {} spp", index + 1, key.scene, key.spp), setup.jobs() as u64);
-        let outcome = setup.run(Some(&|done| progress.advance(done)))?;
-        progress.end();
-        write_film(&path, &key, &outcome.film)?;
-        Ok((path, outcome.film))
-    };
-    Ok([half(0)?, half(1)?])
 }
 
 /// The references that an experiment's cells call for: one for each scene.

@@ -6,7 +6,9 @@ use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
-use super::{Cell, CellJob, Definition, Keep, Profile, Progress, Reference, render_reference, wanted_references};
+use super::{
+    CellJob, CellPoint, Definition, Keep, PointJob, Profile, Progress, Reference, render_reference, wanted_references,
+};
 use crate::atomic_file;
 use crate::digest;
 use crate::error::{Error, InputError, Result};
@@ -67,6 +69,11 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
         write_calibration(&calibration)?;
     }
     let references = references(&wanted, options, progress)?;
+    let programs = folder.join("external");
+    for external in &definition.external {
+        std::fs::create_dir_all(&programs).map_err(|e| Error::system("creating", &programs, e))?;
+        external.make(&programs, progress);
+    }
     let (images, traces) = (folder.join("images"), folder.join("traces"));
     for (wanted, folder) in [(Keep::Images, &images), (Keep::Traces, &traces)] {
         if definition.keeps(wanted) {
@@ -75,7 +82,8 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     }
 
     let mut checksums: HashMap<String, String> = HashMap::new();
-    let known: HashMap<&str, &str> = cells.iter().map(|cell| (cell.id.as_str(), cell.image.as_str())).collect();
+    let points = cells.iter().flat_map(|cell| &cell.points);
+    let known: HashMap<&str, &str> = points.map(|point| (point.id.as_str(), point.image.as_str())).collect();
     for record in &done {
         if let Some(image) = known.get(record.cell.as_str()) {
             checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
@@ -84,6 +92,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let finished: HashSet<(&str, u32)> = done.iter().map(|record| (record.cell.as_str(), record.repetition)).collect();
     let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
     let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
+    let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
     let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0 };
     let mut drift = Drift::of(&done);
     let mut units = 0;
@@ -93,27 +102,39 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     for repetition in 0..repetitions {
         for index in shuffled(cells.len(), &definition.name, repetition) {
             let cell = &cells[index];
-            if !finished.contains(&(cell.id.as_str(), repetition)) {
-                let kept = (definition.keeps(Keep::Images) && repetition == 0).then(|| images.join(cell.image_file()));
+            let is_missing = |id: &str| !finished.contains(&(id, repetition));
+            if cell.points.iter().any(|point| is_missing(&point.id)) {
+                // Curves have many images: those of one seed show what there is to see.
+                let shown = cell.points.len() == 1 || Some(cell.settings.spec.seed) == lowest_seed;
+                let is_kept = definition.keeps(Keep::Images) && repetition == 0 && shown;
+                let point_job = |point: &CellPoint| PointJob {
+                    cell: point.id.clone(),
+                    spp: point.spp,
+                    image: is_kept.then(|| images.join(point.image_file())),
+                };
                 let job = CellJob {
                     experiment: definition.name.clone(),
-                    cell: cell.id.clone(),
+                    points: cell.points.iter().map(point_job).collect(),
                     repetition,
                     order,
                     settings: cell.settings.clone(),
                     references: references.get(cell.settings.scene.as_str()).cloned(),
-                    image: kept,
+                    external: cell.external.clone().map(|external| (external, programs.clone())),
                     trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
                 };
-                let mut record = verified(job.run_in_child(), cell, &mut checksums);
-                drift.watch(&mut record);
-                if !record.error.is_empty() {
-                    summary.failed += 1;
-                    progress.note(&format!("{} repetition {repetition}: {}", cell.id, record.error));
+                // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.
+                let rows = cell.points.iter().zip(job.run_in_child()).filter(|(point, _)| is_missing(&point.id));
+                for (point, record) in rows {
+                    let mut record = verified(Record { order, ..record }, &point.image, &mut checksums);
+                    drift.watch(&mut record);
+                    if !record.error.is_empty() {
+                        summary.failed += 1;
+                        progress.note(&format!("{} repetition {repetition}: {}", point.id, record.error));
+                    }
+                    file.append(&record)?;
+                    summary.rows += 1;
+                    order += 1;
                 }
-                file.append(&record)?;
-                summary.rows += 1;
-                order += 1;
             }
             units += cell.weight;
             progress.advance(units);
@@ -124,11 +145,11 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
 }
 
 /// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.
-fn verified(record: Record, cell: &Cell, checksums: &mut HashMap<String, String>) -> Record {
+fn verified(record: Record, image: &str, checksums: &mut HashMap<String, String>) -> Record {
     if !record.error.is_empty() || record.checksum.is_empty() {
         return record;
     }
-    let expected = checksums.entry(cell.image.clone()).or_insert_with(|| record.checksum.clone());
+    let expected = checksums.entry(image.to_string()).or_insert_with(|| record.checksum.clone());
     if *expected == record.checksum {
         return record;
     }

@@ -129,7 +129,12 @@ impl Decomposition {
 
     /// Whether a pixel's samples may belong to several jobs.
     pub fn splits_samples(&self) -> bool {
-        matches!(self.cut, Cut::Samples { .. })
+        self.sample_block().is_some()
+    }
+
+    /// Samples of a pixel in one job, where they may belong to several.
+    pub(super) fn sample_block(&self) -> Option<u32> {
+        if let Cut::Samples { block, .. } = self.cut { Some(block) } else { None }
     }
 
     /// Cuts a film of `width` x `height` pixels with the samples in `samples`.

@@ -42,7 +42,7 @@ pub struct Piece {
 }
 
 /// All pieces of a film, in the order in which they are handed out.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Plan {
     pieces: Vec<Piece>,
 }
@@ -57,6 +57,11 @@ impl Plan {
                 pieces.push(Piece { bounds, samples: samples.clone() });
             }
         }
+        Self { pieces }
+    }
+
+    /// Pieces that are known to be disjoint and complete.
+    pub(super) fn from_pieces(pieces: Vec<Piece>) -> Self {
         Self { pieces }
     }
 
@@ -82,6 +87,11 @@ impl Plan {
             starts.map(move |start| Piece { bounds, samples: start..samples.end.min(start.saturating_add(block)) })
         };
         Self { pieces: self.pieces.into_iter().flat_map(parts).collect() }
+    }
+
+    /// Adds another plan's pieces behind these; the two must be disjoint.
+    pub fn append(&mut self, later: &Self) {
+        self.pieces.extend_from_slice(&later.pieces);
     }
 
     /// The pieces.

@@ -63,6 +63,15 @@ impl Film {
         }
     }
 
+    /// The sum of two ranges of samples of the same image; `self` is the earlier one.
+    #[must_use]
+    pub fn plus(mut self, later: &Self) -> Self {
+        for (pixel, part) in self.pixels.iter_mut().zip(&later.pixels) {
+            *pixel = pixel.plus(part);
+        }
+        self
+    }
+
     /// The estimate of each pixel's radiance.
     pub fn image(&self) -> Image {
         let mut image = Image::new(self.width, self.height);
@@ -70,21 +79,6 @@ impl Film {
             *out = pixel.mean();
         }
         image
-    }
-
-    /// The mean over pixels of the variance of a pixel's estimate, averaged over channels: the square of the RMSE to expect.
-    pub fn mean_variance(&self) -> f64 {
-        let mut total = 0.0;
-        for pixel in &self.pixels {
-            let n = f64::from(pixel.count);
-            if pixel.count >= 2 {
-                for channel in 0..3 {
-                    let spread = (pixel.square[channel] - pixel.sum[channel] * pixel.sum[channel] / n).max(0.0);
-                    total += spread / (n * (n - 1.0));
-                }
-            }
-        }
-        total / (3.0 * self.pixels.len() as f64)
     }
 
     /// SHA-256 over size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero does not count.

@@ -1,15 +1,21 @@
 //! The only place where a strategy meets a kernel, and where a clock is read.
 //!
 //! [`Settings`] say what to render, in which pieces, and who does it; [`Setup::prepare`] checks them; [`Setup::run`] renders, times and
-//! verifies; the result is a film, a [`Trace`] and a [`Record`]. [`calibrate`] times strategies on empty jobs, for the simulator.
+//! verifies; the result is a film, a [`Trace`] and a [`Record`]. [`Rounds`] add more samples to a film that is there. [`calibrate`] times strategies on empty jobs, for the simulator.
 
+mod adaptive;
 mod calibration;
+mod checkpoint;
 mod chrome_trace;
+mod external;
+mod goal;
 mod ledger;
 mod machine;
 mod output;
 mod pilot;
 mod record;
+mod rounds;
+mod run;
 mod settings;
 mod setup;
 mod trace;
@@ -18,14 +24,19 @@ mod usage;
 mod warning;
 
 pub use calibration::{CalibrationRow, calibrate};
+pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;
+pub use external::{ExternalRun, missing_external, run_external};
+pub use goal::{Between, CONFIDENCE, Goal, Progress};
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};
+pub use rounds::Rounds;
+pub use run::{Outcome, RoundTimes, Watch};
 pub use settings::{
     LARGEST_SEED, LARGEST_SPP, Settings, THREAD_PER_ROW, available_threads, schedule_name, strategy_named,
 };
-pub use setup::{Outcome, Setup};
+pub use setup::Setup;
 pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};
 pub use warning::Warning;

@@ -2,6 +2,8 @@
 
 use super::{Outcome, Settings, Setup, Warning};
 use crate::analysis::quantile::median;
+use crate::error::Result;
+use crate::image_io::Image;
 use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
@@ -47,6 +49,14 @@ pub struct Record {
     pub max_depth: Option<u16>,
     /// How chance ended paths; empty if it did not.
     pub roulette: String,
+    /// Whether tiles had as many samples as their noise called for; `spp` is their mean then.
+    pub adaptive: bool,
+    /// RMSE at which the render was to stop; empty if it went by samples or time alone.
+    pub target_error: Option<f64>,
+    /// Seconds of rendering after which it was to stop.
+    pub time_limit_s: Option<f64>,
+    /// How often jobs were handed out.
+    pub rounds: Option<u32>,
     /// Whether an option was on that changes what the image converges to.
     pub biased: bool,
     /// How the film was cut.
@@ -115,6 +125,8 @@ pub struct Record {
     pub truncated: Option<u64>,
     /// Samples that were NaN, infinite or negative.
     pub invalid_samples: Option<u64>,
+    /// RMSE in linear radiance as the samples' own variance tells it; too large where samples are stratified.
+    pub estimated_rmse: Option<f64>,
     /// Mean squared error in linear radiance, cross form: free of the reference's noise, and so sometimes below zero.
     pub mse: Option<f64>,
     /// Its square root, where there is one.
@@ -123,6 +135,13 @@ pub struct Record {
     pub mse_display: Option<f64>,
     /// Its square root, where there is one.
     pub rmse_display: Option<f64>,
+    /// Mean squared error over the squared reference, cross form.
+    pub rel_mse: Option<f64>,
+    /// What the samples themselves say of the squared error: the mean over pixels of the variance of a pixel's mean, for independent samples. Where
+    /// subpixels or a sampler spread the samples evenly, the true error is below it.
+    pub variance: Option<f64>,
+    /// Mean radiance over pixels and channels.
+    pub mean_radiance: Option<f64>,
     /// Checksum of the film; empty if the sampler gives other numbers in each run.
     pub checksum: String,
     /// Doubts, separated by semicolons.
@@ -144,6 +163,19 @@ pub struct Measured {
     pub mse: Option<f64>,
     /// See [`Record::mse_display`].
     pub mse_display: Option<f64>,
+    /// See [`Record::rel_mse`].
+    pub rel_mse: Option<f64>,
+}
+
+impl Measured {
+    /// The errors of an image against two half-references, which share no samples with it or each other.
+    pub fn against(image: &Image, first: &Image, second: &Image) -> Result<Self> {
+        Ok(Self {
+            mse: Some(metric::cross_mse(image, first, second)?),
+            mse_display: Some(metric::cross_mse_display(image, first, second)?),
+            rel_mse: Some(metric::cross_rel_mse(image, first, second)?),
+        })
+    }
 }
 
 fn described(settings: &Settings) -> Record {
@@ -179,7 +211,21 @@ pub fn failure(settings: &Settings, error: &str) -> Record {
     Record { error: error.replace('\n', "; "), ..described(settings) }
 }
 
+/// The row of another program, with its errors.
+pub(super) fn external_row(settings: &Settings, errors: Measured) -> Record {
+    described(settings).with_errors(errors)
+}
+
 impl Record {
+    fn with_errors(mut self, errors: Measured) -> Self {
+        self.mse = errors.mse;
+        self.rmse = errors.mse.and_then(metric::root);
+        self.mse_display = errors.mse_display;
+        self.rmse_display = errors.mse_display.and_then(metric::root);
+        self.rel_mse = errors.rel_mse;
+        self
+    }
+
     /// CPU seconds during the makespan, in the program and in the system.
     pub fn cpu_s(&self) -> Option<f64> {
         Some(self.cpu_user_s? + self.cpu_system_s?)
@@ -196,7 +242,11 @@ impl Record {
         let durations = outcome.trace.durations_s();
         let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
         let counts = &outcome.counts;
-        let mut record = described(setup.settings());
+        let mut record = described(setup.settings()).with_errors(errors);
+        record.spp = outcome.spp;
+        record.adaptive = outcome.adaptive;
+        record.rounds = Some(outcome.rounds);
+        record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());
         record.started_utc.clone_from(&outcome.started_utc);
         record.scene.clone_from(&setup.scene().name);
         record.scene_hash.clone_from(&setup.scene().hash);
@@ -235,10 +285,8 @@ impl Record {
         record.escaped = Some(counts.escaped);
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);
-        record.mse = errors.mse;
-        record.rmse = errors.mse.and_then(metric::root);
-        record.mse_display = errors.mse_display;
-        record.rmse_display = errors.mse_display.and_then(metric::root);
+        record.variance = Some(outcome.film.mean_variance());
+        record.mean_radiance = Some(outcome.film.image().mean().iter().sum::<f64>() / 3.0);
         record.checksum = outcome.checksum.clone().unwrap_or_default();
         record.warnings = outcome.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";");
         record

@@ -77,6 +77,28 @@ pub fn strategy_named(text: &str) -> Result<(&'static Entry, Option<String>)> {
     }
 }
 
+/// Samples per pixel are a multiple of this.
+pub(super) fn spp_multiple(estimator: &str) -> u32 {
+    ESTIMATORS.iter().find(|entry| entry.name == estimator).map_or(1, |entry| entry.spp_multiple)
+}
+
+/// Refuses numbers of samples that no image of the estimator can have.
+pub(super) fn check_spp(spp: u32, estimator: &str) -> Result<()> {
+    if !(1..=LARGEST_SPP).contains(&spp) {
+        let allowed = format!("1 to {LARGEST_SPP}");
+        return Err(InputError::new("spp", spp.to_string(), "is out of range").allowed(allowed).into());
+    }
+    let multiple = spp_multiple(estimator);
+    if !spp.is_multiple_of(multiple) {
+        let problem = format!("is no multiple of {multiple}, which {estimator} needs for its subpixels");
+        let near = spp.next_multiple_of(multiple);
+        let below = near - multiple;
+        let allowed = if below == 0 { near.to_string() } else { format!("{below} or {near}") };
+        return Err(InputError::new("spp", spp.to_string(), problem).allowed(allowed).into());
+    }
+    Ok(())
+}
+
 /// Threads that this process may use at once.
 pub fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
@@ -97,19 +119,7 @@ impl Settings {
     /// from a user refuses those.
     pub(super) fn check(&self) -> Result<()> {
         check_size(self.spec.width, self.spec.height)?;
-        if !(1..=LARGEST_SPP).contains(&self.spp) {
-            let allowed = format!("1 to {LARGEST_SPP}");
-            return Err(InputError::new("spp", self.spp.to_string(), "is out of range").allowed(allowed).into());
-        }
-        let multiple = ESTIMATORS.iter().find(|entry| entry.name == self.spec.estimator).map_or(1, |e| e.spp_multiple);
-        if !self.spp.is_multiple_of(multiple) {
-            let problem =
-                format!("is no multiple of {multiple}, which {} needs for its subpixels", self.spec.estimator);
-            let near = self.spp.next_multiple_of(multiple);
-            let below = near - multiple;
-            let allowed = if below == 0 { near.to_string() } else { format!("{below} or {near}") };
-            return Err(InputError::new("spp", self.spp.to_string(), problem).allowed(allowed).into());
-        }
+        check_spp(self.spp, &self.spec.estimator)?;
         if !(1..=LARGEST_THREADS).contains(&self.threads) {
             let allowed = format!("1 to {LARGEST_THREADS}");
             return Err(InputError::new("threads", self.threads.to_string(), "is out of range")

@@ -18,6 +18,12 @@ impl JobSpan {
     pub fn duration_s(&self) -> f64 {
         self.stop_s - self.start_s
     }
+
+    /// The same job in a run that started earlier.
+    #[must_use]
+    pub(super) fn later_by(&self, offset_s: f64) -> Self {
+        Self { start_s: self.start_s + offset_s, stop_s: self.stop_s + offset_s, ..*self }
+    }
 }
 
 /// The spans of all jobs, in index order.

@@ -79,7 +79,7 @@ impl TraceFile {
             let samples = samples.end - samples.start;
             TraceRow { job, worker, start_s, stop_s, paths, rays, x0, y0, x1, y1, first_sample, samples }
         });
-        let settings = setup.settings().clone();
+        let settings = Settings { spp: outcome.spp, ..setup.settings().clone() };
         let header = TraceHeader { settings, makespan_s: outcome.makespan_s, workers: outcome.workers_used };
         Self { header, rows: rows.collect() }
     }

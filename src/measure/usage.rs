@@ -48,6 +48,18 @@ impl Usage {
         })
     }
 
+    /// What two stretches of time come to; the peak is that of both.
+    pub(super) fn plus(&self, later: &Self) -> Self {
+        Self {
+            user_s: self.user_s + later.user_s,
+            system_s: self.system_s + later.system_s,
+            voluntary_switches: self.voluntary_switches + later.voluntary_switches,
+            involuntary_switches: self.involuntary_switches + later.involuntary_switches,
+            peak_rss_bytes: self.peak_rss_bytes.max(later.peak_rss_bytes),
+            foreign_s: self.foreign_s.zip(later.foreign_s).map(|(a, b)| a + b),
+        }
+    }
+
     /// What was added since `before`; peak memory is no difference.
     pub(super) fn since(&self, before: &Self) -> Self {
         Self {

@@ -38,6 +38,10 @@ pub enum Warning {
     TooShort,
     /// The samples do not divide among the four subpixels, so the pixel's filter is lopsided.
     PartialSubpixels,
+    /// Time was up before the image was as accurate as asked for.
+    TargetMissed,
+    /// So many samples a pixel are an earlier process's: times and counts are of the others.
+    Resumed(u32),
     /// Something changes what the image converges to: clamped subpixels, or paths that are cut after some bounces.
     Biased,
     /// Rays left the scene.
@@ -48,6 +52,8 @@ pub enum Warning {
     LeftOut(usize),
     /// Samples were NaN, infinite or negative.
     InvalidSamples(u64),
+    /// The other program that was to be run is not there.
+    NoProgram,
     /// The program was built without optimisation for measuring.
     DebugBuild,
 }
@@ -62,11 +68,14 @@ impl fmt::Display for Warning {
             Self::Slowed { percent } => write!(f, "slowed({percent:+} % CPU)"),
             Self::TooShort => f.write_str("too-short"),
             Self::PartialSubpixels => f.write_str("partial-subpixels"),
+            Self::TargetMissed => f.write_str("target-missed"),
+            Self::Resumed(spp) => write!(f, "resumed(at {spp} spp)"),
             Self::Biased => f.write_str("biased"),
             Self::Escaped(count) => write!(f, "escaped({count})"),
             Self::Truncated(count) => write!(f, "truncated({count})"),
             Self::LeftOut(count) => write!(f, "left-out-triangles({count})"),
             Self::InvalidSamples(count) => write!(f, "invalid-samples({count})"),
+            Self::NoProgram => f.write_str("no-program"),
             Self::DebugBuild => f.write_str("debug-build"),
         }
     }

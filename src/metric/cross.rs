@@ -5,7 +5,7 @@
 //! plain mean squared error against one reference of M samples is too large by that reference's variance, which at N samples of
 //! the test makes the error look (1 + N/M)^(1/2) times as large and flattens the slope of a convergence plot.
 
-use super::check_sizes;
+use super::{REL_MSE_EPSILON, check_sizes};
 use crate::error::Result;
 use crate::image_io::{Image, tone_map};
 
@@ -22,6 +22,31 @@ pub fn cross_mse(test: &Image, reference1: &Image, reference2: &Image) -> Result
 /// excess for references that are much better than the test.
 pub fn cross_mse_display(test: &Image, reference1: &Image, reference2: &Image) -> Result<f64> {
     mean_product(test, reference1, reference2, tone_map::display)
+}
+
+/// The mean of (T - R1)(T - R2) over (R^2 + [`REL_MSE_EPSILON`]), with R the mean of the two references, whose noise is in the divisor still:
+/// nearly unbiased where they are much better than the test.
+pub fn cross_rel_mse(test: &Image, reference1: &Image, reference2: &Image) -> Result<f64> {
+    check_sizes(test, reference1)?;
+    check_sizes(test, reference2)?;
+    let [t, r1, r2] = [test, reference1, reference2].map(|image| image.pixels.as_flattened());
+    let ratios = t.iter().zip(r1).zip(r2).map(|((t, r1), r2)| {
+        let mean = 0.5 * (r1 + r2);
+        (t - r1) * (t - r2) / (mean * mean + REL_MSE_EPSILON)
+    });
+    Ok(ratios.sum::<f64>() / t.len() as f64)
+}
+
+/// The mean of (T1 - R1)(T2 - R2): the squared bias alone, for two test pictures of different seeds. The variance of the tests cancels as the
+/// references' does, so the result scatters around zero for an estimator without bias.
+pub fn bias_squared(tests: [&Image; 2], references: [&Image; 2]) -> Result<f64> {
+    for other in [tests[1], references[0], references[1]] {
+        check_sizes(tests[0], other)?;
+    }
+    let [t1, t2] = tests.map(|image| image.pixels.as_flattened());
+    let [r1, r2] = references.map(|image| image.pixels.as_flattened());
+    let products = t1.iter().zip(r1).zip(t2.iter().zip(r2)).map(|((t1, r1), (t2, r2))| (t1 - r1) * (t2 - r2));
+    Ok(products.sum::<f64>() / t1.len() as f64)
 }
 
 /// The root of a cross mean squared error, to be drawn last: average over seeds first. `None` for a negative one, which says

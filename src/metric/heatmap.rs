@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use super::check_sizes;
+use super::{check_sizes, percentile};
 use crate::error::{InputError, Result};
 use crate::image_io::{Image, tone_map};
 
@@ -42,11 +42,7 @@ impl Heatmap {
 /// of this map's errors.
 pub fn heatmap(test: &Image, reference: &Image, scale: Option<f64>) -> Result<Heatmap> {
     check_sizes(test, reference)?;
-    let error = |(t, r): (&[f64; 3], &[f64; 3])| {
-        let squares: f64 = t.iter().zip(r).map(|(t, r)| (t - r) * (t - r)).sum();
-        (squares / 3.0).sqrt()
-    };
-    let errors: Vec<f64> = test.pixels.iter().zip(&reference.pixels).map(error).collect();
+    let errors = percentile::errors(test, reference);
     let scale = scale.unwrap_or_else(|| quantile(&errors));
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(InputError::new("scale", scale.to_string(), "must be positive and finite").into());

@@ -9,10 +9,11 @@
 
 mod cross;
 mod heatmap;
+mod percentile;
 mod pointwise;
 mod ssim;
 
-pub use cross::{cross_mse, cross_mse_display, root};
+pub use cross::{bias_squared, cross_mse, cross_mse_display, cross_rel_mse, root};
 pub use heatmap::{Heatmap, heat_colour, heatmap};
 pub use pointwise::REL_MSE_EPSILON;
 
@@ -42,6 +43,7 @@ impl Entry {
 
 /// Every metric.
 pub const METRICS: &[Entry] = &[
+    Entry { name: "mse", about: "mean squared error over pixels and channels", linear: true, formula: pointwise::mse },
     Entry {
         name: "rmse",
         about: "root of the mean squared error over pixels and channels",
@@ -55,6 +57,25 @@ pub const METRICS: &[Entry] = &[
         formula: pointwise::rel_mse,
     },
     Entry { name: "mae", about: "mean absolute error over pixels and channels", linear: true, formula: pointwise::mae },
+    Entry {
+        name: "error-50",
+        about: "half of the pixels have at most this error (root of its mean square over channels)",
+        linear: true,
+        formula: percentile::half,
+    },
+    Entry {
+        name: "error-90",
+        about: "90 % of the pixels have at most this error",
+        linear: true,
+        formula: percentile::nine_tenths,
+    },
+    Entry {
+        name: "error-99",
+        about: "99 % of the pixels have at most this error",
+        linear: true,
+        formula: percentile::all_but_a_hundredth,
+    },
+    Entry { name: "error-100", about: "the largest error of a pixel", linear: true, formula: percentile::largest },
     Entry {
         name: "rmse-display",
         about: "rmse of display values in [0, 1]",

@@ -19,8 +19,12 @@ fn mse_display(test: &Image, reference: &Image) -> f64 {
     })
 }
 
+pub(super) fn mse(test: &Image, reference: &Image) -> f64 {
+    mean(test, reference, |t, r| (t - r) * (t - r))
+}
+
 pub(super) fn rmse(test: &Image, reference: &Image) -> f64 {
-    mean(test, reference, |t, r| (t - r) * (t - r)).sqrt()
+    mse(test, reference).sqrt()
 }
 
 /// The relative MSE of Rousselle, Knaus and Zwicker, "Adaptive sampling and reconstruction using greedy error minimization",

@@ -1,6 +1,7 @@
 //! From records to figures, tables, findings and one self-contained page.
 
 mod block;
+mod contenders;
 mod figures;
 pub mod forecasts;
 mod page;

@@ -183,8 +183,8 @@ impl Results {
         let cells = self.definition.cells(self.profile())?;
         let mut images = Vec::new();
         for record in self.records.iter().filter(|record| record.repetition == 0 && is_wanted(record)) {
-            let cell = cells.iter().find(|cell| cell.id == record.cell);
-            let path = cell.map(|cell| self.folder.join("images").join(cell.image_file()));
+            let point = cells.iter().flat_map(|cell| &cell.points).find(|point| point.id == record.cell);
+            let path = point.map(|point| self.folder.join("images").join(point.image_file()));
             if let Some(path) = path.filter(|path| path.is_file()) {
                 images.push((record, image_io::read(&path)?));
             }

@@ -7,12 +7,16 @@ mod independent;
 mod libc_rand;
 mod locked;
 mod per_thread;
+mod sobol;
+mod stratified;
 mod warp;
 
 pub use independent::Independent;
 pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;
+pub use sobol::Sobol;
+pub use stratified::Stratified;
 pub use warp::{concentric_disk, cosine_hemisphere, tent, uniform_sphere};
 
 /// Which sample of which pixel of which image.
@@ -94,21 +98,46 @@ pub struct Entry {
 
 macro_rules! samplers {
     (
-        keyed { $($keyed:literal, $keyed_about:literal => $new_keyed:expr;)* }
+        keyed { $($keyed:literal, $keyed_about:literal => $Keyed:ident;)* }
+        spread { $($spread:literal, $spread_about:literal => $Spread:ident;)* }
         stateful { $($stateful:literal, $stateful_about:literal => $new_stateful:expr;)* }
     ) => {
         /// The samplers, in the order in which they are listed.
         pub const SAMPLERS: &[Entry] = &[
             $(Entry { name: $keyed, about: $keyed_about, deterministic: true },)*
+            $(Entry { name: $spread, about: $spread_about, deterministic: true },)*
             $(Entry { name: $stateful, about: $stateful_about, deterministic: false },)*
         ];
 
+        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them, and ask which one it is at each
+        /// pair, which costs little beside making it.
+        #[derive(Debug, Clone, Copy)]
+        enum Spread {
+            $($Spread($Spread),)*
+        }
+
+        impl Sampler for Spread {
+            #[inline(always)]
+            fn pair(&self, at: Address) -> [f64; 2] {
+                match self {
+                    $(Self::$Spread(sampler) => sampler.pair(at),)*
+                }
+            }
+        }
+
         /// Calls the visitor with the deterministic sampler of that name; `None` if there is none.
         pub fn with_keyed_sampler<V: SamplerVisitor>(name: &str, visitor: V) -> Option<V::Output> {
-            match name {
-                $($keyed => Some(visitor.visit($new_keyed)),)*
-                _ => None,
-            }
+            let sampler = match name {
+                $($keyed => return Some(visitor.visit($Keyed)),)*
+                $($spread => Spread::$Spread($Spread),)*
+                _ => return None,
+            };
+            Some(visitor.visit(sampler))
+        }
+
+        /// Whether the sampler of that name spreads a pixel's samples more evenly than chance does.
+        pub fn is_spread(name: &str) -> bool {
+            [$($spread),*].contains(&name)
         }
 
         /// The sampler of that name that keeps a state, made for an image's seed; `None` if there is none. Kernels are compiled once for
@@ -125,6 +154,10 @@ macro_rules! samplers {
 samplers! {
     keyed {
         "independent", "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => Independent;
+    }
+    spread {
+        "stratified", "4x4 jittered strata for each 16 samples, in an order of its own for each use" => Stratified;
+        "sobol", "Owen-scrambled Sobol pairs, each use with a scrambling and an order of its own" => Sobol;
     }
     stateful {
         "libc-rand", "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;

@@ -6,6 +6,7 @@ mod files;
 mod names;
 #[path = "../support/program.rs"]
 mod program;
+mod rounds;
 mod scenes;
 mod schedules;
 

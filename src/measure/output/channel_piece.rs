@@ -3,7 +3,7 @@
 //! Cost: a buffer allocated in each job, and one message for each, on a queue that all workers append to.
 
 use super::{Delivery, Entry, Output};
-use crate::film::{Assembly, Film, TileBuffer};
+use crate::film::{Film, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use crossbeam::channel::{Receiver, Sender, unbounded};
 
@@ -32,9 +32,9 @@ impl Output for ChannelPiece {
         counts
     }
 
-    fn film(&self) -> Film {
-        let Delivery { plan, width, height, spp } = &self.delivery;
-        let mut assembly = Assembly::new(*width, *height, 0..*spp);
+    fn films(&self) -> Vec<Film> {
+        let plan = &self.delivery.plan;
+        let mut assembly = self.delivery.assembly();
         for (index, tile) in self.receiver.try_iter() {
             assembly.add(&plan.pieces()[index].samples, tile);
         }

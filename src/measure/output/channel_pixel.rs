@@ -4,7 +4,7 @@
 //! Cost: a message for each pixel on a queue that all workers append to, and memory for all of them until the end.
 
 use super::{Delivery, Entry, Output};
-use crate::film::{Assembly, Bounds, Film, Piece, PixelSum, TileBuffer};
+use crate::film::{Bounds, Film, Piece, PixelSum, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use crossbeam::channel::{Receiver, Sender, unbounded};
 
@@ -46,14 +46,14 @@ impl Output for ChannelPixel {
         counts
     }
 
-    fn film(&self) -> Film {
-        let Delivery { plan, width, height, spp } = &self.delivery;
+    fn films(&self) -> Vec<Film> {
+        let plan = &self.delivery.plan;
         let mut tiles: Vec<TileBuffer> = plan.pieces().iter().map(|piece| TileBuffer::new(piece.bounds)).collect();
         for Pixel { job, x, y, sum } in self.receiver.try_iter() {
             let left = tiles[job].bounds().x0;
             tiles[job].row_mut(y)[(x - left) as usize] = sum;
         }
-        let mut assembly = Assembly::new(*width, *height, 0..*spp);
+        let mut assembly = self.delivery.assembly();
         for (piece, tile) in plan.pieces().iter().zip(tiles) {
             assembly.add(&piece.samples, tile);
         }

@@ -4,7 +4,7 @@
 //! for it more often.
 
 use super::{Delivery, Entry, Output};
-use crate::film::{Assembly, Film, TileBuffer};
+use crate::film::{Film, Sections, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -12,19 +12,19 @@ pub(super) const ENTRY: Entry = Entry {
     name: "locked",
     about: "one framebuffer behind one lock",
     new: |delivery| {
-        let Delivery { width, height, spp, .. } = delivery;
-        Box::new(Locked { delivery, film: Mutex::new(Assembly::new(width, height, 0..spp)) })
+        let film = Mutex::new(delivery.assembly());
+        Box::new(Locked { delivery, film })
     },
 };
 
 struct Locked {
     delivery: Delivery,
-    film: Mutex<Assembly>,
+    film: Mutex<Sections>,
 }
 
 impl Locked {
     /// Nothing can panic while the lock is held but a failed allocation, which ends the process.
-    fn lock(&self) -> MutexGuard<'_, Assembly> {
+    fn lock(&self) -> MutexGuard<'_, Sections> {
         self.film.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -38,8 +38,8 @@ impl Output for Locked {
         counts
     }
 
-    fn film(&self) -> Film {
-        let empty = Assembly::new(0, 0, 0..0);
+    fn films(&self) -> Vec<Film> {
+        let empty = Sections::new(0, 0, &[]);
         std::mem::replace(&mut *self.lock(), empty).finish()
     }
 }

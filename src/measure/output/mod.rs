@@ -5,8 +5,9 @@
 //!
 //! To add one: a file with its `ENTRY` and a type that is an [`Output`], and its line in `outputs!` below.
 
-use crate::film::{Film, Plan};
+use crate::film::{Film, Plan, Sections};
 use crate::kernel::{Counts, Kernel};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What the workers of one run deliver to.
@@ -14,8 +15,8 @@ pub(super) trait Output: Send + Sync {
     /// Renders the piece of job `index` and delivers it. No two calls have the same index.
     fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts;
 
-    /// The film, when all pieces have been delivered. Called once.
-    fn film(&self) -> Film;
+    /// A film for each section, when all pieces have been delivered. Called once.
+    fn films(&self) -> Vec<Film>;
 }
 
 /// What an output is made for.
@@ -26,8 +27,15 @@ pub(super) struct Delivery {
     pub(super) width: u32,
     /// Rows of the film.
     pub(super) height: u32,
-    /// Samples of each pixel.
-    pub(super) spp: u32,
+    /// The sections of samples that pieces belong to.
+    pub(super) sections: Vec<Range<u32>>,
+}
+
+impl Delivery {
+    /// Empty films for what is delivered.
+    fn assembly(&self) -> Sections {
+        Sections::new(self.width, self.height, &self.sections)
+    }
 }
 
 /// One line of the table of outputs.

@@ -35,7 +35,7 @@ impl Output for RowProgress {
         })
     }
 
-    fn film(&self) -> Film {
-        self.slots.film()
+    fn films(&self) -> Vec<Film> {
+        self.slots.films()
     }
 }

@@ -1,7 +1,7 @@
 //! `--output slots`: each job has a buffer of its own, made before the run, and nobody waits for anybody.
 
 use super::{Delivery, Entry, Output};
-use crate::film::{Assembly, Film, TileBuffer};
+use crate::film::{Film, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use crossbeam::atomic::AtomicCell;
 
@@ -40,9 +40,9 @@ impl Output for Slots {
         self.fill(index, |tile| kernel.render(&self.delivery.plan.pieces()[index], tile))
     }
 
-    fn film(&self) -> Film {
-        let Delivery { plan, width, height, spp } = &self.delivery;
-        let mut assembly = Assembly::new(*width, *height, 0..*spp);
+    fn films(&self) -> Vec<Film> {
+        let plan = &self.delivery.plan;
+        let mut assembly = self.delivery.assembly();
         for (piece, cell) in plan.pieces().iter().zip(&self.cells) {
             if let Some(tile) = cell.take() {
                 assembly.add(&piece.samples, *tile);

@@ -31,6 +31,12 @@ figures! {
     contact_sheet, "contact-sheet", "renders at growing spp beside the reference, with maps of their error";
     rmse_against_spp, "rmse-against-spp", "error against samples per pixel, with the fitted slope";
     rmse_against_time, "rmse-against-time", "what accuracy costs: error against seconds, a line per schedule";
+    error_against_time, "error-against-time", "what accuracy costs: error against seconds, a line per estimator and sampler";
+    price_list, "price-list", "seconds to each accuracy, and how well a part of the measurements predicts the rest";
+    pairs, "pairs", "every two estimators and samplers against each other at equal error and at equal time";
+    equal_time, "equal-time", "what each estimator and sampler shows after the same time";
+    estimators, "estimators", "times as fast to the same error as the first estimator, by scene";
+    clamp_bias, "clamp-bias", "light lost by clamping each subpixel before averaging, by samples per pixel";
     time_against_spp, "time-against-spp", "seconds against samples per pixel, with the linear fit";
     speedup, "speedup", "speedup, efficiency and Karp-Flatt serial fraction against threads";
     scaling_laws, "scaling-laws", "Amdahl's law and the Universal Scalability Law fitted to the speedups";

@@ -1,14 +1,15 @@
 //! Error against samples per pixel on two logarithmic axes. Independent samples fall along a line of slope -1/2.
 
-use crate::analysis::mean::rmse_interval;
-use crate::analysis::slope::clustered;
+use crate::analysis::jackknife::SeedCurves;
+use crate::analysis::mse::over_seeds;
+use crate::analysis::slope::power_law;
 use crate::error::Result;
 use crate::measure::Record;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::report::block::{Block, Table};
 use crate::report::results::{LEVEL, Results};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut series = Vec::new();
@@ -21,9 +22,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         for (spp, at_spp) in by_spp(&records) {
             let mse: Vec<f64> = one_per_seed(&at_spp, |record| record.mse).into_values().collect();
             let display: Vec<f64> = one_per_seed(&at_spp, |record| record.mse_display).into_values().collect();
-            let rmse = rmse_interval(&mse, LEVEL);
+            let error = over_seeds(&mse, LEVEL);
             let (value, shown) = (root_of_mean(&mse), root_of_mean(&display));
-            let interval = rmse.map(|rmse| (rmse.estimate.interval.low, rmse.estimate.interval.high));
+            let interval = error.map(|error| (error.rmse.interval.low, error.rmse.interval.high));
             if mse.is_empty() {
                 continue;
             }
@@ -38,7 +39,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             ]);
         }
         first_point = first_point.or_else(|| points.first().map(|point| (point.x, point.y)));
-        if let Some(fit) = clustered(&curves_of_seeds(&records), LEVEL) {
+        if let Some(fit) =
+            SeedCurves::of_errors(&curves_of_seeds(&records)).and_then(|curves| power_law(&curves, LEVEL))
+        {
             let (slope, interval) = (fit.exponent.value, fit.exponent.interval);
             overlays.push(Overlay::fit(
                 format!("fit: slope {slope:.3}\n95 % {:.3} to {:.3}", interval.low, interval.high),
@@ -49,13 +52,18 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             findings.push(Block::Finding(format!(
                 "{name}: RMSE falls as spp to the power {slope:.3}; the 95 % interval over {} seeds, {:.3} to {:.3}, {verdict} -1/2. \
                  Halving the error so takes {:.2} times the samples ({:.2} to {:.2}).",
-                fit.clusters,
+                fit.seeds,
                 interval.low,
                 interval.high,
                 libm::pow(0.5, 1.0 / slope),
                 libm::pow(0.5, 1.0 / interval.low),
                 libm::pow(0.5, 1.0 / interval.high),
             )));
+            if fit.lacks_fit() {
+                findings.push(Block::Finding(format!(
+                    "{name}: the points do not lie on a line (the exponent changes along it by more than its interval), so no one exponent describes them."
+                )));
+            }
         }
         series.push(Series::new(name, Look::nth(index), points).scattered());
     }
@@ -103,19 +111,20 @@ fn root_of_mean(mse: &[f64]) -> f64 {
     (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
 }
 
-/// (spp, RMSE) of each seed. An spp at which some seed's squared error is not positive is left out for all: leaving out that seed alone
-/// would bias the rest upwards.
-fn curves_of_seeds(records: &[&Record]) -> Vec<Vec<(f64, f64)>> {
-    let mut curves: BTreeMap<u64, BTreeMap<u32, f64>> = BTreeMap::new();
+/// (spp, squared error) of each seed. An spp at which some seed's squared error is not positive, or not there, is left out for all: leaving out
+/// that seed alone would bias the rest upwards.
+pub(super) fn curves_of_seeds(records: &[&Record]) -> Vec<Vec<(f64, f64)>> {
+    let seeds: BTreeSet<u64> = records.iter().map(|record| record.seed).collect();
+    let mut curves: BTreeMap<u64, Vec<(f64, f64)>> = BTreeMap::new();
     for (spp, at_spp) in by_spp(records) {
         let mse = one_per_seed(&at_spp, |record| record.mse);
-        if mse.values().all(|mse| *mse > 0.0) {
+        if mse.len() == seeds.len() && mse.values().all(|mse| *mse > 0.0) {
             for (seed, mse) in mse {
-                curves.entry(seed).or_default().insert(spp, mse.sqrt());
+                curves.entry(seed).or_default().push((f64::from(spp), mse));
             }
         }
     }
-    curves.into_values().map(|curve| curve.into_iter().map(|(spp, rmse)| (f64::from(spp), rmse)).collect()).collect()
+    curves.into_values().collect()
 }
 
 /// The estimator, and whatever else differs among the images.

@@ -1,7 +1,8 @@
 //! Error by scene at the same samples per pixel: report A's claim that scenes without reflections are more accurate, and the control that
 //! exchanges the materials of one scene.
 
-use crate::analysis::mean::{rmse_interval, t_interval};
+use crate::analysis::mean::t_interval;
+use crate::analysis::mse::over_seeds;
 use crate::analysis::quantile::median;
 use crate::analysis::rank::spearman;
 use crate::analysis::{Estimate, Interval};
@@ -81,7 +82,7 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
             radiance,
             by_seed: mse.into_iter().map(|(seed, mse)| (seed, mse.sqrt())).collect(),
             error,
-            interval: rmse_interval(&squares, LEVEL).map(|rmse| rmse.estimate.interval),
+            interval: over_seeds(&squares, LEVEL).map(|error| error.rmse.interval),
             rays: median_of(|record| Some(record.rays? as f64 / record.paths? as f64))?,
             sample_s: median_of(|record| Some(record.cpu_s()? / record.paths? as f64))?,
             pixels: f64::from(first.width) * f64::from(first.height),

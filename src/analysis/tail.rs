@@ -1,0 +1,96 @@
+//! How far a few samples decide a mean: the estimate of a variance from samples with a heavy tail is not to be believed before they are many.
+//!
+//! A path that finds a small light by chance, or through glass, brings a sample thousands of times the mean. Its square decides the variance.
+
+use serde::Serialize;
+
+use super::interval::all_finite;
+use super::quantile::median;
+
+/// What the tail of some samples looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Tail {
+    /// Fourth moment about the mean over the square of the second: 3 for a normal distribution, 1.8 for a uniform one.
+    pub kurtosis: f64,
+    /// Share of the largest sample in the sum of squared deviations, in (0, 1].
+    pub largest_share: f64,
+}
+
+/// The tail of groups of samples, such as the samples of each pixel: deviations are from the group's own mean, moments over all groups.
+///
+/// A group of m samples has m - 1 deviations that are free, which takes a factor (m - 1)/m off its squared deviations; groups of one size keep
+/// kurtosis and share comparable. `None` for a value that is not finite or without any deviation.
+pub fn tail<'a>(groups: impl IntoIterator<Item = &'a [f64]>) -> Option<Tail> {
+    let (mut count, mut squares, mut fourths, mut largest) = (0_u64, 0.0, 0.0, 0.0_f64);
+    for group in groups {
+        if !all_finite(group) {
+            return None;
+        }
+        let mean = group.iter().sum::<f64>() / group.len() as f64;
+        for value in group {
+            let square = (value - mean) * (value - mean);
+            count += 1;
+            squares += square;
+            fourths += square * square;
+            largest = largest.max(square);
+        }
+    }
+    let kurtosis = count as f64 * fourths / (squares * squares);
+    (squares > 0.0 && kurtosis.is_finite()).then(|| Tail { kurtosis, largest_share: largest / squares })
+}
+
+/// The median of the means of `groups` runs of values of equal length: an estimate of the mean that a few huge values cannot move (A. S.
+/// Nemirovsky and D. B. Yudin, "Problem complexity and method efficiency in optimization", 1983). For skewed values it lies below the mean, which
+/// says how far the mean rests on few of them. `None` for fewer values than groups or one that is not finite.
+pub fn median_of_means(values: &[f64], groups: usize) -> Option<f64> {
+    let length = values.len().checked_div(groups).filter(|&length| length > 0)?;
+    // What does not fill a group joins the last one.
+    let start = |group: usize| group * length;
+    let end = |group: usize| if group + 1 == groups { values.len() } else { start(group + 1) };
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    median(&(0..groups).map(|group| mean(&values[start(group)..end(group)])).collect::<Vec<f64>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_known_distributions() {
+        // Two points of equal weight: kurtosis 1. A light that one sample in n finds: 1/p + 1/q - 3 + 3, p = 1/n, here 1/100.
+        let coin: Vec<f64> = (0..100).map(|k| f64::from(k % 2)).collect();
+        assert!((tail([coin.as_slice()]).unwrap().kurtosis - 1.0).abs() < 1e-12);
+        let rare: Vec<f64> = (0..1000).map(|k| if k % 100 == 0 { 12.0 } else { 0.0 }).collect();
+        let found = tail([rare.as_slice()]).unwrap();
+        let (p, q) = (0.01_f64, 0.99_f64);
+        // A yes-or-no variable has kurtosis (q^3 + p^3) / (p q), and each of its ten hits q / 10 of the squared deviations.
+        assert!((found.kurtosis - (q * q * q + p * p * p) / (p * q)).abs() < 1e-9, "{found:?}");
+        assert!((found.largest_share - q / 10.0).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn pixels_of_different_brightness_are_no_tail() {
+        let pixels: Vec<Vec<f64>> = (0..50).map(|k| vec![f64::from(k), f64::from(k) + 1.0]).collect();
+        let found = tail(pixels.iter().map(Vec::as_slice)).unwrap();
+        assert!((found.kurtosis - 1.0).abs() < 1e-12 && (found.largest_share - 0.01).abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn one_firefly_moves_the_mean_and_not_the_median_of_means() {
+        let mut values = vec![1.0; 70];
+        values[33] = 1e6;
+        assert_eq!(median_of_means(&values, 7), Some(1.0));
+        assert_eq!(median_of_means(&[1.0, 2.0, 3.0, 4.0, 9.0], 2), Some(0.5 * 1.5 + 0.5 * (16.0 / 3.0)));
+    }
+
+    #[test]
+    fn degenerate_input_has_no_answer() {
+        let none: [&[f64]; 0] = [];
+        assert_eq!(tail(none), None);
+        assert_eq!(tail([[1.0, 1.0].as_slice()]), None);
+        assert_eq!(tail([[1.0, f64::NAN].as_slice()]), None);
+        assert_eq!(median_of_means(&[1.0], 2), None);
+        assert_eq!(median_of_means(&[1.0], 0), None);
+        assert_eq!(median_of_means(&[1.0, f64::INFINITY], 1), None);
+    }
+}

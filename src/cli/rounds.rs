@@ -1,0 +1,88 @@
+//! The options of `render` that render in rounds: until an accuracy, until time is up, with checkpoints.
+
+use super::progress::Talk;
+use crate::atomic_file;
+use crate::error::Result;
+use crate::experiment::Progress as _;
+use crate::measure::{CONFIDENCE, Checkpoint, Goal, Outcome, Record, Rounds, Setup, Warning};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Seconds of rendering between two checkpoints. Writing one takes some tenths of a second.
+const PAUSE_S: f64 = 10.0;
+
+/// When to stop, and what to keep in between.
+#[derive(Args)]
+pub(super) struct Until {
+    /// Stop when the image's own RMSE in linear radiance, estimated from its samples, is below E with 95 % confidence
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    target_error: Option<f64>,
+    /// Stop before rendering takes longer than so many seconds; there is always one round
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    time_limit: Option<f64>,
+    /// Keep what is rendered in this file now and then, and go on with what is in it
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+}
+
+impl Until {
+    /// Whether one round would not do.
+    pub(super) fn are_asked_for(&self) -> bool {
+        self.have_a_goal() || self.checkpoint.is_some()
+    }
+
+    /// Whether something else than a number of samples says when to stop.
+    pub(super) fn have_a_goal(&self) -> bool {
+        self.target_error.is_some() || self.time_limit.is_some()
+    }
+
+    /// Puts the goal into the record.
+    pub(super) fn label(&self, record: &mut Record) {
+        record.target_error = self.target_error;
+        record.time_limit_s = self.time_limit;
+    }
+}
+
+/// Renders until the goal is reached.
+pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &Talk) -> Result<(Setup, Outcome)> {
+    let (checkpoint, saved) = match &arguments.checkpoint {
+        Some(path) => {
+            atomic_file::check_writable(path)?;
+            let (checkpoint, saved) = Checkpoint::open(path, &setup, arguments.target_error)?;
+            (Some(checkpoint), saved)
+        }
+        None => (None, None),
+    };
+    let before = saved.as_ref().map(|saved| saved.progress);
+    let mut rounds = Rounds::new(setup)?;
+    if let Some(saved) = saved {
+        rounds.adopt(saved.film);
+    }
+    let goal = Goal {
+        spp,
+        target_error: arguments.target_error,
+        time_limit_s: arguments.time_limit,
+        pause_s: checkpoint.as_ref().map(|_| PAUSE_S),
+    };
+    goal.check(&rounds)?;
+
+    let (resumed, name) = (rounds.spp(), rounds.setup().scene().name.clone());
+    let title = match (spp, goal.target_error, goal.time_limit_s) {
+        (Some(spp), ..) => format!("{name} at {spp} spp"),
+        (_, Some(error), _) => format!("{name} until its RMSE is below {error} ({:.0} % sure)", 100.0 * CONFIDENCE),
+        (.., limit_s) => format!("{name} for {} s", limit_s.unwrap_or_default()),
+    };
+    talk.begin(&title, u64::from(spp.unwrap_or(0)));
+    let missed = goal.pursue(&mut rounds, before, None, &mut |rounds, progress| {
+        talk.note(&format!("{name}: {} spp after {:.2} s", rounds.spp(), progress.rendering_s));
+        talk.advance(u64::from(rounds.spp()));
+        checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.save(rounds, progress))
+    })?;
+    talk.end();
+    let mut outcome = rounds.outcome();
+    outcome.warnings.extend(missed);
+    if resumed > 0 {
+        outcome.warnings.push(Warning::Resumed(resumed));
+    }
+    Ok((rounds.into_setup(), outcome))
+}

@@ -1,0 +1,157 @@
+//! Other renderers in an experiment's tables.
+//!
+//! ```toml
+//! [[external]]
+//! name = "yardstick"                                    # stands where estimators stand
+//! command = ["{folder}/yardstick", "{width}", "{height}", "{spp}", "{out}", "keyed", "{seed}"]
+//! build = ["g++", "-O3", "yardstick.cpp", "-o", "{folder}/yardstick"]   # optional, once before the sweep
+//! scene = "cornell"                                     # what it renders, of which there is a reference
+//! spp = [64]
+//! seed = [1, 2, 3]
+//! # Optional: threads = 1, which it is to use (a note for the row); format = "pfm", the ending of {out}; curve = true and fewest-spp = 4, for
+//! # images at 4, 8, 16 ... samples on the way to each spp, each by a run of its own.
+//! ```
+
+use super::{Cell, CellPoint, Definition, Profile, Progress};
+use crate::error::{Error, InputError, Result};
+use crate::kernel::Spec;
+use crate::measure::Settings;
+use crate::scene::load;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// What stands in the columns that mean nothing for other programs.
+pub const EXTERNAL: &str = "external";
+
+/// Another program.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct External {
+    /// Its name.
+    pub name: String,
+    /// The program and its arguments; `{spp}`, `{seed}` and `{out}` must be among them, `{width}`, `{height}` and `{folder}` may be.
+    pub command: Vec<String>,
+    /// What makes it, once before the sweep.
+    #[serde(default)]
+    pub build: Vec<String>,
+    scene: String,
+    spp: Vec<u32>,
+    seed: Vec<u64>,
+    #[serde(default = "one")]
+    threads: usize,
+    #[serde(default = "pfm")]
+    format: String,
+    #[serde(default)]
+    curve: bool,
+    #[serde(default = "one_sample")]
+    fewest_spp: u32,
+}
+
+fn one() -> usize {
+    1
+}
+
+fn one_sample() -> u32 {
+    1
+}
+
+fn pfm() -> String {
+    "pfm".to_string()
+}
+
+/// The command with its placeholders filled in.
+pub(super) fn filled(command: &[String], values: &[(&str, String)]) -> Vec<String> {
+    let fill = |word: &String| {
+        values.iter().fold(word.clone(), |word, (name, value)| word.replace(&format!("{{{name}}}"), value))
+    };
+    command.iter().map(fill).collect()
+}
+
+impl External {
+    /// The ending of the file that it writes.
+    pub fn format(&self) -> &str {
+        &self.format
+    }
+
+    /// Makes it; whatever goes wrong is said and nothing else: its rows will say that there is no program.
+    pub(super) fn make(&self, folder: &Path, progress: &dyn Progress) {
+        let command = filled(&self.build, &[("folder", folder.display().to_string())]);
+        let Some((program, arguments)) = command.split_first() else { return };
+        let problem = match Command::new(program).args(arguments).stdin(Stdio::null()).output() {
+            Ok(output) if output.status.success() => return,
+            Ok(output) => String::from_utf8_lossy(&output.stderr).trim().to_string(),
+            Err(error) => error.to_string(),
+        };
+        progress.note(&format!("{} is left out: {}: {problem}", self.name, command.join(" ")));
+    }
+
+    /// Refuses what cannot be run.
+    fn check(&self) -> Result<()> {
+        for placeholder in ["{spp}", "{seed}", "{out}"] {
+            if !self.command.iter().any(|word| word.contains(placeholder)) {
+                let problem = format!("has no place for {placeholder}");
+                return Err(InputError::new("command", self.command.join(" "), problem).into());
+            }
+        }
+        if self.spp.is_empty() || self.seed.is_empty() || self.spp.contains(&0) || self.fewest_spp == 0 {
+            let problem = "needs samples and seeds, and no 0 among the samples";
+            return Err(InputError::new("external", &self.name, problem).into());
+        }
+        crate::image_io::check_format(Path::new(&format!("image.{}", self.format))).map(|_| ())
+    }
+
+    fn points(&self, spp: u32) -> Vec<u32> {
+        if !self.curve {
+            return vec![spp];
+        }
+        let doubled = std::iter::successors(Some(self.fewest_spp), |own| own.checked_mul(2));
+        doubled.take_while(|own| *own < spp).chain([spp]).collect()
+    }
+}
+
+impl Definition {
+    /// The cells of the other programs.
+    pub(super) fn external_cells(&self, profile: Profile) -> Result<Vec<Cell>> {
+        let scale = self.scale(profile);
+        let mut cells = Vec::new();
+        for external in &self.external {
+            external.check().map_err(|error| match error {
+                Error::Input(input) => self.located(profile, *input),
+                other => other,
+            })?;
+            let scene = load(&external.scene)?;
+            let spps = scale.spp.as_ref().unwrap_or(&external.spp);
+            let seeds = scale.seed.as_ref().unwrap_or(&external.seed);
+            for (spp, seed) in spps.iter().flat_map(|spp| {
+                external.points(*spp).into_iter().flat_map(|spp| seeds.iter().map(move |seed| (spp, *seed)))
+            }) {
+                let [width, height] = scale.size;
+                let spec = Spec {
+                    width,
+                    height,
+                    seed,
+                    estimator: external.name.clone(),
+                    sampler: EXTERNAL.to_string(),
+                    kernel: EXTERNAL.to_string(),
+                    ..Spec::default()
+                };
+                let settings = Settings {
+                    scene: external.scene.clone(),
+                    spp,
+                    spec,
+                    decomposition: EXTERNAL.to_string(),
+                    strategy: EXTERNAL.to_string(),
+                    threads: external.threads,
+                    ..Settings::default()
+                };
+                let what = format!("{}-{}/{}/{EXTERNAL}", scene.name, scene.hash, external.name);
+                let id = format!("{what}/{width}x{height}/{spp}spp/seed{seed}");
+                let samples = u64::from(width) * u64::from(height) * u64::from(spp);
+                let points = vec![CellPoint { id: id.clone(), spp, image: id.clone() }];
+                cells.push(Cell { id, settings, points, weight: samples.max(1), external: Some(external.clone()) });
+            }
+        }
+        Ok(cells)
+    }
+}

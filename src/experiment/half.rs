@@ -1,0 +1,173 @@
+//! The two halves of a reference on their way into the cache, and how good they are.
+//!
+//! A film of 16 · 2^k samples is one subtree of its pixels' sums, so any longer one of the same half goes on from it, with the same bits
+//! as without. Long ones leave such films on the way, so that a killed render does not start anew.
+
+use super::reference::reference_path;
+use super::{Progress, Reference};
+use crate::error::{Error, InputError, Result};
+use crate::film::{Film, FilmKey, GrowingFilm, SAMPLE_BLOCK, read_film, write_film};
+use crate::measure::{LARGEST_SPP, Rounds, Setup};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The two halves, from the cache in `folder` where they are there and whole, rendered otherwise.
+pub fn render_reference(reference: &Reference, folder: &Path, progress: &dyn Progress) -> Result<[(PathBuf, Film); 2]> {
+    let half = |index| Half::new(reference, index, folder)?.render(reference.spp, progress);
+    Ok([half(0)?, half(1)?])
+}
+
+/// Seconds of rendering that may be lost when the program is killed.
+const MOST_LOST_S: f64 = 20.0;
+
+/// One half on its way into the cache.
+struct Half<'a> {
+    rounds: Rounds,
+    index: u32,
+    folder: &'a Path,
+}
+
+impl<'a> Half<'a> {
+    fn new(reference: &Reference, index: u32, folder: &'a Path) -> Result<Self> {
+        Ok(Self { rounds: Rounds::new(Setup::prepare(reference.half(index))?)?, index, folder })
+    }
+
+    fn key(&self, spp: u32) -> FilmKey {
+        FilmKey { spp, ..self.rounds.film_key() }
+    }
+
+    fn path(&self, spp: u32) -> PathBuf {
+        reference_path(self.folder, &self.key(spp))
+    }
+
+    /// The film of so many samples, if it is cached.
+    fn cached(&self, spp: u32) -> Result<Option<Film>> {
+        let path = self.path(spp);
+        if !path.is_file() {
+            return Ok(None);
+        }
+        // A damaged file is an error, never quietly replaced: it may be the user's only copy.
+        let (found, film) = read_film(&path)?;
+        Ok((found == self.key(spp)).then_some(film))
+    }
+
+    /// Goes on from the longest cached film that one of `spp` samples begins with.
+    fn adopt_beginning(&mut self, spp: u32) -> Result<()> {
+        let FilmKey { width, height, spp: done, .. } = self.rounds.film_key();
+        for samples in subtrees().rev().filter(|samples| (done + 1..spp).contains(samples)) {
+            let parts = self.cached(samples)?.map(|film| vec![(0..samples, film)]);
+            if let Some(film) = parts.and_then(|parts| GrowingFilm::from_parts(width, height, parts)) {
+                self.rounds.adopt(film);
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn render(&mut self, spp: u32, progress: &dyn Progress) -> Result<(PathBuf, Film)> {
+        let path = self.path(spp);
+        if let Some(film) = self.cached(spp)? {
+            return Ok((path, film));
+        }
+        self.adopt_beginning(spp)?;
+        let title = format!("reference {} of 2: {} at {spp} spp", self.index + 1, self.rounds.setup().scene().name);
+        progress.begin(&title, u64::from(spp));
+        let (mut unsaved_s, mut stone) = (0.0, None);
+        while self.rounds.spp() < spp {
+            let done = self.rounds.spp();
+            progress.advance(u64::from(done));
+            let next = subtrees().find(|samples| *samples > done).map_or(spp, |samples| samples.min(spp));
+            unsaved_s += self.rounds.extend_to(next, None)?.makespan_s;
+            if next < spp && unsaved_s > MOST_LOST_S {
+                write_film(&self.path(next), &self.key(next), &self.rounds.film())?;
+                remove(stone.replace(self.path(next)))?;
+                unsaved_s = 0.0;
+            }
+        }
+        progress.end();
+        let film = self.rounds.film();
+        write_film(&path, &self.key(spp), &film)?;
+        remove(stone)?;
+        Ok((path, film))
+    }
+}
+
+/// Numbers of samples that are one subtree of a pixel's sum, and that every estimator can render.
+fn subtrees() -> impl DoubleEndedIterator<Item = u32> {
+    (0..=(LARGEST_SPP / SAMPLE_BLOCK).ilog2()).map(|k| SAMPLE_BLOCK << k)
+}
+
+/// Removes a film that a longer one has replaced.
+fn remove(stone: Option<PathBuf>) -> Result<()> {
+    let Some(path) = stone else { return Ok(()) };
+    std::fs::remove_file(&path).map_err(|e| Error::system("removing", &path, e))
+}
+
+/// The error of the average of two halves, told in two ways.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReferenceError {
+    /// By the variance of its samples. Too large where they are stratified or of low discrepancy.
+    pub by_variance: f64,
+    /// By the difference of the halves, whose mean square is four times the average's. Knows nothing of how samples are drawn.
+    pub by_difference: f64,
+}
+
+impl ReferenceError {
+    /// Of two halves of one size.
+    pub fn of(first: &Film, second: &Film) -> Self {
+        let (a, b) = (first.image(), second.image());
+        let pairs = a.pixels.as_flattened().iter().zip(b.pixels.as_flattened());
+        let mean = pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / (3 * a.pixels.len()) as f64;
+        let variance = first.mean_variance() + second.mean_variance();
+        Self { by_variance: (variance / 4.0).sqrt(), by_difference: (mean / 4.0).sqrt() }
+    }
+
+    /// The worse of the two.
+    pub fn worse(&self) -> f64 {
+        self.by_variance.max(self.by_difference)
+    }
+}
+
+impl fmt::Display for ReferenceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { by_variance, by_difference } = self;
+        write!(f, "estimated RMSE of their average: {by_variance:.3e} by variance, {by_difference:.3e} by difference")
+    }
+}
+
+/// Refuses an error that no reference can reach.
+pub fn check_until(rmse: f64) -> Result<()> {
+    if rmse.is_finite() && rmse > 0.0 {
+        return Ok(());
+    }
+    let error = InputError::new("until", rmse.to_string(), "is no error that can be reached");
+    Err(error.allowed("finite numbers above 0").into())
+}
+
+/// Doubles both halves until the error of their average, in the worse of both accounts, is at most `rmse`. Starts with what is cached; films on
+/// the way to the last one are removed if this run made them.
+pub fn refine_reference(
+    reference: &Reference,
+    rmse: f64,
+    folder: &Path,
+    progress: &dyn Progress,
+) -> Result<[(PathBuf, Film); 2]> {
+    let mut first = Half::new(reference, 0, folder)?;
+    let mut second = Half::new(reference, 1, folder)?;
+    let longest = subtrees().rev().find(|spp| first.path(*spp).is_file() && second.path(*spp).is_file());
+    let mut made: Vec<PathBuf> = Vec::new();
+    for spp in subtrees().filter(|spp| longest.is_none_or(|longest| *spp >= longest)) {
+        let new = [first.path(spp), second.path(spp)].into_iter().filter(|path| !path.is_file()).collect();
+        let halves = [first.render(spp, progress)?, second.render(spp, progress)?];
+        for path in std::mem::replace(&mut made, new) {
+            remove(Some(path))?;
+        }
+        let error = ReferenceError::of(&halves[0].1, &halves[1].1);
+        progress.note(&format!("{spp} spp: {error}"));
+        if error.worse() <= rmse {
+            return Ok(halves);
+        }
+    }
+    let error = InputError::new("until", rmse.to_string(), "takes more samples than an image can have");
+    Err(error.allowed(format!("what {LARGEST_SPP} samples can reach")).into())
+}

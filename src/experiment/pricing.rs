@@ -1,0 +1,106 @@
+//! What an accuracy will cost, found out by a pilot: some seeds are rendered and timed, and their images measured by each other. No reference is
+//! needed, and the seeds of the pilot belong to no image, so that what is paid for later is not judged by the samples that set its price.
+
+use super::Progress;
+use crate::analysis::Estimate;
+use crate::analysis::jackknife::SeedCurves;
+use crate::analysis::mean::t_interval;
+use crate::analysis::price::{Law, Renderer};
+use crate::error::{Error, InputError, Result};
+use crate::kernel::Spec;
+use crate::measure::{Rounds, Settings, Setup};
+use crate::sampling::{REFERENCE_SEEDS, is_spread};
+
+/// Seeds from here on are for pilots.
+const PILOT_SEEDS: u64 = REFERENCE_SEEDS >> 1;
+/// Points of each seed's curve, each of twice the samples: enough for an exponent.
+const POINTS: u32 = 5;
+
+/// How thoroughly a price is found out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pilot {
+    /// Samples per pixel of each seed.
+    pub spp: u32,
+    /// How many seeds.
+    pub seeds: u32,
+}
+
+/// What was paid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Paid {
+    /// Mean seconds of the two renders.
+    pub seconds: f64,
+    /// Root of half the mean squared difference of their images: the error of either, if there is no bias.
+    pub rmse: f64,
+}
+
+/// How the error falls with a sampler of that name.
+pub fn law_of(sampler: &str) -> Law {
+    if is_spread(sampler) { Law::Fitted } else { Law::Independent }
+}
+
+fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
+    Settings { spp, spec: Spec { seed, ..settings.spec.clone() }, ..settings.clone() }
+}
+
+impl Pilot {
+    /// Renders the pilot; intervals have this level.
+    pub fn run(&self, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<Renderer> {
+        let law = law_of(&settings.spec.sampler);
+        let fewest = Setup::prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
+        if !self.spp.is_multiple_of(fewest) {
+            let problem = format!("is no multiple of {fewest}, the fewest samples that make an image");
+            return Err(InputError::new("pilot-spp", self.spp.to_string(), problem).into());
+        }
+        let count = if law == Law::Independent { 1 } else { POINTS };
+        let halved = (0..count).map(|times| self.spp >> times).take_while(|spp| spp.is_multiple_of(fewest) && *spp > 0);
+        let mut points: Vec<u32> = halved.collect();
+        points.reverse();
+
+        let mut images: Vec<Vec<Vec<f64>>> = vec![Vec::new(); points.len()];
+        let mut per_spp = Vec::new();
+        progress.begin("pilot", u64::from(self.seeds));
+        // The first run of a process is slower than the rest.
+        Setup::prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;
+        for seed in 0..self.seeds {
+            let setup = Setup::prepare(with_seed(settings, self.spp, PILOT_SEEDS + u64::from(seed)))?;
+            let mut rounds = Rounds::new(setup)?;
+            let (mut seconds, mut samples) = (0.0, 0);
+            for (&spp, images) in points.iter().zip(&mut images) {
+                let times = rounds.extend_to(spp, None)?;
+                seconds += times.makespan_s;
+                samples += times.paths;
+                images.push(rounds.film().image().pixels.into_flattened());
+            }
+            let pixels = u64::from(settings.spec.width) * u64::from(settings.spec.height);
+            per_spp.push(seconds * pixels as f64 / samples as f64);
+            progress.advance(u64::from(seed) + 1);
+        }
+        progress.end();
+        let at: Vec<f64> = points.iter().map(|&spp| f64::from(spp)).collect();
+        let seen: Vec<Vec<&[f64]>> = images.iter().map(|of| of.iter().map(Vec::as_slice).collect()).collect();
+        let curves = SeedCurves::of_images(&at, &seen);
+        let seconds: Option<Estimate> = t_interval(&per_spp, level);
+        match curves.zip(seconds) {
+            Some((curves, seconds_per_spp)) => Ok(Renderer { curves, law, seconds_per_spp }),
+            None => Err(Error::Check("the pilot's seeds say nothing about error and time".to_string())),
+        }
+    }
+}
+
+/// Renders two seeds, from the settings' own on, with so many samples, and measures what that took and what it gave.
+pub fn pay(settings: &Settings, spp: u32, progress: &dyn Progress) -> Result<Paid> {
+    let mut images = Vec::new();
+    let mut seconds = 0.0;
+    for index in 0..2_u64 {
+        let setup = Setup::prepare(with_seed(settings, spp, settings.spec.seed + index))?;
+        progress.begin(&format!("paying {} of 2: {spp} spp", index + 1), setup.jobs() as u64);
+        let outcome = setup.run(Some(&|done| progress.advance(done)))?;
+        progress.end();
+        seconds += 0.5 * outcome.makespan_s;
+        images.push(outcome.film.image());
+    }
+    let (first, second) = (images[0].pixels.as_flattened(), images[1].pixels.as_flattened());
+    let squares: f64 = first.iter().zip(second).map(|(a, b)| (a - b) * (a - b)).sum();
+    Ok(Paid { seconds, rmse: (0.5 * squares / first.len() as f64).sqrt() })
+}

@@ -1,0 +1,206 @@
+//! A film that grows: first some samples a pixel, then more, with the bits of all of them at once.
+//!
+//! It keeps finished subtrees of each pixel's sum ([`super::SampleSum`]) for the whole image, like the digits of a binary counter, and the
+//! unfinished block apart. More samples come in sections that are subtrees themselves. The unfinished block cannot be continued
+//! without the samples in it, so its up to 15 samples are rendered again.
+
+use super::{Assembly, Film, SAMPLE_BLOCK, TileBuffer};
+use std::ops::Range;
+
+/// Cuts samples into subtrees: 16 · 2^k samples that start at a multiple of their number, the largest that fit, and what is left of a
+/// block at the end. `samples` start at a multiple of [`SAMPLE_BLOCK`].
+pub fn sections(samples: &Range<u32>) -> Vec<Range<u32>> {
+    debug_assert!(samples.start.is_multiple_of(SAMPLE_BLOCK));
+    let (mut cut, mut start) = (Vec::new(), samples.start);
+    while start < samples.end {
+        let left = samples.end - start;
+        let length = if left < SAMPLE_BLOCK {
+            left
+        } else {
+            // The largest power of two in what is left; sample 0 is a multiple of all.
+            let fits = 1 << left.ilog2();
+            if start == 0 { fits } else { fits.min(1 << start.trailing_zeros()) }
+        };
+        cut.push(start..start + length);
+        start += length;
+    }
+    cut
+}
+
+/// Sections that are put together side by side, whichever piece comes first.
+#[derive(Debug)]
+pub struct Sections {
+    ends: Vec<u32>,
+    assemblies: Vec<Assembly>,
+}
+
+impl Sections {
+    /// Empty films for ranges of samples that follow one another.
+    pub fn new(width: u32, height: u32, sections: &[Range<u32>]) -> Self {
+        let assemblies = sections.iter().map(|samples| Assembly::new(width, height, samples.clone())).collect();
+        Self { ends: sections.iter().map(|samples| samples.end).collect(), assemblies }
+    }
+
+    /// Adds a piece that was rendered into `tile`, all of whose samples lie in one section. Every piece must come once.
+    pub fn add(&mut self, samples: &Range<u32>, tile: TileBuffer) {
+        let section = self.ends.partition_point(|end| *end <= samples.start);
+        self.assemblies[section].add(samples, tile);
+    }
+
+    /// The films, one for each section, when all pieces have come.
+    pub fn finish(self) -> Vec<Film> {
+        self.assemblies.into_iter().map(Assembly::finish).collect()
+    }
+}
+
+/// A film and what is needed to go on with it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GrowingFilm {
+    width: u32,
+    height: u32,
+    spp: u32,
+    /// Whole subtrees, from the first samples on, so the largest first, and the unfinished block if there is one.
+    parts: Vec<(Range<u32>, Film)>,
+}
+
+impl GrowingFilm {
+    /// A film without samples.
+    pub fn new(width: u32, height: u32) -> Self {
+        Self { width, height, spp: 0, parts: Vec::new() }
+    }
+
+    /// A film of parts as [`GrowingFilm::parts`] gives them; `None` if they are not of that kind.
+    pub fn from_parts(width: u32, height: u32, parts: Vec<(Range<u32>, Film)>) -> Option<Self> {
+        let spp = parts.last().map_or(0, |(samples, _)| samples.end);
+        let fits = |(samples, film): &(Range<u32>, Film)| {
+            let count = samples.end - samples.start;
+            let counts = film.pixels().iter().all(|pixel| pixel.count == count);
+            counts && (film.width(), film.height()) == (width, height)
+        };
+        let found = parts.iter().map(|(samples, _)| samples.clone());
+        let is_ours = found.eq(sections(&(0..spp))) && parts.iter().all(fits);
+        is_ours.then_some(Self { width, height, spp, parts })
+    }
+
+    /// Samples per pixel.
+    pub fn spp(&self) -> u32 {
+        self.spp
+    }
+
+    /// The subtrees and what samples they are of.
+    pub fn parts(&self) -> &[(Range<u32>, Film)] {
+        &self.parts
+    }
+
+    /// What has to be rendered so that there are `spp` samples: to be added in this order. Nothing if there are as many already; a film
+    /// does not shrink.
+    pub fn missing(&self, spp: u32) -> Vec<Range<u32>> {
+        if spp <= self.spp { Vec::new() } else { sections(&(self.spp / SAMPLE_BLOCK * SAMPLE_BLOCK..spp)) }
+    }
+
+    /// Adds the next section.
+    pub fn add(&mut self, samples: Range<u32>, mut film: Film) {
+        // What is left is an unfinished block, of which these samples are a longer part.
+        self.parts.retain(|(found, _)| found.start < samples.start);
+        self.spp = samples.end;
+        let mut samples = samples;
+        let length = |samples: &Range<u32>| samples.end - samples.start;
+        while let Some((before, earlier)) = self.parts.pop_if(|(before, _)| length(before) == length(&samples)) {
+            film = earlier.plus(&film);
+            samples.start = before.start;
+        }
+        self.parts.push((samples, film));
+    }
+
+    /// All samples: the bits of a film that was rendered with them at once.
+    pub fn film(&self) -> Film {
+        let mut parts = self.parts.iter().rev().map(|(_, film)| film);
+        let Some(last) = parts.next() else { return Film::new(self.width, self.height) };
+        parts.fold(last.clone(), |later, film| film.clone().plus(&later))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Bounds, SampleSum};
+    use crate::math::Rgb;
+
+    const BOUNDS: Bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
+
+    fn part(samples: Range<u32>) -> TileBuffer {
+        let mut sum = SampleSum::default();
+        samples.for_each(|k| sum.add(Rgb { r: 1.0 / f64::from(k % 97 + 1), g: f64::from(k) * 0.3, b: 0.1 }));
+        let mut tile = TileBuffer::new(BOUNDS);
+        tile.row_mut(0)[0] = sum.total();
+        tile
+    }
+
+    fn rendered(samples: Range<u32>) -> Film {
+        let mut assembly = Assembly::new(1, 1, samples.clone());
+        assembly.add(&samples.clone(), part(samples));
+        assembly.finish()
+    }
+
+    fn extend(film: &mut GrowingFilm, spp: u32) {
+        let missing = film.missing(spp);
+        let mut sections = Sections::new(1, 1, &missing);
+        // Backwards: they come in any order.
+        missing.iter().rev().for_each(|samples| sections.add(samples, part(samples.clone())));
+        for (samples, part) in missing.into_iter().zip(sections.finish()) {
+            film.add(samples, part);
+        }
+    }
+
+    #[test]
+    fn sections_are_subtrees_and_cover_everything_once() {
+        assert_eq!(sections(&(0..100)), [0..64, 64..96, 96..100]);
+        assert_eq!(sections(&(48..128)), [48..64, 64..128]);
+        assert_eq!(sections(&(0..7)), [0..7]);
+        for start in (0..400).step_by(16) {
+            for end in start..400 {
+                let found = sections(&(start..end));
+                let mut at = start;
+                for Range { start, end } in found.iter().cloned() {
+                    let length = end - start;
+                    assert!(start == at && start.is_multiple_of(length.next_power_of_two()), "{found:?}");
+                    assert!(length < SAMPLE_BLOCK || length.is_power_of_two(), "{found:?}");
+                    at = end;
+                }
+                assert_eq!(at, end);
+            }
+        }
+    }
+
+    /// Two and three rounds of any numbers of samples have the bits of one.
+    #[test]
+    fn rounds_give_the_undivided_sum() {
+        for spp in 1..=140 {
+            let expected = rendered(0..spp);
+            for first in 1..=spp {
+                let mut film = GrowingFilm::new(1, 1);
+                extend(&mut film, first);
+                assert_eq!((film.film(), film.spp()), (rendered(0..first), first));
+                extend(&mut film, first.midpoint(spp));
+                extend(&mut film, spp);
+                assert_eq!((film.film(), film.spp()), (expected.clone(), spp), "{first} of {spp}");
+                let again = GrowingFilm::from_parts(1, 1, film.parts().to_vec()).unwrap();
+                assert_eq!(again, film);
+            }
+        }
+    }
+
+    #[test]
+    fn a_film_does_not_shrink_and_parts_that_are_no_subtrees_are_refused() {
+        let mut film = GrowingFilm::new(1, 1);
+        assert_eq!(film.film(), Film::new(1, 1));
+        extend(&mut film, 100);
+        assert!(film.missing(100).is_empty() && film.missing(3).is_empty());
+        let refused = |parts| assert!(GrowingFilm::from_parts(1, 1, parts).is_none());
+        refused(vec![(0..48, rendered(0..48))]);
+        refused(vec![(16..32, rendered(16..32))]);
+        refused(vec![(0..16, rendered(0..32))]);
+        refused(film.parts().iter().rev().cloned().collect());
+        assert!(GrowingFilm::from_parts(2, 1, film.parts().to_vec()).is_none());
+    }
+}

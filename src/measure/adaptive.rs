@@ -1,0 +1,73 @@
+//! Samples where the noise is: `render --adaptive`.
+//!
+//! A pilot renders a few samples a pixel under a seed that no image can have, says how noisy each cell of a fixed grid is, and is thrown
+//! away. The samples of the image decide nothing, so its mean is as unbiased as with the same number everywhere; adaptive renderers that
+//! reuse their pilot's samples are not (Kirk and Arvo, "Unbiased Sampling Techniques for Image Synthesis", 1991). The numbers of samples follow from scene and
+//! settings alone, so the checksum is the same whoever renders which pieces.
+
+use super::run::{Account, Watch};
+use super::{Outcome, Settings, Setup};
+use crate::error::{InputError, Result};
+use crate::film::{Film, FilmKey, SampleGrid};
+use crate::kernel::Spec;
+use crate::scene::SUBPIXELS;
+use std::slice::from_ref;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Seeds from here on are for pilots: above those of images, and far above those of references, which count from 2^63.
+const PILOT_SEEDS: u64 = 3 << 62;
+/// Fewest samples per pixel that leave something to share out.
+const FEWEST_SPP: u32 = 16;
+/// Every pixel gets this part of the mean: what the pilot took for quiet may have light that is seldom found.
+const EVEN_PART: u32 = 8;
+/// The pilot has this part of the samples, but at least 8 a pixel and at most 64.
+const PILOT_PART: u32 = 16;
+
+impl Setup {
+    /// Refuses settings whose samples cannot be shared out.
+    pub fn check_adaptive(&self) -> Result<()> {
+        let spp = self.settings().spp;
+        if spp >= FEWEST_SPP && spp.is_multiple_of(SUBPIXELS) {
+            return Ok(());
+        }
+        let problem = "cannot be shared out over an image";
+        let allowed = format!("multiples of {SUBPIXELS} from {FEWEST_SPP} on with --adaptive");
+        Err(InputError::new("spp", spp.to_string(), problem).allowed(allowed).into())
+    }
+
+    /// As [`Setup::run`], with as many samples on average, more of them where a pilot found more noise.
+    pub fn run_adaptive(&self, watch: Watch<'_>) -> Result<Outcome> {
+        self.check_adaptive()?;
+        let before = Instant::now();
+        let grid = self.sample_grid()?;
+        let pilot_s = before.elapsed().as_secs_f64();
+        let plan = grid.plan(self.decomposition());
+        self.check_jobs(plan.len())?;
+        let mut account = Account::new();
+        let spec = &self.settings().spec;
+        let films = account.round(self, plan, from_ref(&(0..grid.largest())), watch)?;
+        let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
+        let mut outcome = account.outcome(self, self.settings().spp, film);
+        outcome.pilot_s += pilot_s;
+        outcome.adaptive = true;
+        Ok(outcome)
+    }
+
+    fn sample_grid(&self) -> Result<SampleGrid> {
+        let Settings { spp, spec, .. } = self.settings();
+        let pilot_spp = (spp / PILOT_PART).clamp(8, 64).next_multiple_of(SUBPIXELS);
+        // Two seeds of images that differ in the highest bits alone share their pilot, which is nobody's sample.
+        let seed = PILOT_SEEDS | (spec.seed & !PILOT_SEEDS);
+        let spec = Spec { seed, subpixel_clamp: false, ..spec.clone() };
+        let settings = Settings { spp: pilot_spp, spec, ..self.settings().clone() };
+        let pilot = Self::for_scene(Arc::clone(self.shared_scene()), settings)?.run(None)?;
+        let least = (spp / EVEN_PART / SUBPIXELS * SUBPIXELS).max(SUBPIXELS);
+        Ok(SampleGrid::neyman(&pilot.film, *spp, least, SUBPIXELS))
+    }
+
+    /// What the film of [`Setup::run_adaptive`] is of.
+    pub fn adaptive_film_key(&self) -> FilmKey {
+        FilmKey { adaptive: true, ..self.film_key() }
+    }
+}

@@ -1,0 +1,102 @@
+//! A render on disk that can go on: `render --checkpoint FILE`.
+//!
+//! Layout: [`crate::film::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. What it is of stands in its header, and
+//! a file that is of anything else is refused, never overwritten. It is written between rounds, in one rename, so that a reader finds
+//! one round or the next.
+
+use super::{Progress, Rounds, Setup};
+use crate::error::{InputError, Result};
+use crate::film::{FilmKey, GrowingFilm, SumFile, sections};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+const FILE: SumFile = SumFile { magic: "pathmark checkpoint 1", field: "checkpoint" };
+
+/// What a checkpoint says of itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    /// What the film is of, with the samples that it has.
+    film: FilmKey,
+    kernel: String,
+    /// Seconds of rendering so far.
+    rendering_s: f64,
+    /// The accuracy that it is on its way to, and the samples at which that is looked at next.
+    target_error: Option<f64>,
+    look: u32,
+}
+
+/// A file for one render's checkpoints.
+pub struct Checkpoint {
+    path: PathBuf,
+    target_error: Option<f64>,
+}
+
+/// Where an earlier process was.
+pub struct Saved {
+    /// Its film.
+    pub film: GrowingFilm,
+    /// How far it was.
+    pub progress: Progress,
+}
+
+impl Checkpoint {
+    /// Reads the file, if there is one. Refuses what is damaged or of another render.
+    pub fn open(path: &Path, setup: &Setup, target_error: Option<f64>) -> Result<(Self, Option<Saved>)> {
+        let refuse = |problem: &str| InputError::new(FILE.field, path.display().to_string(), problem);
+        if !setup.is_deterministic() {
+            let problem = format!("is of no use: {} gives other numbers in each run", setup.settings().spec.sampler);
+            return Err(refuse(&problem).into());
+        }
+        let checkpoint = Self { path: path.to_path_buf(), target_error };
+        if !path.exists() {
+            return Ok((checkpoint, None));
+        }
+        let images = |spp: u32| sections(&(0..spp)).len();
+        let (header, films) =
+            FILE.read(path, |header: &Header| (header.film.width, header.film.height, images(header.film.spp)))?;
+        let mine = Header {
+            film: FilmKey { spp: header.film.spp, ..setup.film_key() },
+            kernel: setup.settings().spec.kernel.clone(),
+            ..header.clone()
+        };
+        if let Some(difference) = difference(&header, &mine) {
+            return Err(refuse(&format!("is of another render: {difference}"))
+                .allowed("another name, or the same settings")
+                .into());
+        }
+        let Header { film: FilmKey { width, height, spp, .. }, rendering_s, look, .. } = header;
+        let parts = sections(&(0..spp)).into_iter().zip(films).collect();
+        let film = GrowingFilm::from_parts(width, height, parts)
+            .ok_or_else(|| refuse("does not have the samples that its header says"))?;
+        // On the way to another accuracy, the next look is elsewhere.
+        let look = if header.target_error == target_error { look } else { 0 };
+        Ok((checkpoint, Some(Saved { film, progress: Progress { rendering_s, look } })))
+    }
+
+    /// Writes it, whole or not at all.
+    pub fn save(&self, rounds: &Rounds, progress: Progress) -> Result<()> {
+        let header = Header {
+            film: rounds.film_key(),
+            kernel: rounds.setup().settings().spec.kernel.clone(),
+            rendering_s: progress.rendering_s,
+            target_error: self.target_error,
+            look: progress.look,
+        };
+        let films: Vec<_> = rounds.growing().parts().iter().map(|(_, film)| film).collect();
+        FILE.write(&self.path, &header, &films)
+    }
+}
+
+/// The first field in which two headers differ.
+fn difference(found: &Header, mine: &Header) -> Option<String> {
+    let fields = |header: &Header| {
+        let mut fields = vec![("kernel".to_string(), serde_json::Value::from(header.kernel.as_str()))];
+        if let Ok(serde_json::Value::Object(film)) = serde_json::to_value(&header.film) {
+            fields.extend(film);
+        }
+        fields
+    };
+    let differs = fields(found).into_iter().zip(fields(mine)).find(|(found, mine)| found != mine);
+    differs.map(|((field, found), (_, mine))| format!("{field} is {found}, not {mine}"))
+}

@@ -1,0 +1,169 @@
+//! When a render is good enough: after so many samples, at an accuracy, or when its time is up.
+//!
+//! An accuracy is looked at at 16 samples a pixel and then at most at every doubling. The last step is planned from the noise of at least half
+//! of its samples, so that it ends a little below the target instead of somewhere between it and its half. A look stops the render if the
+//! squared error, by its estimate and the scatter of the image's own error around it ([`crate::film::Noise`]), is below the target with
+//! [`CONFIDENCE`]. Two things keep it from stopping by luck: the looks are few and their estimates share most of their samples, and heavy
+//! tails, which make a sample variance too small by luck, make the image's error small by the same luck. What no look can see is light that
+//! no sample has found yet.
+//!
+//! Looks follow from the film alone, so a render that was stopped in between comes to the same end. Between looks, a time limit or a
+//! checkpoint may cut the way into steps.
+
+use super::run::{RoundTimes, Watch};
+use super::settings::{LARGEST_SPP, spp_multiple};
+use super::{Rounds, Warning};
+use crate::analysis::z_test::normal_quantile;
+use crate::error::{InputError, Result};
+use crate::film::{FEWEST_PIXELS, SAMPLE_BLOCK};
+
+/// How sure a render is that its own RMSE is below the target.
+pub const CONFIDENCE: f64 = 0.95;
+/// Rounds that add less than this share of the samples so far are left undone when time is nearly up.
+const LEAST_GAIN: f64 = 0.02;
+
+/// When to stop: at whichever comes first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// Samples per pixel, if it is they that are asked for.
+    pub spp: Option<u32>,
+    /// RMSE in linear radiance.
+    pub target_error: Option<f64>,
+    /// Seconds of rendering.
+    pub time_limit_s: Option<f64>,
+    /// Seconds of rendering after which somebody wants to look in.
+    pub pause_s: Option<f64>,
+}
+
+/// Where a render is on its way, for whoever looks in between two rounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress {
+    /// Seconds of rendering, those of earlier processes included.
+    pub rendering_s: f64,
+    /// Samples at which the goal is looked at next.
+    pub look: u32,
+}
+
+/// What happens between rounds.
+pub type Between<'a> = &'a mut dyn FnMut(&Rounds, Progress) -> Result<()>;
+
+impl Goal {
+    /// Refuses goals that nothing can reach or that say nothing.
+    pub fn check(&self, rounds: &Rounds) -> Result<()> {
+        let is_positive = |value: f64| value.is_finite() && value > 0.0;
+        for (field, value) in [("target-error", self.target_error), ("time-limit", self.time_limit_s)] {
+            if let Some(value) = value.filter(|value| !is_positive(*value)) {
+                let error = InputError::new(field, value.to_string(), "is out of range");
+                return Err(error.allowed("finite numbers above 0").into());
+            }
+        }
+        let spec = &rounds.setup().settings().spec;
+        let pixels = spec.width as usize * spec.height as usize;
+        if self.target_error.is_some() && pixels < FEWEST_PIXELS {
+            let problem = format!("has too few pixels for its noise to be known; {FEWEST_PIXELS} are needed");
+            return Err(InputError::new("size", format!("{}x{}", spec.width, spec.height), problem).into());
+        }
+        if let Some(spp) = self.spp.filter(|spp| *spp < rounds.spp()) {
+            let problem = format!("is less than the checkpoint has: {}", rounds.spp());
+            return Err(InputError::new("spp", spp.to_string(), problem).into());
+        }
+        Ok(())
+    }
+
+    /// Samples at the next look; `None` if the goal is reached.
+    fn next_look(&self, rounds: &Rounds) -> Result<Option<u32>> {
+        let (spp, multiple) = (rounds.spp(), rounds.setup().spp_multiple());
+        let Some(target) = self.target_error else {
+            let end = self.spp.unwrap_or(LARGEST_SPP / multiple * multiple);
+            return Ok((spp < end).then_some(end));
+        };
+        let first = SAMPLE_BLOCK.next_multiple_of(multiple);
+        let Some(noise) = rounds.film().noise().filter(|_| spp >= first) else { return Ok(Some(first)) };
+        let bound = noise.bound(normal_quantile(CONFIDENCE).unwrap_or_default());
+        if bound <= target * target {
+            return Ok(None);
+        }
+        let wanted = f64::from(spp) * bound / (target * target);
+        if wanted > f64::from(LARGEST_SPP) {
+            let problem = format!("would take some {wanted:.0} samples per pixel");
+            return Err(InputError::new("target-error", target.to_string(), problem)
+                .allowed(format!("what {LARGEST_SPP} samples can reach"))
+                .into());
+        }
+        let wanted = (wanted.ceil() as u32).next_multiple_of(multiple);
+        Ok(Some(wanted.clamp(spp + multiple, 2 * spp)))
+    }
+
+    /// Samples at the end of the next round, on the way to a look; `None` if there is no time for one.
+    fn next_step(&self, rounds: &Rounds, rendering_s: f64, last: &RoundTimes, look: u32) -> Option<u32> {
+        let (spp, multiple) = (rounds.spp(), rounds.setup().spp_multiple());
+        if self.time_limit_s.is_none() && self.pause_s.is_none() {
+            return Some(look);
+        }
+        if last.paths == 0 {
+            // Nobody knows how long samples take: as few as possible where time is short.
+            let few = if self.time_limit_s.is_some() { multiple } else { SAMPLE_BLOCK.next_multiple_of(multiple) };
+            let is_first = spp == 0 || self.time_limit_s.is_none_or(|limit_s| rendering_s < limit_s);
+            return is_first.then_some(look.min(spp + few));
+        }
+        let spec = &rounds.setup().settings().spec;
+        let samples_s = f64::from(spec.width) * f64::from(spec.height) * last.makespan_s / last.paths as f64;
+        // Samples of an unfinished block are rendered again.
+        let block = spp / SAMPLE_BLOCK * SAMPLE_BLOCK;
+        let fits = |seconds: f64| {
+            let samples = (seconds / samples_s).clamp(0.0, f64::from(LARGEST_SPP)) as u32;
+            block.saturating_add(samples).min(look) / multiple * multiple
+        };
+        // What the last round took says little about one that is much longer.
+        let mut end = look.min(spp.saturating_mul(2));
+        if let Some(pause_s) = self.pause_s {
+            end = end.min(fits(pause_s).max(spp + multiple));
+        }
+        if let Some(limit_s) = self.time_limit_s {
+            let fitting = fits(limit_s - rendering_s);
+            if f64::from(fitting) < f64::from(spp) * (1.0 + LEAST_GAIN) && fitting < look {
+                return None;
+            }
+            end = end.min(fitting);
+        }
+        // On the way, rounds end with a block where they can, so that nothing is rendered twice.
+        let aligned = end / SAMPLE_BLOCK.max(multiple) * SAMPLE_BLOCK.max(multiple);
+        let end = if end < look && aligned > spp { aligned } else { end };
+        (end > spp).then_some(end)
+    }
+
+    /// Renders until the goal is reached. `before` is what was done already, where a checkpoint knows. Warns if time was up before the
+    /// target was reached.
+    pub fn pursue(
+        &self,
+        rounds: &mut Rounds,
+        before: Option<Progress>,
+        watch: Watch<'_>,
+        between: Between<'_>,
+    ) -> Result<Option<Warning>> {
+        let mut last = RoundTimes::default();
+        let mut rendering_s = before.map_or(0.0, |before| before.rendering_s);
+        let mut look = before.map(|before| before.look).filter(|look| *look > rounds.spp());
+        loop {
+            let Some(end) = look.map_or_else(|| self.next_look(rounds), |look| Ok(Some(look)))? else {
+                return Ok(None);
+            };
+            while rounds.spp() < end {
+                let Some(step) = self.next_step(rounds, rendering_s, &last, end) else {
+                    return Ok(self.target_error.map(|_| Warning::TargetMissed));
+                };
+                last = rounds.extend_to(step, watch)?;
+                rendering_s += last.makespan_s;
+                between(rounds, Progress { rendering_s, look: end })?;
+            }
+            look = None;
+        }
+    }
+}
+
+impl super::Setup {
+    /// Samples per pixel are a multiple of this.
+    pub fn spp_multiple(&self) -> u32 {
+        spp_multiple(&self.settings().spec.estimator)
+    }
+}

@@ -1,0 +1,85 @@
+//! Several rounds into one film: first some samples a pixel, then more. The film is the one that all samples at once give, bit for bit.
+//!
+//! Each round is a plan of its own for the same strategy, which is made once. Only rendering is timed. Rounds that end inside a block of
+//! [`crate::film::SAMPLE_BLOCK`] samples are possible, but what they rendered of that block is rendered again by the next.
+
+use super::run::{Account, RoundTimes, Watch};
+use super::settings::check_spp;
+use super::{Outcome, Setup};
+use crate::error::{InputError, Result};
+use crate::film::{Film, FilmKey, GrowingFilm};
+
+/// A render that can go on.
+pub struct Rounds {
+    setup: Setup,
+    account: Account,
+    film: GrowingFilm,
+}
+
+impl Rounds {
+    /// Nothing rendered yet. The samples that the settings ask for do not matter.
+    pub fn new(setup: Setup) -> Result<Self> {
+        let spec = &setup.settings().spec;
+        if spec.subpixel_clamp {
+            let problem = "needs all samples of a pixel at once, and so cannot be rendered in rounds";
+            return Err(InputError::new("subpixel-clamp", "true", problem).into());
+        }
+        let film = GrowingFilm::new(spec.width, spec.height);
+        Ok(Self { setup, account: Account::new(), film })
+    }
+
+    /// Goes on with a film of the same settings instead of what was rendered so far.
+    pub fn adopt(&mut self, film: GrowingFilm) {
+        self.film = film;
+    }
+
+    /// Renders until there are `spp` samples a pixel. If there are as many already nothing happens: films do not shrink.
+    pub fn extend_to(&mut self, spp: u32, watch: Watch<'_>) -> Result<RoundTimes> {
+        check_spp(spp, &self.setup.settings().spec.estimator)?;
+        let sections = self.film.missing(spp);
+        if sections.is_empty() {
+            return Ok(RoundTimes::default());
+        }
+        let plan = self.setup.plan_of(&sections)?;
+        let films = self.account.round(&self.setup, plan, &sections, watch)?;
+        for (samples, film) in sections.into_iter().zip(films) {
+            self.film.add(samples, film);
+        }
+        Ok(self.account.last)
+    }
+
+    /// What was asked for.
+    pub fn setup(&self) -> &Setup {
+        &self.setup
+    }
+
+    /// Samples per pixel so far.
+    pub fn spp(&self) -> u32 {
+        self.film.spp()
+    }
+
+    /// The sums of all samples so far.
+    pub fn film(&self) -> Film {
+        self.film.film()
+    }
+
+    /// The film with what is needed to go on.
+    pub fn growing(&self) -> &GrowingFilm {
+        &self.film
+    }
+
+    /// What the film so far is of.
+    pub fn film_key(&self) -> FilmKey {
+        FilmKey { spp: self.spp(), ..self.setup.film_key() }
+    }
+
+    /// What was asked for, when there are no more rounds.
+    pub fn into_setup(self) -> Setup {
+        self.setup
+    }
+
+    /// What all rounds came to.
+    pub fn outcome(&self) -> Outcome {
+        self.account.outcome(&self.setup, self.spp(), self.film())
+    }
+}

@@ -1,0 +1,292 @@
+//! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
+
+use super::ledger::Ledger;
+use super::output::{Delivery, Output};
+use super::usage::Usage;
+use super::{JobSpan, Setup, Trace, Warning, available_threads};
+use crate::error::{Error, Result};
+use crate::film::{Film, Plan};
+use crate::kernel::{Counts, Kernel};
+use crate::strategy::Strategy;
+use std::ops::Range;
+use std::slice::from_ref;
+use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::time::{Duration, Instant, SystemTime};
+
+/// In shorter runs the start of threads and a single interruption weigh more than the schedule.
+const SHORTEST_S: f64 = 5e-3;
+/// Other programs' share of the processors from which they are mentioned.
+const FOREIGN_SHARE: f64 = 0.05;
+/// The system counts in hundredths of a second, once for each processor: less than this may be rounding.
+const FOREIGN_LEAST_S: f64 = 0.03;
+
+/// Who is told the number of jobs done now and then, from another thread.
+pub type Watch<'a> = Option<&'a (dyn Fn(u64) + Sync)>;
+
+/// What a run gave.
+pub struct Outcome {
+    /// The image's sums.
+    pub film: Film,
+    /// Samples per pixel; their mean if the run was adaptive.
+    pub spp: u32,
+    /// Whether tiles had as many samples as their noise called for.
+    pub adaptive: bool,
+    /// How often jobs were handed out.
+    pub rounds: u32,
+    /// The pieces, in the order in which they were handed out.
+    pub plan: Arc<Plan>,
+    /// Who did what when. Where there were several rounds, the time between them is left out.
+    pub trace: Trace,
+    /// What happened on the paths, job by job.
+    pub job_counts: Vec<Counts>,
+    /// What happened on the paths.
+    pub counts: Counts,
+    /// Threads that ran at least one job.
+    pub workers_used: u32,
+    /// Seconds to build the kernel and what accelerates the scene; once for all runs of a setup.
+    pub build_s: f64,
+    /// Seconds to find out what the pieces will cost, where their order depends on it.
+    pub pilot_s: f64,
+    /// Seconds to make the strategy.
+    pub setup_s: f64,
+    /// Seconds from handing over the jobs until all were done, over all rounds.
+    pub makespan_s: f64,
+    /// Seconds to put the pieces together.
+    pub merge_s: f64,
+    /// The film's checksum; none if the sampler gives other numbers in each run.
+    pub checksum: Option<String>,
+    /// What a reader should know.
+    pub warnings: Vec<Warning>,
+    /// When it started.
+    pub started_utc: String,
+    /// What the system counted during the makespan.
+    pub(super) cpu: Option<Usage>,
+}
+
+impl Outcome {
+    /// CPU seconds during the makespan, in the program and in the system.
+    pub fn cpu_s(&self) -> Option<f64> {
+        self.cpu.map(|usage| usage.user_s + usage.system_s)
+    }
+}
+
+impl Setup {
+    /// Renders, times and verifies.
+    pub fn run(&self, watch: Watch<'_>) -> Result<Outcome> {
+        let (spec, spp) = (&self.settings().spec, self.settings().spp);
+        let mut account = Account::new();
+        let films = account.round(self, self.plan(), from_ref(&(0..spp)), watch)?;
+        let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
+        Ok(account.outcome(self, spp, film))
+    }
+}
+
+/// How long one round took.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RoundTimes {
+    /// Seconds from handing over the jobs until all were done.
+    pub makespan_s: f64,
+    /// Seconds to put the pieces together.
+    pub merge_s: f64,
+    /// CPU seconds during the makespan, in the program and in the system.
+    pub cpu_s: Option<f64>,
+    /// Samples, over all pixels.
+    pub paths: u64,
+}
+
+/// What all rounds of a run came to so far. The strategy is made for the first and kept.
+pub(super) struct Account {
+    strategy: Option<Box<dyn Strategy>>,
+    rounds: u32,
+    plan: Plan,
+    spans: Vec<JobSpan>,
+    job_counts: Vec<Counts>,
+    workers_used: u32,
+    /// Fewest workers that a round should have had.
+    asked: usize,
+    build_s: f64,
+    pilot_s: f64,
+    setup_s: f64,
+    pub(super) makespan_s: f64,
+    pub(super) merge_s: f64,
+    cpu: Option<Usage>,
+    started_utc: String,
+    pub(super) last: RoundTimes,
+}
+
+impl Account {
+    pub(super) fn new() -> Self {
+        Self {
+            strategy: None,
+            rounds: 0,
+            plan: Plan::default(),
+            spans: Vec::new(),
+            job_counts: Vec::new(),
+            workers_used: 0,
+            asked: 0,
+            build_s: 0.0,
+            pilot_s: 0.0,
+            setup_s: 0.0,
+            makespan_s: 0.0,
+            merge_s: 0.0,
+            cpu: None,
+            started_utc: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            last: RoundTimes::default(),
+        }
+    }
+
+    /// Renders the plan, each of whose pieces lies in one of the sections, and gives a film for each section.
+    pub(super) fn round(
+        &mut self,
+        setup: &Setup,
+        plan: Plan,
+        sections: &[Range<u32>],
+        watch: Watch<'_>,
+    ) -> Result<Vec<Film>> {
+        let (kernel, build_s) = setup.kernel()?;
+        self.build_s = build_s;
+        let before_pilot = Instant::now();
+        let plan = Arc::new(setup.ordered(plan, &*kernel));
+        if setup.is_by_cost() {
+            self.pilot_s += before_pilot.elapsed().as_secs_f64();
+        }
+        let spec = &setup.settings().spec;
+        let (width, height) = (spec.width, spec.height);
+        let delivery = Delivery { plan: Arc::clone(&plan), width, height, sections: sections.to_vec() };
+        let run = Arc::new(Run { kernel, ledger: Ledger::new(plan.len()), output: setup.new_output(delivery) });
+        let strategy = match &mut self.strategy {
+            Some(strategy) => strategy,
+            none => {
+                let before_setup = Instant::now();
+                let strategy = none.insert(setup.new_strategy()?);
+                self.setup_s = before_setup.elapsed().as_secs_f64();
+                strategy
+            }
+        };
+        let timed = watched(&run, watch, || run.timed(setup, strategy.as_mut(), plan.len()))?;
+
+        let entries = run.ledger.close().map_err(|problem| {
+            Error::Check(format!("strategy {} broke its contract: {problem}", setup.settings().strategy))
+        })?;
+        let before_merge = Instant::now();
+        let films = run.output.films();
+        let merge_s = before_merge.elapsed().as_secs_f64();
+
+        let workers = run.ledger.workers_used();
+        let asked = setup.strategy().workers.at_once(setup.settings().threads, plan.len());
+        // The round that missed its workers by most speaks for all.
+        if self.plan.is_empty()
+            || asked.saturating_sub(workers as usize) > self.asked.saturating_sub(self.workers_used as usize)
+        {
+            (self.asked, self.workers_used) = (asked, workers);
+        }
+        let offset_s = self.makespan_s;
+        self.rounds += 1;
+        self.spans.extend(entries.iter().map(|entry| entry.span.later_by(offset_s)));
+        self.job_counts.extend(entries.iter().map(|entry| entry.counts));
+        self.plan.append(&plan);
+        self.makespan_s += timed.makespan_s;
+        self.merge_s += merge_s;
+        self.cpu =
+            if self.rounds == 1 { timed.cpu } else { self.cpu.zip(timed.cpu).map(|(sum, more)| sum.plus(&more)) };
+        self.last = RoundTimes {
+            makespan_s: timed.makespan_s,
+            merge_s,
+            cpu_s: timed.cpu.map(|usage| usage.user_s + usage.system_s),
+            paths: entries.iter().map(|entry| entry.counts.paths).sum(),
+        };
+        Ok(films)
+    }
+
+    /// What it came to, with the film that was made of the rounds' films.
+    pub(super) fn outcome(&self, setup: &Setup, spp: u32, film: Film) -> Outcome {
+        let mut counts = Counts::default();
+        for job in &self.job_counts {
+            counts.add(job);
+        }
+        let mut warnings = setup.warnings(&counts, spp, self.asked, self.workers_used);
+        warnings.extend(self.time_warnings());
+        if cfg!(debug_assertions) {
+            warnings.push(Warning::DebugBuild);
+        }
+        Outcome {
+            checksum: setup.is_deterministic().then(|| film.checksum()),
+            warnings,
+            film,
+            spp,
+            adaptive: false,
+            rounds: self.rounds,
+            plan: Arc::new(self.plan.clone()),
+            trace: Trace { jobs: self.spans.clone() },
+            job_counts: self.job_counts.clone(),
+            counts,
+            workers_used: self.workers_used,
+            build_s: self.build_s,
+            pilot_s: self.pilot_s,
+            setup_s: self.setup_s,
+            makespan_s: self.makespan_s,
+            merge_s: self.merge_s,
+            started_utc: self.started_utc.clone(),
+            cpu: self.cpu,
+        }
+    }
+
+    fn time_warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if self.makespan_s < SHORTEST_S {
+            warnings.push(Warning::TooShort);
+        }
+        let capacity_s = self.makespan_s * available_threads() as f64;
+        if let Some(foreign_s) = self.cpu.and_then(|usage| usage.foreign_s)
+            && foreign_s > FOREIGN_SHARE * capacity_s
+            && foreign_s > FOREIGN_LEAST_S
+        {
+            warnings.push(Warning::ForeignLoad { percent: (100.0 * foreign_s / capacity_s).round() as u32 });
+        }
+        warnings
+    }
+}
+
+/// Does `work` while a thread beside it tells how far the run is.
+fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> T) -> T {
+    let Some(watch) = watch else { return work() };
+    std::thread::scope(|scope| {
+        let (stop, stopped) = channel::<()>();
+        scope.spawn(move || {
+            while stopped.recv_timeout(Duration::from_millis(100)) == Err(RecvTimeoutError::Timeout) {
+                watch(run.ledger.done());
+            }
+        });
+        let done = work();
+        drop(stop);
+        done
+    })
+}
+
+/// What all jobs of a round share.
+struct Run {
+    kernel: Arc<dyn Kernel>,
+    ledger: Ledger,
+    output: Box<dyn Output>,
+}
+
+struct Timed {
+    makespan_s: f64,
+    cpu: Option<Usage>,
+}
+
+impl Run {
+    fn timed(self: &Arc<Self>, setup: &Setup, strategy: &mut dyn Strategy, jobs: usize) -> Result<Timed> {
+        let shared = Arc::clone(self);
+        let usage = Usage::now();
+        let start = Instant::now();
+        let job = Arc::new(move |index: usize| {
+            let Self { kernel, ledger, output } = &*shared;
+            ledger.record(index, start, || output.render(index, &**kernel));
+        });
+        strategy.run(jobs, job).map_err(|error| setup.strategy_error(error))?;
+        let makespan_s = start.elapsed().as_secs_f64();
+        Ok(Timed { makespan_s, cpu: usage.zip(Usage::now()).map(|(before, after)| after.since(&before)) })
+    }
+}

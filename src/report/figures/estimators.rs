@@ -1,0 +1,54 @@
+//! Which estimator suits which scene: seconds to the same error, against the estimator that is named first.
+
+use crate::analysis::versus::equal_error;
+use crate::error::Result;
+use crate::plot::style::Look;
+use crate::plot::{Axis, Dot, DotPlot, Group, Row};
+use crate::report::block::Block;
+use crate::report::contenders::{Contender, contenders};
+use crate::report::results::Results;
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let scenes = contenders(results);
+    let estimators = results.definition.estimator_names();
+    let Some((first, others)) = estimators.split_first() else { return Ok(Vec::new()) };
+    let dot = |contenders: &[Contender], other: &str| {
+        let of = |name: &str| contenders.iter().find(|contender| contender.estimator == name);
+        let (yardstick, other) = (of(first)?, of(other)?);
+        let goal = [yardstick, other].iter().filter_map(|c| Some(c.points.last()?.rmse)).reduce(f64::max)?;
+        let ratio = equal_error(&yardstick.renderer, &other.renderer, goal)?;
+        Some(Dot { value: ratio.value, interval: Some((ratio.interval.low, ratio.interval.high)) })
+    };
+    let rows: Vec<Row> = scenes
+        .iter()
+        .map(|(scene, contenders)| Row {
+            name: scene.clone(),
+            dots: others.iter().map(|other| dot(contenders, other)).collect(),
+        })
+        .collect();
+    if rows.iter().all(|row| row.dots.iter().all(Option::is_none)) {
+        return Ok(vec![Block::Finding("No two estimators were measured on the same scene.".to_string())]);
+    }
+    let found: Vec<String> = rows
+        .iter()
+        .filter_map(|row| {
+            let best = row.dots.iter().zip(others).filter_map(|(dot, name)| Some((dot.as_ref()?.value, name)));
+            let (value, name) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            Some(format!("{} {value:.2} ({name})", row.name))
+        })
+        .collect();
+    let mut plot = DotPlot::new(
+        format!("How many times as fast as {first} to the same error"),
+        Axis::log(format!("seconds of {first} / seconds")).including([1.0]),
+        rows,
+    );
+    plot.groups =
+        others.iter().enumerate().map(|(index, name)| Group { name: name.clone(), look: Look::nth(index) }).collect();
+    plot.guides = vec![(1.0, format!("as fast as {first}"))];
+    plot.subtitle = results.machine_line();
+    plot.caption = "Bars: 95 % interval over seeds, of error and time together.".to_string();
+    Ok(vec![
+        Block::Figure { stem: "estimators", figure: Box::new(plot) },
+        Block::Finding(format!("The best estimator of each scene, in times as fast as {first}: {}.", found.join(", "))),
+    ])
+}

@@ -1,0 +1,127 @@
+//! How a few samples of one pixel share out the square: exact counts.
+
+use super::{Use, all_keyed, keyed};
+use pathmark::sampling::{Purpose, Sampler};
+use std::ops::Range;
+
+/// Uses near and far, of main paths and branches.
+const USES: [Use; 6] = [
+    Use { bounce: 0, branch: 0, purpose: Purpose::Film },
+    Use { bounce: 1, branch: 0, purpose: Purpose::Bsdf },
+    Use { bounce: 5, branch: 0, purpose: Purpose::Roulette },
+    Use { bounce: 2, branch: 3, purpose: Purpose::Bsdf },
+    Use { bounce: 15, branch: 0, purpose: Purpose::Medium },
+    Use { bounce: 4000, branch: 0, purpose: Purpose::Bsdf },
+];
+
+const KEYS: [(u64, u32); 4] = [(0, 0), (1, 0), (0x0123_4567_89AB_CDEF, 77), (u64::MAX, u32::MAX)];
+
+fn points(sampler: &dyn Sampler, (seed, pixel): (u64, u32), used: Use, samples: Range<u32>) -> Vec<[f64; 2]> {
+    samples.map(|sample| sampler.pair(used.of(seed, pixel, sample))).collect()
+}
+
+/// Whether each of `columns` x `rows` equal cells has exactly one of the points.
+fn one_in_each_cell(points: &[[f64; 2]], columns: u32, rows: u32) -> bool {
+    let mut seen = vec![false; points.len()];
+    let place =
+        |[u, v]: [f64; 2]| (u * f64::from(columns)) as usize + (v * f64::from(rows)) as usize * columns as usize;
+    points.iter().all(|point| !std::mem::replace(&mut seen[place(*point)], true))
+}
+
+/// A (0, 2)-sequence in base 2: aligned blocks of 2^m samples, first ones and far beyond 2^16, on every grid of 2^m cells. (Blocks of
+/// two are none: four samples are in any order.)
+#[test]
+fn sobol_pairs_are_nets_on_every_grid() {
+    let sampler = keyed("sobol");
+    for key in KEYS {
+        for used in USES {
+            for m in [0, 2, 3, 4, 5, 6, 7, 8, 9, 10] {
+                let size = 1_u32 << m;
+                for start in [0, 3 * size, 1 << 16, 1 << 24, u32::MAX - (2 * size - 1)] {
+                    let points = points(&*sampler, key, used, start..start + size);
+                    for a in 0..=m {
+                        let fine = one_in_each_cell(&points, 1 << a, 1 << (m - a));
+                        assert!(fine, "{key:?} {used:?}: samples {start}.., {} x {} cells", 1 << a, 1 << (m - a));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// So are those of each subpixel in base 4: of 4^m samples, 4^(m-1) on every grid of 4^a by 4^(m-1-a) cells.
+#[test]
+fn sobol_pairs_of_each_subpixel_are_nets() {
+    let sampler = keyed("sobol");
+    for key in KEYS {
+        for used in USES {
+            for m in 1..=5 {
+                let size = 1_u32 << (2 * m);
+                for start in [0, 3 * size, 1 << 24] {
+                    let points = points(&*sampler, key, used, start..start + size);
+                    for (subpixel, a) in (0..4).flat_map(|subpixel| (0..m).map(move |a| (subpixel, a))) {
+                        let own: Vec<[f64; 2]> = points.iter().skip(subpixel).step_by(4).copied().collect();
+                        let fine = one_in_each_cell(&own, 1 << (2 * a), 1 << (2 * (m - 1 - a)));
+                        assert!(fine, "{key:?} {used:?} subpixel {subpixel}: {size} from {start}, 4^{a} columns");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Each 16 samples have one in each of 4x4 cells, and nobody sees a pattern in their order: another 16 have another.
+#[test]
+fn stratified_samples_share_out_the_cells() {
+    let sampler = keyed("stratified");
+    for key in KEYS {
+        for used in USES {
+            let mut orders = Vec::new();
+            for block in [0, 1, 2, 3, 1 << 12, (1 << 28) - 2] {
+                let points = points(&*sampler, key, used, 16 * block..16 * block + 16);
+                assert!(one_in_each_cell(&points, 4, 4), "{key:?} {used:?}: block {block}");
+                orders.push(points.iter().map(|[u, v]| (u * 4.0) as u32 + 4 * (v * 4.0) as u32).collect::<Vec<_>>());
+            }
+            orders.sort();
+            orders.dedup();
+            assert_eq!(orders.len(), 6, "{key:?} {used:?}: two blocks have one order");
+        }
+    }
+}
+
+/// smallpt's camera gives every fourth sample the same subpixel: those alone must reach the whole square. In Sobol's own order they
+/// stay in a quarter of it.
+#[test]
+fn every_fourth_sample_sees_the_whole_square() {
+    for (name, sampler) in all_keyed() {
+        for key in KEYS {
+            for used in USES {
+                for subpixel in 0..4 {
+                    let mut cells = [0; 16];
+                    for [u, v] in points(&*sampler, key, used, 0..2048).iter().skip(subpixel).step_by(4) {
+                        cells[(u * 4.0) as usize + 4 * (v * 4.0) as usize] += 1;
+                    }
+                    // 32 in each on average; fewer than 8 are as good as impossible.
+                    let least = cells.iter().min().unwrap();
+                    assert!(*least >= 8, "{name} {key:?} {used:?} subpixel {subpixel}: {cells:?}");
+                }
+            }
+        }
+    }
+}
+
+/// The extremes: numbers stay in [0, 1) for every index, seed and pixel that there is.
+#[test]
+fn numbers_stay_below_one() {
+    for (name, sampler) in all_keyed() {
+        for key in KEYS {
+            for used in USES {
+                for samples in [0..5000, u32::MAX - 5000..u32::MAX] {
+                    let all = points(&*sampler, key, used, samples);
+                    let inside = all.iter().flatten().all(|u| (0.0..1.0).contains(u));
+                    assert!(inside, "{name} {key:?} {used:?}");
+                }
+            }
+        }
+    }
+}

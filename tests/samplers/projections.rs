@@ -1,0 +1,111 @@
+//! Numbers of different uses have nothing to do with each other: every two of the first 64.
+
+use super::{LEVEL, Use, all_keyed, chi_square, chi_square_range, first_uses};
+use pathmark::analysis::z_test::{critical_value, sidak};
+use pathmark::sampling::{REFERENCE_SEEDS, Sampler};
+
+const NUMBERS: usize = 64;
+const PAIRS: usize = NUMBERS * (NUMBERS - 1) / 2;
+
+/// The first 64 numbers of a sample.
+fn numbers(sampler: &dyn Sampler, uses: &[Use], seed: u64, pixel: u32, sample: u32) -> Vec<f64> {
+    uses.iter().flat_map(|used| sampler.pair(used.of(seed, pixel, sample))).collect()
+}
+
+/// Chi-square on 4x4 cells of every projection to two numbers, and on 64 cells of each number, one sample from each of 16384 pixels, so
+/// that counts are multinomial.
+#[test]
+fn no_two_of_the_first_64_numbers_correlate() {
+    const PIXELS: u32 = 1 << 14;
+    let uses = first_uses();
+    let samplers = all_keyed();
+    let samples = [0, 1, 6, 77, 70_001];
+    let tests = samplers.len() * samples.len();
+    for (name, sampler) in samplers {
+        for sample in samples {
+            let (mut alone, mut together) = (vec![[0; 64]; NUMBERS], vec![[0; 16]; PAIRS]);
+            for pixel in 0..PIXELS {
+                let all = numbers(&*sampler, &uses, 1, pixel, sample);
+                let cells: Vec<usize> = all.iter().map(|u| (u * 4.0) as usize).collect();
+                let mut pair = together.iter_mut();
+                for (index, cell) in cells.iter().enumerate() {
+                    alone[index][(all[index] * 64.0) as usize] += 1;
+                    for (other, counts) in cells[..index].iter().zip(pair.by_ref()) {
+                        counts[4 * cell + other] += 1;
+                    }
+                }
+            }
+            for (what, values, freedom) in [
+                ("a number", alone.iter().map(|counts| chi_square(counts)).collect::<Vec<_>>(), 63.0),
+                ("a projection", together.iter().map(|counts| chi_square(counts)).collect(), 15.0),
+            ] {
+                let range = chi_square_range(freedom, 2 * tests * values.len());
+                for (index, value) in values.iter().enumerate() {
+                    assert!(range.contains(value), "{name} sample {sample}: {what}, {index}: {value} not in {range:?}");
+                }
+            }
+        }
+    }
+}
+
+/// sqrt(n) times the correlation of two sequences of uniform numbers.
+fn correlation(pairs: impl ExactSizeIterator<Item = [f64; 2]>) -> f64 {
+    let n = pairs.len() as f64;
+    12.0 * pairs.map(|[u, v]| (u - 0.5) * (v - 0.5)).sum::<f64>() / n.sqrt()
+}
+
+/// Within a pixel, two uses go together no more than chance has it: over the pixels their correlation has mean 0 and a variance near that of
+/// independent samples. Uses that visit one sequence in the same order have 64 times that, though each sample by itself is fine.
+#[test]
+fn uses_do_not_go_together_within_a_pixel() {
+    const SAMPLES: u32 = 64;
+    const PIXELS: u32 = 256;
+    let uses = first_uses();
+    let samplers = all_keyed();
+    let limit = critical_value(sidak(LEVEL, samplers.len() * PAIRS).unwrap()).unwrap();
+    for (name, sampler) in samplers {
+        let mut scores = vec![Vec::new(); PAIRS];
+        for pixel in 0..PIXELS {
+            let all: Vec<Vec<f64>> = (0..SAMPLES).map(|k| numbers(&*sampler, &uses, 2, pixel, k)).collect();
+            let mut score = scores.iter_mut();
+            for index in 0..NUMBERS {
+                for (other, score) in (0..index).zip(score.by_ref()) {
+                    score.push(correlation(all.iter().map(|sample| [sample[index], sample[other]])));
+                }
+            }
+        }
+        for (pair, scores) in scores.iter().enumerate() {
+            let n = scores.len() as f64;
+            let squares = scores.iter().map(|z| z * z).sum::<f64>() / n;
+            let mean = scores.iter().sum::<f64>() / (n * squares).sqrt();
+            assert!(mean.abs() < limit, "{name} pair {pair}: {mean} standard deviations from none");
+            assert!(squares < 5.0, "{name} pair {pair}: {squares} times the variance of independent samples");
+        }
+    }
+}
+
+/// Noise of neighbours, of the pixel below and of other seeds, references among them, is unrelated: sample 0 and sample 5 of each pixel.
+#[test]
+fn pixels_and_seeds_share_no_noise() {
+    const WIDTH: u32 = 256;
+    const PIXELS: u32 = WIDTH * 256;
+    let seeds = [1, 2, 1 << 32, REFERENCE_SEEDS | 1];
+    let uses = first_uses();
+    let samplers = all_keyed();
+    let limit = critical_value(sidak(LEVEL, samplers.len() * 2 * uses.len() * (2 + seeds.len())).unwrap()).unwrap();
+    for (name, sampler) in samplers {
+        for used in &uses {
+            for sample in [0, 5] {
+                let noise = |seed: u64, first: u32| -> Vec<f64> {
+                    (first..first + PIXELS).map(|pixel| sampler.pair(used.of(seed, pixel, sample))[0]).collect()
+                };
+                let image = noise(seeds[0], 0);
+                let others = [noise(seeds[0], 1), noise(seeds[0], WIDTH)].into_iter();
+                for (index, other) in others.chain(seeds[1..].iter().map(|seed| noise(*seed, 0))).enumerate() {
+                    let z = correlation(image.iter().zip(&other).map(|(u, v)| [*u, *v]));
+                    assert!(z.abs() < limit, "{name} {used:?} sample {sample}, against {index}: {z} deviations");
+                }
+            }
+        }
+    }
+}
