@@ -6,6 +6,7 @@
 mod independent;
 mod libc_rand;
 mod locked;
+mod owen;
 mod per_thread;
 mod sobol;
 mod stratified;

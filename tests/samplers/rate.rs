@@ -50,8 +50,8 @@ fn nodes() -> [f64; 32] {
     std::array::from_fn(|k| ((k / 2) as f64 + 0.5 + if k % 2 == 0 { -half } else { half }) / 16.0)
 }
 
-/// Light from a small square on a plane, over a pixel with four subpixels: four numbers, of which two move the point a little. What the two
-/// pairs do together falls as for independent samples, but there is little of it.
+/// Light from a small square on a plane, over a pixel with four subpixels: four numbers, of which two move the point a little. The place
+/// in the pixel and the first direction are one sequence, so what they do together falls as fast as the rest.
 #[test]
 fn smooth_functions_of_two_pairs() {
     // The light is a quarter wide and two units above.
@@ -68,5 +68,5 @@ fn smooth_functions_of_two_pairs() {
     let mean = sum / (along.len() * along.len()) as f64;
     let [independent, sobol] = ["independent", "sobol"].map(|name| slope(name, mean, value));
     assert!((-0.56..-0.44).contains(&independent), "independent: {independent}");
-    assert!(sobol < -0.55, "sobol: {sobol}");
+    assert!(sobol < -1.1, "sobol: {sobol}");
 }
