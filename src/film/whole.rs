@@ -72,7 +72,9 @@ impl Film {
         image
     }
 
-    /// The mean over pixels of the variance of a pixel's estimate, averaged over channels: the square of the RMSE to expect.
+    /// The mean over pixels of the variance of a pixel's estimate, averaged over channels: the square of the RMSE to expect, if the samples are
+    /// independent. Samples that are spread over a pixel owe each other something, which their own scatter does not show: then it is the
+    /// variance that as many independent samples would have.
     pub fn mean_variance(&self) -> f64 {
         let mut total = 0.0;
         for pixel in &self.pixels {

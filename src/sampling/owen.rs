@@ -3,8 +3,8 @@
 /// Scrambles binary digits, the first in the lowest bit: each is flipped or not by what the keys make of those before it. Zeros beyond the
 /// last digit become random ones.
 ///
-/// The idea is that of S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011: sums and products carry upwards only.
-/// Their steps flip digits together that ought to be independent, so these are others, keyed throughout.
+/// The idea is that of S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011: sums and products carry upwards
+/// only. Their steps flip digits together that ought to be independent, so these are others, keyed throughout.
 #[inline(always)]
 pub(super) fn scramble(mut digits: u64, [a, b]: [u64; 2]) -> u64 {
     digits ^= digits.wrapping_mul(b << 1);

@@ -1,24 +1,24 @@
 //! Owen-scrambled Sobol pairs: `--sampler sobol`.
 //!
 //! A pair of numbers belongs to the first two dimensions of Sobol's sequence (I. M. Sobol', "On the distribution of points in a cube and
-//! the approximate evaluation of integrals", USSR Computational Mathematics and Mathematical Physics 7(4), 1967), a (0, 2)-sequence in base 2:
-//! of each aligned block of 2^k samples, every one of the 2^k cells of every grid of 2^a by 2^(k - a) cells has exactly one. Owen's scrambling
-//! keeps that and makes each sample uniform by itself. Every use of numbers (pixel, bounce, branch, purpose) has a scrambling of its own and
-//! visits the sequence in an order of its own: the index is scrambled, too. This is the padding of B. Burley, "Practical Hash-based Owen
-//! Scrambling", Journal of Computer Graphics Techniques 9(4), 2020. There is no last dimension, and no largest number of samples but that of the
-//! index.
+//! the approximate evaluation of integrals", USSR Computational Mathematics and Mathematical Physics 7(4), 1967), a (0, 2)-sequence in
+//! base 2: of each aligned block of 2^k samples, every one of the 2^k cells of every grid of 2^a by 2^(k - a) cells has exactly one.
+//! Owen's scrambling keeps that and makes each sample uniform by itself. Every use of numbers (pixel, bounce, branch, purpose) has a
+//! scrambling of its own and visits the sequence in an order of its own: the index is scrambled, too. This is the padding of B. Burley,
+//! "Practical Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020. There is no last dimension, and no largest
+//! number of samples but that of the index.
 //!
-//! What two uses do together is then left to chance. For the place in the pixel and the first direction, which most of the light of a pixel
-//! depends on, it is not: their four numbers belong to one (0, 4)-sequence in base 4, that of H. Faure over the field of four elements
-//! ("Discrépance de suites associées à un système de numération", Acta Arithmetica 41, 1982). The generating matrix for the element a is
-//! Pascal's triangle to the power a. Powers add up, so those for 0 and 1 are Sobol's two dimensions, and a walk through the same two dimensions in the
-//! order that the matrix for ω gives is those for ω and ω + 1: one (0, 2)-sequence in base 2 after the other. (Such pairs are those of A. Ahmed and
-//! others, "SZ Sequences", SIGGRAPH Asia 2023.)
+//! What two uses do together is then left to chance. For the place in the pixel and the first direction, which most of the light of a
+//! pixel depends on, it is not: their four numbers belong to one (0, 4)-sequence in base 4, that of H. Faure ("Discrépance de suites
+//! associées à un système de numération", Acta Arithmetica 41, 1982) taken over the field of four elements, as H. Niederreiter
+//! does ("Low-discrepancy and low-dispersion sequences", Journal of Number Theory 30, 1988). The generating matrix for the element a is
+//! Pascal's triangle to the power a. Powers add up, so those for 0 and 1 are Sobol's two dimensions, and a walk through the same two
+//! in the order that the matrix for ω gives is those for ω and ω + 1: each pair is a (0, 2)-sequence in base 2, and both are one in
+//! base 4. (A. Ahmed and others call such pairs SZ sequences.)
 //!
-//! smallpt's camera gives sample k the subpixel k modulo 4. In Sobol's own order each subpixel would see a quarter of the square for ever. So
-//! k modulo 4 is made the first digit of a fifth dimension, that of a quadratic polynomial in H. Niederreiter's construction ("Low-discrepancy and
-//! low-dispersion sequences", Journal of Number Theory 30, 1988): of 4^m samples, those of a subpixel are a (1, m - 1, 4)-net in base 4, in the four
-//! numbers together.
+//! smallpt's camera gives sample k the subpixel k modulo 4. In Sobol's own order each subpixel would see a quarter of the square for ever.
+//! So k modulo 4 is made the first digit of a fifth dimension, that of a quadratic polynomial in Niederreiter's construction: of 4^m
+//! samples, those of a subpixel are a (1, m-1, 4)-net in base 4, in the four numbers together.
 
 use super::independent::{mix, unit};
 use super::owen::{scramble, shuffle};
@@ -118,8 +118,8 @@ const ORDERS: [u8; 24] = {
     orders
 };
 
-/// The place of a sample in the order that the leading uses share: its fours shuffled, and in each the one whose fifth dimension starts with the
-/// sample's subpixel.
+/// The place of a sample in the order that the leading uses share: its fours shuffled, and in each the one whose fifth dimension starts
+/// with the sample's subpixel.
 #[inline(always)]
 fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
     let fours = shuffle(sample >> 2, [a, b]) << 2;

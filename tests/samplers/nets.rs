@@ -49,8 +49,8 @@ fn sobol_pairs_are_nets_on_every_grid() {
     }
 }
 
-/// The place in the pixel and the first direction together: (0, 4)-sequences in base 4, and those of each subpixel (1, m - 1, 4)-nets. So of
-/// 4^m samples every grid of 4^m cells has one in each, and of a subpixel's every grid of 4^(m-2) cells four.
+/// The place in the pixel and the first direction together: (0, 4)-sequences in base 4, and those of each subpixel (1, m - 1, 4)-nets. So
+/// of 4^m samples every grid of 4^m cells has one in each, and of a subpixel's every grid of 4^(m-2) cells four.
 #[test]
 fn the_leading_sobol_pairs_are_nets_together() {
     let sampler = keyed("sobol");

@@ -54,8 +54,8 @@ fn correlation(pairs: impl ExactSizeIterator<Item = [f64; 2]>) -> f64 {
     12.0 * pairs.map(|[u, v]| (u - 0.5) * (v - 0.5)).sum::<f64>() / n.sqrt()
 }
 
-/// Within a pixel, two uses go together no more than chance has it: over the pixels their correlation has mean 0 and a variance near that of
-/// independent samples. Uses that visit one sequence in the same order have 64 times that, though each sample by itself is fine.
+/// Within a pixel, two uses go together no more than chance has it: over the pixels their correlation has mean 0 and a variance near that
+/// of independent samples. Uses that visit one sequence in the same order have 64 times that, though each sample by itself is fine.
 #[test]
 fn uses_do_not_go_together_within_a_pixel() {
     const SAMPLES: u32 = 64;

@@ -28,8 +28,8 @@ fn slope(name: &str, mean: f64, value: impl Fn(&dyn Sampler, u32, u32) -> f64) -
     log_log(&errors(&*keyed(name), mean, value), 0.95).unwrap().slope.value
 }
 
-/// A smooth function of one pair: independent samples along -1/2, and so strata of a fixed number; scrambled nets along -3/2 (Owen, "Scrambled
-/// net variance for integrals of smooth functions", 1997).
+/// A smooth function of one pair: independent samples along -1/2, and so strata of a fixed number; scrambled nets along -3/2 (Owen,
+/// "Scrambled net variance for integrals of smooth functions", 1997).
 #[test]
 fn smooth_functions_of_a_pair() {
     let value = |sampler: &dyn Sampler, pixel, sample| {
