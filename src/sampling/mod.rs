@@ -6,6 +6,7 @@
 mod independent;
 mod libc_rand;
 mod locked;
+mod owen;
 mod per_thread;
 mod sobol;
 mod stratified;
@@ -109,8 +110,8 @@ macro_rules! samplers {
             $(Entry { name: $stateful, about: $stateful_about, deterministic: false },)*
         ];
 
-        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them, and ask which one it is at each
-        /// pair, which costs little beside making it.
+        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them, and ask which one it is at
+        /// each pair, which costs little beside making it.
         #[derive(Debug, Clone, Copy)]
         enum Spread {
             $($Spread($Spread),)*
