@@ -25,7 +25,7 @@ mod warning;
 pub use calibration::{CalibrationRow, calibrate};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;
-pub use goal::{Between, CONFIDENCE, Goal, Progress};
+pub use goal::{Between, CONFIDENCE, Goal, Position};
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};
