@@ -114,8 +114,8 @@ impl Goal {
             let samples = (seconds / samples_s).clamp(0.0, f64::from(LARGEST_SPP)) as u32;
             block.saturating_add(samples).min(look) / multiple * multiple
         };
-        // What the last round took says little about one that is much longer.
-        let mut end = look.min(spp.saturating_mul(2));
+        // What the last round took says little about one that is much longer; but a block is better rendered once than twice.
+        let mut end = look.min(spp.saturating_mul(2).max(SAMPLE_BLOCK));
         if let Some(pause_s) = self.pause_s {
             end = end.min(fits(pause_s).max(spp + multiple));
         }
