@@ -4,7 +4,7 @@ use super::block::Block;
 use super::results::{LEVEL, Results, Schedule};
 use crate::analysis::Interval;
 use crate::analysis::jackknife::{Curve, SeedCurves};
-use crate::analysis::mean::t_interval;
+use crate::analysis::mean::geometric_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
 use crate::experiment::{EXTERNAL, law_of};
@@ -99,7 +99,7 @@ impl Contender {
 
 fn renderer(seeds: &[(Curve, f64)], law: Law) -> Option<Renderer> {
     let (curves, seconds): (Vec<Curve>, Vec<f64>) = seeds.iter().cloned().unzip();
-    Some(Renderer { curves: SeedCurves::of_errors(&curves)?, law, seconds_per_spp: t_interval(&seconds, LEVEL)? })
+    Some(Renderer { curves: SeedCurves::of_errors(&curves)?, law, seconds_per_spp: geometric_interval(&seconds, LEVEL)? })
 }
 
 /// (spp, squared error) of each seed, and its seconds for a sample in every pixel, from its longest render. An spp at which some seed's
