@@ -17,7 +17,7 @@ impl Sampler for Ledger {
     }
 }
 
-const OPTIONS: Options = Options { max_depth: None };
+const OPTIONS: Options = Options { max_depth: None, roulette: None };
 
 /// R13: within a sample no number is used twice, also where glass splits the path; and every estimator draws for its own sample only.
 #[test]

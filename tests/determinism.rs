@@ -7,6 +7,7 @@ use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
 use pathmark::kernel::{self, Spec};
 use pathmark::math::Vec3;
 use pathmark::measure::{Outcome, Settings, Setup};
+use pathmark::sampling::SAMPLERS;
 use pathmark::scene::{Object, Scene, Sphere, Triangle, load};
 use scene_text::{Ball, load_scene};
 use std::ops::Range;
@@ -15,7 +16,12 @@ use std::sync::Arc;
 /// Checksums of cornell at 96x64, 8 spp, seed 7. They are this program's own output and prove nothing about light: they are here so that a
 /// debug build, another compiler or another machine that changes a bit is noticed. A deliberate change of the arithmetic raises
 /// `kernel::REVISION` and replaces them.
-const GOLDEN: [(&str, &str); 2] = [("smallpt", "9e8357a5a669ae5d"), ("bsdf", "b1ebf84aaad23140")];
+const GOLDEN: [(&str, &str, &str); 4] = [
+    ("smallpt", "independent", "9e8357a5a669ae5d"),
+    ("bsdf", "independent", "b1ebf84aaad23140"),
+    ("bsdf", "stratified", "0d0de625fc782297"),
+    ("bsdf", "sobol", "6c0274abd78ac137"),
+];
 
 fn spec(estimator: &str) -> Spec {
     Spec { width: 96, height: 64, seed: 7, estimator: estimator.into(), ..Spec::default() }
@@ -34,8 +40,13 @@ fn checksum(scene: &Scene, spec: Spec) -> String {
 #[test]
 fn checksums_are_the_recorded_ones() {
     let scene = load("cornell").unwrap();
-    for (estimator, expected) in GOLDEN {
-        assert_eq!(checksum(&scene, spec(estimator)), expected, "{estimator}");
+    let keyed = SAMPLERS.iter().filter(|entry| entry.deterministic);
+    for entry in keyed {
+        assert!(GOLDEN.iter().any(|(_, sampler, _)| *sampler == entry.name), "{} has no checksum here", entry.name);
+    }
+    for (estimator, sampler, expected) in GOLDEN {
+        let spec = Spec { sampler: sampler.into(), ..spec(estimator) };
+        assert_eq!(checksum(&scene, spec), expected, "{estimator} {sampler}");
     }
 }
 
@@ -110,25 +121,27 @@ fn a_larger_effect_profile_changes_nothing() {
     assert_eq!(diffuse.checksum, Some(checksum(&scene, spec("smallpt"))), "the smallest profile is not `diffuse`");
 }
 
-/// A sample is a function of its index: the first 16 of 32 samples are the 16-sample image, both halves add up to the whole to the bit,
-/// and a window of the film is that window of the whole.
+/// A sample is a function of its index, whatever the sampler: the first 16 of 32 samples are the 16-sample image, both halves add up to
+/// the whole to the bit, and a window of the film is that window of the whole.
 #[test]
 fn parts_are_parts_of_the_whole() {
     let scene = Arc::new(load("cornell").unwrap());
-    let kernel = kernel::build(&scene, &spec("smallpt")).unwrap();
-    let render = |samples: Range<u32>, bounds: Bounds| -> Vec<PixelSum> {
-        let mut buffer = TileBuffer::new(bounds);
-        kernel.render(&Piece { bounds, samples }, &mut buffer);
-        buffer.rows().flatten().copied().collect()
-    };
-    let film = Bounds { x0: 0, y0: 0, x1: 96, y1: 64 };
-    let (whole, first, second) = (render(0..32, film), render(0..16, film), render(16..32, film));
-    for ((whole, first), second) in whole.iter().zip(&first).zip(&second) {
-        assert_eq!(*whole, first.plus(second));
+    for sampler in SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name) {
+        let kernel = kernel::build(&scene, &Spec { sampler: sampler.into(), ..spec("smallpt") }).unwrap();
+        let render = |samples: Range<u32>, bounds: Bounds| -> Vec<PixelSum> {
+            let mut buffer = TileBuffer::new(bounds);
+            kernel.render(&Piece { bounds, samples }, &mut buffer);
+            buffer.rows().flatten().copied().collect()
+        };
+        let film = Bounds { x0: 0, y0: 0, x1: 96, y1: 64 };
+        let (whole, first, second) = (render(0..32, film), render(0..16, film), render(16..32, film));
+        for ((whole, first), second) in whole.iter().zip(&first).zip(&second) {
+            assert_eq!(*whole, first.plus(second), "{sampler}");
+        }
+        let window = Bounds { x0: 11, y0: 7, x1: 40, y1: 30 };
+        let columns = window.x0 as usize..window.x1 as usize;
+        let cut: Vec<PixelSum> =
+            first.chunks_exact(96).take(30).skip(7).flat_map(|row| &row[columns.clone()]).copied().collect();
+        assert_eq!(render(0..16, window), cut, "{sampler}");
     }
-    let window = Bounds { x0: 11, y0: 7, x1: 40, y1: 30 };
-    let columns = window.x0 as usize..window.x1 as usize;
-    let cut: Vec<PixelSum> =
-        first.chunks_exact(96).take(30).skip(7).flat_map(|row| &row[columns.clone()]).copied().collect();
-    assert_eq!(render(0..16, window), cut);
 }

@@ -85,8 +85,12 @@ impl Tally {
     fn of(scene: &Scene, max_depth: Option<u16>, seed: u64, samples: u32) -> Self {
         match max_depth {
             // Following glass both ways leaves less to chance.
-            Some(_) => Self::with(&Smallpt::new(Options { max_depth }), scene, max_depth, seed, samples),
-            None => Self::with(&Bsdf::new(Options { max_depth }), scene, max_depth, seed, samples),
+            Some(_) => {
+                Self::with(&Smallpt::new(Options { max_depth, ..Options::default() }), scene, max_depth, seed, samples)
+            }
+            None => {
+                Self::with(&Bsdf::new(Options { max_depth, ..Options::default() }), scene, max_depth, seed, samples)
+            }
         }
     }
 

@@ -8,6 +8,7 @@ use pathmark::experiment::{CellJob, PointJob, reference_seed};
 use pathmark::kernel::Spec;
 use pathmark::measure::Settings;
 use program::{Finished, finish, pathmark, wait};
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -64,5 +65,27 @@ fn shared_seeds_are_refused() {
     ] {
         let refused = measured(folder.path(), seed, references).with_code(2);
         assert!(refused.err.contains("three different seeds") && refused.out.is_empty(), "{}", refused.err);
+    }
+}
+
+/// `compare` reads film files, which know their seeds; a picture does not.
+#[test]
+fn films_of_one_seed_are_not_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let [first, second] = halves(folder.path());
+    let compared = |image: &Path, reference: &Path| {
+        let arguments = ["compare".as_ref(), image.as_os_str(), reference.as_os_str()];
+        finish(pathmark(folder.path(), &arguments))
+    };
+    let fine = compared(&first, &second).with_code(0);
+    assert!(fine.out.starts_with("rmse") && !fine.out.contains("rmse  0 "), "{}", fine.out);
+    // Under another name, and with more samples of the same seed.
+    let copy = folder.path().join("copy.film");
+    fs::copy(&first, &copy).unwrap();
+    let longer = ["reference", "cornell", "--spp", "16", "--size", "16x12", "--out", "films", "--quiet"];
+    let longer = finish(pathmark(folder.path(), &longer)).with_code(0).out;
+    for other in [copy, folder.path().join(longer.lines().next().unwrap())] {
+        let refused = compared(&first, &other).with_code(2);
+        assert!(refused.err.contains("share samples") && refused.out.is_empty(), "{}", refused.err);
     }
 }

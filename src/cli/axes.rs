@@ -33,6 +33,9 @@ pub(super) struct What {
     /// Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]
     #[arg(long, value_name = "N")]
     pub(super) max_depth: Option<u16>,
+    /// How chance ends paths: albedo:N or throughput:N behind the N-th vertex, or never [default: the estimator's own]
+    #[arg(long, value_name = "RULE")]
+    pub(super) roulette: Option<String>,
 }
 
 /// The three axes: *what*, *pieces*, *who*.
@@ -102,6 +105,7 @@ impl What {
             effects: self.effects.clone(),
             accelerator: self.accelerator.clone(),
             max_depth: self.max_depth,
+            roulette: self.roulette.clone(),
             subpixel_clamp: default.subpixel_clamp,
         })
     }

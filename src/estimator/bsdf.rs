@@ -12,4 +12,5 @@ pub struct BsdfRules;
 impl Rules for BsdfRules {
     const SPLITS: u16 = 0;
     const SPP_MULTIPLE: u32 = 1;
+    const AIMS: bool = false;
 }

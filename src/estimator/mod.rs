@@ -1,12 +1,17 @@
 //! How the radiance along a camera ray is estimated. One estimator a file; this file is their table.
 //!
-//! To add one: write its file with a type that implements [`Estimator`], and give it a line in `estimators!` below.
+//! To add one: write its file with a type that implements [`Estimator`] and what makes it from [`Options`], and give it a line in `estimators!`
+//! below.
 
+mod aimed;
 mod bsdf;
 mod camera_ray;
 mod direct;
 mod medium;
+mod mis;
+mod nee;
 mod path;
+mod roulette;
 mod smallpt;
 mod whitted;
 
@@ -17,7 +22,8 @@ use crate::scene::{Hit, Scene, Tests};
 
 pub use bsdf::Bsdf;
 pub use camera_ray::camera_ray;
-pub use path::MAX_BOUNCES;
+pub use path::{Aimed, MAX_BOUNCES, Path};
+pub use roulette::Roulette;
 pub use smallpt::Smallpt;
 pub use whitted::Whitted;
 
@@ -86,8 +92,14 @@ pub trait Estimator: Send + Sync {
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
 
+    /// Whether it aims at lights, which a scene must have been given for it.
+    const AIMS: bool = false;
+
     /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
     const MAX_DEPTH: Option<u16> = None;
+
+    /// When and how chance ends its paths unless another rule is asked for; `None` if it never does.
+    const ROULETTE: Option<Roulette> = None;
 
     /// The largest number of bounces that it can be asked for.
     const LARGEST_DEPTH: u16 = u16::MAX;
@@ -121,19 +133,25 @@ pub struct Entry {
     pub spp_multiple: u32,
     /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
     pub max_depth: Option<u16>,
+    /// Whether it aims at lights.
+    pub aims: bool,
+    /// When and how chance ends its paths unless another rule is asked for; `None` if it never does.
+    pub roulette: Option<Roulette>,
     /// The largest number of bounces that it can be asked for.
     pub largest_depth: u16,
 }
 
 /// What every estimator can be told.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
     /// After so many bounces a path is cut, whatever its throughput; `None` leaves it to the estimator.
     pub max_depth: Option<u16>,
+    /// When and how chance ends paths; `None` leaves it to the estimator.
+    pub roulette: Option<Roulette>,
 }
 
 macro_rules! estimators {
-    ($($name:literal, $about:literal => $estimator:ident;)*) => {
+    ($($name:literal, $about:literal => $estimator:ty, $new:path;)*) => {
         /// The estimators, in the order in which they are listed.
         pub const ESTIMATORS: &[Entry] =
             &[$(Entry {
@@ -141,13 +159,15 @@ macro_rules! estimators {
                 about: $about,
                 spp_multiple: <$estimator as Estimator>::SPP_MULTIPLE,
                 max_depth: <$estimator as Estimator>::MAX_DEPTH,
+                aims: <$estimator as Estimator>::AIMS,
+                roulette: <$estimator as Estimator>::ROULETTE,
                 largest_depth: <$estimator as Estimator>::LARGEST_DEPTH,
             }),*];
 
         /// Calls the visitor with the estimator of that name; `None` if there is none.
         pub fn with_estimator<V: EstimatorVisitor>(name: &str, options: Options, visitor: V) -> Option<V::Output> {
             match name {
-                $($name => Some(visitor.visit($estimator::new(options))),)*
+                $($name => Some(visitor.visit($new(options))),)*
                 _ => None,
             }
         }
@@ -155,7 +175,9 @@ macro_rules! estimators {
 }
 
 estimators! {
-    "smallpt", "smallpt's own: glass splits at the first two vertices, roulette after the fifth" => Smallpt;
-    "bsdf", "the same transport without splitting: one direction at every vertex" => Bsdf;
-    "whitted", "Whitted's of 1980: point lights, ideal mirrors and glass, nothing by way of diffuse surfaces; 10 bounces" => Whitted;
+    "smallpt", "smallpt's own: glass splits at the first two vertices, roulette after the fifth" => Smallpt, Smallpt::new;
+    "bsdf", "the same transport without splitting: one direction at every vertex" => Bsdf, Bsdf::new;
+    "nee", "next-event estimation: a shadow ray from every vertex to a light chosen by power" => Path<Aimed>, nee::new;
+    "mis", "light aimed at and arrived at, weighted by the power heuristic" => Path<Aimed>, mis::new;
+    "whitted", "Whitted's of 1980: point lights, ideal mirrors and glass, nothing by way of diffuse surfaces; 10 bounces" => Whitted, Whitted::new;
 }

@@ -1,11 +1,12 @@
-//! The path that `smallpt` and `bsdf` share: emission is collected wherever the path arrives, directions come from the surface, and point
-//! lights, which no path can arrive at, are asked at every vertex.
+//! The path that `smallpt`, `bsdf`, `nee` and `mis` share: directions come from the surface, emission is collected where the path arrives or is
+//! aimed at, and point lights, which no path can arrive at, are asked at every vertex.
 //!
 //! Written as a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the thread's stack.
 
+use super::aimed::{EVENLY, aimed_at_fog, aimed_at_surface, share_of_arrival};
 use super::direct::{light_at_fog, light_at_surface};
 use super::medium::Medium;
-use super::{Estimator, Options, Probe};
+use super::{Estimator, Options, Probe, Roulette};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3, dot};
@@ -16,9 +17,6 @@ use std::marker::PhantomData;
 /// Where a path is cut whatever its throughput: only a closed scene that absorbs nothing comes here, and it is counted.
 pub const MAX_BOUNCES: u16 = u16::MAX;
 
-/// Roulette starts behind this vertex (smallpt: `if (++depth > 5)`).
-const ROULETTE_AFTER: u16 = 5;
-
 /// Two splits leave at most three unfinished parts.
 const LARGEST_STACK: usize = 3;
 
@@ -28,24 +26,61 @@ pub trait Rules: Send + Sync {
     const SPLITS: u16;
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
+    /// Whether vertices aim at light.
+    const AIMS: bool;
+}
+
+/// The rules of `nee` and `mis`. They differ in a number alone, so one kernel does for both.
+#[derive(Debug, Clone, Copy)]
+pub struct Aimed;
+
+impl Rules for Aimed {
+    const SPLITS: u16 = 0;
+    const SPP_MULTIPLE: u32 = 1;
+    const AIMS: bool = true;
+}
+
+/// How light of surfaces is found by what aims at it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Light {
+    /// Aimed at from every vertex, and by chance only where it cannot be aimed at.
+    Aimed,
+    /// Both ways, weighted by how likely each was.
+    Weighted,
 }
 
 /// An estimator that follows paths by these rules.
 #[derive(Debug, Clone, Copy)]
 pub struct Path<R> {
     max_depth: u16,
+    roulette: Roulette,
+    light: Light,
     rules: PhantomData<R>,
 }
 
 impl<R> Path<R> {
     /// The estimator; without a depth of its own it follows paths to [`MAX_BOUNCES`].
     pub fn new(options: Options) -> Self {
-        Self { max_depth: options.max_depth.unwrap_or(MAX_BOUNCES), rules: PhantomData }
+        Self {
+            max_depth: options.max_depth.unwrap_or(MAX_BOUNCES),
+            roulette: options.roulette.unwrap_or(Roulette::SMALLPT),
+            // Not looked at by what does not aim.
+            light: Light::Weighted,
+            rules: PhantomData,
+        }
+    }
+}
+
+impl Path<Aimed> {
+    pub(super) fn aiming(light: Light, options: Options) -> Self {
+        Self { light, ..Self::new(options) }
     }
 }
 
 impl<R: Rules> Estimator for Path<R> {
     const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;
+    const ROULETTE: Option<Roulette> = Some(Roulette::SMALLPT);
+    const AIMS: bool = R::AIMS;
 
     #[inline(always)]
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
@@ -56,10 +91,17 @@ impl<R: Rules> Estimator for Path<R> {
         sampler: &S,
         probe: &mut P,
     ) -> Rgb {
-        let walk = Walk { scene, key, sampler, max_depth: self.max_depth };
+        let walk = Walk { scene, key, sampler, max_depth: self.max_depth, roulette: self.roulette, light: self.light };
         let mut collected = Rgb::BLACK;
-        let mut part =
-            Part { ray, from: None, throughput: Rgb::WHITE, vertices: 0, branch: 0, medium: Medium::OUTSIDE };
+        let mut part = Part {
+            ray,
+            from: None,
+            density: None,
+            throughput: Rgb::WHITE,
+            vertices: 0,
+            branch: 0,
+            medium: Medium::OUTSIDE,
+        };
         let mut waiting = [part; LARGEST_STACK];
         let mut depth = 0;
         loop {
@@ -79,12 +121,26 @@ impl<R: Rules> Estimator for Path<R> {
     }
 }
 
+/// One of two lobes, each as often as its share of the light, so that neither's weight is more than that of both. smallpt refracts more rarely
+/// than that, and every such vertex then adds to the spread.
+#[inline(always)]
+fn by_share(lobes: [BsdfSample; 2], u: f64) -> BsdfSample {
+    let [first, second] = lobes.map(|lobe| lobe.weight.max_channel());
+    let both = first + second;
+    // What is black stays black whichever it is.
+    let chance = if both > 0.0 { first / both } else { 0.5 };
+    let (lobe, chance) = if u < chance { (lobes[0], chance) } else { (lobes[1], 1.0 - chance) };
+    BsdfSample { weight: lobe.weight * (1.0 / chance), ..lobe }
+}
+
 /// What is the same for all parts of a path.
 struct Walk<'a, S> {
     scene: &'a Scene,
     key: SampleKey,
     sampler: &'a S,
     max_depth: u16,
+    roulette: Roulette,
+    light: Light,
 }
 
 /// A part of a path that waits to be followed.
@@ -92,6 +148,8 @@ struct Walk<'a, S> {
 struct Part {
     ray: Ray,
     from: Option<Standpoint>,
+    /// How likely the ray's direction was, per steradian, if light was aimed at where it starts.
+    density: Option<f64>,
     throughput: Rgb,
     vertices: u16,
     branch: u16,
@@ -136,7 +194,7 @@ impl<S: Sampler> Walk<'_, S> {
             part.throughput = part.throughput * transmittance;
             if free < reach {
                 probe.scattered(part.vertices, &part.ray, free, part.throughput);
-                return self.scatter::<X, P>(part, transmittance, part.ray.at(free), probe, collected);
+                return self.scatter::<R, X, P>(part, transmittance, part.ray.at(free), probe, collected);
             }
         }
         let Some(hit) = hit else {
@@ -166,7 +224,13 @@ impl<S: Sampler> Walk<'_, S> {
         let scene = self.scene;
         let object = &scene.objects[hit.object as usize];
         probe.vertex(part.vertices, &part.ray, hit, part.throughput);
-        let emission = object.emitted::<X>(dot(part.ray.direction, hit.normal).abs());
+        let mut emission = object.emitted::<X>(dot(part.ray.direction, hit.normal).abs());
+        if R::AIMS
+            && let (Some(density), Some(lights)) = (part.density, &scene.lights)
+            && !emission.is_black()
+        {
+            emission = emission * share_of_arrival(self.light, lights, &part.ray, part.from, hit, density);
+        }
         probe.light(part.vertices, part.throughput * emission);
         *collected += part.throughput * emission;
         if part.vertices == self.max_depth {
@@ -181,9 +245,24 @@ impl<S: Sampler> Walk<'_, S> {
             *collected += part.throughput * direct;
         }
 
+        let frame = hit.frame();
+        let wo = frame.to_local(-part.ray.direction);
+        let lights = if R::AIMS { scene.lights.as_ref() } else { None };
+        if let Some(lights) = lights {
+            let standpoint = Standpoint { primitive: hit.primitive, inside: hit.inside };
+            let place = self.pair(&part, Purpose::Light);
+            let choice = || self.pair(&part, Purpose::LightChoice)[0];
+            if let Some(aim) = lights.aim(hit.point, Some(standpoint), choice, place)
+                && let Some(found) =
+                    aimed_at_surface::<X, P>(self.light, scene, hit, (&frame, wo), aim, part.medium, probe)
+            {
+                probe.light(vertices, part.throughput * found);
+                *collected += part.throughput * found;
+            }
+        }
+
         let mut throughput = part.throughput;
-        if vertices > ROULETTE_AFTER {
-            let survival = object.material.albedo::<X>().max_channel();
+        if let Some(survival) = self.roulette.survival(vertices, throughput, || object.material.albedo::<X>()) {
             // A number equal to the chance ends the path, so a black surface ends every path, whatever the number.
             if self.pair(&part, Purpose::Roulette)[0] >= survival {
                 probe.roulette();
@@ -194,8 +273,6 @@ impl<S: Sampler> Walk<'_, S> {
         }
 
         probe.used(object.material.effect());
-        let frame = hit.frame();
-        let wo = frame.to_local(-part.ray.direction);
         let leave = |sample: BsdfSample, branch: u16| {
             let towards = frame.to_world(sample.wi);
             // A chain of delta bounces would let the length drift; any other direction is made anew.
@@ -203,7 +280,11 @@ impl<S: Sampler> Walk<'_, S> {
             let ray = Ray { origin: hit.point, direction };
             let from = Some(Standpoint { primitive: hit.primitive, inside: (sample.wi.z < 0.0) != hit.inside });
             let medium = part.medium.beyond::<X>(hit, sample.wi);
-            Part { ray, from, throughput: throughput * sample.weight, vertices, branch, medium }
+            let density = match sample.density {
+                Density::PerSolidAngle(density) if R::AIMS => Some(density),
+                _ => None,
+            };
+            Part { ray, from, density, throughput: throughput * sample.weight, vertices, branch, medium }
         };
         if vertices <= R::SPLITS
             && let [Some(reflected), Some(refracted)] = object.material.delta_lobes::<X>(wo, hit.inside)
@@ -211,7 +292,14 @@ impl<S: Sampler> Walk<'_, S> {
             probe.split(part.vertices);
             return Some((leave(reflected, part.branch), Some(leave(refracted, part.branch | 1 << (vertices - 1)))));
         }
-        let sample = object.material.sample::<X>(wo, hit.inside, self.pair(&part, Purpose::Bsdf));
+        let numbers = self.pair(&part, Purpose::Bsdf);
+        let sample = if R::AIMS
+            && let [Some(reflected), Some(refracted)] = object.material.delta_lobes::<X>(wo, hit.inside)
+        {
+            Some(by_share([reflected, refracted], numbers[0]))
+        } else {
+            object.material.sample::<X>(wo, hit.inside, numbers)
+        };
         let next = sample.map(|sample| leave(sample, part.branch));
         // Nothing that a black part still finds could reach the film.
         let next = next.filter(|next| !next.throughput.is_black());
@@ -223,7 +311,7 @@ impl<S: Sampler> Walk<'_, S> {
 
     /// What happens where fog scatters light, evenly in all directions. Absorption on the way is the survival of roulette.
     #[inline(never)]
-    fn scatter<X: EffectSet, P: Probe>(
+    fn scatter<R: Rules, X: EffectSet, P: Probe>(
         &self,
         part: Part,
         transmittance: Rgb,
@@ -241,9 +329,19 @@ impl<S: Sampler> Walk<'_, S> {
             probe.light(vertices, part.throughput * direct);
             *collected += part.throughput * direct;
         }
+        let lights = if R::AIMS { self.scene.lights.as_ref() } else { None };
+        if let Some(lights) = lights {
+            let place = self.pair(&part, Purpose::Light);
+            let choice = || self.pair(&part, Purpose::LightChoice)[0];
+            if let Some(aim) = lights.aim(point, None, choice, place)
+                && let Some(found) = aimed_at_fog::<X, P>(self.light, self.scene, point, aim, probe)
+            {
+                probe.light(vertices, part.throughput * found);
+                *collected += part.throughput * found;
+            }
+        }
         let mut throughput = part.throughput;
-        if vertices > ROULETTE_AFTER {
-            let survival = transmittance.max_channel();
+        if let Some(survival) = self.roulette.survival(vertices, throughput, || transmittance) {
             if self.pair(&part, Purpose::Roulette)[0] >= survival {
                 probe.roulette();
                 probe.ended(part.vertices);
@@ -253,6 +351,7 @@ impl<S: Sampler> Walk<'_, S> {
         }
         let direction = uniform_sphere(self.pair(&part, Purpose::Bsdf)).normalized();
         let ray = Ray { origin: point, direction };
-        Some((Part { ray, from: None, throughput, vertices, ..part }, None))
+        let density = lights.map(|_| EVENLY);
+        Some((Part { ray, from: None, density, throughput, vertices, ..part }, None))
     }
 }

@@ -15,4 +15,5 @@ pub struct SmallptRules;
 impl Rules for SmallptRules {
     const SPLITS: u16 = 2;
     const SPP_MULTIPLE: u32 = 4;
+    const AIMS: bool = false;
 }

@@ -91,6 +91,7 @@ impl Cell {
             ("effects", spec.effects.clone().unwrap_or_default()),
             ("accelerator", spec.accelerator.clone().unwrap_or_default()),
             ("max-depth", spec.max_depth.map(|depth| depth.to_string()).unwrap_or_default()),
+            ("roulette", spec.roulette().unwrap_or_default()),
             ("strategy", schedule_name(&settings.strategy, &settings.decomposition).to_string()),
             ("threads", settings.threads.to_string()),
         ];
@@ -114,6 +115,7 @@ pub fn trace_file(cell: &str, repetition: u32) -> String {
 fn image_word(scene: &Scene, spec: &Spec, spp: u32) -> String {
     let what = format!("{}-{}/{}/{}", scene.name, scene.hash, spec.estimator, spec.sampler);
     let depth = spec.max_depth.map(|depth| format!("/depth{depth}")).unwrap_or_default();
+    let roulette = spec.roulette.as_ref().map(|rule| format!("/{rule}")).unwrap_or_default();
     let clamp = if spec.subpixel_clamp { "/clamp" } else { "" };
-    format!("{what}/{}x{}/{spp}spp/seed{}{depth}{clamp}", spec.width, spec.height, spec.seed)
+    format!("{what}/{}x{}/{spp}spp/seed{}{depth}{roulette}{clamp}", spec.width, spec.height, spec.seed)
 }

@@ -33,6 +33,8 @@ pub(super) struct Matrix {
     pub(super) effects: Vec<String>,
     #[serde(default = "fitting")]
     pub(super) accelerator: Vec<String>,
+    #[serde(default = "fitting")]
+    pub(super) roulette: Vec<String>,
     /// Where paths are cut; nowhere if it is empty.
     #[serde(default, rename = "max-depth")]
     pub(super) max_depth: Vec<u16>,
@@ -196,10 +198,12 @@ impl Definition {
                             ..Spec::default()
                         };
                         let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };
-                        for (effects, accelerator) in
-                            matrix.effects.iter().flat_map(|e| matrix.accelerator.iter().map(move |a| (e, a)))
-                        {
+                        let rules = matrix.effects.iter().flat_map(|e| {
+                            matrix.accelerator.iter().flat_map(move |a| matrix.roulette.iter().map(move |r| (e, a, r)))
+                        });
+                        for (effects, accelerator, roulette) in rules {
                             let mut image = image.clone();
+                            image.spec.roulette = unless_fitting(roulette);
                             image.spec.effects = unless_fitting(effects);
                             image.spec.accelerator = unless_fitting(accelerator);
                             self.add_schedules(profile, matrix, &image, cells)?;

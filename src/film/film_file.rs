@@ -31,6 +31,9 @@ pub struct FilmKey {
     /// Where paths are cut, if they are.
     #[serde(default)]
     pub max_depth: Option<u16>,
+    /// How chance ends paths, if not by the estimator's own rule.
+    #[serde(default)]
+    pub roulette: Option<String>,
     /// Whether tiles have as many samples as their noise calls for; `spp` is their mean then.
     #[serde(default)]
     pub adaptive: bool,

@@ -5,12 +5,14 @@ mod scalar;
 
 use crate::effect::EffectSet;
 use crate::error::{InputError, Result};
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, with_estimator};
+use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Roulette, with_estimator};
 use crate::film::{Piece, TileBuffer};
-use crate::sampling::{SAMPLERS, Sampler, SamplerVisitor, stateful_sampler, with_keyed_sampler};
+use crate::sampling::{
+    Independent, SAMPLERS, Sampler, SamplerVisitor, is_deterministic, stateful_sampler, with_keyed_sampler,
+};
 use crate::scene::{
-    ACCELERATORS, Accelerator, AllEffects, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, accelerator,
-    effect_names, smallest_profile, with_profile,
+    ACCELERATORS, Accelerator, AllEffects, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, SmallptEffects,
+    accelerator, effect_names, with_profile,
 };
 pub use inspect::{BounceRow, Event, Inspect, LightByBounce, PathLog, inspect};
 use scalar::Scalar;
@@ -79,6 +81,9 @@ pub struct Spec {
     pub accelerator: Option<String>,
     /// After so many bounces a path is cut; `None` leaves it to the estimator.
     pub max_depth: Option<u16>,
+    /// When and how chance ends paths, as [`Roulette`] reads it; `None` leaves it to the estimator.
+    #[serde(default)]
+    pub roulette: Option<String>,
     /// Whether each subpixel's mean is clamped to 1 before averaging, as smallpt does: biased.
     pub subpixel_clamp: bool,
 }
@@ -95,6 +100,7 @@ impl Default for Spec {
             effects: None,
             accelerator: None,
             max_depth: None,
+            roulette: None,
             subpixel_clamp: false,
         }
     }
@@ -104,6 +110,18 @@ impl Spec {
     /// Whether an option is on that changes what the image converges to.
     pub fn is_biased(&self) -> bool {
         self.subpixel_clamp || self.depth().is_some()
+    }
+
+    /// What the estimator is told; what cannot be read is what [`choose`] refuses.
+    fn options(&self) -> Options {
+        let roulette = self.roulette.as_deref().and_then(|text| Roulette::parse(text).ok());
+        Options { max_depth: self.max_depth, roulette }
+    }
+
+    /// When and how chance ends paths, as [`Roulette`] reads it: what was asked for, or else the estimator's own rule.
+    pub fn roulette(&self) -> Option<String> {
+        let own = ESTIMATORS.iter().find(|entry| entry.name == self.estimator).and_then(|entry| entry.roulette);
+        self.options().roulette.or(own).map(|rule| rule.to_string())
     }
 
     /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
@@ -152,6 +170,19 @@ fn unknown(field: &str, value: &str, names: impl Iterator<Item = &'static str>) 
     InputError::new(field, value, "there is none of that name").allowed(names.collect::<Vec<_>>().join(", "))
 }
 
+/// The sampler that every profile is compiled for.
+const INDEPENDENT: &str = "independent";
+
+/// The profiles that kernels with a sampler are compiled for; all of them if it is empty. All samplers in all profiles would be more than a
+/// hundred kernels, which take minutes to compile.
+fn profiles_for(sampler: &str) -> &'static [&'static str] {
+    match sampler {
+        INDEPENDENT => &[],
+        keyed if is_deterministic(keyed) => &[SmallptEffects::NAME, AllEffects::NAME],
+        _ => &[AllEffects::NAME],
+    }
+}
+
 /// Checks every name of the spec and chooses what it leaves open.
 pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len()) else {
@@ -162,8 +193,10 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     if accelerator.is_hierarchy() {
         effects = effects.and(HIERARCHY);
     }
-    let is_stateful = SAMPLERS.iter().any(|entry| entry.name == spec.sampler && !entry.deterministic);
-    let fitting = if is_stateful { AllEffects::NAME } else { smallest_profile(effects) };
+    let compiled = profiles_for(&spec.sampler);
+    let is_compiled = |name: &str| compiled.is_empty() || compiled.contains(&name);
+    let fitting = PROFILES.iter().find(|entry| is_compiled(entry.name) && entry.effects.cover(effects));
+    let fitting = fitting.map_or(AllEffects::NAME, |entry| entry.name);
     let wanted = spec.effects.as_deref().unwrap_or(fitting);
     let Some(profile) = PROFILES.iter().find(|entry| entry.name == wanted) else {
         return Err(unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name)).into());
@@ -172,7 +205,7 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
         let problem = format!("does not cover the scene, which calls for {}", effect_names(effects));
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
-    if is_stateful && profile.name != fitting {
+    if !is_compiled(profile.name) {
         let problem = format!("is not compiled for the sampler {}", spec.sampler);
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
@@ -187,33 +220,55 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
         let allowed = format!("0 to {}", estimator.largest_depth);
         return Err(InputError::new("max-depth", depth.to_string(), problem).allowed(allowed).into());
     }
+    if let Some(roulette) = &spec.roulette {
+        Roulette::parse(roulette)?;
+        if estimator.roulette.is_none() {
+            let problem = format!("is nothing for {}, which ends no path by chance", estimator.name);
+            return Err(InputError::new("roulette", roulette, problem).allowed("none").into());
+        }
+    }
     Ok(Choice { profile, accelerator })
+}
+
+/// The scene with what the accelerator and the estimator need of it.
+fn prepared(scene: &Arc<Scene>, spec: &Spec, choice: Choice) -> Arc<Scene> {
+    let mut prepared = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
+    if ESTIMATORS.iter().any(|entry| entry.name == spec.estimator && entry.aims) {
+        prepared = Arc::new(prepared.lit(&scene.camera.view(spec.width, spec.height)));
+    }
+    prepared
 }
 
 /// Builds the kernel for a scene, and what accelerates it.
 pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
     let choice = choose(scene, spec)?;
-    let scene = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
+    let scene = prepared(scene, spec, choice);
     let spec = spec.clone();
-    let kernel = match stateful_sampler(&spec.sampler, spec.seed) {
+    let name = spec.sampler.clone();
+    let kernel = match stateful_sampler(&name, spec.seed) {
         Some(sampler) => BySampler::<AllEffects>::new(scene, spec.clone()).visit(sampler),
-        None => with_profile(choice.effects(), ByProfile { scene, spec: spec.clone() }).flatten().flatten(),
+        None if name == INDEPENDENT => {
+            with_profile(choice.effects(), ByProfile { scene, spec: spec.clone() }).flatten()
+        }
+        None if choice.effects() == SmallptEffects::NAME => {
+            with_keyed_sampler(&name, BySampler::<SmallptEffects>::new(scene, spec.clone())).flatten()
+        }
+        None => with_keyed_sampler(&name, BySampler::<AllEffects>::new(scene, spec.clone())).flatten(),
     };
     // Every name has been checked, so there is a kernel.
     kernel.ok_or_else(|| unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into())
 }
 
-/// From the profile's name to a type, then from the sampler's.
+/// From the profile's name to a type.
 struct ByProfile {
     scene: Arc<Scene>,
     spec: Spec,
 }
 
 impl ProfileVisitor for ByProfile {
-    type Output = Option<Option<Box<dyn Kernel>>>;
+    type Output = Option<Box<dyn Kernel>>;
     fn visit<X: EffectSet>(self) -> Self::Output {
-        let name = self.spec.sampler.clone();
-        with_keyed_sampler(&name, BySampler::<X>::new(self.scene, self.spec))
+        BySampler::<X>::new(self.scene, self.spec).visit(Independent)
     }
 }
 
@@ -233,7 +288,7 @@ impl<X> BySampler<X> {
 impl<X: EffectSet> SamplerVisitor for BySampler<X> {
     type Output = Option<Box<dyn Kernel>>;
     fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-        let (name, options) = (self.spec.estimator.clone(), Options { max_depth: self.spec.max_depth });
+        let (name, options) = (self.spec.estimator.clone(), self.spec.options());
         with_estimator(
             &name,
             options,

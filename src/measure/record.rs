@@ -47,6 +47,8 @@ pub struct Record {
     pub accelerator: String,
     /// After so many bounces paths were cut; empty if only their throughput ended them.
     pub max_depth: Option<u16>,
+    /// How chance ended paths; empty if it did not.
+    pub roulette: String,
     /// Whether tiles had as many samples as their noise called for; `spp` is their mean then.
     pub adaptive: bool,
     /// RMSE at which the render was to stop; empty if it went by samples or time alone.
@@ -191,6 +193,7 @@ fn described(settings: &Settings) -> Record {
         kernel: spec.kernel.clone(),
         precision: "f64".to_string(),
         max_depth: spec.depth(),
+        roulette: spec.roulette().unwrap_or_default(),
         biased: spec.is_biased(),
         decomposition: settings.decomposition.clone(),
         strategy: settings.strategy.clone(),

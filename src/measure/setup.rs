@@ -144,6 +144,7 @@ impl Setup {
             width: spec.width,
             height: spec.height,
             max_depth: spec.max_depth,
+            roulette: spec.roulette.clone(),
             adaptive: false,
             revision: kernel::REVISION,
         }

@@ -6,6 +6,7 @@
 mod independent;
 mod libc_rand;
 mod locked;
+mod owen;
 mod per_thread;
 mod sobol;
 mod stratified;
@@ -47,6 +48,10 @@ pub enum Purpose {
     Lens = 3,
     /// How far light gets through a medium.
     Medium = 4,
+    /// The point of a light that is aimed at.
+    Light = 5,
+    /// Which light is aimed at.
+    LightChoice = 6,
 }
 
 /// Where a pair of numbers is used.
@@ -105,8 +110,8 @@ macro_rules! samplers {
             $(Entry { name: $stateful, about: $stateful_about, deterministic: false },)*
         ];
 
-        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them, and ask which one it is at each
-        /// pair, which costs little beside making it.
+        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them, and ask which one it is at
+        /// each pair, which costs little beside making it.
         #[derive(Debug, Clone, Copy)]
         enum Spread {
             $($Spread($Spread),)*

@@ -1,77 +1,113 @@
 //! Owen-scrambled Sobol pairs: `--sampler sobol`.
 //!
 //! A pair of numbers belongs to the first two dimensions of Sobol's sequence (I. M. Sobol', "On the distribution of points in a cube and
-//! the approximate evaluation of integrals", USSR Computational Mathematics and Mathematical Physics 7(4), 1967), a (0, 2)-sequence in base 2:
-//! of each aligned block of 2^k samples, every one of the 2^k cells of every grid of 2^a by 2^(k - a) cells has exactly one. Both
-//! numbers are scrambled as by A. B. Owen ("Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995), which keeps that and makes each sample
-//! uniform by itself. Every use of numbers (pixel, bounce, branch, purpose) has its own scrambling, and visits the sequence in an order of
-//! its own: the index is scrambled, too, so that an aligned block of 2^k samples stays one. This is the padding of B. Burley, "Practical
-//! Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020. There is no last dimension and no largest number of samples
-//! but that of the index, 2^32.
+//! the approximate evaluation of integrals", USSR Computational Mathematics and Mathematical Physics 7(4), 1967), a (0, 2)-sequence in
+//! base 2: of each aligned block of 2^k samples, every one of the 2^k cells of every grid of 2^a by 2^(k - a) cells has exactly one.
+//! Owen's scrambling keeps that and makes each sample uniform by itself. Every use of numbers (pixel, bounce, branch, purpose) has a
+//! scrambling of its own and visits the sequence in an order of its own: the index is scrambled, too. This is the padding of B. Burley,
+//! "Practical Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020. There is no last dimension, and no largest
+//! number of samples but that of the index.
 //!
-//! The order matters beyond that: smallpt's camera gives every fourth sample the same subpixel. Sobol's own order would show each subpixel a
-//! quarter of the square, whatever the number of samples, and a scrambled order would show it samples that are hardly better than
-//! independent. Here sample k and the pair stand as if k modulo 4 were the first digit of a third dimension of the same sequence, in base 4: of 4^m
-//! samples, the 4^(m-1) of each subpixel have exactly one in each of the cells of every grid of 4^a by 4^(m-1-a) cells. Such a third
-//! dimension exists because the two binary ones are also those of H. Faure's sequence ("Discrepance de suites associees a un systeme de numeration",
-//! 1982) over the field of four elements, which has four.
+//! What two uses do together is then left to chance. For the place in the pixel and the first direction, which most of the light of a
+//! pixel depends on, it is not: their four numbers belong to one (0, 4)-sequence in base 4, that of H. Faure ("Discrépance de suites
+//! associées à un système de numération", Acta Arithmetica 41, 1982) taken over the field of four elements, as H. Niederreiter
+//! does ("Low-discrepancy and low-dispersion sequences", Journal of Number Theory 30, 1988). The generating matrix for the element a is
+//! Pascal's triangle to the power a. Powers add up, so those for 0 and 1 are Sobol's two dimensions, and a walk through the same two
+//! in the order that the matrix for ω gives is those for ω and ω + 1: each pair is a (0, 2)-sequence in base 2, and both are one in
+//! base 4. (A. Ahmed and others call such pairs SZ sequences.)
+//!
+//! smallpt's camera gives sample k the subpixel k modulo 4. In Sobol's own order each subpixel would see a quarter of the square for ever.
+//! So k modulo 4 is made the first digit of a fifth dimension, that of a quadratic polynomial in Niederreiter's construction: of 4^m
+//! samples, those of a subpixel are a (1, m-1, 4)-net in base 4, in the four numbers together.
 
 use super::independent::{mix, unit};
-use super::{Address, Sampler};
+use super::owen::{scramble, shuffle};
+use super::{Address, Purpose, Sampler};
 
 /// The sampler; it has no state.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sobol;
 
-/// Scrambles binary digits, the first in the lowest bit: each is flipped or not by what the key makes of those before it. Zeros beyond the
-/// last digit become random ones.
-///
-/// The idea is that of S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011: sums and products carry upwards only.
-/// Their steps flip digits that ought to be independent together, so these are others, keyed throughout.
-#[inline(always)]
-fn scramble(mut digits: u64, [a, b]: [u64; 2]) -> u64 {
-    digits ^= digits.wrapping_mul(b << 1);
-    digits = digits.wrapping_add(a);
-    digits = digits.wrapping_mul(b.rotate_left(32) | 1);
-    digits ^= digits.wrapping_mul(a.rotate_left(32) << 1);
-    digits.wrapping_add(b.rotate_left(16))
-}
-
-/// The digits of Sobol's second dimension, the first in the lowest bit: the index times Pascal's triangle modulo 2, which is five
-/// times the Kronecker product of one of two rows. (The first dimension is the index itself.)
-#[inline(always)]
-fn pascal(mut index: u32) -> u32 {
-    index ^= index >> 1 & 0x5555_5555;
-    index ^= index >> 2 & 0x3333_3333;
-    index ^= index >> 4 & 0x0F0F_0F0F;
-    index ^= index >> 8 & 0x00FF_00FF;
-    index ^ index >> 16
-}
-
 /// Sixteen elements of the field of four, each times ω. An element is two bits: 1 is the lower, ω the higher, and ω² = ω + 1.
 #[inline(always)]
-fn times_omega(elements: u32) -> u32 {
+const fn times_omega(elements: u32) -> u32 {
     let higher = elements >> 1;
-    higher & 0x5555_5555 | ((elements ^ higher) & 0x5555_5555) << 1
+    higher & LOWER | ((elements ^ higher) & LOWER) << 1
 }
 
-/// The sum of ω^i times digit i - 1 over the digits of a number in base 4: what the later digits put into the first one of Faure's
-/// dimension for ω.
-#[inline(always)]
-fn later_digits(digits: u32) -> u32 {
-    // By halves: ω^8 = ω², ω^4 = ω, ω^2, ω, and once more for the first.
-    let sum = digits ^ digits >> 16 ^ times_omega(digits >> 16);
-    let sum = sum ^ times_omega(sum >> 8);
-    let sum = sum ^ sum >> 4 ^ times_omega(sum >> 4);
-    let sum = sum ^ times_omega(sum >> 2);
-    times_omega(sum) & 3
+/// The lower bit of each element.
+const LOWER: u32 = 0x5555_5555;
+
+/// Both bits of the elements `place`, `place + 3`, ...
+const fn each_third(place: u32) -> u32 {
+    let (mut mask, mut bit) = (0, 2 * place);
+    while bit < u32::BITS {
+        mask |= 3 << bit;
+        bit += 6;
+    }
+    mask
 }
+
+/// Element j times ω^j.
+#[inline(always)]
+fn times_powers(elements: u32) -> u32 {
+    let once = times_omega(elements);
+    elements & each_third(0) | once & each_third(1) | (elements ^ once) & each_third(2)
+}
+
+/// Element j over ω^j.
+#[inline(always)]
+fn over_powers(elements: u32) -> u32 {
+    let once = times_omega(elements);
+    elements & each_third(0) | (elements ^ once) & each_third(1) | once & each_third(2)
+}
+
+/// Pascal's triangle modulo 2 on sixteen elements: four times the Kronecker product of 1 1 and 0 1.
+#[inline(always)]
+fn pascal_of_elements(mut elements: u32) -> u32 {
+    elements ^= elements >> 2 & 0x3333_3333;
+    elements ^= elements >> 4 & 0x0F0F_0F0F;
+    elements ^= elements >> 8 & 0x00FF_00FF;
+    elements ^ elements >> 16
+}
+
+/// The digits of Sobol's second dimension, the first in the lowest bit: the index times Pascal's triangle of bits. (The first dimension
+/// is the index itself.)
+#[inline(always)]
+fn pascal(index: u32) -> u32 {
+    pascal_of_elements(index ^ index >> 1 & LOWER)
+}
+
+/// The index times Pascal's triangle to the power ω, whose entries are those of the triangle times ω^(column - row).
+#[inline(always)]
+fn pascal_to_omega(index: u32) -> u32 {
+    over_powers(pascal_of_elements(times_powers(index)))
+}
+
+/// The coefficients of the fifth dimension's first digit, a bit of each product at a time. They follow the recurrence of x² + ω²x + 1, a
+/// polynomial without roots in the field, and so repeat themselves after five.
+const SUBPIXEL: [u32; 2] = {
+    let coefficients = [1, 2, 0, 2, 1];
+    let (mut masks, mut place) = ([0; 2], 0);
+    while place < 16 {
+        let one = coefficients[place % 5];
+        // What the two bits of an element become: one times 1 and one times ω.
+        let (lower, higher) = (one, times_omega(one) & 3);
+        let mut bit = 0;
+        while bit < 2 {
+            masks[bit] |= (lower >> bit & 1 | (higher >> bit & 1) << 1) << (2 * place);
+            bit += 1;
+        }
+        place += 1;
+    }
+    masks
+};
 
 /// The orders of four, two bits for each.
 const ORDERS: [u8; 24] = {
     let mut orders = [0; 24];
     let (mut place, mut code) = (0, 0);
-    while place < 24 {
+    while place < orders.len() {
         let (a, b, c) = (code & 3, code >> 2 & 3, code >> 4 & 3);
         if a != b && b != c && a != c {
             orders[place] = code | (6 - a - b - c) << 6;
@@ -82,14 +118,15 @@ const ORDERS: [u8; 24] = {
     orders
 };
 
-/// The place in the sequence of a sample: aligned blocks of 2^m go to such blocks.
+/// The place of a sample in the order that the leading uses share: its fours shuffled, and in each the one whose fifth dimension starts
+/// with the sample's subpixel.
 #[inline(always)]
-fn place(sample: u32, [a, b]: [u64; 2]) -> u32 {
-    // Digits count from the highest here, so that samples that follow each other stay in one block.
-    let fours = (scramble(u64::from((sample >> 2).reverse_bits()), [a, b]) as u32).reverse_bits() & (u32::MAX >> 2);
-    let order = ORDERS[((a >> 32) * ORDERS.len() as u64 >> 32) as usize];
+fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
+    let fours = shuffle(sample >> 2, [a, b]) << 2;
+    let order = ORDERS[(((a >> 32) * ORDERS.len() as u64) >> 32) as usize];
     let subpixel = u32::from(order >> (2 * (sample & 3))) & 3;
-    fours << 2 | subpixel ^ later_digits(fours)
+    let [lower, higher] = SUBPIXEL.map(|mask| (fours & mask).count_ones() & 1);
+    fours | subpixel ^ lower ^ higher << 1
 }
 
 impl Sampler for Sobol {
@@ -100,7 +137,13 @@ impl Sampler for Sobol {
         let pixel = mix(mix(u64::from(at.key.pixel)) ^ mix(at.key.seed));
         let key = mix(pixel ^ dimension);
         let [order, first, second] = [0, 2, 4].map(|k| [mix(key ^ k), mix(key ^ (k + 1))]);
-        let index = place(at.key.sample, order);
+        // No dimension is so large.
+        let shared = [mix(pixel ^ u64::MAX), mix(pixel ^ (u64::MAX - 1))];
+        let index = match (at.bounce, at.branch, at.purpose) {
+            (0, 0, Purpose::Film) => leading(at.key.sample, shared),
+            (1, 0, Purpose::Bsdf) => pascal_to_omega(leading(at.key.sample, shared)),
+            _ => shuffle(at.key.sample, order),
+        };
         let digits = [scramble(u64::from(index), first), scramble(u64::from(pascal(index)), second)];
         digits.map(|digits| unit(digits.reverse_bits()))
     }
@@ -124,53 +167,16 @@ mod tests {
         }
     }
 
-    /// Owen's scrambling flips each digit independently for every way of the digits before it. The 63 flips of six digits, over a million
-    /// keys: even, and no two of them go together. (Laine and Karras's own steps fail by a hundred standard deviations.)
+    /// Powers add up, and the field's characteristic is 2.
     #[test]
-    fn scrambling_flips_digits_independently() {
-        const LEVELS: u32 = 6;
-        const NODES: usize = (1 << LEVELS) - 1;
-        const KEYS: u64 = 1 << 20;
-        let (mut single, mut double) = ([0_i64; NODES], vec![0_i64; NODES * NODES]);
-        for key in 0..KEYS {
-            let keys = [mix(2 * key), mix(2 * key + 1)];
-            let mut flips = [0_i64; NODES];
-            for level in 0..LEVELS {
-                for before in 0..1_u64 << level {
-                    let flip = scramble(before, keys) >> level & 1;
-                    flips[(1 << level) - 1 + before as usize] = 2 * flip as i64 - 1;
-                }
-            }
-            for (a, flip) in flips.iter().enumerate() {
-                single[a] += flip;
-                for (sum, other) in double[a * NODES..].iter_mut().zip(&flips[..a]) {
-                    *sum += flip * other;
-                }
-            }
+    fn powers_of_pascals_triangle_add_up() {
+        for index in (0..1000).chain((0..32).map(|k| 1 << k)).chain([u32::MAX, 0xDEAD_BEEF]) {
+            let twice = pascal_to_omega(pascal_to_omega(index));
+            assert_eq!(twice, index, "ω + ω = 0");
+            assert_eq!(pascal_of_elements(pascal_to_omega(index)), pascal_to_omega(pascal_of_elements(index)));
         }
-        let pairs = (0..NODES).flat_map(|a| (0..a).map(move |b| a * NODES + b)).map(|index| double[index]);
-        let sums: Vec<i64> = single.into_iter().chain(pairs).collect();
-        // Two-sided, 1e-3 for all 2016 sums together.
-        let limit = 5.03;
-        for (index, sum) in sums.iter().enumerate() {
-            let z = *sum as f64 / (KEYS as f64).sqrt();
-            assert!(z.abs() < limit, "sum {index} is {z} standard deviations from 0");
-        }
-    }
-
-    /// The digits before decide, and none after: what makes it a scrambling of nets.
-    #[test]
-    fn scrambling_keeps_what_leading_digits_share() {
-        for key in 0..1000 {
-            let keys = [mix(key), mix(key ^ 1 << 32)];
-            for level in 0..64 {
-                let (one, other) = (mix(key + 1), mix(key + 2));
-                let shared = (1_u64 << level) - 1;
-                let joined = one & shared | other & !shared;
-                assert_eq!((scramble(one, keys) ^ scramble(joined, keys)) & shared, 0, "key {key}, {level} digits");
-            }
-            assert_ne!(scramble(key, keys), scramble(key ^ 1 << 63, keys));
-        }
+        assert_eq!(pascal_to_omega(0b01_00), 0b01_10, "its first row is 1, ω, ω², ...");
+        assert_eq!(pascal_to_omega(0b01_00_00), 0b01_00_11);
     }
 
     /// Each four samples come in any of their 24 orders.

@@ -7,6 +7,7 @@ mod fog;
 mod generator;
 mod hierarchy;
 mod library;
+mod light;
 mod point_light;
 mod profile;
 mod reader;
@@ -19,10 +20,11 @@ pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{ACCELERATORS, Bounds, Entry as Accelerator, Hierarchy, Tests, accelerator};
 pub use library::{SCENES, load};
+pub use light::{Aim, Lights, one_minus_cos};
 pub use point_light::PointLight;
 pub use profile::{
     AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects,
-    SmallptEffects, SurfaceEffects, effect_names, smallest_profile, with_profile,
+    SmallptEffects, SurfaceEffects, effect_names, with_profile,
 };
 pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle};
 
@@ -115,6 +117,8 @@ pub struct Scene {
     pub fog: Option<Fog>,
     /// What the search for the nearest primitive goes by; every primitive is tested if `None`.
     pub hierarchy: Option<Hierarchy>,
+    /// What estimators that ask for it aim at.
+    pub lights: Option<Lights>,
 }
 
 impl Scene {
@@ -174,6 +178,7 @@ impl Scene {
         scene.background = scene.background.map(|_| Rgb::WHITE);
         scene.fog = scene.fog.map(|fog| Fog { emission: Rgb::WHITE, ..fog });
         scene.point_lights.clear();
+        scene.lights = None;
         scene
     }
 
@@ -185,7 +190,14 @@ impl Scene {
         scene.primitives = scene.primitives.scaled(factor);
         scene.point_lights = scene.point_lights.iter().map(|light| light.scaled(factor)).collect();
         scene.fog = scene.fog.map(|fog| fog.scaled(factor));
+        scene.lights = None;
         scene
+    }
+
+    /// The same scene with its lights to aim at, as they are reached from that view.
+    #[must_use]
+    pub fn lit(&self, view: &View) -> Self {
+        Self { lights: Some(Lights::of(self, &view.origins())), ..self.clone() }
     }
 
     /// The same scene with the search structure of that name; `None` if it is to have none.

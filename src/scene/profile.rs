@@ -64,11 +64,6 @@ profiles! {
     AllEffects, "all", "every effect there is", ALL;
 }
 
-/// The name of the smallest profile that covers the effects.
-pub fn smallest_profile(effects: Effects) -> &'static str {
-    PROFILES.iter().find(|entry| entry.effects.cover(effects)).map_or(AllEffects::NAME, |entry| entry.name)
-}
-
 /// The names of the effects, joined with `+`.
 pub fn effect_names(effects: Effects) -> String {
     let tables = PRIMITIVES.iter().chain(MATERIALS).chain(FEATURES);

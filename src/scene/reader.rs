@@ -137,6 +137,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>) -> Re
         background: draft.background,
         fog: draft.fog,
         hierarchy: None,
+        lights: None,
     };
     add_parts(&mut scene, draft.parts, &mut draft.hash)?;
     scene.hash = draft.hash.finish();

@@ -65,7 +65,7 @@ fn no_scene_enters_an_effect_that_it_does_not_call_for() {
         let scene = load(name).unwrap();
         let called = scene.effects();
         for entry in ESTIMATORS {
-            let look = with_estimator(entry.name, Options { max_depth: None }, Look(&scene));
+            let look = with_estimator(entry.name, Options::default(), Look(&scene));
             let (used, [lens, medium]) = look.unwrap();
             let (used_names, called_names) = (effect_names(used), effect_names(called));
             assert!(called.cover(used), "{name}, {}: {used_names} for {called_names}", entry.name);

@@ -63,7 +63,7 @@ fn nothing_is_left_to_chance() {
         for pixel in 0..32 * 24 {
             let ray = view.ray::<AllEffects>(pixel % 32, pixel / 32, 0, [0.5; 2], || [0.5; 2]);
             let key = SampleKey { seed: 1, pixel, sample: 0 };
-            let estimator = Whitted::new(Options { max_depth: None });
+            let estimator = Whitted::new(Options::default());
             light += estimator.sample::<_, AllEffects, ()>(&scene, ray, key, &Never, &mut ()).g;
         }
         assert!(light > 0.0, "{name} is dark");

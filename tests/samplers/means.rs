@@ -65,8 +65,8 @@ fn means_over_scramblings_are_unbiased() {
     }
 }
 
-/// One scrambling, many samples: the error of each pixel goes to zero, also where each subpixel sees another function. Sobol's own order would
-/// leave an error of the size of the integrand for ever.
+/// One scrambling, many samples: the error of each pixel goes to zero, also where each subpixel sees another function. Sobol's own order
+/// would leave an error of the size of the integrand for ever.
 #[test]
 fn each_pixel_converges() {
     const SAMPLES: u32 = 1 << 14;

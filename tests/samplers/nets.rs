@@ -29,7 +29,7 @@ fn one_in_each_cell(points: &[[f64; 2]], columns: u32, rows: u32) -> bool {
 }
 
 /// A (0, 2)-sequence in base 2: aligned blocks of 2^m samples, first ones and far beyond 2^16, on every grid of 2^m cells. (Blocks of
-/// two are none: four samples are in any order.)
+/// two are none for the first uses: their fours are in any order.)
 #[test]
 fn sobol_pairs_are_nets_on_every_grid() {
     let sampler = keyed("sobol");
@@ -49,25 +49,47 @@ fn sobol_pairs_are_nets_on_every_grid() {
     }
 }
 
-/// So are those of each subpixel in base 4: of 4^m samples, 4^(m-1) on every grid of 4^a by 4^(m-1-a) cells.
+/// The place in the pixel and the first direction together: (0, 4)-sequences in base 4, and those of each subpixel (1, m - 1, 4)-nets. So
+/// of 4^m samples every grid of 4^m cells has one in each, and of a subpixel's every grid of 4^(m-2) cells four.
 #[test]
-fn sobol_pairs_of_each_subpixel_are_nets() {
+fn the_leading_sobol_pairs_are_nets_together() {
     let sampler = keyed("sobol");
     for key in KEYS {
-        for used in USES {
-            for m in 1..=5 {
-                let size = 1_u32 << (2 * m);
-                for start in [0, 3 * size, 1 << 24] {
-                    let points = points(&*sampler, key, used, start..start + size);
-                    for (subpixel, a) in (0..4).flat_map(|subpixel| (0..m).map(move |a| (subpixel, a))) {
-                        let own: Vec<[f64; 2]> = points.iter().skip(subpixel).step_by(4).copied().collect();
-                        let fine = one_in_each_cell(&own, 1 << (2 * a), 1 << (2 * (m - 1 - a)));
-                        assert!(fine, "{key:?} {used:?} subpixel {subpixel}: {size} from {start}, 4^{a} columns");
-                    }
-                }
+        for (m, first) in [(1, 0), (2, 0), (2, 3), (3, 0), (4, 0), (4, 1), (5, 0), (5, 1 << 14)] {
+            let (size, exponents) = (1_u32 << (2 * m), splits(m));
+            let samples = first * size..(first + 1) * size;
+            let [film, direction] = [USES[0], USES[1]].map(|used| points(&*sampler, key, used, samples.clone()));
+            let all: Vec<[f64; 4]> = film.iter().zip(direction).map(|([a, b], [c, d])| [*a, *b, c, d]).collect();
+            for grid in exponents {
+                assert!(evenly(&all, grid, 1), "{key:?}: {size} from {first} times that, 4^{grid:?}");
+            }
+            for (subpixel, grid) in (0..4).flat_map(|subpixel| splits(m.max(2) - 2).map(move |grid| (subpixel, grid))) {
+                let own: Vec<[f64; 4]> = all.iter().skip(subpixel).step_by(4).copied().collect();
+                let each = own.len() as u32 >> (2 * (m.max(2) - 2));
+                assert!(evenly(&own, grid, each), "{key:?} subpixel {subpixel}: {size} from {first} times, 4^{grid:?}");
             }
         }
     }
+}
+
+/// Every way to write `sum` as a sum of four.
+fn splits(sum: u32) -> impl Iterator<Item = [u32; 4]> {
+    let upper = move |taken: u32| 0..=sum - taken;
+    let three = upper(0).flat_map(move |a| upper(a).flat_map(move |b| upper(a + b).map(move |c| [a, b, c])));
+    three.map(move |[a, b, c]| [a, b, c, sum - a - b - c])
+}
+
+/// Whether each cell of the grid of 4^a x 4^b x 4^c x 4^d cells has `each` of the points.
+fn evenly(points: &[[f64; 4]], grid: [u32; 4], each: u32) -> bool {
+    let mut counts = vec![0; 1 << (2 * grid.iter().sum::<u32>())];
+    for point in points {
+        let cell = point.iter().zip(grid).fold(0, |cell, (u, digits)| {
+            let cells = 1_usize << (2 * digits);
+            cell * cells + (u * cells as f64) as usize
+        });
+        counts[cell] += 1;
+    }
+    counts.iter().all(|count| *count == each)
 }
 
 /// Each 16 samples have one in each of 4x4 cells, and nobody sees a pattern in their order: another 16 have another.

@@ -28,8 +28,8 @@ fn slope(name: &str, mean: f64, value: impl Fn(&dyn Sampler, u32, u32) -> f64) -
     log_log(&errors(&*keyed(name), mean, value), 0.95).unwrap().slope.value
 }
 
-/// A smooth function of one pair: independent samples along -1/2, and so strata of a fixed number; scrambled nets along -3/2 (Owen, "Scrambled
-/// net variance for integrals of smooth functions", 1997).
+/// A smooth function of one pair: independent samples along -1/2, and so strata of a fixed number; scrambled nets along -3/2 (Owen,
+/// "Scrambled net variance for integrals of smooth functions", 1997).
 #[test]
 fn smooth_functions_of_a_pair() {
     let value = |sampler: &dyn Sampler, pixel, sample| {
@@ -50,8 +50,8 @@ fn nodes() -> [f64; 32] {
     std::array::from_fn(|k| ((k / 2) as f64 + 0.5 + if k % 2 == 0 { -half } else { half }) / 16.0)
 }
 
-/// Light from a small square on a plane, over a pixel with four subpixels: four numbers, of which two move the point a little. What the two
-/// pairs do together falls as for independent samples, but there is little of it.
+/// Light from a small square on a plane, over a pixel with four subpixels: four numbers, of which two move the point a little. The place
+/// in the pixel and the first direction are one sequence, so what they do together falls as fast as the rest.
 #[test]
 fn smooth_functions_of_two_pairs() {
     // The light is a quarter wide and two units above.
@@ -68,5 +68,5 @@ fn smooth_functions_of_two_pairs() {
     let mean = sum / (along.len() * along.len()) as f64;
     let [independent, sobol] = ["independent", "sobol"].map(|name| slope(name, mean, value));
     assert!((-0.56..-0.44).contains(&independent), "independent: {independent}");
-    assert!(sobol < -0.55, "sobol: {sobol}");
+    assert!(sobol < -1.1, "sobol: {sobol}");
 }

@@ -5,9 +5,9 @@ mod by_bounce;
 mod path_log;
 
 use super::scalar::Scalar;
-use super::{Spec, choose, unknown};
+use super::{Spec, choose, prepared, unknown};
 use crate::error::{InputError, Result};
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Probe, with_estimator};
+use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Probe, with_estimator};
 use crate::math::Rgb;
 use crate::sampling::{SAMPLERS, Sampler, SamplerVisitor, is_deterministic, with_keyed_sampler};
 use crate::scene::{AllEffects, Scene};
@@ -30,7 +30,7 @@ pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Inspect>> {
         let names: Vec<&str> = SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
         return Err(InputError::new("sampler", &spec.sampler, problem).allowed(names.join(", ")).into());
     }
-    let scene = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
+    let scene = prepared(scene, spec, choice);
     let inspector = with_keyed_sampler(&spec.sampler, BySampler { scene, spec }).flatten();
     // Every name has been checked, so there is one.
     inspector.ok_or_else(|| unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name)).into())
@@ -45,7 +45,7 @@ struct BySampler<'a> {
 impl SamplerVisitor for BySampler<'_> {
     type Output = Option<Box<dyn Inspect>>;
     fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-        let options = Options { max_depth: self.spec.max_depth };
+        let options = self.spec.options();
         let sampler: Box<dyn Sampler> = Box::new(sampler);
         with_estimator(&self.spec.estimator, options, ByEstimator { scene: self.scene, spec: self.spec, sampler })
     }

@@ -118,6 +118,15 @@ impl Camera {
 }
 
 impl View {
+    /// Where rays start, nine of them: through the corners of the image, the middles of its edges and its own, from the middle of the lens.
+    pub fn origins(&self) -> [Vec3; 9] {
+        std::array::from_fn(|k| {
+            let (across, upward) = ((k % 3) as f64 / 2.0 - 0.5, (k / 3) as f64 / 2.0 - 0.5);
+            let towards = self.right * across + self.up * upward + self.camera.direction;
+            self.camera.position + towards.normalized() * self.camera.advance
+        })
+    }
+
     /// The ray of sample `sample` through pixel (`x`, `y`), row 0 at the top. `film` places it in the pixel and `lens` on the lens; the
     /// latter is asked only if there is one.
     ///

@@ -1,0 +1,124 @@
+//! Next-event estimation: light from surfaces that a path aims at, by a shadow ray to one point of one light.
+
+use super::Probe;
+use super::medium::Medium;
+use super::path::Light;
+use crate::effect::EffectSet;
+use crate::math::{Frame, Ray, Rgb, Vec3, dot};
+use crate::scene::{Aim, Hit, Lights, Scene, Standpoint, Tests};
+use std::f64::consts::PI;
+
+/// The share of a way of finding light with density `a`, where another has density `b`: the power heuristic with exponent 2 (Veach and
+/// Guibas 1995), by a ratio, because squares overflow.
+#[inline(always)]
+pub(super) fn power_heuristic(a: f64, b: f64) -> f64 {
+    let ratio = b / a;
+    // Both zero cannot be: who found the light had a density for it.
+    debug_assert!(!ratio.is_nan());
+    1.0 / (1.0 + ratio * ratio)
+}
+
+/// The share of light at the end of a ray that counts, when the ray's direction was chosen by a surface or by fog with `density`.
+#[inline(always)]
+pub(super) fn share_of_arrival(
+    rule: Light,
+    lights: &Lights,
+    ray: &Ray,
+    from: Option<Standpoint>,
+    hit: &Hit,
+    density: f64,
+) -> f64 {
+    let aimed = lights.density(ray, from, hit);
+    match rule {
+        Light::Weighted => power_heuristic(density, aimed),
+        Light::Aimed if aimed > 0.0 => 0.0,
+        Light::Aimed => 1.0,
+    }
+}
+
+/// What is at the end of a shadow ray: the radiance of the light, less what fog takes; `None` if it is hidden.
+#[inline(always)]
+fn arriving<X: EffectSet, P: Probe>(
+    scene: &Scene,
+    ray: &Ray,
+    from: Option<Standpoint>,
+    primitive: u32,
+    medium: Medium,
+    probe: &mut P,
+) -> Option<Rgb> {
+    let mut tests = Tests::default();
+    let hit = scene.intersect::<X>(ray, from, &mut tests);
+    probe.ray(tests);
+    // By its number, not by its distance: so no surface is too near to the light to hide it, and none that is not hides it.
+    let hit = hit.filter(|hit| hit.primitive == primitive)?;
+    let emission = scene.objects[hit.object as usize].emitted::<X>(dot(ray.direction, hit.normal).abs());
+    Some(medium.fog::<X>(scene).map_or(emission, |fog| emission * fog.unhindered(hit.t)))
+}
+
+/// The radiance that an aim adds at a surface that a ray of that direction met, back along the ray, which lies in `medium`.
+#[inline(always)]
+pub(super) fn aimed_at_surface<X: EffectSet, P: Probe>(
+    rule: Light,
+    scene: &Scene,
+    hit: &Hit,
+    (frame, wo): (&Frame, Vec3),
+    aim: Aim,
+    medium: Medium,
+    probe: &mut P,
+) -> Option<Rgb> {
+    let wi = frame.to_local(aim.direction);
+    let material = &scene.objects[hit.object as usize].material;
+    let scattered = material.eval::<X>(wo, wi) * wi.z.abs();
+    if scattered.is_black() {
+        return None;
+    }
+    let from = Some(Standpoint { primitive: hit.primitive, inside: (wi.z < 0.0) != hit.inside });
+    let ray = Ray { origin: hit.point, direction: aim.direction };
+    let light = arriving::<X, P>(scene, &ray, from, aim.primitive, medium.beyond::<X>(hit, wi), probe)?;
+    let weight = match rule {
+        Light::Weighted => power_heuristic(aim.density, material.pdf::<X>(wo, wi)),
+        Light::Aimed => 1.0,
+    };
+    Some(scattered * light * (weight / aim.density))
+}
+
+/// Likewise where fog scatters, evenly in all directions.
+#[inline(always)]
+pub(super) fn aimed_at_fog<X: EffectSet, P: Probe>(
+    rule: Light,
+    scene: &Scene,
+    point: Vec3,
+    aim: Aim,
+    probe: &mut P,
+) -> Option<Rgb> {
+    let ray = Ray { origin: point, direction: aim.direction };
+    let light = arriving::<X, P>(scene, &ray, None, aim.primitive, Medium::OUTSIDE, probe)?;
+    let weight = match rule {
+        Light::Weighted => power_heuristic(aim.density, EVENLY),
+        Light::Aimed => 1.0,
+    };
+    Some(light * (EVENLY * weight / aim.density))
+}
+
+/// The density of directions that are all as likely, per steradian.
+pub(super) const EVENLY: f64 = 0.25 / PI;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// H34: shares sum to 1, also where squares would over- or underflow, and where one way never finds the light.
+    #[test]
+    fn shares_sum_to_one() {
+        let magnitudes = [0.0, 5e-324, 1e-300, 1e-160, 1e-8, 0.3, 1.0, 7.0, 1e8, 1e160, 1e300, f64::MAX];
+        for a in magnitudes {
+            for b in magnitudes {
+                if a > 0.0 || b > 0.0 {
+                    let sum = power_heuristic(a, b) + power_heuristic(b, a);
+                    assert!((sum - 1.0).abs() <= f64::EPSILON, "{a:e} {b:e}: {sum}");
+                }
+            }
+        }
+        assert_eq!((power_heuristic(1.0, 0.0), power_heuristic(0.0, 1.0), power_heuristic(3.0, 1.0)), (1.0, 0.0, 0.9));
+    }
+}

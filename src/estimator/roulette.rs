@@ -1,0 +1,97 @@
+//! Russian roulette: when paths may end, and by which chance. `--roulette albedo:5` is smallpt's: behind the fifth vertex, by the largest
+//! channel of the surface's albedo.
+//!
+//! Whatever the chance, what survives is divided by it, so the mean stays what it is (Arvo and Kirk, "Particle Transport and Image
+//! Synthesis", 1990).
+
+use crate::error::{InputError, Result};
+use crate::math::Rgb;
+use std::fmt;
+
+/// What the chance to survive follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum By {
+    /// The largest channel of what the vertex lets on.
+    Albedo,
+    /// The largest channel of what the path still carries behind the vertex, at most 1.
+    Throughput,
+}
+
+/// When and how paths are ended by chance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Roulette {
+    by: By,
+    after: u16,
+}
+
+impl Roulette {
+    /// smallpt's: `if (++depth > 5)`.
+    pub const SMALLPT: Self = Self { by: By::Albedo, after: 5 };
+
+    /// What `--roulette` allows.
+    pub const ALLOWED: &str = "albedo:N or throughput:N behind the N-th vertex, N from 0 to 65534, or never";
+
+    /// Reads `albedo:5`, `throughput:2` or `never`.
+    pub fn parse(text: &str) -> Result<Self> {
+        let unknown = || InputError::new("roulette", text, "is no rule").allowed(Self::ALLOWED);
+        if text == "never" {
+            return Ok(Self { by: By::Albedo, after: u16::MAX });
+        }
+        let (by, after) = text.split_once(':').ok_or_else(unknown)?;
+        let by = match by {
+            "albedo" => By::Albedo,
+            "throughput" => By::Throughput,
+            _ => return Err(unknown().into()),
+        };
+        let after = after.parse().ok().filter(|after| *after < u16::MAX).ok_or_else(unknown)?;
+        Ok(Self { by, after })
+    }
+
+    /// The chance to go on behind the `vertices`-th vertex, which lets on `passed` of what arrives with `throughput`; `None` before roulette
+    /// begins.
+    #[inline(always)]
+    pub(super) fn survival(self, vertices: u16, throughput: Rgb, passed: impl FnOnce() -> Rgb) -> Option<f64> {
+        if vertices <= self.after {
+            return None;
+        }
+        Some(match self.by {
+            By::Albedo => passed().max_channel(),
+            By::Throughput => (throughput * passed()).max_channel().min(1.0),
+        })
+    }
+}
+
+impl fmt::Display for Roulette {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.by, self.after) {
+            (_, u16::MAX) => f.write_str("never"),
+            (By::Albedo, after) => write!(f, "albedo:{after}"),
+            (By::Throughput, after) => write!(f, "throughput:{after}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_back() {
+        for name in ["albedo:5", "albedo:0", "throughput:2", "throughput:65534", "never"] {
+            assert_eq!(Roulette::parse(name).unwrap().to_string(), name);
+        }
+        assert_eq!(Roulette::parse("albedo:5").unwrap(), Roulette::SMALLPT);
+        for name in ["", "albedo", "albedo:", "albedo:-1", "albedo:65535", "luck:3", "throughput:2.5", "never:1"] {
+            assert!(Roulette::parse(name).unwrap_err().to_string().contains("throughput:N"), "{name}");
+        }
+    }
+
+    #[test]
+    fn survives_by_its_rule() {
+        let (throughput, passed) = (Rgb { r: 0.5, g: 4.0, b: 0.1 }, Rgb { r: 0.25, g: 0.5, b: 0.75 });
+        let survival = |name: &str, n| Roulette::parse(name).unwrap().survival(n, throughput, || passed);
+        assert_eq!([survival("albedo:2", 2), survival("albedo:2", 3)], [None, Some(0.75)]);
+        // The product is (0.125, 2, 0.075): more than 1 is none.
+        assert_eq!([survival("throughput:0", 1), survival("never", u16::MAX)], [Some(1.0), None]);
+    }
+}

@@ -1,0 +1,117 @@
+//! A sphere as a target: by the cone of directions under which it is seen (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct
+//! Lighting Calculations", 1996), evenly over all directions from within it, and by area where little of it can be reached.
+
+use super::Target;
+use crate::math::{Frame, Ray, Vec3, dot, sin_cos_turns};
+use crate::sampling::uniform_sphere;
+use crate::scene::{Hit, Sphere};
+use std::f64::consts::PI;
+
+/// The part of a sphere around an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cap {
+    /// The direction from the sphere's centre to the middle of the cap.
+    pub(super) axis: Vec3,
+    /// Its height, from 0 to the sphere's diameter.
+    pub(super) height: f64,
+}
+
+/// The sphere, or the part of it that can be reached.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SphereTarget {
+    sphere: Sphere,
+    cap: Option<Cap>,
+}
+
+/// How directions are chosen from a point.
+enum Way<'a> {
+    /// The point is inside.
+    Everywhere,
+    /// Evenly over the area of the cap.
+    Area(&'a Cap),
+    /// Evenly in the cone around an axis, whose half angle has this 1 - cos.
+    Cone { axis: Vec3, one_minus_cos: f64 },
+}
+
+/// 1 - cos of the half angle under which a sphere is seen from that distance of its centre, beyond the radius: to a few roundings whatever
+/// the ratio, where 1 - sqrt(1 - (r/d)²) has no digit left at 1e8.
+pub fn one_minus_cos(radius: f64, distance: f64) -> f64 {
+    let sin = radius / distance;
+    let cos2 = (distance - radius) / distance * ((distance + radius) / distance);
+    sin * sin / (1.0 + cos2.sqrt())
+}
+
+impl SphereTarget {
+    pub(super) fn new(sphere: Sphere, cap: Option<Cap>) -> Self {
+        Self { sphere, cap }
+    }
+
+    /// `None` from its own outside, where it is hidden by itself.
+    #[inline(always)]
+    fn way(&self, point: Vec3, own: Option<bool>) -> Option<Way<'_>> {
+        let radius = self.sphere.radius;
+        let offset = self.sphere.center - point;
+        let square = dot(offset, offset);
+        if own.unwrap_or(square <= radius * radius) {
+            return Some(Way::Everywhere);
+        }
+        let distance = square.sqrt();
+        if own.is_some() || distance <= radius {
+            return None;
+        }
+        match &self.cap {
+            // The cone reaches a cap of this height too, if nothing is before it.
+            Some(cap) if cap.height * distance < radius * (distance - radius) => Some(Way::Area(cap)),
+            _ => {
+                let axis = offset * (1.0 / distance);
+                Some(Way::Cone { axis, one_minus_cos: one_minus_cos(radius, distance) })
+            }
+        }
+    }
+}
+
+impl Target for SphereTarget {
+    #[inline(always)]
+    fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
+        let round = |axis: Vec3, one_minus_cos: f64| {
+            let z = u[1] * one_minus_cos;
+            let (sin, cos) = sin_cos_turns(u[0]);
+            let r = (z * (2.0 - z)).sqrt();
+            Frame::around(axis).to_world(Vec3::new(r * cos, r * sin, 1.0 - z))
+        };
+        match self.way(point, own)? {
+            Way::Everywhere => Some((uniform_sphere(u), 0.25 / PI)),
+            Way::Cone { axis, one_minus_cos } => Some((round(axis, one_minus_cos), 0.5 / (PI * one_minus_cos))),
+            Way::Area(cap) => {
+                let normal = round(cap.axis, cap.height / self.sphere.radius);
+                let towards = self.sphere.center + normal * self.sphere.radius - point;
+                let square = dot(towards, towards);
+                let direction = towards * (1.0 / square.sqrt());
+                let cos = -dot(direction, normal);
+                (cos > 0.0).then(|| (direction, square / (cos * self.area())))
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn density(&self, ray: &Ray, own: Option<bool>, hit: &Hit) -> f64 {
+        match self.way(ray.origin, own) {
+            None => 0.0,
+            Some(Way::Everywhere) => 0.25 / PI,
+            Some(Way::Cone { one_minus_cos, .. }) => 0.5 / (PI * one_minus_cos),
+            Some(Way::Area(cap)) => {
+                // |n - a|² is 2 (1 - cos) without its cancellation.
+                let off = hit.normal - cap.axis;
+                if dot(off, off) * self.sphere.radius > 2.0 * cap.height {
+                    return 0.0;
+                }
+                hit.t * hit.t / (dot(ray.direction, hit.normal).abs() * self.area())
+            }
+        }
+    }
+
+    fn area(&self) -> f64 {
+        let radius = self.sphere.radius;
+        2.0 * PI * radius * self.cap.map_or(2.0 * radius, |cap| cap.height)
+    }
+}
