@@ -48,7 +48,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     );
     chart.subtitle = results.workload();
     chart.caption = "Efficiency: 1 / (variance of a sample x its seconds). Bars: 95 % interval over seeds.".to_string();
-    chart.dodge = 4.0;
+    chart.dodge = 6.0;
     let finding = format!("Of the rules that were tried, the most efficient is {name}: {most:.2} times {YARDSTICK}.");
     let columns = [
         "scene",
