@@ -58,6 +58,9 @@ struct Row {
     paid_seconds: Option<f64>,
     rmse_ratio: Option<f64>,
     seconds_ratio: Option<f64>,
+    /// Fewest samples that make a whole image.
+    #[serde(skip)]
+    fewest: u32,
 }
 
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
@@ -93,18 +96,28 @@ fn row(
     let price = renderer.price(goal).ok_or_else(|| {
         Error::Check(format!("{goal} has no price: the error of {} does not fall with its samples", arguments.scene))
     })?;
-    let wanted = (price.spp.value / f64::from(fewest)).ceil().max(1.0) * f64::from(fewest);
+    let wanted = whole(price.spp.value, fewest);
     if wanted > f64::from(LARGEST_SPP) {
         let problem = format!("takes {wanted:.0} samples per pixel, more than the {LARGEST_SPP} that there can be");
         return Err(InputError::new("rmse", goal.to_string(), problem).into());
     }
     let spp = wanted as u32;
     let paid = if arguments.pay { Some(pay(settings, spp, talk)?) } else { None };
-    Ok(Row::new(&price, spp, renderer, paid))
+    Ok(Row::new(&price, (spp, fewest), renderer, paid))
+}
+
+/// So many samples, rounded up to whole images.
+fn whole(spp: f64, fewest: u32) -> f64 {
+    (spp / f64::from(fewest)).ceil().max(1.0) * f64::from(fewest)
 }
 
 impl Row {
-    fn new(price: &Price, spp: u32, renderer: &Renderer, paid: Option<Paid>) -> Self {
+    /// The next whole image's samples.
+    fn whole(&self, spp: f64) -> f64 {
+        whole(spp, self.fewest)
+    }
+
+    fn new(price: &Price, (spp, fewest): (u32, u32), renderer: &Renderer, paid: Option<Paid>) -> Self {
         let Price { rmse, spp: Estimate { interval: samples, .. }, seconds } = *price;
         // What is rendered is rounded up, and so must be what it is compared with.
         let expected_s = f64::from(spp) * renderer.seconds_per_spp.value;
@@ -122,6 +135,7 @@ impl Row {
             paid_seconds: paid.map(|paid| paid.seconds),
             rmse_ratio: paid.zip(expected).map(|(paid, expected)| paid.rmse / expected),
             seconds_ratio: paid.map(|paid| paid.seconds / expected_s),
+            fewest,
         }
     }
 }
@@ -152,7 +166,7 @@ fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: 
             "{:>9}  {:>8}  {:>21}  {:>9.3}  {:>19}  {:>8}",
             row.rmse,
             row.spp,
-            format!("({:.0} to {:.0})", row.spp_low, row.spp_high),
+            format!("({} to {})", row.whole(row.spp_low), row.whole(row.spp_high)),
             row.seconds,
             format!("({:.3} to {:.3})", row.seconds_low, row.seconds_high),
             row.half_rmse_seconds.map_or_else(|| "-".to_string(), |seconds| format!("{seconds:.2} s")),

@@ -4,7 +4,7 @@
 use super::Progress;
 use crate::analysis::Estimate;
 use crate::analysis::jackknife::SeedCurves;
-use crate::analysis::mean::t_interval;
+use crate::analysis::mean::geometric_interval;
 use crate::analysis::price::{Law, Renderer};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
@@ -80,7 +80,7 @@ impl Pilot {
         let at: Vec<f64> = points.iter().map(|&spp| f64::from(spp)).collect();
         let seen: Vec<Vec<&[f64]>> = images.iter().map(|of| of.iter().map(Vec::as_slice).collect()).collect();
         let curves = SeedCurves::of_images(&at, &seen);
-        let seconds: Option<Estimate> = t_interval(&per_spp, level);
+        let seconds: Option<Estimate> = geometric_interval(&per_spp, level);
         match curves.zip(seconds) {
             Some((curves, seconds_per_spp)) => Ok(Renderer { curves, law, seconds_per_spp }),
             None => Err(Error::Check("the pilot's seeds say nothing about error and time".to_string())),

@@ -4,7 +4,7 @@ use super::block::Block;
 use super::results::{LEVEL, Results, Schedule};
 use crate::analysis::Interval;
 use crate::analysis::jackknife::{Curve, SeedCurves};
-use crate::analysis::mean::t_interval;
+use crate::analysis::mean::geometric_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
 use crate::experiment::{EXTERNAL, law_of};
@@ -19,6 +19,8 @@ pub(super) struct Contender {
     pub(super) scene: String,
     /// Its estimator.
     pub(super) estimator: String,
+    /// When and how chance ends its paths.
+    pub(super) roulette: String,
     /// Its points, by samples per pixel.
     pub(super) points: Vec<CostPoint>,
     /// What its prices are made from.
@@ -73,8 +75,8 @@ impl Contender {
             });
         }
         let renderer = renderer(&seeds, law)?;
-        let (scene, estimator) = (first.scene.clone(), first.estimator.clone());
-        Some(Self { name, scene, estimator, points, renderer, seeds })
+        let (scene, estimator, roulette) = (first.scene.clone(), first.estimator.clone(), first.roulette.clone());
+        Some(Self { name, scene, estimator, roulette, points, renderer, seeds })
     }
 
     /// The first half of the seeds, up to a quarter of the samples, predicts the rest. `None` below six seeds or two points in that quarter.
@@ -99,7 +101,7 @@ impl Contender {
 
 fn renderer(seeds: &[(Curve, f64)], law: Law) -> Option<Renderer> {
     let (curves, seconds): (Vec<Curve>, Vec<f64>) = seeds.iter().cloned().unzip();
-    Some(Renderer { curves: SeedCurves::of_errors(&curves)?, law, seconds_per_spp: t_interval(&seconds, LEVEL)? })
+    Some(Renderer { curves: SeedCurves::of_errors(&curves)?, law, seconds_per_spp: geometric_interval(&seconds, LEVEL)? })
 }
 
 /// (spp, squared error) of each seed, and its seconds for a sample in every pixel, from its longest render. An spp at which some seed's
@@ -136,9 +138,10 @@ pub(super) fn missing(results: &Results) -> Option<Block> {
 /// The contenders of each scene, scenes by name and contenders in the order in which the estimators are listed. What cannot be priced, such as a single seed,
 /// is left out.
 pub(super) fn contenders(results: &Results) -> BTreeMap<String, Vec<Contender>> {
-    let parts: [fn(&Record) -> String; 5] = [
+    let parts: [fn(&Record) -> String; 6] = [
         |record| record.estimator.clone(),
         |record| record.sampler.clone(),
+        |record| record.roulette.clone(),
         |record| record.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
         |record| if record.biased && record.max_depth.is_none() { "biased".to_string() } else { String::new() },
         |record| Schedule::of(record).label(),

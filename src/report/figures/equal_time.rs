@@ -1,12 +1,13 @@
 //! What each way to render a scene shows after about the same time.
 
-use super::super::reference_image::reference_image;
 use crate::error::Result;
+use crate::experiment::EXTERNAL;
 use crate::image_io::Image;
 use crate::image_io::tone_map::quantise_image;
 use crate::measure::Record;
 use crate::plot::{Cell, ContactSheet};
 use crate::report::block::Block;
+use crate::report::reference_image::reference_image;
 use crate::report::results::Results;
 use std::collections::BTreeMap;
 
@@ -19,7 +20,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let place = |record: &Record| order.iter().position(|name| *name == record.estimator).unwrap_or(order.len());
     let mut kept: BTreeMap<(usize, String), Vec<(&Record, Image)>> = BTreeMap::new();
     for (record, image) in results.kept_images(|record| record.scene == scene && record.makespan_s.is_some())? {
-        let name = format!("{} + {}", record.estimator, record.sampler);
+        let sampler = if record.sampler == EXTERNAL { String::new() } else { format!(" + {}", record.sampler) };
+        let name = format!("{}{sampler}", record.estimator);
         kept.entry((place(record), name)).or_default().push((record, image));
     }
     let seconds = |record: &Record| record.makespan_s.unwrap_or(0.0);

@@ -36,6 +36,7 @@ figures! {
     pairs, "pairs", "every two estimators and samplers against each other at equal error and at equal time";
     equal_time, "equal-time", "what each estimator and sampler shows after the same time";
     estimators, "estimators", "times as fast to the same error as the first estimator, by scene";
+    roulette, "roulette", "efficiency by when chance ends paths and by what";
     clamp_bias, "clamp-bias", "light lost by clamping each subpixel before averaging, by samples per pixel";
     time_against_spp, "time-against-spp", "seconds against samples per pixel, with the linear fit";
     speedup, "speedup", "speedup, efficiency and Karp-Flatt serial fraction against threads";
