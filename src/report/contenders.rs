@@ -101,7 +101,11 @@ impl Contender {
 
 fn renderer(seeds: &[(Curve, f64)], law: Law) -> Option<Renderer> {
     let (curves, seconds): (Vec<Curve>, Vec<f64>) = seeds.iter().cloned().unzip();
-    Some(Renderer { curves: SeedCurves::of_errors(&curves)?, law, seconds_per_spp: geometric_interval(&seconds, LEVEL)? })
+    Some(Renderer {
+        curves: SeedCurves::of_errors(&curves)?,
+        law,
+        seconds_per_spp: geometric_interval(&seconds, LEVEL)?,
+    })
 }
 
 /// (spp, squared error) of each seed, and its seconds for a sample in every pixel, from its longest render. An spp at which some seed's

@@ -1,0 +1,104 @@
+//! Where light is aimed at: H30, H31, H34 and S60 of the catalogue of hard cases.
+
+use pathmark::math::{Ray, Vec3, dot};
+use pathmark::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
+use pathmark::scene::{AllEffects, SCENES, Scene, Standpoint, Tests, load, one_minus_cos};
+
+const U: f64 = f64::EPSILON / 2.0;
+
+/// H30: 1 - cos of the half angle of a unit sphere, to 8 roundings. The table is of 20 digits, computed with 40.
+#[test]
+fn cones_keep_their_digits() {
+    let table = [
+        (2.0, 0.133_974_596_215_561_35),
+        (100.0, 5.000_125_006_250_391e-5),
+        (1e3, 5.000_001_250_000_625e-7),
+        (4096.0, 2.980_232_283_178_453_6e-8),
+        (1e4, 5.000_000_012_500_000e-9),
+        (1e6, 5.000_000_000_001_25e-13),
+        (1e8, 5.000_000_000_000_000_5e-17),
+        // The series 1/(2 d^2): what comes next is 1e-24 of it.
+        (1e12, 5e-25),
+    ];
+    // Just outside of the sphere the angle is nearly right, and 1 - cos loses nothing.
+    let near = [1.0 / (1u64 << 40) as f64, 1.0 / (1u64 << 20) as f64];
+    let near = near.map(|e: f64| (1.0 + e, 1.0 - (e * (2.0 + e)).sqrt() / (1.0 + e)));
+    for (distance, exact) in table.into_iter().chain(near) {
+        for scale in [1.0, 1024.0, 1.0 / 1024.0] {
+            let found = one_minus_cos(scale, distance * scale);
+            assert!((found / exact - 1.0).abs() <= 8.0 * U, "{distance}: {found:e} instead of {exact:e}");
+        }
+    }
+}
+
+fn lit(name: &str) -> Scene {
+    let scene = load(name).unwrap();
+    scene.lit(&scene.camera.view(64, 48))
+}
+
+/// A pair of numbers.
+fn pair(k: u32, purpose: Purpose) -> [f64; 2] {
+    Independent.pair(Address { key: SampleKey { seed: 7, pixel: 0, sample: k }, bounce: 1, branch: 0, purpose })
+}
+
+/// S60: of smallpt's light, a sphere of radius 600, a cap below the ceiling is aimed at: inside the circle of radius 17.944, of area 1011.807.
+#[test]
+fn only_the_cap_of_smallpts_light_is_aimed_at() {
+    let scene = lit("cornell");
+    let lights = scene.lights.as_ref().unwrap();
+    let light = scene.objects.iter().position(|object| object.name == "light").unwrap() as u32;
+    let point = Vec3::new(30.0, 10.0, 100.0);
+    let (mut arrived, n) = (0, 20_000);
+    for k in 0..n {
+        let aim = lights.aim(point, None, || unreachable!("one light"), pair(k, Purpose::Light)).unwrap();
+        let ray = Ray { origin: point, direction: aim.direction };
+        assert_eq!(aim.primitive, light);
+        // Onto the light itself: the walls are not asked.
+        let sphere = scene.primitives.spheres[light as usize];
+        let offset = sphere.center - point;
+        let middle = dot(offset, aim.direction);
+        let t = middle - (middle * middle - dot(offset, offset) + sphere.radius * sphere.radius).sqrt();
+        let at = ray.at(t);
+        let off = Vec3::new(at.x - 50.0, 0.0, at.z - 81.6);
+        assert!(dot(off, off).sqrt() < 17.944_246_733_607_27 + 1e-6, "{at:?}");
+        let normal = (at - sphere.center) * (1.0 / sphere.radius);
+        let area = t * t / (-dot(normal, aim.direction) * aim.density);
+        assert!((area / 1_011.806_538_278_449 - 1.0).abs() < 1e-6, "area {area}");
+        let hit = scene.intersect::<AllEffects>(&ray, None, &mut Tests::default()).unwrap();
+        arrived += u32::from(hit.primitive == light);
+    }
+    // The balls hide a little of it from there, and nothing else does.
+    assert!(arrived > n * 9 / 10, "{arrived} of {n}");
+}
+
+/// The density that a direction was chosen with is the one that is found for it where it arrives, in every scene, from points in the air and
+/// on surfaces.
+#[test]
+fn densities_are_those_of_the_aims() {
+    let mut arrived = 0;
+    for (name, _) in SCENES {
+        let scene = lit(if *name == "spheres" { "spheres:100" } else { name });
+        let lights = scene.lights.as_ref().unwrap();
+        let view = scene.camera.view(64, 48);
+        for k in 0..500 {
+            let ray = view.ray::<AllEffects>(k * 7 % 64, k * 5 % 48, 0, [0.5, 0.5], || [0.5, 0.5]);
+            let Some(hit) = scene.intersect::<AllEffects>(&ray, None, &mut Tests::default()) else { continue };
+            let on = Standpoint { primitive: hit.primitive, inside: hit.inside };
+            for (point, from) in [(ray.at(0.5 * hit.t), None), (hit.point, Some(on))] {
+                let choice = || pair(k, Purpose::LightChoice)[0];
+                let Some(aim) = lights.aim(point, from, choice, pair(k, Purpose::Light)) else { continue };
+                let shadow = Ray { origin: point, direction: aim.direction };
+                let found = scene.intersect::<AllEffects>(&shadow, from, &mut Tests::default());
+                if let Some(found) = found.filter(|found| found.primitive == aim.primitive) {
+                    let density = lights.density(&shadow, from, &found);
+                    // Seen edge on, a rounding of the direction is more than one of the density.
+                    let cos = dot(aim.direction, found.normal).abs();
+                    let allowed = 1e-9 / cos.max(1e-6);
+                    assert!((density / aim.density - 1.0).abs() < allowed, "{name}: {density} for {}", aim.density);
+                    arrived += 1;
+                }
+            }
+        }
+    }
+    assert!(arrived > 1000, "{arrived} arrived");
+}

@@ -1,0 +1,7 @@
+//! Estimators that aim at light: what they aim at, that all estimators agree on every scene, and what they gain.
+
+mod agreement;
+mod aims;
+#[path = "../support/estimate.rs"]
+mod estimate;
+mod gain;
