@@ -6,7 +6,7 @@ mod scene_text;
 use pathmark::analysis::z_test::{critical_value, normal_quantile, z_score};
 use pathmark::film::Film;
 use pathmark::kernel::Spec;
-use pathmark::measure::{CONFIDENCE, Goal, Rounds, Settings, Setup, Warning};
+use pathmark::measure::{CONFIDENCE, Goal, Position, Rounds, Settings, Setup, Warning};
 use pathmark::scene::{Scene, load};
 use scene_text::{Ball, load_scene};
 use std::sync::Arc;
@@ -93,6 +93,23 @@ fn a_goal_changes_no_bit() {
     }
     // Stops on the way do not move the end; a limit that nothing fits in leaves one round.
     assert_eq!((reached[0], reached[1], reached[4]), (reached[5], 1, 53));
+}
+
+/// On the way to more samples than are asked for now, as a checkpoint may say: it stops where it is told to.
+#[test]
+fn an_earlier_look_does_not_lead_beyond_the_goal() {
+    let scene = Arc::new(load("cornell").unwrap());
+    for (look, expected) in [(64, 32), (20, 32), (0, 32)] {
+        let mut rounds = Rounds::new(setup(&scene, 8, 8, 1, 16)).unwrap();
+        let before = Some(Position { rendering_s: 1.0, look });
+        let mut stops = Vec::new();
+        let between = &mut |rounds: &Rounds, _| {
+            stops.push(rounds.spp());
+            Ok(())
+        };
+        Goal { spp: Some(32), ..goal() }.pursue(&mut rounds, before, None, between).unwrap();
+        assert_eq!((rounds.spp(), stops.contains(&20)), (expected, look == 20));
+    }
 }
 
 #[test]

@@ -54,6 +54,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     }
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.scene().name)));
     let format = image_io::check_format(&path)?;
+    rounds::check_image(&arguments.rounds, &path)?;
     atomic_file::check_writable(&path)?;
     if let Some(trace) = &arguments.trace {
         atomic_file::check_writable(trace)?;

@@ -2,11 +2,11 @@
 
 use super::progress::Talk;
 use crate::atomic_file;
-use crate::error::Result;
+use crate::error::{InputError, Result};
 use crate::experiment::Progress as _;
 use crate::measure::{CONFIDENCE, Checkpoint, Goal, Outcome, Record, Rounds, Setup, Warning};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Seconds of rendering between two checkpoints. Writing one takes some tenths of a second.
 const PAUSE_S: f64 = 10.0;
@@ -43,6 +43,17 @@ impl Until {
     }
 }
 
+/// Refuses a checkpoint that the image would overwrite.
+pub(super) fn check_image(arguments: &Until, image: &Path) -> Result<()> {
+    match &arguments.checkpoint {
+        Some(checkpoint) if checkpoint == image => {
+            let error = InputError::new("checkpoint", image.display().to_string(), "is the name of the image");
+            Err(error.allowed("another name").into())
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Renders until the goal is reached.
 pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &Talk) -> Result<(Setup, Outcome)> {
     let (checkpoint, saved) = match &arguments.checkpoint {
@@ -53,7 +64,7 @@ pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &T
         }
         None => (None, None),
     };
-    let before = saved.as_ref().map(|saved| saved.progress);
+    let before = saved.as_ref().map(|saved| saved.position);
     let mut rounds = Rounds::new(setup)?;
     if let Some(saved) = saved {
         rounds.adopt(saved.film);
@@ -73,10 +84,10 @@ pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &T
         (.., limit_s) => format!("{name} for {} s", limit_s.unwrap_or_default()),
     };
     talk.begin(&title, u64::from(spp.unwrap_or(0)));
-    let missed = goal.pursue(&mut rounds, before, None, &mut |rounds, progress| {
-        talk.note(&format!("{name}: {} spp after {:.2} s", rounds.spp(), progress.rendering_s));
+    let missed = goal.pursue(&mut rounds, before, None, &mut |rounds, position| {
+        talk.note(&format!("{name}: {} spp after {:.2} s", rounds.spp(), position.rendering_s));
         talk.advance(u64::from(rounds.spp()));
-        checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.save(rounds, progress))
+        checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.save(rounds, position))
     })?;
     talk.end();
     let mut outcome = rounds.outcome();

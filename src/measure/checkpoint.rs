@@ -4,7 +4,7 @@
 //! a file that is of anything else is refused, never overwritten. It is written between rounds, in one rename, so that a reader finds
 //! one round or the next.
 
-use super::{Progress, Rounds, Setup};
+use super::{Position, Rounds, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{FilmKey, GrowingFilm, SumFile, sections};
 use serde::{Deserialize, Serialize};
@@ -37,7 +37,7 @@ pub struct Saved {
     /// Its film.
     pub film: GrowingFilm,
     /// How far it was.
-    pub progress: Progress,
+    pub position: Position,
 }
 
 impl Checkpoint {
@@ -71,17 +71,17 @@ impl Checkpoint {
             .ok_or_else(|| refuse("does not have the samples that its header says"))?;
         // On the way to another accuracy, the next look is elsewhere.
         let look = if header.target_error == target_error { look } else { 0 };
-        Ok((checkpoint, Some(Saved { film, progress: Progress { rendering_s, look } })))
+        Ok((checkpoint, Some(Saved { film, position: Position { rendering_s, look } })))
     }
 
     /// Writes it, whole or not at all.
-    pub fn save(&self, rounds: &Rounds, progress: Progress) -> Result<()> {
+    pub fn save(&self, rounds: &Rounds, position: Position) -> Result<()> {
         let header = Header {
             film: rounds.film_key(),
             kernel: rounds.setup().settings().spec.kernel.clone(),
-            rendering_s: progress.rendering_s,
+            rendering_s: position.rendering_s,
             target_error: self.target_error,
-            look: progress.look,
+            look: position.look,
         };
         let films: Vec<_> = rounds.growing().parts().iter().map(|(_, film)| film).collect();
         FILE.write(&self.path, &header, &films)

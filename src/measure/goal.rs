@@ -37,7 +37,7 @@ pub struct Goal {
 
 /// Where a render is on its way, for whoever looks in between two rounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Progress {
+pub struct Position {
     /// Seconds of rendering, those of earlier processes included.
     pub rendering_s: f64,
     /// Samples at which the goal is looked at next.
@@ -45,7 +45,7 @@ pub struct Progress {
 }
 
 /// What happens between rounds.
-pub type Between<'a> = &'a mut dyn FnMut(&Rounds, Progress) -> Result<()>;
+pub type Between<'a> = &'a mut dyn FnMut(&Rounds, Position) -> Result<()>;
 
 impl Goal {
     /// Refuses goals that nothing can reach or that say nothing.
@@ -114,8 +114,8 @@ impl Goal {
             let samples = (seconds / samples_s).clamp(0.0, f64::from(LARGEST_SPP)) as u32;
             block.saturating_add(samples).min(look) / multiple * multiple
         };
-        // What the last round took says little about one that is much longer.
-        let mut end = look.min(spp.saturating_mul(2));
+        // What the last round took says little about one that is much longer; but a block is better rendered once than twice.
+        let mut end = look.min(spp.saturating_mul(2).max(SAMPLE_BLOCK));
         if let Some(pause_s) = self.pause_s {
             end = end.min(fits(pause_s).max(spp + multiple));
         }
@@ -137,13 +137,14 @@ impl Goal {
     pub fn pursue(
         &self,
         rounds: &mut Rounds,
-        before: Option<Progress>,
+        before: Option<Position>,
         watch: Watch<'_>,
         between: Between<'_>,
     ) -> Result<Option<Warning>> {
         let mut last = RoundTimes::default();
         let mut rendering_s = before.map_or(0.0, |before| before.rendering_s);
-        let mut look = before.map(|before| before.look).filter(|look| *look > rounds.spp());
+        let is_ahead = |look: &u32| *look > rounds.spp() && self.spp.is_none_or(|spp| *look <= spp);
+        let mut look = before.map(|before| before.look).filter(is_ahead);
         loop {
             let Some(end) = look.map_or_else(|| self.next_look(rounds), |look| Ok(Some(look)))? else {
                 return Ok(None);
@@ -154,7 +155,7 @@ impl Goal {
                 };
                 last = rounds.extend_to(step, watch)?;
                 rendering_s += last.makespan_s;
-                between(rounds, Progress { rendering_s, look: end })?;
+                between(rounds, Position { rendering_s, look: end })?;
             }
             look = None;
         }

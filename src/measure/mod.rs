@@ -27,7 +27,7 @@ pub use calibration::{CalibrationRow, calibrate};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;
 pub use external::{ExternalRun, missing_external, run_external};
-pub use goal::{Between, CONFIDENCE, Goal, Progress};
+pub use goal::{Between, CONFIDENCE, Goal, Position};
 pub use machine::Machine;
 pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};

@@ -141,7 +141,7 @@ impl Sampler for Sobol {
         let shared = [mix(pixel ^ u64::MAX), mix(pixel ^ (u64::MAX - 1))];
         let index = match (at.bounce, at.branch, at.purpose) {
             (0, 0, Purpose::Film) => leading(at.key.sample, shared),
-            (1, 0, Purpose::Bsdf) => pascal_to_omega(leading(at.key.sample, shared)),
+            (1, 0, Purpose::Bsdf | Purpose::Light) => pascal_to_omega(leading(at.key.sample, shared)),
             _ => shuffle(at.key.sample, order),
         };
         let digits = [scramble(u64::from(index), first), scramble(u64::from(pascal(index)), second)];

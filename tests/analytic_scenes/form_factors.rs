@@ -1,6 +1,7 @@
 //! Lights with a size, over planes and in boxes.
 
-use super::estimate::{assert_exact, camera, diffuse, object, plane, render, scene, sphere, unsplit_estimators, view};
+use super::estimate::{arriving_estimators, assert_exact, camera, diffuse, object, plane, render, scene, sphere, view};
+use super::unsplit_estimators;
 use std::f64::consts::FRAC_1_PI;
 
 fn floor(albedo: f64) -> String {
@@ -66,7 +67,8 @@ fn faces_of_a_cube() {
         face(2, 0.5, &black, [0.0, 0.0, 1.0]),
         face(2, -0.5, &black, [0.0, 0.0, 1.0]),
     ];
-    for estimator in unsplit_estimators() {
+    // Corners of the cube are so near to the light that aiming alone has no bound there.
+    for estimator in unsplit_estimators().filter(|name| *name != "nee") {
         let outcome = render(&scene(&parts), estimator, 7_200_000, None);
         for (channel, exact) in [0.199_824_895_698_387_38, 0.200_043_776_075_403_15, 1.0].into_iter().enumerate() {
             assert_exact(&format!("channel {channel}, {estimator}"), &outcome, channel, exact, 12);
@@ -81,7 +83,7 @@ fn parallel_plates() {
     let upper = object(&plane([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), &diffuse(0.8), [0.0; 3]);
     for (y, exact) in [(0.0, 5.0 / 3.0), (1.0, 4.0 / 3.0)] {
         let scene = scene(&[camera([0.0, 0.5, 0.0], [0.3, y, 0.0]), lower.clone(), upper.clone()]);
-        for estimator in unsplit_estimators() {
+        for estimator in arriving_estimators() {
             let outcome = render(&scene, estimator, 400_000, None);
             assert_exact(&format!("y {y}, {estimator}"), &outcome, 0, exact, 8);
         }

@@ -1,6 +1,6 @@
 //! Clear glass and mirrors.
 
-use super::estimate::{assert_exact, camera, diffuse, full_estimators, mean, object, plane, render, scene, sphere};
+use super::estimate::{arriving_estimators, assert_exact, camera, diffuse, mean, object, plane, render, scene, sphere};
 
 /// A14: a lossless slab of glass, straight through: T = 2n/(n^2 + 1) = 12/13 of the light behind it and R = 1/13 of that before it.
 #[test]
@@ -14,16 +14,16 @@ fn slab() {
         object(&plane([0.0, -1.0, 0.0], up), &diffuse(0.0), [1.0, 0.0, 1.0]),
         object(&plane([0.0, 5.0, 0.0], up), &diffuse(0.0), [0.0, 1.0, 1.0]),
     ]);
-    for estimator in full_estimators() {
+    for estimator in arriving_estimators() {
         let outcome = render(&scene, estimator, 3_000_000, None);
         for (channel, exact) in [12.0 / 13.0, 1.0 / 13.0, 1.0].into_iter().enumerate() {
-            assert_exact(&format!("channel {channel}, {estimator}"), &outcome, channel, exact, 12);
+            assert_exact(&format!("channel {channel}, {estimator}"), &outcome, channel, exact, 9);
         }
     }
     // Each way through the slab and back keeps 0.04^2; ten bounces leave less than what rounding hides.
     let outcome = render(&scene, "whitted", 4096, None);
     for (channel, exact) in [12.0 / 13.0, 1.0 / 13.0, 1.0].into_iter().enumerate() {
-        assert_exact(&format!("channel {channel}, whitted"), &outcome, channel, exact, 12);
+        assert_exact(&format!("channel {channel}, whitted"), &outcome, channel, exact, 9);
     }
 }
 

@@ -10,3 +10,9 @@ mod glass;
 mod metal;
 mod point_lights;
 mod spheres;
+
+/// Those of [`estimate::full_estimators`] without smallpt's own, whose paths differ from `bsdf`'s only at glass: costly scenes without any need not
+/// be seen twice.
+fn unsplit_estimators() -> impl Iterator<Item = &'static str> {
+    estimate::full_estimators().filter(|name| *name != "smallpt")
+}

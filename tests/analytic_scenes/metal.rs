@@ -1,8 +1,7 @@
 //! Rough metal under an even sky.
 
-use crate::estimate::{
-    assert_exact, camera, diffuse, mean, object, plane, render, scene, sphere, unsplit_estimators, view,
-};
+use super::unsplit_estimators;
+use crate::estimate::{assert_exact, camera, diffuse, mean, object, plane, render, scene, sphere, view};
 
 /// What a rough surface of F = 1 leaves of an even radiance of 1, by roughness and cosine of the view: single scattering by GGX with
 /// height-correlated shadowing, computed to 1e-6 by quadrature; 1 - ln 2 in the last row at normal incidence.

@@ -1,8 +1,7 @@
 //! Inside closed spheres, where every point sees every other by the same form factor.
 
-use super::estimate::{
-    assert_exact, camera, diffuse, full_estimators, object, point_light, render, scene, sphere, unsplit_estimators,
-};
+use super::estimate::{arriving_estimators, assert_exact, camera, diffuse, object, point_light, render, scene, sphere};
+use super::unsplit_estimators;
 use std::f64::consts::PI;
 
 fn hollow(albedo: f64, emission: f64) -> String {
@@ -14,7 +13,7 @@ fn hollow(albedo: f64, emission: f64) -> String {
 fn glowing_wall() {
     for (rho, samples) in [(0.1, 4096), (0.5, 20_000), (0.75, 200_000), (0.9, 800_000)] {
         let scene = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), hollow(rho, 1.0)]);
-        for estimator in full_estimators() {
+        for estimator in arriving_estimators() {
             let outcome = render(&scene, estimator, samples, None);
             assert_exact(&format!("rho {rho}, {estimator}"), &outcome, 0, 1.0 / (1.0 - rho), 16);
             assert_eq!(outcome.counts.escaped, 0);
@@ -31,7 +30,7 @@ fn light_in_the_middle() {
             point_light([0.0; 3], PI),
             object(&sphere([0.0; 3], radius), &diffuse(rho), [0.0; 3]),
         ];
-        for estimator in full_estimators() {
+        for estimator in arriving_estimators() {
             let outcome = render(&scene(&parts), estimator, 400_000, None);
             assert_exact(&format!("radius {radius}, {estimator}"), &outcome, 0, exact, 8);
         }
@@ -60,7 +59,7 @@ fn light_off_the_middle() {
     ];
     for (z, rho, spot, exact, samples) in cases {
         let scene = scene(&[camera([0.1, 0.3, 0.2], spot), point_light([0.0, 0.0, z], 1.0), hollow(rho, 0.0)]);
-        for estimator in unsplit_estimators() {
+        for estimator in arriving_estimators() {
             let outcome = render(&scene, estimator, samples, None);
             assert_exact(&format!("z {z}, {spot:?}, {estimator}"), &outcome, 0, exact, 16);
         }

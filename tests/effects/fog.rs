@@ -1,7 +1,7 @@
 //! Fog: A17, A18 and A20 of the catalogue of hard cases, single scattering against quadrature, and none inside of glass.
 
 use super::estimate::{
-    assert_exact, camera, diffuse, mean, object, plane, point_light, render, scene, sphere, unsplit_estimators,
+    arriving_estimators, assert_exact, camera, diffuse, mean, object, plane, point_light, render, scene, sphere,
 };
 use pathmark::estimator::ESTIMATORS;
 use std::f64::consts::PI;
@@ -70,7 +70,7 @@ fn furnace() {
     for (absorption, scattering) in [(0.0, 1.0), (0.0, 4.0), (0.5, 0.5), (2.0, 1.0)] {
         let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.25), [0.75; 3]);
         let scene = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), fog(absorption, scattering, 1.0), wall]);
-        for estimator in unsplit_estimators() {
+        for estimator in arriving_estimators() {
             let outcome = render(&scene, estimator, 600_000, None);
             assert_eq!((outcome.counts.escaped, outcome.counts.truncated), (0, 0));
             assert_exact(&format!("{absorption}, {scattering}, {estimator}"), &outcome, 0, 1.0, 16);
@@ -93,7 +93,7 @@ fn single_scattering() {
     let weight = |k: i32| if k == 0 || k == n { 1.0 } else { f64::from(2 + 2 * (k % 2)) };
     let exact = h / 3.0 * (0..=n).map(|k| weight(k) * integrand(f64::from(k) * h)).sum::<f64>();
     let scene = scene(&[above(length), fog(absorption, scattering, 0.0), point_light(light, 1.0), lamp(0.0)]);
-    for estimator in unsplit_estimators() {
+    for estimator in arriving_estimators() {
         assert_exact(estimator, &render(&scene, estimator, 4_000_000, Some(1)), 0, exact, 4);
     }
 }

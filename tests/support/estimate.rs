@@ -71,9 +71,10 @@ pub(crate) fn full_estimators() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().map(|entry| entry.name).filter(|name| *name != "whitted")
 }
 
-/// The same without smallpt's own, whose paths differ from `bsdf`'s only at glass: costly scenes without any need not be seen twice.
-pub(crate) fn unsplit_estimators() -> impl Iterator<Item = &'static str> {
-    full_estimators().filter(|name| *name != "smallpt")
+/// Those that find light by arriving at it: in an enclosure that glows all over, what aims at a point of it is far noisier than what goes
+/// wherever the surface sends it. There the estimators are compared with each other (`tests/estimators`).
+pub(crate) fn arriving_estimators() -> impl Iterator<Item = &'static str> {
+    ESTIMATORS.iter().filter(|entry| !entry.aims).map(|entry| entry.name).filter(|name| *name != "whitted")
 }
 
 /// Renders about so many samples of the scene's spot in all.
