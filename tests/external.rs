@@ -6,7 +6,7 @@ mod experiment;
 #[path = "support/program.rs"]
 mod program;
 
-use experiment::TINY;
+use experiment::{TINY, write_tiny};
 use program::{Finished, finish, pathmark};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,7 +16,7 @@ fn run(folder: &Path, external: &str) -> (Vec<BTreeMap<String, String>>, Finishe
     let (matrix, scales) = TINY.split_once("[quick]").unwrap();
     let scales = scales.replacen("repetitions = 3", "repetitions = 1\nreference-spp = 40", 1);
     let text = format!("{matrix}[reference]\nestimator = \"bsdf\"\n\n{external}\n[quick]{scales}");
-    std::fs::write(folder.join("tiny.toml"), text).unwrap();
+    write_tiny(folder, &text);
     let finished = finish(pathmark(folder, &["run", "tiny.toml", "--out", "out"]));
     let rows = csv::Reader::from_path(folder.join("out/tiny/records.csv")).map_or_else(
         |_| Vec::new(),

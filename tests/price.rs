@@ -22,13 +22,13 @@ fn half_the_error_is_predicted_to_cost_four_times_as_much() {
     let rows = rows(&["--size", "24x18", "--rmse", "0.2,0.1", "--pilot-spp", "8", "--threads", "1"]);
     let number = |row: usize, field: &str| rows[row][field].as_f64().unwrap();
     assert_eq!(rows.len(), 2);
-    for row in 0..2 {
-        assert!(
-            number(row, "seconds_low") < number(row, "seconds") && number(row, "seconds") < number(row, "seconds_high")
-        );
-        assert!(number(row, "spp_low") < number(row, "spp") && number(row, "spp") < number(row, "spp_high") + 4.0);
-        assert!((number(row, "half_rmse_seconds") / number(row, "seconds") - 4.0).abs() < 1e-9);
-        assert!(rows[row]["paid_rmse"].is_null(), "nobody paid");
+    for row in &rows {
+        let number = |field: &str| row[field].as_f64().unwrap();
+        assert!(number("seconds_low") < number("seconds") && number("seconds") < number("seconds_high"));
+        assert!(number("spp_low") < number("spp") && number("spp") < number("spp_high") + 4.0);
+        assert!((number("half_rmse_seconds") / number("seconds") - 4.0).abs() < 1e-9);
+        assert!(number("kurtosis") > 1.0 && (0.0..1.0).contains(&number("largest_share")));
+        assert!(row["paid_rmse"].is_null(), "nobody paid");
     }
     // Rounded up to whole images of four subpixels.
     assert!((number(1, "spp") - 4.0 * number(0, "spp")).abs() <= 16.0 && number(0, "spp") % 4.0 == 0.0);

@@ -5,10 +5,9 @@
 use serde::Serialize;
 
 use super::interval::all_finite;
-use super::quantile::median;
 
 /// What the tail of some samples looks like.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Tail {
     /// Fourth moment about the mean over the square of the second: 3 for a normal distribution, 1.8 for a uniform one.
     pub kurtosis: f64,
@@ -39,18 +38,6 @@ pub fn tail<'a>(groups: impl IntoIterator<Item = &'a [f64]>) -> Option<Tail> {
     (squares > 0.0 && kurtosis.is_finite()).then(|| Tail { kurtosis, largest_share: largest / squares })
 }
 
-/// The median of the means of `groups` runs of values of equal length: an estimate of the mean that a few huge values cannot move (A. S.
-/// Nemirovsky and D. B. Yudin, "Problem complexity and method efficiency in optimization", 1983). For skewed values it lies below the mean, which
-/// says how far the mean rests on few of them. `None` for fewer values than groups or one that is not finite.
-pub fn median_of_means(values: &[f64], groups: usize) -> Option<f64> {
-    let length = values.len().checked_div(groups).filter(|&length| length > 0)?;
-    // What does not fill a group joins the last one.
-    let start = |group: usize| group * length;
-    let end = |group: usize| if group + 1 == groups { values.len() } else { start(group + 1) };
-    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-    median(&(0..groups).map(|group| mean(&values[start(group)..end(group)])).collect::<Vec<f64>>())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,21 +63,10 @@ mod tests {
     }
 
     #[test]
-    fn one_firefly_moves_the_mean_and_not_the_median_of_means() {
-        let mut values = vec![1.0; 70];
-        values[33] = 1e6;
-        assert_eq!(median_of_means(&values, 7), Some(1.0));
-        assert_eq!(median_of_means(&[1.0, 2.0, 3.0, 4.0, 9.0], 2), Some(0.5 * 1.5 + 0.5 * (16.0 / 3.0)));
-    }
-
-    #[test]
     fn degenerate_input_has_no_answer() {
         let none: [&[f64]; 0] = [];
         assert_eq!(tail(none), None);
         assert_eq!(tail([[1.0, 1.0].as_slice()]), None);
         assert_eq!(tail([[1.0, f64::NAN].as_slice()]), None);
-        assert_eq!(median_of_means(&[1.0], 2), None);
-        assert_eq!(median_of_means(&[1.0], 0), None);
-        assert_eq!(median_of_means(&[1.0, f64::INFINITY], 1), None);
     }
 }

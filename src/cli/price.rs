@@ -4,6 +4,7 @@ use super::axes::Axes;
 use super::output::{print, print_json};
 use super::progress::Talk;
 use crate::analysis::price::{Price, Renderer};
+use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Paid, Pilot, pay};
@@ -58,6 +59,9 @@ struct Row {
     paid_seconds: Option<f64>,
     rmse_ratio: Option<f64>,
     seconds_ratio: Option<f64>,
+    /// Of the pilot's values.
+    #[serde(flatten)]
+    tail: Tail,
     /// Fewest samples that make a whole image.
     #[serde(skip)]
     fewest: u32,
@@ -77,10 +81,10 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let settings = arguments.axes.settings(&arguments.scene, arguments.pilot_spp, arguments.seed)?;
     let fewest = Setup::prepare(settings.clone())?.fewest_spp();
     let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
-    let renderer = pilot.run(&settings, LEVEL, talk)?;
+    let (renderer, tail) = pilot.run(&settings, LEVEL, talk)?;
     let mut rows = Vec::new();
     for &goal in &arguments.rmse {
-        rows.push(row(arguments, &settings, &renderer, goal, fewest, talk)?);
+        rows.push(Row { tail, ..row(arguments, &settings, &renderer, goal, fewest, talk)? });
     }
     if arguments.json { print_json(&rows) } else { print(&table(&settings, arguments, &renderer, &rows)) }
 }
@@ -135,6 +139,7 @@ impl Row {
             paid_seconds: paid.map(|paid| paid.seconds),
             rmse_ratio: paid.zip(expected).map(|(paid, expected)| paid.rmse / expected),
             seconds_ratio: paid.map(|paid| paid.seconds / expected_s),
+            tail: Tail::default(),
             fewest,
         }
     }
@@ -158,6 +163,11 @@ fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: 
         format!(
             "pilot of {} seeds at {} spp: {:.4} s per sample and pixel ({low:.4} to {high:.4}); intervals are of 95 %",
             arguments.pilot_seeds, arguments.pilot_spp, renderer.seconds_per_spp.value
+        ),
+        format!(
+            "one value of one pixel makes up at most {:.2} % of the variance, kurtosis {:.0}",
+            100.0 * rows.first().map_or(0.0, |row| row.tail.largest_share),
+            rows.first().map_or(0.0, |row| row.tail.kurtosis)
         ),
         format!("{:>9}  {:>8}  {:>21}  {:>9}  {:>19}  {:>10}", "RMSE", "spp", "", "seconds", "", "half of it"),
     ];

@@ -6,6 +6,7 @@ use crate::analysis::Estimate;
 use crate::analysis::jackknife::SeedCurves;
 use crate::analysis::mean::geometric_interval;
 use crate::analysis::price::{Law, Renderer};
+use crate::analysis::tail::{Tail, tail};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Rounds, Settings, Setup};
@@ -44,8 +45,9 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
 }
 
 impl Pilot {
-    /// Renders the pilot; intervals have this level.
-    pub fn run(&self, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<Renderer> {
+    /// Renders the pilot; intervals have this level. The tail is that of the pixels' values over seeds: where one value of one pixel makes up much of the
+    /// variance, the price rests on whether the pilot met it.
+    pub fn run(&self, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<(Renderer, Tail)> {
         let law = law_of(&settings.spec.sampler);
         let fewest = Setup::prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
         if !self.spp.is_multiple_of(fewest) {
@@ -81,11 +83,18 @@ impl Pilot {
         let seen: Vec<Vec<&[f64]>> = images.iter().map(|of| of.iter().map(Vec::as_slice).collect()).collect();
         let curves = SeedCurves::of_images(&at, &seen);
         let seconds: Option<Estimate> = geometric_interval(&per_spp, level);
-        match curves.zip(seconds) {
-            Some((curves, seconds_per_spp)) => Ok(Renderer { curves, law, seconds_per_spp }),
+        match curves.zip(seconds).zip(images.last().and_then(|of| tail_over_seeds(of))) {
+            Some(((curves, seconds_per_spp), tail)) => Ok((Renderer { curves, law, seconds_per_spp }, tail)),
             None => Err(Error::Check("the pilot's seeds say nothing about error and time".to_string())),
         }
     }
+}
+
+/// The tail of each pixel's values over the seeds' images.
+fn tail_over_seeds(images: &[Vec<f64>]) -> Option<Tail> {
+    let length = images.first()?.len();
+    let values: Vec<Vec<f64>> = (0..length).map(|at| images.iter().map(|image| image[at]).collect()).collect();
+    tail(values.iter().map(Vec::as_slice))
 }
 
 /// Renders two seeds, from the settings' own on, with so many samples, and measures what that took and what it gave.
