@@ -2,6 +2,4 @@
 
 mod agreement;
 mod aims;
-#[path = "../support/estimate.rs"]
-mod estimate;
 mod gain;
