@@ -10,7 +10,7 @@ mod scene_text;
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::estimator::MAX_BOUNCES;
 use pathmark::film::Film;
-use pathmark::kernel::Spec;
+use pathmark::kernel::{Clamp, Spec};
 use pathmark::math::{Rgb, Vec3};
 use pathmark::measure::{Outcome, Settings, Setup, Warning};
 use pathmark::scene::{Scene, load};
@@ -162,7 +162,7 @@ fn the_subpixel_clamp_is_biased_and_says_so() {
     let scene = furnace(&diffuse([0.9; 3]), [1.0; 3]);
     let plain = run(&scene, spec("smallpt", (16, 12), 26), 16);
     assert!(Moments::of(&plain.film, 0).mean > 9.0 && !plain.warnings.contains(&Warning::Biased));
-    let clamped = run(&scene, Spec { subpixel_clamp: true, ..spec("smallpt", (16, 12), 26) }, 16);
+    let clamped = run(&scene, Spec { clamp: Some(Clamp::Subpixel), ..spec("smallpt", (16, 12), 26) }, 16);
     assert!(clamped.film.pixels().iter().all(|pixel| pixel.mean() == [1.0; 3]));
     assert!(clamped.warnings.contains(&Warning::Biased));
 }

@@ -78,7 +78,7 @@ fn films_of_one_seed_are_not_compared() {
         finish(pathmark(folder.path(), &arguments))
     };
     let fine = compared(&first, &second).with_code(0);
-    assert!(fine.out.starts_with("rmse") && !fine.out.contains("rmse  0 "), "{}", fine.out);
+    assert!(fine.out.starts_with("mse") && !fine.out.contains("rmse  0 "), "{}", fine.out);
     // Under another name, and with more samples of the same seed.
     let copy = folder.path().join("copy.film");
     fs::copy(&first, &copy).unwrap();

@@ -3,7 +3,7 @@
 use crate::error::{InputError, Result};
 use crate::estimator::ESTIMATORS;
 use crate::input::{locate, read_text};
-use crate::kernel::Spec;
+use crate::kernel::{Clamp, Spec};
 use crate::measure::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads};
 use crate::scene;
 use clap::Args;
@@ -58,6 +58,9 @@ pub(super) struct Axes {
     /// Clamp each subpixel's mean to 1 before averaging, as smallpt does: biased
     #[arg(long)]
     pub(super) subpixel_clamp: bool,
+    /// Clamp the light that each recursion returns to 1, as report B does: biased
+    #[arg(long, conflicts_with = "subpixel_clamp")]
+    pub(super) recursion_clamp: bool,
 }
 
 /// Columns and rows from `WxH`.
@@ -106,7 +109,7 @@ impl What {
             accelerator: self.accelerator.clone(),
             max_depth: self.max_depth,
             roulette: self.roulette.clone(),
-            subpixel_clamp: default.subpixel_clamp,
+            clamp: None,
         })
     }
 
@@ -132,7 +135,12 @@ impl Axes {
 
     /// The settings for a scene, samples and a seed.
     pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
-        let spec = Spec { subpixel_clamp: self.subpixel_clamp, ..self.what.spec(scene, seed)? };
+        let clamp = match (self.subpixel_clamp, self.recursion_clamp) {
+            (true, _) => Some(Clamp::Subpixel),
+            (false, true) => Some(Clamp::Recursion),
+            (false, false) => None,
+        };
+        let spec = Spec { clamp, ..self.what.spec(scene, seed)? };
         Ok(Settings {
             scene: scene.to_string(),
             spp,

@@ -101,6 +101,9 @@ pub trait Estimator: Send + Sync {
     /// When and how chance ends its paths unless another rule is asked for; `None` if it never does.
     const ROULETTE: Option<Roulette> = None;
 
+    /// Whether a sample is a single path.
+    const IS_ONE_PATH: bool = false;
+
     /// The largest number of bounces that it can be asked for.
     const LARGEST_DEPTH: u16 = u16::MAX;
 
@@ -137,6 +140,8 @@ pub struct Entry {
     pub aims: bool,
     /// When and how chance ends its paths unless another rule is asked for; `None` if it never does.
     pub roulette: Option<Roulette>,
+    /// Whether a sample is a single path.
+    pub is_one_path: bool,
     /// The largest number of bounces that it can be asked for.
     pub largest_depth: u16,
 }
@@ -161,6 +166,7 @@ macro_rules! estimators {
                 max_depth: <$estimator as Estimator>::MAX_DEPTH,
                 aims: <$estimator as Estimator>::AIMS,
                 roulette: <$estimator as Estimator>::ROULETTE,
+                is_one_path: <$estimator as Estimator>::IS_ONE_PATH,
                 largest_depth: <$estimator as Estimator>::LARGEST_DEPTH,
             }),*];
 

@@ -81,6 +81,7 @@ impl<R: Rules> Estimator for Path<R> {
     const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;
     const ROULETTE: Option<Roulette> = Some(Roulette::SMALLPT);
     const AIMS: bool = R::AIMS;
+    const IS_ONE_PATH: bool = R::SPLITS == 0;
 
     #[inline(always)]
     fn sample<S: Sampler, X: EffectSet, P: Probe>(

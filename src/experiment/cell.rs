@@ -116,6 +116,6 @@ fn image_word(scene: &Scene, spec: &Spec, spp: u32) -> String {
     let what = format!("{}-{}/{}/{}", scene.name, scene.hash, spec.estimator, spec.sampler);
     let depth = spec.max_depth.map(|depth| format!("/depth{depth}")).unwrap_or_default();
     let roulette = spec.roulette.as_ref().map(|rule| format!("/{rule}")).unwrap_or_default();
-    let clamp = if spec.subpixel_clamp { "/clamp" } else { "" };
+    let clamp = spec.clamp.map(|what| format!("/{}-clamp", what.name())).unwrap_or_default();
     format!("{what}/{}x{}/{spp}spp/seed{}{depth}{roulette}{clamp}", spec.width, spec.height, spec.seed)
 }

@@ -3,7 +3,7 @@
 use super::definition::FEATURES;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::kernel::Spec;
+use crate::kernel::{Clamp, Spec};
 use crate::measure::{LARGEST_SEED, Settings, Setup, available_threads};
 use crate::sampling::{SAMPLERS, is_deterministic};
 use crate::scene::{SCENES, load};
@@ -46,9 +46,8 @@ pub(super) struct Matrix {
     /// Whether each cell is a curve: a render that is measured on its way.
     #[serde(default)]
     pub(super) curve: bool,
-    /// Whether each subpixel's mean is clamped before averaging.
-    #[serde(default, rename = "subpixel-clamp")]
-    pub(super) subpixel_clamp: bool,
+    /// What is clamped to 1.
+    pub(super) clamp: Option<Clamp>,
 }
 
 fn independent() -> Vec<String> {
@@ -194,7 +193,7 @@ impl Definition {
                             estimator: estimator.clone(),
                             sampler: sampler.clone(),
                             max_depth,
-                            subpixel_clamp: matrix.subpixel_clamp,
+                            clamp: matrix.clamp,
                             ..Spec::default()
                         };
                         let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };

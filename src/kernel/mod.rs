@@ -1,6 +1,7 @@
 //! How an estimator is executed over a piece of the film. A kernel never sees a thread.
 
 mod inspect;
+mod recursion_clamp;
 mod scalar;
 
 use crate::effect::EffectSet;
@@ -15,6 +16,7 @@ use crate::scene::{
     accelerator, effect_names, with_profile,
 };
 pub use inspect::{BounceRow, Event, Inspect, LightByBounce, PathLog, inspect};
+use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -60,6 +62,26 @@ pub trait Kernel: Send + Sync {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts;
 }
 
+/// What of the light is clamped to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Clamp {
+    /// The mean of each subpixel before averaging, as smallpt does.
+    Subpixel,
+    /// What each recursion returns, as report B does.
+    Recursion,
+}
+
+impl Clamp {
+    /// Its name in records.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Subpixel => "subpixel",
+            Self::Recursion => "recursion",
+        }
+    }
+}
+
 /// Which kernel to build: the *what* of a render.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spec {
@@ -84,8 +106,8 @@ pub struct Spec {
     /// When and how chance ends paths, as [`Roulette`] reads it; `None` leaves it to the estimator.
     #[serde(default)]
     pub roulette: Option<String>,
-    /// Whether each subpixel's mean is clamped to 1 before averaging, as smallpt does: biased.
-    pub subpixel_clamp: bool,
+    /// What is clamped to 1: biased.
+    pub clamp: Option<Clamp>,
 }
 
 impl Default for Spec {
@@ -101,7 +123,7 @@ impl Default for Spec {
             accelerator: None,
             max_depth: None,
             roulette: None,
-            subpixel_clamp: false,
+            clamp: None,
         }
     }
 }
@@ -109,7 +131,7 @@ impl Default for Spec {
 impl Spec {
     /// Whether an option is on that changes what the image converges to.
     pub fn is_biased(&self) -> bool {
-        self.subpixel_clamp || self.depth().is_some()
+        self.clamp.is_some() || self.depth().is_some()
     }
 
     /// What the estimator is told; what cannot be read is what [`choose`] refuses.
@@ -220,6 +242,11 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
         let allowed = format!("0 to {}", estimator.largest_depth);
         return Err(InputError::new("max-depth", depth.to_string(), problem).allowed(allowed).into());
     }
+    if spec.clamp == Some(Clamp::Recursion) && !estimator.is_one_path {
+        let problem = "follows several paths at once, whose recursions are not clamped here";
+        let single: Vec<&str> = ESTIMATORS.iter().filter(|entry| entry.is_one_path).map(|entry| entry.name).collect();
+        return Err(InputError::new("recursion-clamp", estimator.name, problem).allowed(single.join(", ")).into());
+    }
     if let Some(roulette) = &spec.roulette {
         Roulette::parse(roulette)?;
         if estimator.roulette.is_none() {
@@ -242,6 +269,9 @@ fn prepared(scene: &Arc<Scene>, spec: &Spec, choice: Choice) -> Arc<Scene> {
 /// Builds the kernel for a scene, and what accelerates it.
 pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
     let choice = choose(scene, spec)?;
+    if spec.clamp == Some(Clamp::Recursion) {
+        return Ok(Box::new(RecursionClamp(inspect(scene, spec)?)));
+    }
     let scene = prepared(scene, spec, choice);
     let spec = spec.clone();
     let name = spec.sampler.clone();

@@ -1,6 +1,6 @@
 //! One path at a time, in f64: the readable kernel that every other one is measured against.
 
-use super::{Counts, Inspect, Kernel, Spec};
+use super::{Clamp, Counts, Inspect, Kernel, Spec};
 use crate::effect::EffectSet;
 use crate::estimator::{Estimator, Probe, camera_ray};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
@@ -44,7 +44,7 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
             scene,
             width: spec.width,
             seed: spec.seed,
-            subpixel_clamp: spec.subpixel_clamp,
+            subpixel_clamp: spec.clamp == Some(Clamp::Subpixel),
             estimator,
             sampler,
             profile: PhantomData,

@@ -59,7 +59,7 @@ impl Setup {
         let pilot_spp = (spp / PILOT_PART).clamp(8, 64).next_multiple_of(SUBPIXELS);
         // Two seeds of images that differ in the highest bits alone share their pilot, which is nobody's sample.
         let seed = PILOT_SEEDS | (spec.seed & !PILOT_SEEDS);
-        let spec = Spec { seed, subpixel_clamp: false, ..spec.clone() };
+        let spec = Spec { seed, clamp: None, ..spec.clone() };
         let settings = Settings { spp: pilot_spp, spec, ..self.settings().clone() };
         let pilot = Self::for_scene(Arc::clone(self.shared_scene()), settings)?.run(None)?;
         let least = (spp / EVEN_PART / SUBPIXELS * SUBPIXELS).max(SUBPIXELS);

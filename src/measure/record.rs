@@ -4,6 +4,7 @@ use super::{Outcome, Settings, Setup, Warning};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
+use crate::kernel::Clamp;
 use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
@@ -57,6 +58,8 @@ pub struct Record {
     pub time_limit_s: Option<f64>,
     /// How often jobs were handed out.
     pub rounds: Option<u32>,
+    /// What was clamped to 1: `subpixel` or `recursion`; empty if nothing was.
+    pub clamp: String,
     /// Whether an option was on that changes what the image converges to.
     pub biased: bool,
     /// How the film was cut.
@@ -194,6 +197,7 @@ fn described(settings: &Settings) -> Record {
         precision: "f64".to_string(),
         max_depth: spec.depth(),
         roulette: spec.roulette().unwrap_or_default(),
+        clamp: spec.clamp.map(Clamp::name).unwrap_or_default().to_string(),
         biased: spec.is_biased(),
         decomposition: settings.decomposition.clone(),
         strategy: settings.strategy.clone(),

@@ -20,9 +20,9 @@ impl Rounds {
     /// Nothing rendered yet. The samples that the settings ask for do not matter.
     pub fn new(setup: Setup) -> Result<Self> {
         let spec = &setup.settings().spec;
-        if spec.subpixel_clamp {
+        if let Some(clamp) = spec.clamp {
             let problem = "needs all samples of a pixel at once, and so cannot be rendered in rounds";
-            return Err(InputError::new("subpixel-clamp", "true", problem).into());
+            return Err(InputError::new(format!("{}-clamp", clamp.name()), "true", problem).into());
         }
         let film = GrowingFilm::new(spec.width, spec.height);
         Ok(Self { setup, account: Account::new(), film })

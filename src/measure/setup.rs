@@ -6,7 +6,7 @@ use super::{Settings, THREAD_PER_ROW, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
 use crate::estimator::ESTIMATORS;
 use crate::film::{Decomposition, FilmKey, Plan};
-use crate::kernel::{self, Choice, Counts, Kernel};
+use crate::kernel::{self, Choice, Clamp, Counts, Kernel};
 use crate::sampling::is_deterministic;
 use crate::scene::{Filter, SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
@@ -57,7 +57,7 @@ impl Setup {
                 .allowed(names.join(", "))
                 .into());
         };
-        if settings.spec.subpixel_clamp && decomposition.splits_samples() {
+        if settings.spec.clamp == Some(Clamp::Subpixel) && decomposition.splits_samples() {
             let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
         }

@@ -16,7 +16,7 @@ pub use path_log::{Event, PathLog};
 use std::sync::Arc;
 
 /// Renders single samples and tells a probe what their paths do.
-pub trait Inspect {
+pub trait Inspect: Send + Sync {
     /// The radiance of a sample as the estimator gives it. An image takes it bit for bit, unless it is no valid radiance: then it
     /// takes nothing.
     fn estimate(&self, x: u32, y: u32, sample: u32, probe: &mut dyn Probe) -> Rgb;

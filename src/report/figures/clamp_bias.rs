@@ -7,27 +7,29 @@ use crate::plot::style::Look;
 use crate::plot::{Axis, LineChart, Point, Series};
 use crate::report::block::{Block, Table};
 use crate::report::results::{LEVEL, Results};
+use std::collections::BTreeMap;
 
 /// What a prototype of the same estimator lost on cornell at 256x192, in per cent (spp, bias).
 const PROTOTYPE: [(u32, f64); 5] = [(4, -71.0), (16, -34.0), (40, -8.8), (100, -1.8), (200, -0.4)];
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let rows =
-        |biased: bool| results.records.iter().filter(move |row| row.biased == biased && row.mean_radiance.is_some());
+    let rows = |clamp: &'static str| {
+        results.records.iter().filter(move |row| row.clamp == clamp && row.mean_radiance.is_some())
+    };
     let radiance = |records: &[&Record]| {
         let values: Vec<f64> = records.iter().filter_map(|row| row.mean_radiance).collect();
         Moments::of(&values).mean()
     };
-    let by_spp = results.by(|row| (row.biased, row.spp));
-    let largest = rows(true).map(|row| row.spp).max();
-    let limit = largest.and_then(|spp| radiance(by_spp.get(&(true, spp))?));
-    let plain: Vec<&Record> = rows(false).collect();
+    let by_spp = results.by(|row| (row.clamp.clone(), row.spp));
+    let largest = rows("subpixel").map(|row| row.spp).max();
+    let limit = largest.and_then(|spp| radiance(by_spp.get(&("subpixel".to_string(), spp))?));
+    let plain: Vec<&Record> = rows("").collect();
     let (Some(largest), Some(limit), Some(truth)) = (largest, limit, radiance(&plain)) else {
         let text = "There is no bias to show: it takes rows with and without the clamp.";
         return Ok(vec![Block::Finding(text.to_string())]);
     };
     let (mut points, mut table, mut worst) = (Vec::new(), Vec::new(), 0.0_f64);
-    for ((_, spp), records) in by_spp.iter().filter(|((biased, spp), _)| *biased && *spp < largest) {
+    for ((_, spp), records) in by_spp.iter().filter(|((clamp, spp), _)| clamp == "subpixel" && *spp < largest) {
         let losses: Vec<f64> =
             records.iter().filter_map(|row| Some(100.0 * (row.mean_radiance? / limit - 1.0))).collect();
         let Some(mean) = Moments::of(&losses).mean() else { continue };
@@ -73,12 +75,31 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         "bias against the true light, %",
     ];
     let title = "Bias of the subpixel clamp".to_string();
-    Ok(vec![
+    let mut found = vec![
         Block::Figure { stem: "clamp-bias", figure: Box::new(chart) },
         Block::Finding(finding),
         Block::Table {
             stem: "clamp-bias",
             table: Table { title, columns: columns.map(String::from).to_vec(), rows: table },
         },
-    ])
+    ];
+    found.extend(recursion(&by_spp, truth));
+    Ok(found)
+}
+
+/// What clamping every recursion loses, by samples.
+fn recursion(by_spp: &BTreeMap<(String, u32), Vec<&Record>>, truth: f64) -> Option<Block> {
+    let losses: Vec<(u32, f64)> = by_spp
+        .iter()
+        .filter(|((clamp, _), _)| clamp == "recursion")
+        .filter_map(|((_, spp), records)| {
+            let values: Vec<f64> = records.iter().filter_map(|row| row.mean_radiance).collect();
+            Some((*spp, 100.0 * (1.0 - Moments::of(&values).mean()? / truth)))
+        })
+        .collect();
+    let (first, last) = (losses.first()?, losses.last()?);
+    Some(Block::Finding(format!(
+        "Clamped at every recursion, as report B does, the image loses {:.1} % of the light at {} spp and {:.1} % at {}: every path is cut by itself, so no number of samples brings it back.",
+        first.1, first.0, last.1, last.0
+    )))
 }

@@ -1,0 +1,109 @@
+//! Report B's clamp: the light that each recursion returns is cut at 1, so that no sample is brighter than white. Biased, and no number of
+//! samples mends it.
+//!
+//! Written without the recursion: a ray that sets out with throughput T brings at most T to the sample. So the sample is the least of what
+//! was collected before any vertex plus the throughput of the ray that led there, and of everything collected.
+
+use super::{Counts, Inspect, Kernel};
+use crate::estimator::Probe;
+use crate::film::{Piece, SampleSum, TileBuffer};
+use crate::math::{Ray, Rgb};
+use crate::scene::{Hit, Tests};
+
+/// The kernel. It looks into another's samples, which is slow, and fast enough for what it is to show.
+pub(super) struct RecursionClamp(pub(super) Box<dyn Inspect>);
+
+struct Clamp<'a> {
+    counts: &'a mut Counts,
+    collected: Rgb,
+    least: Rgb,
+}
+
+fn lesser(a: Rgb, b: Rgb) -> Rgb {
+    Rgb { r: a.r.min(b.r), g: a.g.min(b.g), b: a.b.min(b.b) }
+}
+
+impl Probe for Clamp<'_> {
+    fn ray(&mut self, tests: Tests) {
+        self.counts.ray(tests);
+    }
+    fn escaped(&mut self) {
+        self.counts.escaped();
+    }
+    fn truncated(&mut self) {
+        self.counts.truncated();
+    }
+    fn vertex(&mut self, _bounces: u16, _ray: &Ray, _hit: &Hit, throughput: Rgb) {
+        self.least = lesser(self.least, self.collected + throughput);
+    }
+    fn light(&mut self, _bounces: u16, contribution: Rgb) {
+        self.collected += contribution;
+    }
+}
+
+impl Kernel for RecursionClamp {
+    fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+        let mut counts = Counts::default();
+        let mut sum = SampleSum::default();
+        for y in piece.bounds.y0..piece.bounds.y1 {
+            for (x, pixel) in (piece.bounds.x0..piece.bounds.x1).zip(out.row_mut(y)) {
+                sum.clear();
+                for sample in piece.samples.clone() {
+                    let least = Rgb::WHITE * f64::INFINITY;
+                    let mut clamp = Clamp { counts: &mut counts, collected: Rgb::BLACK, least };
+                    let whole = self.0.estimate(x, y, sample, &mut clamp);
+                    let clamped = lesser(clamp.collected, clamp.least);
+                    counts.paths += 1;
+                    let is_valid = whole.is_valid_radiance() && clamped.is_valid_radiance();
+                    counts.invalid += u64::from(!is_valid);
+                    sum.add(if is_valid { clamped } else { Rgb::BLACK });
+                }
+                *pixel = sum.total();
+            }
+        }
+        counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+    use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
+
+    /// Against the recursion as report B writes it, cut at every level, on paths of up to eight vertices with dim and bright light.
+    #[test]
+    fn is_the_clamp_of_every_recursion() {
+        let at = Vec3::new(0.0, 0.0, 1.0);
+        let ray = Ray { origin: at, direction: at };
+        let hit = Hit { t: 1.0, primitive: 0, object: 0, point: at, normal: at, inside: false };
+        let grey = |value: f64| Rgb { r: value, g: value, b: value };
+        let mut cut = 0;
+        for path in 0..1000 {
+            let vertices: Vec<[f64; 2]> = (0..=path as u16 % 8)
+                .map(|bounce| {
+                    let key = SampleKey { seed: 3, pixel: 0, sample: path };
+                    let [emission, weight] =
+                        Independent.pair(Address { key, bounce, branch: 0, purpose: Purpose::Bsdf });
+                    [0.6 * emission, 2.0 * weight]
+                })
+                .collect();
+            let recursion =
+                vertices.iter().rev().fold(0.0, |behind, [emission, weight]| (emission + weight * behind).min(1.0));
+
+            let mut counts = Counts::default();
+            let least = Rgb::WHITE * f64::INFINITY;
+            let mut clamp = Clamp { counts: &mut counts, collected: Rgb::BLACK, least };
+            let mut throughput = 1.0;
+            for [emission, weight] in vertices {
+                clamp.vertex(0, &ray, &hit, grey(throughput));
+                clamp.light(0, grey(throughput * emission));
+                throughput *= weight;
+            }
+            let found = lesser(clamp.collected, clamp.least).r;
+            assert!((found - recursion).abs() < 1e-13, "path {path}: {found} instead of {recursion}");
+            cut += u32::from(found < clamp.collected.r - 1e-9);
+        }
+        assert!((100..900).contains(&cut), "{cut} of 1000 paths were cut");
+    }
+}
