@@ -1,6 +1,6 @@
 //! The expected squared error from one measured squared error a seed.
 //!
-//! Seeds are independent, so their mean squared errors are a sample, and what is wanted is its mean: E[MSE] = bias^2 + variance. The t-interval
+//! Seeds are independent, so their mean squared errors are a sample, and what is wanted is its mean: `E[MSE]` = bias^2 + variance. The t-interval
 //! is right while that sample is not too skewed. Light that few paths find makes it skewed: then the seeds scatter, and the log-normal
 //! interval covers better. The coefficient of variation of the seeds decides and is reported with the interval.
 //!
