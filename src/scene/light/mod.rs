@@ -113,21 +113,18 @@ impl Lights {
         }
         let all: f64 = found.iter().map(|(_, _, power)| power).sum();
         let even = 1.0 / found.len() as f64;
+        // By sums of powers instead of chances, so that the last of very many is 1.
+        let chance = |power: f64, count: f64| if all > 0.0 { 0.5 * (power / all + count * even) } else { count * even };
         let mut of_primitive = vec![NO_LIGHT; scene.owners.len()];
-        let mut up_to = 0.0;
+        let mut so_far = 0.0;
         let mut lights = Vec::with_capacity(found.len());
         for (index, (primitive, target, power)) in (0_u32..).zip(found) {
-            let chance = if all > 0.0 { 0.5 * (power / all + even) } else { even };
-            up_to += chance;
+            so_far += power;
             of_primitive[primitive as usize] = index;
-            lights.push(Light { target, primitive, chance, up_to });
+            let up_to = chance(so_far, f64::from(index + 1));
+            lights.push(Light { target, primitive, chance: chance(power, 1.0), up_to });
         }
         Self { lights, of_primitive }
-    }
-
-    /// Whether there is nothing to aim at.
-    pub fn is_empty(&self) -> bool {
-        self.lights.is_empty()
     }
 
     /// A direction from a point towards a light; `None` if there is none or the direction that was chosen leads past it. `choice` is asked only
@@ -179,4 +176,33 @@ fn own(from: Option<Standpoint>, light: u32) -> Option<bool> {
 
 fn mean(radiance: Rgb) -> f64 {
     radiance.channels().iter().sum::<f64>() / 3.0
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::load;
+
+    /// H37: of very many lights every one is chosen, none twice, and the chances make 1.
+    #[test]
+    fn chances_of_many_lights_make_one() {
+        let scene = load("spheres:100000").unwrap().in_equilibrium();
+        let lights = scene.lit(&scene.camera.view(8, 6)).lights.unwrap();
+        assert_eq!(lights.lights.len(), 100_000);
+        let last = lights.lights.last().unwrap();
+        assert!((last.up_to - 1.0).abs() < 1e-12, "{}", last.up_to);
+        let sum: f64 = lights.lights.iter().map(|light| light.chance).sum();
+        assert!((sum - 1.0).abs() < 1e-11, "{sum}");
+        assert!(lights.lights.iter().all(|light| light.chance >= 0.5e-5));
+        assert!(lights.of_primitive.iter().enumerate().all(|(light, of)| light == *of as usize));
+    }
+
+    /// Light outside of a closed room is not aimed at: here the room's own sphere is between.
+    #[test]
+    fn what_cannot_be_reached_is_no_target() {
+        let mut scene = load("cornell").unwrap();
+        let light = scene.objects.iter().position(|object| object.name == "light").unwrap();
+        scene.primitives.spheres[light].center.y += 1.0;
+        let lights = scene.lit(&scene.camera.view(64, 48)).lights.unwrap();
+        assert!(lights.lights.is_empty());
+    }
 }
