@@ -1,7 +1,7 @@
 //! The options that choose what is rendered, in which pieces and by whom.
 
 use crate::error::{InputError, Result};
-use crate::estimator::ESTIMATORS;
+use crate::estimator::{self, ESTIMATORS};
 use crate::input::{locate, read_text};
 use crate::kernel::{Clamp, Spec};
 use crate::measure::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads};
@@ -72,7 +72,7 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32)> {
 /// The estimator that a scene names; `scene` itself is a layer below estimators and cannot know whether there is one.
 fn default_estimator(scene: &str) -> Result<Option<String>> {
     let name = scene::load(scene)?.default_estimator;
-    match name.as_deref().filter(|name| !ESTIMATORS.iter().any(|entry| entry.name == *name)) {
+    match name.as_deref().filter(|name| estimator::find(name).is_none()) {
         None => Ok(name),
         Some(unknown) => {
             let names: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).collect();

@@ -3,7 +3,7 @@
 use super::axes::What;
 use super::output::{print, print_json};
 use crate::error::{Error, InputError, Result};
-use crate::estimator::ESTIMATORS;
+use crate::estimator;
 use crate::film::{Bounds, Piece, TileBuffer};
 use crate::kernel::{self, Event, PathLog, Spec};
 use crate::math::{Rgb, Vec3};
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     // Any number of samples that the estimator takes: only the names are looked at.
     let mut settings = arguments.what.settings(&arguments.scene, 1, arguments.seed)?;
-    let estimator = ESTIMATORS.iter().find(|entry| entry.name == settings.spec.estimator);
+    let estimator = estimator::find(&settings.spec.estimator);
     settings.spp = estimator.map_or(1, |entry| entry.spp_multiple);
     let scene = Arc::new(scene::load(&arguments.scene)?);
     let spec = Setup::for_scene(Arc::clone(&scene), settings)?.settings().spec.clone();

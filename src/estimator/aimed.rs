@@ -5,8 +5,8 @@ use super::medium::Medium;
 use super::path::Light;
 use crate::effect::EffectSet;
 use crate::math::{Frame, Ray, Rgb, Vec3, dot};
+use crate::sampling::UNIFORM_SPHERE_DENSITY;
 use crate::scene::{Aim, Hit, Lights, Scene, Standpoint, Tests};
-use std::f64::consts::PI;
 
 /// The share of a way of finding light with density `a`, where another has density `b`: the power heuristic with exponent 2 (Veach and
 /// Guibas 1995), by a ratio, because squares overflow.
@@ -32,6 +32,15 @@ pub(super) fn share_of_arrival(
     match rule {
         Light::Weighted => power_heuristic(density, aimed),
         Light::Aimed if aimed > 0.0 => 0.0,
+        Light::Aimed => 1.0,
+    }
+}
+
+/// The share of light at the end of an aim that counts, where chance finds its direction with `density`.
+#[inline(always)]
+fn share_of_aim(rule: Light, aim: Aim, density: impl FnOnce() -> f64) -> f64 {
+    match rule {
+        Light::Weighted => power_heuristic(aim.density, density()),
         Light::Aimed => 1.0,
     }
 }
@@ -75,10 +84,7 @@ pub(super) fn aimed_at_surface<X: EffectSet, P: Probe>(
     let from = Some(Standpoint { primitive: hit.primitive, inside: (wi.z < 0.0) != hit.inside });
     let ray = Ray { origin: hit.point, direction: aim.direction };
     let light = arriving::<X, P>(scene, &ray, from, aim.primitive, medium.beyond::<X>(hit, wi), probe)?;
-    let weight = match rule {
-        Light::Weighted => power_heuristic(aim.density, material.pdf::<X>(wo, wi)),
-        Light::Aimed => 1.0,
-    };
+    let weight = share_of_aim(rule, aim, || material.pdf::<X>(wo, wi));
     Some(scattered * light * (weight / aim.density))
 }
 
@@ -93,15 +99,9 @@ pub(super) fn aimed_at_fog<X: EffectSet, P: Probe>(
 ) -> Option<Rgb> {
     let ray = Ray { origin: point, direction: aim.direction };
     let light = arriving::<X, P>(scene, &ray, None, aim.primitive, Medium::OUTSIDE, probe)?;
-    let weight = match rule {
-        Light::Weighted => power_heuristic(aim.density, EVENLY),
-        Light::Aimed => 1.0,
-    };
-    Some(light * (EVENLY * weight / aim.density))
+    let weight = share_of_aim(rule, aim, || UNIFORM_SPHERE_DENSITY);
+    Some(light * (UNIFORM_SPHERE_DENSITY * weight / aim.density))
 }
-
-/// The density of directions that are all as likely, per steradian.
-pub(super) const EVENLY: f64 = 0.25 / PI;
 
 #[cfg(test)]
 mod tests {

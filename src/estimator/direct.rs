@@ -4,8 +4,8 @@ use super::Probe;
 use super::medium::Medium;
 use crate::effect::EffectSet;
 use crate::math::{Ray, Rgb, Vec3, dot};
+use crate::sampling::UNIFORM_SPHERE_DENSITY;
 use crate::scene::{Hit, POINT_LIGHT, PointLight, Scene, Standpoint, Tests};
-use std::f64::consts::PI;
 
 /// The part of the way to a light on which something can hide it. A light that lies in a surface is not hidden by it: what remains is more
 /// than rounding makes of a distance, and relative, so that it is the same in scenes of any size.
@@ -95,7 +95,7 @@ pub(super) fn light_at_fog<X: EffectSet, P: Probe>(scene: &Scene, point: Vec3, p
     for light in &scene.point_lights {
         let Some(way) = Way::to(light, point) else { continue };
         if let Some(beam) = way.arriving::<X, P>(scene, light, point, None, Medium::OUTSIDE, probe) {
-            radiance += beam * (0.25 / PI);
+            radiance += beam * UNIFORM_SPHERE_DENSITY;
         }
     }
     Some(radiance)

@@ -146,6 +146,11 @@ pub struct Entry {
     pub largest_depth: u16,
 }
 
+/// The line of the estimator of that name.
+pub fn find(name: &str) -> Option<&'static Entry> {
+    ESTIMATORS.iter().find(|entry| entry.name == name)
+}
+
 /// What every estimator can be told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
@@ -183,7 +188,7 @@ macro_rules! estimators {
 estimators! {
     "smallpt", "smallpt's own: glass splits at the first two vertices, roulette after the fifth" => Smallpt, Smallpt::new;
     "bsdf", "the same transport without splitting: one direction at every vertex" => Bsdf, Bsdf::new;
-    "nee", "next-event estimation: a shadow ray from every vertex to a light chosen by power" => Path<Aimed>, nee::new;
+    "nee", "next-event estimation: a shadow ray from every vertex to one light" => Path<Aimed>, nee::new;
     "mis", "light aimed at and arrived at, weighted by the power heuristic" => Path<Aimed>, mis::new;
     "whitted", "Whitted's of 1980: point lights, ideal mirrors and glass, nothing by way of diffuse surfaces; 10 bounces" => Whitted, Whitted::new;
 }

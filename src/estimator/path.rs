@@ -3,15 +3,15 @@
 //!
 //! Written as a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the thread's stack.
 
-use super::aimed::{EVENLY, aimed_at_fog, aimed_at_surface, share_of_arrival};
+use super::aimed::{aimed_at_fog, aimed_at_surface, share_of_arrival};
 use super::direct::{light_at_fog, light_at_surface};
 use super::medium::Medium;
 use super::{Estimator, Options, Probe, Roulette};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3, dot};
-use crate::sampling::{Address, Purpose, SampleKey, Sampler, uniform_sphere};
-use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
+use crate::sampling::{Address, Purpose, SampleKey, Sampler, UNIFORM_SPHERE_DENSITY, uniform_sphere};
+use crate::scene::{Aim, BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
 use std::marker::PhantomData;
 
 /// Where a path is cut whatever its throughput: only a closed scene that absorbs nothing comes here, and it is counted.
@@ -171,6 +171,14 @@ impl<S: Sampler> Walk<'_, S> {
         self.sampler.pair(part.address(self.key, purpose))
     }
 
+    /// A direction towards a light from the vertex that a part arrived at.
+    #[inline(always)]
+    fn aim<R: Rules>(&self, part: &Part, point: Vec3, from: Option<Standpoint>) -> Option<Aim> {
+        let lights = if R::AIMS { self.scene.lights.as_ref()? } else { return None };
+        let choice = || self.pair(part, Purpose::LightChoice)[0];
+        lights.aim(point, from, choice, self.pair(part, Purpose::Light))
+    }
+
     /// Traces a part to its next vertex. What goes on from there, and, after a split, the other way; `None` when the part has ended.
     #[inline(always)]
     fn advance<R: Rules, X: EffectSet, P: Probe>(
@@ -248,18 +256,12 @@ impl<S: Sampler> Walk<'_, S> {
 
         let frame = hit.frame();
         let wo = frame.to_local(-part.ray.direction);
-        let lights = if R::AIMS { scene.lights.as_ref() } else { None };
-        if let Some(lights) = lights {
-            let standpoint = Standpoint { primitive: hit.primitive, inside: hit.inside };
-            let place = self.pair(&part, Purpose::Light);
-            let choice = || self.pair(&part, Purpose::LightChoice)[0];
-            if let Some(aim) = lights.aim(hit.point, Some(standpoint), choice, place)
-                && let Some(found) =
-                    aimed_at_surface::<X, P>(self.light, scene, hit, (&frame, wo), aim, part.medium, probe)
-            {
-                probe.light(vertices, part.throughput * found);
-                *collected += part.throughput * found;
-            }
+        let standpoint = Standpoint { primitive: hit.primitive, inside: hit.inside };
+        if let Some(aim) = self.aim::<R>(&part, hit.point, Some(standpoint))
+            && let Some(found) = aimed_at_surface::<X, P>(self.light, scene, hit, (&frame, wo), aim, part.medium, probe)
+        {
+            probe.light(vertices, part.throughput * found);
+            *collected += part.throughput * found;
         }
 
         let mut throughput = part.throughput;
@@ -330,16 +332,11 @@ impl<S: Sampler> Walk<'_, S> {
             probe.light(vertices, part.throughput * direct);
             *collected += part.throughput * direct;
         }
-        let lights = if R::AIMS { self.scene.lights.as_ref() } else { None };
-        if let Some(lights) = lights {
-            let place = self.pair(&part, Purpose::Light);
-            let choice = || self.pair(&part, Purpose::LightChoice)[0];
-            if let Some(aim) = lights.aim(point, None, choice, place)
-                && let Some(found) = aimed_at_fog::<X, P>(self.light, self.scene, point, aim, probe)
-            {
-                probe.light(vertices, part.throughput * found);
-                *collected += part.throughput * found;
-            }
+        if let Some(aim) = self.aim::<R>(&part, point, None)
+            && let Some(found) = aimed_at_fog::<X, P>(self.light, self.scene, point, aim, probe)
+        {
+            probe.light(vertices, part.throughput * found);
+            *collected += part.throughput * found;
         }
         let mut throughput = part.throughput;
         if let Some(survival) = self.roulette.survival(vertices, throughput, || transmittance) {
@@ -352,7 +349,7 @@ impl<S: Sampler> Walk<'_, S> {
         }
         let direction = uniform_sphere(self.pair(&part, Purpose::Bsdf)).normalized();
         let ray = Ray { origin: point, direction };
-        let density = lights.map(|_| EVENLY);
+        let density = R::AIMS.then_some(UNIFORM_SPHERE_DENSITY);
         Some((Part { ray, from: None, density, throughput, vertices, ..part }, None))
     }
 }

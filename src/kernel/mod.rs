@@ -6,7 +6,7 @@ mod scalar;
 
 use crate::effect::EffectSet;
 use crate::error::{InputError, Result};
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Roulette, with_estimator};
+use crate::estimator::{self, ESTIMATORS, Estimator, EstimatorVisitor, Options, Roulette, with_estimator};
 use crate::film::{Piece, TileBuffer};
 use crate::sampling::{
     Independent, SAMPLERS, Sampler, SamplerVisitor, is_deterministic, stateful_sampler, with_keyed_sampler,
@@ -142,13 +142,13 @@ impl Spec {
 
     /// When and how chance ends paths, as [`Roulette`] reads it: what was asked for, or else the estimator's own rule.
     pub fn roulette(&self) -> Option<String> {
-        let own = ESTIMATORS.iter().find(|entry| entry.name == self.estimator).and_then(|entry| entry.roulette);
+        let own = estimator::find(&self.estimator).and_then(|entry| entry.roulette);
         self.options().roulette.or(own).map(|rule| rule.to_string())
     }
 
     /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
     pub fn depth(&self) -> Option<u16> {
-        let own = ESTIMATORS.iter().find(|entry| entry.name == self.estimator).and_then(|entry| entry.max_depth);
+        let own = estimator::find(&self.estimator).and_then(|entry| entry.max_depth);
         self.max_depth.or(own)
     }
 }
@@ -234,7 +234,7 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     if !SAMPLERS.iter().any(|entry| entry.name == spec.sampler) {
         return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name)).into());
     }
-    let Some(estimator) = ESTIMATORS.iter().find(|entry| entry.name == spec.estimator) else {
+    let Some(estimator) = estimator::find(&spec.estimator) else {
         return Err(unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name)).into());
     };
     if let Some(depth) = spec.max_depth.filter(|depth| *depth > estimator.largest_depth) {
@@ -260,7 +260,7 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
 /// The scene with what the accelerator and the estimator need of it.
 fn prepared(scene: &Arc<Scene>, spec: &Spec, choice: Choice) -> Arc<Scene> {
     let mut prepared = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
-    if ESTIMATORS.iter().any(|entry| entry.name == spec.estimator && entry.aims) {
+    if estimator::find(&spec.estimator).is_some_and(|entry| entry.aims) {
         prepared = Arc::new(prepared.lit(&scene.camera.view(spec.width, spec.height)));
     }
     prepared

@@ -13,7 +13,8 @@ use crate::scene::{Hit, Tests};
 /// The kernel. It looks into another's samples, which is slow, and fast enough for what it is to show.
 pub(super) struct RecursionClamp(pub(super) Box<dyn Inspect>);
 
-struct Clamp<'a> {
+/// What of a sample is left so far.
+struct Clamped<'a> {
     counts: &'a mut Counts,
     collected: Rgb,
     least: Rgb,
@@ -23,7 +24,7 @@ fn lesser(a: Rgb, b: Rgb) -> Rgb {
     Rgb { r: a.r.min(b.r), g: a.g.min(b.g), b: a.b.min(b.b) }
 }
 
-impl Probe for Clamp<'_> {
+impl Probe for Clamped<'_> {
     fn ray(&mut self, tests: Tests) {
         self.counts.ray(tests);
     }
@@ -50,7 +51,7 @@ impl Kernel for RecursionClamp {
                 sum.clear();
                 for sample in piece.samples.clone() {
                     let least = Rgb::WHITE * f64::INFINITY;
-                    let mut clamp = Clamp { counts: &mut counts, collected: Rgb::BLACK, least };
+                    let mut clamp = Clamped { counts: &mut counts, collected: Rgb::BLACK, least };
                     let whole = self.0.estimate(x, y, sample, &mut clamp);
                     let clamped = lesser(clamp.collected, clamp.least);
                     counts.paths += 1;
@@ -93,7 +94,7 @@ mod tests {
 
             let mut counts = Counts::default();
             let least = Rgb::WHITE * f64::INFINITY;
-            let mut clamp = Clamp { counts: &mut counts, collected: Rgb::BLACK, least };
+            let mut clamp = Clamped { counts: &mut counts, collected: Rgb::BLACK, least };
             let mut throughput = 1.0;
             for [emission, weight] in vertices {
                 clamp.vertex(0, &ray, &hit, grey(throughput));

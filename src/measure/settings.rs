@@ -1,7 +1,7 @@
 //! The three axes of a run, by name: what is rendered, in which pieces, and who renders them when.
 
 use crate::error::{InputError, Result};
-use crate::estimator::ESTIMATORS;
+use crate::estimator::find;
 use crate::film::check_size;
 use crate::kernel::{KERNELS, Spec};
 use crate::sampling::REFERENCE_SEEDS;
@@ -79,7 +79,7 @@ pub fn strategy_named(text: &str) -> Result<(&'static Entry, Option<String>)> {
 
 /// Samples per pixel are a multiple of this.
 pub(super) fn spp_multiple(estimator: &str) -> u32 {
-    ESTIMATORS.iter().find(|entry| entry.name == estimator).map_or(1, |entry| entry.spp_multiple)
+    find(estimator).map_or(1, |entry| entry.spp_multiple)
 }
 
 /// Refuses numbers of samples that no image of the estimator can have.

@@ -4,7 +4,6 @@ use super::output::{self, Delivery, OUTPUTS, Output};
 use super::settings::{LARGEST_THREADS, strategy_named};
 use super::{Settings, THREAD_PER_ROW, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
-use crate::estimator::ESTIMATORS;
 use crate::film::{Decomposition, FilmKey, Plan};
 use crate::kernel::{self, Choice, Clamp, Counts, Kernel};
 use crate::sampling::is_deterministic;
@@ -125,8 +124,7 @@ impl Setup {
 
     /// Fewest samples per pixel that make a whole image: what the estimator needs, and one for each subpixel where the camera has them.
     pub fn fewest_spp(&self) -> u32 {
-        let estimator = &self.settings.spec.estimator;
-        let multiple = ESTIMATORS.iter().find(|entry| entry.name == *estimator).map_or(1, |entry| entry.spp_multiple);
+        let multiple = self.spp_multiple();
         let subpixels = if self.scene.camera.filter == Filter::Subpixels { SUBPIXELS } else { 1 };
         if multiple.is_multiple_of(subpixels) { multiple } else { multiple * subpixels }
     }

@@ -18,7 +18,7 @@ pub use locked::Locked;
 pub use per_thread::PerThread;
 pub use sobol::Sobol;
 pub use stratified::Stratified;
-pub use warp::{concentric_disk, cosine_hemisphere, tent, uniform_sphere};
+pub use warp::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, tent, uniform_sphere};
 
 /// Which sample of which pixel of which image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,6 +1,7 @@
 //! Warps of the unit square to the distributions that paths need, each with its density.
 
 use crate::math::{Real, Vec3, sin_cos_turns};
+use std::f64::consts::PI;
 
 /// A direction around +z with density cos θ/π per steradian (Malley's method: the uniform disk lifted to the hemisphere).
 #[inline(always)]
@@ -32,7 +33,10 @@ pub fn concentric_disk([u, v]: [f64; 2]) -> [f64; 2] {
     [r * cos, r * sin]
 }
 
-/// A direction with density 1/4π per steradian.
+/// The density per steradian of directions that are all as likely.
+pub const UNIFORM_SPHERE_DENSITY: f64 = 0.25 / PI;
+
+/// A direction with the density [`UNIFORM_SPHERE_DENSITY`].
 #[inline(always)]
 pub fn uniform_sphere([u, v]: [f64; 2]) -> Vec3 {
     let z = 1.0 - 2.0 * v;

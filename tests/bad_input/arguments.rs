@@ -45,6 +45,12 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--seed", "9223372036854775808"], &["seed", "9223372036854775808", "0 to 9223372036854775807"]),
     (&["--seed", "18446744073709551616"], &["seed", "18446744073709551616"]),
     (&["--estimator", "whitted", "--max-depth", "33"], &["max-depth", "33", "whitted", "0 to 32"]),
+    (&["--roulette", "luck:3"], &["roulette", "luck:3", "throughput:N"]),
+    (&["--estimator", "whitted", "--roulette", "albedo:5"], &["roulette", "albedo:5", "whitted"]),
+    (&["--recursion-clamp"], &["recursion-clamp", "smallpt", "bsdf, nee, mis"]),
+    (&["--estimator", "bsdf", "--recursion-clamp", "--subpixel-clamp"], &["--recursion-clamp", "--subpixel-clamp"]),
+    // A profile that there is and that covers the scene, but not with this sampler.
+    (&["--sampler", "sobol", "--effects", "surfaces"], &["effects", "surfaces", "sobol", "smallpt"]),
     (&["--max-depth", "65536"], &["max-depth", "65536"]),
     (&["--max-depth=-1"], &["max-depth", "-1"]),
     (&["--colour", "red"], &["--colour"]),

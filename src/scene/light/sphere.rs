@@ -3,7 +3,7 @@
 
 use super::Target;
 use crate::math::{Frame, Ray, Vec3, dot, sin_cos_turns};
-use crate::sampling::uniform_sphere;
+use crate::sampling::{UNIFORM_SPHERE_DENSITY, uniform_sphere};
 use crate::scene::{Hit, Sphere};
 use std::f64::consts::PI;
 
@@ -80,7 +80,7 @@ impl Target for SphereTarget {
             Frame::around(axis).to_world(Vec3::new(r * cos, r * sin, 1.0 - z))
         };
         match self.way(point, own)? {
-            Way::Everywhere => Some((uniform_sphere(u), 0.25 / PI)),
+            Way::Everywhere => Some((uniform_sphere(u), UNIFORM_SPHERE_DENSITY)),
             Way::Cone { axis, one_minus_cos } => Some((round(axis, one_minus_cos), 0.5 / (PI * one_minus_cos))),
             Way::Area(cap) => {
                 let normal = round(cap.axis, cap.height / self.sphere.radius);
@@ -97,7 +97,7 @@ impl Target for SphereTarget {
     fn density(&self, ray: &Ray, own: Option<bool>, hit: &Hit) -> f64 {
         match self.way(ray.origin, own) {
             None => 0.0,
-            Some(Way::Everywhere) => 0.25 / PI,
+            Some(Way::Everywhere) => UNIFORM_SPHERE_DENSITY,
             Some(Way::Cone { one_minus_cos, .. }) => 0.5 / (PI * one_minus_cos),
             Some(Way::Area(cap)) => {
                 // |n - a|² is 2 (1 - cos) without its cancellation.
