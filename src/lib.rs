@@ -25,13 +25,14 @@
 //! Layers, each importing only those above it: `error`, `digest`, `effect`, `math`, `input`,
 //! `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
 //! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`; `plot`,
-//! `report`; `cli`.
+//! `report`, `check`; `cli`.
 
 // A test may unwrap; the library tells its user what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod analysis;
 pub mod atomic_file;
+pub mod check;
 pub mod cli;
 pub mod digest;
 pub mod effect;

@@ -51,6 +51,7 @@ const RULES: &[Rule] = &[
     rule("experiment", 8),
     only("plot", 9, &["error", "atomic_file", "metric", "image_io"]), // draws numbers, whatever they were measured on
     beside("report", 9, &["plot"]),
+    rule("check", 9), // tries all that the renderer is made of
     rule("cli", 10),
 ];
 

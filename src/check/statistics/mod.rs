@@ -1,0 +1,5 @@
+//! Statistics of measurements.
+
+use super::Section;
+
+pub(super) const SECTION: Section = Section { title: "Statistics of measurements", cases: &[] };
