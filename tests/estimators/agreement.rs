@@ -1,25 +1,25 @@
 //! Every estimator that follows all light gives the same image, whichever way it finds light: emissive mirrors, light behind glass, a
 //! camera inside a light, enclosures that glow. H35 and H36 of the catalogue of hard cases.
 //!
-//! An image is cut into blocks. Over all of them the standardised differences to `bsdf` must have the mean 0 and the variance 1, which is tested on
-//! both sides, at the family-wise level 1e-3.
+//! Pixel by pixel, the standardised differences to `bsdf` must have the mean 0 and the variance 1, which is tested on both sides, at the
+//! family-wise level 1e-3. Each pixel gives one channel, by turns, because the channels of a pixel go together.
 
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::estimator::ESTIMATORS;
-use pathmark::film::Film;
+use pathmark::film::{Film, PixelSum};
 use pathmark::kernel::Spec;
 use pathmark::measure::{Settings, Setup};
 use pathmark::scene::SCENES;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-const SIZE: (u32, u32) = (32, 24);
-const BLOCK: u32 = 8;
-const SPP: u32 = 64;
+/// Few pixels of many samples: a z-score is normal when its sample's variance has settled.
+const SIZE: (u32, u32) = (8, 6);
+const SPP: u32 = 1024;
 const LEVEL: f64 = 1e-3;
 
-/// A scene in which few samples meet the small, bright lamps unless they are aimed at, so that the spread of `bsdf` within a block tells too
-/// little: the blocks' variance is not tested there.
-const HEAVY: [&str; 1] = ["nightsky"];
+/// Scenes in which few paths meet the small, bright lamps unless they aim at them: the spread of such paths within a pixel tells too little.
+/// There `nee` and `mis` are compared by pixels, and both with `bsdf` by the mean of the image.
+const RARELY_MET: [&str; 2] = ["cornell-small-light", "nightsky"];
 
 fn film(scene: &str, estimator: &str, seed: u64) -> Film {
     let spec = Spec { width: SIZE.0, height: SIZE.1, seed, estimator: estimator.into(), ..Spec::default() };
@@ -36,21 +36,37 @@ fn film(scene: &str, estimator: &str, seed: u64) -> Film {
     outcome.film
 }
 
-/// Mean radiance of each block and the variance of that mean, by the spread within the pixels.
-fn blocks(film: &Film) -> Vec<(f64, f64)> {
-    let mut blocks = vec![(0.0, 0.0); (SIZE.0 / BLOCK * (SIZE.1 / BLOCK)) as usize];
-    let pixels = f64::from(3 * BLOCK * BLOCK);
-    for (index, pixel) in (0..).zip(film.pixels()) {
-        let (x, y) = (index % SIZE.0, index / SIZE.0);
-        let block = &mut blocks[(y / BLOCK * (SIZE.0 / BLOCK) + x / BLOCK) as usize];
-        let n = f64::from(pixel.count);
-        // Channels go together, so the deviation of their mean is at most the mean of theirs.
-        let deviations = (0..3).map(|c| ((pixel.square[c] - pixel.sum[c] * pixel.sum[c] / n).max(0.0)).sqrt());
-        let deviation = deviations.sum::<f64>();
-        block.0 += pixel.mean().iter().sum::<f64>() / pixels;
-        block.1 += deviation * deviation / (n * (n - 1.0)) / (pixels * pixels);
-    }
-    blocks
+/// Of one channel of each pixel the mean and its variance.
+fn pixels(film: &Film) -> Vec<(f64, f64)> {
+    let estimate = |(index, pixel): (usize, &PixelSum)| {
+        let (channel, n) = (index % 3, f64::from(pixel.count));
+        let (sum, square) = (pixel.sum[channel], pixel.square[channel]);
+        (sum / n, (square - sum * sum / n).max(0.0) / (n * (n - 1.0)))
+    };
+    film.pixels().iter().enumerate().map(estimate).collect()
+}
+
+/// The standardised differences of two images, pixel by pixel, where either has any spread.
+fn scores(a: &[(f64, f64)], b: &[(f64, f64)]) -> Vec<f64> {
+    let pairs = a.iter().zip(b).filter(|(a, b)| a.1 + b.1 > 0.0);
+    pairs.map(|(a, b)| (a.0 - b.0) / (a.1 + b.1).sqrt()).collect()
+}
+
+/// The standardised difference of the means of two images.
+fn score_of_means(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
+    let (sum, variance) = a.iter().zip(b).fold((0.0, 0.0), |(s, v), (a, b)| (s + a.0 - b.0, v + a.1 + b.1));
+    sum / f64::sqrt(variance)
+}
+
+/// What of two images does not fit together, if anything: the mean of the scores, or the sum of their squares.
+fn disagreement(scores: &[f64], level: f64) -> Option<String> {
+    let n = scores.len() as f64;
+    let mean = scores.iter().sum::<f64>() / n.sqrt();
+    let square: f64 = scores.iter().map(|z| z * z).sum();
+    let below = ChiSquared::new(n).unwrap().cdf(square);
+    let spread = 2.0 * below.min(1.0 - below);
+    let wrong = mean.abs() > critical_value(level).unwrap() || spread < level;
+    wrong.then(|| format!("mean {mean:.2}, squares {square:.1} of {n}"))
 }
 
 #[test]
@@ -61,28 +77,29 @@ fn estimators_agree_on_every_scene() {
     let mut wrong = Vec::new();
     for (scene, _) in SCENES {
         let scene = if *scene == "spheres" { "spheres:100" } else { scene };
-        let right = blocks(&film(scene, "bsdf", 1));
-        for (seed, estimator) in (2..).zip(&others) {
-            let found = blocks(&film(scene, estimator, seed));
-            let z: Vec<f64> = found
-                .iter()
-                .zip(&right)
-                .filter(|(a, b)| a.1 + b.1 > 0.0)
-                .map(|(a, b)| (a.0 - b.0) / (a.1 + b.1).sqrt())
-                .collect();
-            let n = z.len() as f64;
-            if z.is_empty() {
-                assert_eq!(found.iter().map(|b| b.0).sum::<f64>(), right.iter().map(|b| b.0).sum::<f64>(), "{scene}");
-                continue;
+        let right = pixels(&film(scene, "bsdf", 1));
+        let images: Vec<_> =
+            (2..).zip(&others).map(|(seed, estimator)| (*estimator, pixels(&film(scene, estimator, seed)))).collect();
+        let mut compare = |what: &str, scores: &[f64]| {
+            wrong.extend(disagreement(scores, level).map(|words| format!("{scene}, {what}: {words}")));
+        };
+        for (estimator, image) in &images {
+            if RARELY_MET.contains(&scene) {
+                let z = score_of_means(image, &right);
+                compare(&format!("mean of {estimator} against bsdf"), &[z]);
+            } else {
+                let scores = scores(image, &right);
+                if scores.is_empty() {
+                    let sum = |image: &[(f64, f64)]| image.iter().map(|pixel| pixel.0).sum::<f64>();
+                    assert_eq!(sum(image), sum(&right), "{scene}, {estimator}");
+                } else {
+                    compare(&format!("{estimator} against bsdf"), &scores);
+                }
             }
-            let mean = z.iter().sum::<f64>() / n.sqrt();
-            let square: f64 = z.iter().map(|z| z * z).sum();
-            let below = ChiSquared::new(n).unwrap().cdf(square);
-            let spread = 2.0 * below.min(1.0 - below);
-            println!("{scene}, {estimator}: mean {mean:.2}, {square:.1} of {n}, p {spread:.2e}");
-            if mean.abs() > critical_value(level).unwrap() || (spread < level && !HEAVY.contains(&scene)) {
-                wrong.push(format!("{scene}, {estimator}: mean {mean}, squares {square} of {n}"));
-            }
+        }
+        if RARELY_MET.contains(&scene) {
+            let image = |name: &str| &images.iter().find(|(estimator, _)| *estimator == name).unwrap().1;
+            compare("mis against nee", &scores(image("mis"), image("nee")));
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
