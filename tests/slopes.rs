@@ -76,26 +76,37 @@ fn check(what: &str, law: Option<PowerLaw>) {
     assert!(half_width <= HALF_WIDTH, "{what}: {interval:?}");
 }
 
-/// Scenes with an exact answer, which every pixel sees: the name in the catalogue of hard cases, the answer, where the camera is and looks,
-/// and the rest of the scene.
-const ANALYTIC: [(&str, f64, [f64; 3], [f64; 3], &str); 4] = [
-    (
-        "A1",
-        2.0,
-        [0.1, 0.2, 0.3],
-        [1.0, 0.0, 0.0],
-        "[[objects]]
+/// A scene with an exact answer, which every pixel sees.
+struct Analytic {
+    /// In the catalogue of hard cases.
+    name: &'static str,
+    exact: f64,
+    position: [f64; 3],
+    look_at: [f64; 3],
+    background: f64,
+    objects: &'static str,
+}
+
+const ANALYTIC: [Analytic; 4] = [
+    Analytic {
+        name: "A1",
+        exact: 2.0,
+        position: [0.1, 0.2, 0.3],
+        look_at: [1.0, 0.0, 0.0],
+        background: 0.0,
+        objects: "[[objects]]
         name = 'glowing wall'
         shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }
         material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
         emission = [1.0, 1.0, 1.0]",
-    ),
-    (
-        "A4",
-        0.2,
-        [0.0, 0.75, 0.0],
-        [0.6, 0.8, 0.0],
-        "[[objects]]
+    },
+    Analytic {
+        name: "A4",
+        exact: 0.2,
+        position: [0.0, 0.75, 0.0],
+        look_at: [0.6, 0.8, 0.0],
+        background: 0.0,
+        objects: "[[objects]]
         name = 'wall'
         shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }
         material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
@@ -104,13 +115,14 @@ const ANALYTIC: [(&str, f64, [f64; 3], [f64; 3], &str); 4] = [
         shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 0.5 } }
         material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
         emission = [1.0, 1.0, 1.0]",
-    ),
-    (
-        "A6",
-        0.125,
-        [3.0, 0.02, 0.0],
-        [0.0, 0.0, 0.0],
-        "[[objects]]
+    },
+    Analytic {
+        name: "A6",
+        exact: 0.125,
+        position: [3.0, 0.02, 0.0],
+        look_at: [0.0, 0.0, 0.0],
+        background: 0.0,
+        objects: "[[objects]]
         name = 'floor'
         shape = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
         material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
@@ -119,13 +131,14 @@ const ANALYTIC: [(&str, f64, [f64; 3], [f64; 3], &str); 4] = [
         shape = { sphere = { center = [0.0, 2.0, 0.0], radius = 1.0 } }
         material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
         emission = [1.0, 1.0, 1.0]",
-    ),
-    (
-        "A12",
-        0.25,
-        [4.0, 0.0, 0.0],
-        [0.0, 0.0, 0.0],
-        "[[objects]]
+    },
+    Analytic {
+        name: "A12",
+        exact: 0.25,
+        position: [4.0, 0.0, 0.0],
+        look_at: [0.0, 0.0, 0.0],
+        background: 1.0,
+        objects: "[[objects]]
         name = 'earth'
         shape = { plane = { point = [0.0, -5.0, 0.0], normal = [0.0, 1.0, 0.0] } }
         material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
@@ -133,25 +146,28 @@ const ANALYTIC: [(&str, f64, [f64; 3], [f64; 3], &str); 4] = [
         name = 'ball'
         shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }
         material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }",
-    ),
+    },
 ];
 
-fn analytic(name: &str, position: [f64; 3], look_at: [f64; 3], rest: &str) -> Scene {
-    let background = if name == "A12" { "background = [1.0, 1.0, 1.0]" } else { "" };
-    let camera =
-        format!("position = {position:?}\nlook-at = {look_at:?}\nup = [0.36, 0.48, 0.8]\nfield-of-view = 1e-6");
-    let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
-    write!(file, "about = 'a test'\n{background}\n[camera.pinhole]\n{camera}\n{rest}").unwrap();
-    load(file.path().to_str().unwrap()).unwrap()
+impl Analytic {
+    fn scene(&self) -> Scene {
+        let Self { position, look_at, background, objects, .. } = self;
+        let camera =
+            format!("position = {position:?}\nlook-at = {look_at:?}\nup = [0.36, 0.48, 0.8]\nfield-of-view = 1e-6");
+        let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
+        let background = [background; 3];
+        write!(file, "about = 'a test'\nbackground = {background:?}\n[camera.pinhole]\n{camera}\n{objects}").unwrap();
+        load(file.path().to_str().unwrap()).unwrap()
+    }
 }
 
 #[test]
 fn analytic_scenes() {
-    for (name, exact, position, look_at, rest) in ANALYTIC {
-        let scene = Arc::new(analytic(name, position, look_at, rest));
+    for analytic in ANALYTIC {
+        let scene = Arc::new(analytic.scene());
         let spps = (2..=9).map(|power| 1 << power).collect();
         let curves = Curves { scene, estimator: "bsdf", size: (32, 32), spps };
-        check(name, curves.by_truth(exact, 10, 0.95));
+        check(analytic.name, curves.by_truth(analytic.exact, 10, 0.95));
     }
 }
 
