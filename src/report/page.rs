@@ -56,7 +56,7 @@ fn section(results: &Results, blocks: &[Block]) -> Result<Markup> {
     Ok(html! {
         section id=(definition.name) {
             h2 { (definition.title) }
-            p { strong { "Question. " } (definition.question) }
+            p { strong { "Question. " } (prose(&definition.question)) }
             @if !results.failed.is_empty() {
                 div.failed {
                     p { strong { (results.failed.len()) " rows failed." } " They are left out of figures and tables." }
@@ -64,7 +64,7 @@ fn section(results: &Results, blocks: &[Block]) -> Result<Markup> {
                 }
             }
             @for part in &parts { (part) }
-            @for paragraph in definition.analysis.split("\n\n") { p { (paragraph) } }
+            @for paragraph in definition.analysis.split("\n\n") { p { (prose(paragraph)) } }
             (provenance(results))
         }
     })
@@ -72,7 +72,7 @@ fn section(results: &Results, blocks: &[Block]) -> Result<Markup> {
 
 fn part(block: &Block) -> Result<Markup> {
     Ok(match block {
-        Block::Finding(text) => html! { p.finding { (text) } },
+        Block::Finding(text) => html! { p.finding { (prose(text)) } },
         Block::Figure { figure, .. } => html! { figure { (PreEscaped(figure.svg()?)) } },
         Block::Picture { title, png, .. } => html! {
             figure { img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) }; }
@@ -113,6 +113,15 @@ fn provenance(results: &Results) -> Markup {
             pre { (command) }
             p { "Profile " (profile) "." }
             table { @for (name, value) in facts { tr { th { (name) } td.text { (value) } } } }
+        }
+    }
+}
+
+/// What definitions write between backticks is code.
+fn prose(text: &str) -> Markup {
+    html! {
+        @for (index, part) in text.split('`').enumerate() {
+            @if index % 2 == 1 { code { (part) } } @else { (part) }
         }
     }
 }
