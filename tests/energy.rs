@@ -11,7 +11,7 @@ use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::estimator::MAX_BOUNCES;
 use pathmark::film::Film;
 use pathmark::kernel::{Clamp, Spec};
-use pathmark::math::{Rgb, Vec3};
+use pathmark::math::Vec3;
 use pathmark::measure::{Outcome, Settings, Setup, Warning};
 use pathmark::scene::{Scene, load};
 use scene_text::{Ball, load_scene};
@@ -165,27 +165,6 @@ fn the_subpixel_clamp_is_biased_and_says_so() {
     let clamped = run(&scene, Spec { clamp: Some(Clamp::Subpixel), ..spec("smallpt", (16, 12), 26) }, 16);
     assert!(clamped.film.pixels().iter().all(|pixel| pixel.mean() == [1.0; 3]));
     assert!(clamped.warnings.contains(&Warning::Biased));
-}
-
-/// P10: samples that are NaN, infinite or negative are counted, contribute nothing, and are reported. The reader refuses such emission, so
-/// it is put in behind its back.
-#[test]
-fn invalid_samples_are_counted_and_left_out() {
-    for bad in [f64::NAN, f64::INFINITY, -1.0] {
-        let mut scene = furnace(&diffuse([0.5; 3]), [1.0; 3]);
-        scene.objects[0].emission = Rgb { r: 1.0, g: bad, b: 1.0 };
-        let all = run(&scene, spec("bsdf", (8, 6), 27), 4);
-        assert_eq!((all.counts.invalid, all.counts.paths), (192, 192), "{bad}");
-        assert!(all.film.pixels().iter().all(|pixel| pixel.sum == [0.0; 3] && pixel.count == 4), "{bad}");
-        assert!(all.warnings.contains(&Warning::InvalidSamples(192)));
-
-        let mut scene = load("cornell").unwrap();
-        scene.objects.last_mut().unwrap().emission = Rgb { r: bad, g: bad, b: bad };
-        let some = run(&scene, spec("bsdf", (32, 24), 27), 16);
-        // Every other path misses the light and is black.
-        assert!((1..some.counts.paths).contains(&some.counts.invalid), "{bad}: {}", some.counts.invalid);
-        assert!(some.film.pixels().iter().all(|pixel| pixel.sum == [0.0; 3]), "{bad}");
-    }
 }
 
 /// A22: the mean of smallpt's box at 4:3 is 0.3285 in linear radiance (with the other order of evaluation of the camera ray it is 0.388).

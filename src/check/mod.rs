@@ -29,12 +29,14 @@
 mod analytic;
 mod path;
 mod random_numbers;
+mod run;
 mod shading;
 mod sphere;
 mod statistics;
 mod trials;
 mod triangle;
 
+pub use run::run;
 pub use trials::{Effort, Outcome, Trial, Trials};
 
 use std::panic::{AssertUnwindSafe, catch_unwind};

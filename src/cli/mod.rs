@@ -4,6 +4,7 @@
 
 mod axes;
 mod bounces;
+mod check;
 mod compare;
 mod list;
 mod output;
@@ -17,6 +18,7 @@ mod reproduce;
 mod rounds;
 mod run;
 mod simulate;
+mod strict;
 mod trace;
 
 use crate::error::Result;
@@ -59,6 +61,8 @@ enum Verb {
     Replay(replay::Arguments),
     /// Show the light of an image by the bounces that it made.
     Bounces(bounces::Arguments),
+    /// Try the hard cases of numerics, sampling and statistics on this machine.
+    Check(check::Arguments),
     /// Show what there is to choose from.
     List(list::Arguments),
     /// One cell of a sweep, read from standard input.
@@ -82,6 +86,7 @@ pub fn main() -> ExitCode {
         Verb::Trace(arguments) => trace::run(&arguments),
         Verb::Replay(arguments) => replay::run(&arguments),
         Verb::Bounces(arguments) => bounces::run(&arguments, &talk),
+        Verb::Check(arguments) => check::run(&arguments, &talk),
         Verb::List(arguments) => list::run(&arguments),
         Verb::Cell => crate::experiment::child_main(),
     };
@@ -98,4 +103,10 @@ pub fn main() -> ExitCode {
 fn command_line() -> String {
     let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
     std::iter::once("pathmark".to_string()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// Whether the program takes the words of a line.
+#[cfg(test)]
+fn is_command(line: &str) -> bool {
+    Cli::try_parse_from(line.split(' ')).is_ok()
 }

@@ -4,11 +4,12 @@ use super::axes::Axes;
 use super::output::{print, print_json};
 use super::progress::Talk;
 use super::rounds;
+use super::strict::Strict;
 use crate::atomic_file;
 use crate::error::Result;
 use crate::experiment::Progress;
 use crate::image_io;
-use crate::measure::{Measured, Outcome, Record, Setup, TraceFile};
+use crate::measure::{InvalidSample, Measured, Outcome, Record, Setup, TraceFile};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -42,6 +43,8 @@ pub(super) struct Arguments {
     /// Print the record as one JSON object
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    strict: Strict,
 }
 
 const DEFAULT_SPP: u32 = 16;
@@ -82,10 +85,23 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     for warning in &outcome.warnings {
         talk.note(&format!("warning: {warning}"));
     }
-    if arguments.json {
-        return print_json(&record);
+    for sample in &outcome.invalid {
+        talk.note(&replay_command(&arguments.scene, &record, *sample));
     }
-    print(&format!("{}: {}", path.display(), summary(&record, &outcome)))
+    if arguments.json {
+        print_json(&record)?;
+    } else {
+        print(&format!("{}: {}", path.display(), summary(&record, &outcome)))?;
+    }
+    arguments.strict.check(outcome.counts.invalid)
+}
+
+/// The command that shows a sample again.
+fn replay_command(scene: &str, record: &Record, InvalidSample { y, x, sample }: InvalidSample) -> String {
+    let Record { width, height, estimator, sampler, seed, .. } = record;
+    format!(
+        "pathmark replay {scene} --size {width}x{height} --estimator {estimator} --sampler {sampler} --seed {seed} --pixel {x},{y} --sample {sample}"
+    )
 }
 
 /// What a reader wants to know first.
@@ -109,4 +125,23 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
         )
     };
     format!("{what}{noise}\n{how}\n{checksum}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Spec;
+    use crate::measure::Settings;
+
+    /// The command is one that the program takes, and names the sample's place.
+    #[test]
+    fn an_invalid_sample_can_be_replayed() {
+        let spec = Spec { width: 8, height: 6, estimator: "bsdf".into(), ..Spec::default() };
+        let settings = Settings { scene: "cornell".into(), spp: 4, spec, ..Settings::default() };
+        let setup = Setup::prepare(settings).unwrap();
+        let record = Record::new(&setup, &setup.run(None).unwrap(), Measured::default());
+        let command = replay_command("cornell", &record, InvalidSample { y: 5, x: 7, sample: 3 });
+        assert!(crate::cli::is_command(&command), "{command}");
+        assert!(command.contains("--size 8x6") && command.contains("--pixel 7,5 --sample 3"), "{command}");
+    }
 }

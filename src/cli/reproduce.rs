@@ -1,7 +1,7 @@
 //! `pathmark reproduce`: all committed experiments.
 
 use super::progress::Talk;
-use super::{command_line, output::print};
+use super::{command_line, output::print, strict::Strict};
 use crate::error::{Error, Result};
 use crate::experiment::{Definition, EXPERIMENTS, Options, Profile, Progress, RecordsFile, sweep};
 use clap::Args;
@@ -23,6 +23,8 @@ pub(super) struct Arguments {
     /// Go on with a run that was stopped
     #[arg(long)]
     resume: bool,
+    #[command(flatten)]
+    strict: Strict,
 }
 
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
@@ -46,18 +48,19 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     if !arguments.resume {
         put_aside(&arguments.out, &definitions, talk)?;
     }
-    let (mut rows, mut failed) = (0, 0);
+    let (mut rows, mut failed, mut invalid) = (0, 0, 0);
     for definition in &definitions {
         let summary = sweep(definition, &options, talk)?;
         rows += summary.rows;
         failed += summary.failed;
+        invalid += summary.invalid;
     }
     let page = crate::report::write(&arguments.out)?;
     print(&format!("{rows} rows from {} experiments, report in {}", definitions.len(), page.display()))?;
     if failed > 0 {
         return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));
     }
-    Ok(())
+    arguments.strict.check(invalid)
 }
 
 /// Moves what an earlier run left out of the way: measurements are never overwritten.

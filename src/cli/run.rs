@@ -1,7 +1,7 @@
 //! `pathmark run EXPERIMENT`: one experiment, and its report.
 
 use super::progress::Talk;
-use super::{command_line, output::print};
+use super::{command_line, output::print, strict::Strict};
 use crate::error::{Error, Result};
 use crate::experiment::{Definition, Options, Profile, sweep};
 use crate::report::check_figures;
@@ -28,6 +28,8 @@ pub(super) struct Arguments {
     /// The report's own sizes instead of small images
     #[arg(long)]
     full: bool,
+    #[command(flatten)]
+    strict: Strict,
 }
 
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
@@ -48,5 +50,6 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         let problem = format!("{} of {} rows failed; their column `error` says why", summary.failed, summary.rows);
         return Err(Error::Check(problem));
     }
+    arguments.strict.check(summary.invalid)?;
     print(&format!("{} rows in {}, report in {}", summary.rows, summary.folder.display(), page?.display()))
 }

@@ -54,11 +54,11 @@ impl Drift {
         if let Some(times) = self.0.get(&record.cell) {
             let drifted = record.makespan_s.and_then(|time| change(time, &times.makespan_s));
             if let Some(change) = drifted.filter(|change| change.abs() > SUSPICIOUS) {
-                record.warn(Warning::Drift { percent: percent(change) });
+                record.warn(&Warning::Drift { percent: percent(change) });
             }
             let slowed = record.cpu_s().and_then(|time| change(time, &times.cpu_s));
             if let Some(change) = slowed.filter(|change| *change > SLOW) {
-                record.warn(Warning::Slowed { percent: percent(change) });
+                record.warn(&Warning::Slowed { percent: percent(change) });
             }
         }
         self.note(record);

@@ -42,6 +42,8 @@ pub struct Summary {
     pub rows: usize,
     /// Rows that failed, checksum mismatches included.
     pub failed: usize,
+    /// Samples that were NaN, infinite or negative, over all rows.
+    pub invalid: u64,
 }
 
 /// Runs what is not yet in the folder. Each repetition visits all cells once, in an order of its own.
@@ -93,7 +95,8 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
     let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
     let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
-    let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0 };
+    let invalid = done.iter().filter_map(|record| record.invalid_samples).sum();
+    let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0, invalid };
     let mut drift = Drift::of(&done);
     let mut units = 0;
     // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
@@ -132,6 +135,7 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
                         progress.note(&format!("{} repetition {repetition}: {}", point.id, record.error));
                     }
                     file.append(&record)?;
+                    summary.invalid += record.invalid_samples.unwrap_or(0);
                     summary.rows += 1;
                     order += 1;
                 }

@@ -36,7 +36,7 @@ pub fn coordinate_limit(x: f64) -> bool {
 
 /// The error of a number that is not.
 pub fn out_of_range<E: Error>(value: f64, allowed: &str) -> E {
-    E::custom(format_args!("{value} is out of range (allowed: {allowed})"))
+    E::custom(format_args!("{value:?} is out of range (allowed: {allowed})"))
 }
 
 /// Three shares between 0 and 1.

@@ -289,6 +289,28 @@ pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
     kernel.ok_or_else(|| unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into())
 }
 
+/// Builds the kernel of an estimator that is in no table, with every effect and the spec's sampler. What the spec says of the estimator by
+/// name (its lights, its multiple of samples) is taken from the table's entry of that name.
+pub fn build_of<E: Estimator + 'static>(scene: &Arc<Scene>, spec: &Spec, estimator: E) -> Result<Box<dyn Kernel>> {
+    let choice = choose(scene, spec)?;
+    let Some(sampler) = with_keyed_sampler(&spec.sampler, KeyedSampler) else {
+        let names = SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name);
+        return Err(unknown("sampler", &spec.sampler, names).into());
+    };
+    let scene = prepared(scene, spec, choice);
+    Ok(Box::new(Scalar::<E, Box<dyn Sampler>, AllEffects>::new(scene, spec, estimator, sampler)))
+}
+
+/// From the sampler's name to the sampler, as one type for all.
+struct KeyedSampler;
+
+impl SamplerVisitor for KeyedSampler {
+    type Output = Box<dyn Sampler>;
+    fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
+        Box::new(sampler)
+    }
+}
+
 /// From the profile's name to a type.
 struct ByProfile {
     scene: Arc<Scene>,

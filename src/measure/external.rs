@@ -73,6 +73,6 @@ impl ExternalRun {
 pub fn missing_external(settings: &Settings, scene_hash: &str) -> Record {
     let mut record = external_row(settings, Measured::default());
     record.scene_hash = scene_hash.to_string();
-    record.warn(super::Warning::NoProgram);
+    record.warn(&super::Warning::NoProgram);
     record
 }

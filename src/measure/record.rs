@@ -236,7 +236,7 @@ impl Record {
     }
 
     /// Adds a doubt.
-    pub fn warn(&mut self, warning: Warning) {
+    pub fn warn(&mut self, warning: &Warning) {
         let separator = if self.warnings.is_empty() { "" } else { ";" };
         self.warnings = format!("{}{separator}{warning}", self.warnings);
     }

@@ -1,5 +1,6 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
+use super::invalid::{InvalidSample, first_invalid};
 use super::ledger::Ledger;
 use super::output::{Delivery, Output};
 use super::usage::Usage;
@@ -42,6 +43,8 @@ pub struct Outcome {
     pub job_counts: Vec<Counts>,
     /// What happened on the paths.
     pub counts: Counts,
+    /// The first samples that were NaN, infinite or negative, by row, column and number.
+    pub invalid: Vec<InvalidSample>,
     /// Threads that ran at least one job.
     pub workers_used: u32,
     /// Seconds to build the kernel and what accelerates the scene; once for all runs of a setup.
@@ -206,6 +209,10 @@ impl Account {
             counts.add(job);
         }
         let mut warnings = setup.warnings(&counts, spp, self.asked, self.workers_used);
+        let invalid = self.invalid_samples(setup, counts.invalid);
+        if counts.invalid > 0 {
+            warnings.push(Warning::InvalidSamples { count: counts.invalid, first: invalid.clone() });
+        }
         warnings.extend(self.time_warnings());
         if cfg!(debug_assertions) {
             warnings.push(Warning::DebugBuild);
@@ -221,6 +228,7 @@ impl Account {
             trace: Trace { jobs: self.spans.clone() },
             job_counts: self.job_counts.clone(),
             counts,
+            invalid,
             workers_used: self.workers_used,
             build_s: self.build_s,
             pilot_s: self.pilot_s,
@@ -229,6 +237,16 @@ impl Account {
             merge_s: self.merge_s,
             started_utc: self.started_utc.clone(),
             cpu: self.cpu,
+        }
+    }
+
+    /// Where the first invalid samples are, if there are any and the sampler gives them again.
+    fn invalid_samples(&self, setup: &Setup, count: u64) -> Vec<InvalidSample> {
+        match setup.kernel() {
+            Ok((kernel, _)) if count > 0 && setup.is_deterministic() => {
+                first_invalid(&*kernel, &self.plan, &self.job_counts)
+            }
+            _ => Vec::new(),
         }
     }
 

@@ -4,6 +4,7 @@ use super::output::{self, Delivery, OUTPUTS, Output};
 use super::settings::{LARGEST_THREADS, strategy_named};
 use super::{Settings, THREAD_PER_ROW, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
+use crate::estimator::Estimator;
 use crate::film::{Decomposition, FilmKey, Plan};
 use crate::kernel::{self, Choice, Clamp, Counts, Kernel};
 use crate::sampling::is_deterministic;
@@ -64,6 +65,37 @@ impl Setup {
         check_jobs(plan.len(), strategy, &settings.decomposition)?;
         let choice = kernel::choose(&scene, &settings.spec)?;
         Ok(Self { scene, choice, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings })
+    }
+
+    /// The same run with an estimator of one's own, in the place of the one that the settings name.
+    ///
+    /// ```
+    /// use pathmark::effect::EffectSet;
+    /// use pathmark::estimator::{Estimator, Probe};
+    /// use pathmark::math::{Ray, Rgb};
+    /// use pathmark::measure::{Settings, Setup};
+    /// use pathmark::sampling::{SampleKey, Sampler};
+    /// use pathmark::scene::Scene;
+    ///
+    /// /// Sees white wherever it looks.
+    /// struct White;
+    ///
+    /// impl Estimator for White {
+    ///     const SPP_MULTIPLE: u32 = 1;
+    ///     fn sample<S: Sampler, X: EffectSet, P: Probe>(&self, _: &Scene, _: Ray, _: SampleKey, _: &S, _: &mut P) -> Rgb {
+    ///         Rgb::WHITE
+    ///     }
+    /// }
+    ///
+    /// let outcome = Setup::prepare(Settings { scene: "cornell".into(), spp: 4, ..Settings::default() })?.with(White)?.run(None)?;
+    /// assert_eq!(outcome.film.pixels()[0].mean(), [1.0; 3]);
+    /// # Ok::<(), pathmark::error::Error>(())
+    /// ```
+    pub fn with<E: Estimator + 'static>(mut self, estimator: E) -> Result<Self> {
+        let before = Instant::now();
+        let kernel = Arc::from(kernel::build_of(&self.scene, &self.settings.spec, estimator)?);
+        self.built = OnceLock::from(Built { kernel, build_s: before.elapsed().as_secs_f64() });
+        Ok(self)
     }
 
     /// What was asked for.
@@ -231,11 +263,7 @@ impl Setup {
         // Where a background says that the scene is open, or a depth that paths are to be cut, that is what was asked for.
         let leaks = if self.scene.background.is_none() { counts.escaped } else { 0 };
         let cuts = if self.settings.spec.depth().is_none() { counts.truncated } else { 0 };
-        let counted = [
-            (leaks, Warning::Escaped(leaks)),
-            (cuts, Warning::Truncated(cuts)),
-            (counts.invalid, Warning::InvalidSamples(counts.invalid)),
-        ];
+        let counted = [(leaks, Warning::Escaped(leaks)), (cuts, Warning::Truncated(cuts))];
         warnings.extend(counted.into_iter().filter(|(count, _)| *count > 0).map(|(_, warning)| warning));
         warnings
     }

@@ -1,9 +1,10 @@
 //! What a reader of a record should know before believing it.
 
+use super::InvalidSample;
 use std::fmt;
 
 /// A doubt about a run; it goes into the record's `warnings`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Warning {
     /// Fewer threads did work than were asked for.
     WorkersUnused {
@@ -50,8 +51,13 @@ pub enum Warning {
     Truncated(u64),
     /// Triangles of the scene's meshes were left out because they have no area.
     LeftOut(usize),
-    /// Samples were NaN, infinite or negative.
-    InvalidSamples(u64),
+    /// Samples were NaN, infinite or negative, and contributed nothing.
+    InvalidSamples {
+        /// How many.
+        count: u64,
+        /// The first of them; none where samples cannot be had again.
+        first: Vec<InvalidSample>,
+    },
     /// The other program that was to be run is not there.
     NoProgram,
     /// The program was built without optimisation for measuring.
@@ -74,7 +80,11 @@ impl fmt::Display for Warning {
             Self::Escaped(count) => write!(f, "escaped({count})"),
             Self::Truncated(count) => write!(f, "truncated({count})"),
             Self::LeftOut(count) => write!(f, "left-out-triangles({count})"),
-            Self::InvalidSamples(count) => write!(f, "invalid-samples({count})"),
+            Self::InvalidSamples { count, first } => {
+                let places: Vec<String> = first.iter().map(ToString::to_string).collect();
+                let at = if places.is_empty() { String::new() } else { format!(" at {}", places.join(" ")) };
+                write!(f, "invalid-samples({count}{at})")
+            }
             Self::NoProgram => f.write_str("no-program"),
             Self::DebugBuild => f.write_str("debug-build"),
         }

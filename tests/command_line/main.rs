@@ -1,5 +1,6 @@
 //! The command line does what its help says: every name that `list` prints runs as it is, and what one verb writes another reads.
 
+mod check;
 #[path = "../support/experiment.rs"]
 mod experiment;
 mod files;

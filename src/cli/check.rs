@@ -1,0 +1,111 @@
+//! `pathmark check`: the hard cases on this machine, and what guarding against them costs.
+
+use super::output::{print, print_json};
+use super::progress::Talk;
+use crate::check::{self, Case, Effort, Outcome, SECTIONS};
+use crate::error::{Error, InputError, Result};
+use crate::experiment::Progress;
+use crate::measure::available_threads;
+use clap::Args;
+use serde::Serialize;
+
+/// `pathmark check --thorough`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// Cases by name, as in S11 A6, or by first letter; all of them and the price list of the guards if none is named
+    cases: Vec<String>,
+    /// Try as many random inputs as the catalogue of hard cases asks for: minutes to hours
+    #[arg(long)]
+    thorough: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// A case and what came of it.
+#[derive(Serialize)]
+struct Row<'a> {
+    id: &'static str,
+    tries: &'static str,
+    pass: bool,
+    #[serde(flatten)]
+    outcome: &'a Outcome,
+}
+
+pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+    let cases = chosen(&arguments.cases)?;
+    let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
+    talk.begin("hard cases", cases.len() as u64);
+    let outcomes = check::run(&cases, effort, available_threads(), &|done| talk.advance(done));
+    talk.end();
+    let rows: Vec<Row<'_>> = cases
+        .iter()
+        .zip(&outcomes)
+        .map(|(case, outcome)| Row { id: case.id, tries: case.tries, pass: outcome.passed(), outcome })
+        .collect();
+    if arguments.json {
+        print_json(&serde_json::json!({ "cases": rows }))?;
+    } else {
+        print(&table(&rows, !arguments.cases.is_empty()))?;
+    }
+    let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| row.id).collect();
+    if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }
+}
+
+/// The cases of these names or first letters, in the table's order.
+fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
+    for name in names {
+        if !check::cases().any(|case| fits(case, name)) {
+            let known: Vec<&str> = check::cases().map(|case| case.id).collect();
+            let error = InputError::new("case", name, "there is none of that name");
+            return Err(error.allowed(known.join(", ")).into());
+        }
+    }
+    Ok(check::cases().filter(|case| names.is_empty() || names.iter().any(|name| fits(case, name))).collect())
+}
+
+fn fits(case: &Case, name: &str) -> bool {
+    case.id == name || (name.len() == 1 && case.id.starts_with(name))
+}
+
+/// What a reader sees: a line for each case, all that was tried where cases were named, and whatever went wrong.
+fn table(rows: &[Row<'_>], in_full: bool) -> String {
+    let mut lines = Vec::new();
+    for section in SECTIONS {
+        let ids: Vec<&str> = section.cases.iter().copied().flatten().map(|case| case.id).collect();
+        let here: Vec<&Row<'_>> = rows.iter().filter(|row| ids.contains(&row.id)).collect();
+        if !here.is_empty() {
+            lines.push(format!("{}\n", section.title));
+        }
+        for row in here {
+            lines.push(line(row));
+            for trial in row.outcome.trials.iter().filter(|trial| in_full || !trial.passed) {
+                let mark = if trial.passed { "    " } else { "  ! " };
+                lines.push(format!("{mark}{}: expected {}, found {}", trial.variant, trial.expected, trial.found));
+            }
+            lines.extend(row.outcome.skipped.iter().map(|why| format!("    not tried: {why}")));
+        }
+        lines.push(String::new());
+    }
+    let trials: usize = rows.iter().map(|row| row.outcome.trials.len()).sum();
+    let (failed, skipped) = (
+        rows.iter().filter(|row| !row.pass).count(),
+        rows.iter().filter(|row| row.outcome.trials.is_empty() && row.pass).count(),
+    );
+    lines.push(format!("{} cases, {trials} trials: {failed} failed, {skipped} not tried", rows.len()));
+    lines.join("\n")
+}
+
+/// Name, verdict, what is tried, and of a single trial what was expected and found.
+fn line(row: &Row<'_>) -> String {
+    let verdict = match (row.pass, row.outcome.trials.is_empty()) {
+        (true, false) => "pass",
+        (true, true) => "skip",
+        (false, _) => "FAIL",
+    };
+    let what = match row.outcome.trials.as_slice() {
+        [trial] => format!("expected {}, found {}", trial.expected, trial.found),
+        trials => format!("{} trials", trials.len()),
+    };
+    format!("  {:4} {verdict}  {}: {what}", row.id, row.tries)
+}

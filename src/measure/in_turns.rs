@@ -1,0 +1,95 @@
+//! Two pieces of work, timed by turns, so that what slows the machine for a while slows both.
+
+use crate::analysis::quantile::{median, median_interval};
+use crate::analysis::{Estimate, Interval};
+use std::time::{Duration, Instant};
+
+/// What one round of either should take at least: far above a clock's resolution.
+const ROUND: Duration = Duration::from_millis(2);
+/// Doublings after which a piece of work is too quick to be timed.
+const MOST_DOUBLINGS: u32 = 40;
+
+/// Nanoseconds of one operation of either, and the ratio of the first to the second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InTurns {
+    /// Median nanoseconds of an operation of the first.
+    pub first_ns: f64,
+    /// Median nanoseconds of an operation of the second.
+    pub second_ns: f64,
+    /// First over second: median over the rounds, with a distribution-free interval.
+    pub ratio: Estimate,
+}
+
+/// Times both in so many rounds, in each round either once, and by turns either first. Each is called with a number of operations to do.
+/// `None` for fewer than two rounds.
+pub fn in_turns(rounds: usize, first: &mut dyn FnMut(u64), second: &mut dyn FnMut(u64), level: f64) -> Option<InTurns> {
+    let of_first = operations(|count| time(first, count));
+    let of_second = operations(|count| time(second, count));
+    let mut times: Vec<[f64; 2]> = Vec::with_capacity(rounds);
+    for round in 0..rounds {
+        times.push(if round % 2 == 0 {
+            let a = ns_per_operation(first, of_first);
+            [a, ns_per_operation(second, of_second)]
+        } else {
+            let b = ns_per_operation(second, of_second);
+            [ns_per_operation(first, of_first), b]
+        });
+    }
+    let column = |index: usize| times.iter().map(|row| row[index]).collect::<Vec<f64>>();
+    let ratios: Vec<f64> = times.iter().map(|[a, b]| a / b).collect();
+    let interval: Interval = median_interval(&ratios, level)?;
+    Some(InTurns {
+        first_ns: median(&column(0))?,
+        second_ns: median(&column(1))?,
+        ratio: Estimate { value: median(&ratios)?, interval },
+    })
+}
+
+/// How many operations take a round.
+fn operations(mut time: impl FnMut(u64) -> Duration) -> u64 {
+    let counts = (0..MOST_DOUBLINGS).map(|power| 1_u64 << power);
+    counts.into_iter().find(|count| time(*count) >= ROUND).unwrap_or(1 << MOST_DOUBLINGS)
+}
+
+fn time(work: &mut dyn FnMut(u64), count: u64) -> Duration {
+    let before = Instant::now();
+    work(count);
+    before.elapsed()
+}
+
+fn ns_per_operation(work: &mut dyn FnMut(u64), count: u64) -> f64 {
+    time(work, count).as_secs_f64() * 1e9 / count as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+    use std::thread::sleep;
+
+    /// Who was called, with a piece of work that is long enough to be timed at once.
+    #[test]
+    fn either_goes_first_by_turns() {
+        let calls = RefCell::new(String::new());
+        let call = |who: char| {
+            let calls = &calls;
+            move |count: u64| {
+                assert_eq!(count, 1);
+                calls.borrow_mut().push(who);
+                sleep(ROUND);
+            }
+        };
+        let found = in_turns(6, &mut call('a'), &mut call('b'), 0.95).unwrap();
+        assert_eq!(*calls.borrow(), "ababbaabbaabba");
+        assert!(found.ratio.interval.contains(found.ratio.value) && found.first_ns >= 2e6 && found.second_ns >= 2e6);
+        assert_eq!(in_turns(1, &mut call('a'), &mut call('b'), 0.95), None);
+    }
+
+    /// What is quick is done twice as often each time, until it can be timed.
+    #[test]
+    fn quick_work_is_repeated() {
+        assert_eq!(operations(|count| Duration::from_micros(100 * count)), 32);
+        assert_eq!(operations(|_| Duration::from_secs(1)), 1);
+        assert_eq!(operations(|_| Duration::ZERO), 1 << MOST_DOUBLINGS);
+    }
+}

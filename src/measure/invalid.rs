@@ -1,0 +1,58 @@
+//! Where the invalid samples of a run are. Kernels only count them; as samples can be had again by their address, the few that are worth telling
+//! are looked for afterwards, and a run without any pays nothing.
+
+use crate::film::{Bounds, Piece, Plan, TileBuffer};
+use crate::kernel::{Counts, Kernel};
+use serde::Serialize;
+use std::fmt;
+
+/// A sample that was NaN, infinite or negative, and where it can be had again: `pathmark replay --pixel X,Y --sample K`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct InvalidSample {
+    /// Row, from the top.
+    pub y: u32,
+    /// Column, from the left.
+    pub x: u32,
+    /// Which of the pixel's samples.
+    pub sample: u32,
+}
+
+impl fmt::Display for InvalidSample {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}/{}", self.x, self.y, self.sample)
+    }
+}
+
+/// So many are told.
+pub(super) const TOLD: usize = 10;
+
+/// The first invalid samples of the pieces, by row, column and number, however the film was cut. `counts` has what happened in each piece.
+pub(super) fn first_invalid(kernel: &dyn Kernel, plan: &Plan, counts: &[Counts]) -> Vec<InvalidSample> {
+    let affected: Vec<&Piece> =
+        plan.pieces().iter().zip(counts).filter(|(_, counts)| counts.invalid > 0).map(|(piece, _)| piece).collect();
+    let first = affected.iter().map(|piece| piece.bounds.y0).min().unwrap_or(0);
+    let last = affected.iter().map(|piece| piece.bounds.y1).max().unwrap_or(0);
+    let mut found = Vec::new();
+    for y in first..last {
+        let mut in_row: Vec<InvalidSample> = Vec::new();
+        for piece in affected.iter().filter(|piece| (piece.bounds.y0..piece.bounds.y1).contains(&y)) {
+            for x in piece.bounds.x0..piece.bounds.x1 {
+                let samples = piece.samples.clone().map(|sample| InvalidSample { y, x, sample });
+                in_row.extend(samples.filter(|sample| is_invalid(kernel, *sample)));
+            }
+        }
+        in_row.sort_unstable();
+        found.extend(in_row);
+        if found.len() >= TOLD {
+            found.truncate(TOLD);
+            break;
+        }
+    }
+    found
+}
+
+fn is_invalid(kernel: &dyn Kernel, at: InvalidSample) -> bool {
+    let bounds = Bounds { x0: at.x, y0: at.y, x1: at.x + 1, y1: at.y + 1 };
+    let piece = Piece { bounds, samples: at.sample..at.sample + 1 };
+    kernel.render(&piece, &mut TileBuffer::new(bounds)).invalid > 0
+}
