@@ -27,8 +27,11 @@
 //! ```
 
 mod analytic;
+mod chi_square;
 mod path;
 mod random_numbers;
+mod rendering;
+mod scene_text;
 mod shading;
 mod sphere;
 mod statistics;
