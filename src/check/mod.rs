@@ -27,9 +27,12 @@
 //! ```
 
 mod analytic;
+mod chi_square;
 mod path;
 mod random_numbers;
+mod rendering;
 mod run;
+mod scene_text;
 mod shading;
 mod sphere;
 mod statistics;

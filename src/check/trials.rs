@@ -88,6 +88,16 @@ impl Trials {
         self.holds(variant, format_args!("{expected:?} +- {tolerance:.1e}"), format_args!("{found:?}"), passed)
     }
 
+    /// A number, such as the largest error, that must not be above a limit. NaN is above every limit.
+    pub fn at_most(&mut self, variant: impl Into<String>, limit: f64, found: f64) -> bool {
+        self.holds(variant, format_args!("at most {limit:?}"), format_args!("{found:?}"), found <= limit)
+    }
+
+    /// A number, such as the error of what lacks a guard, that must not be below a limit: inputs that tell right from wrong make it large.
+    pub fn at_least(&mut self, variant: impl Into<String>, limit: f64, found: f64) -> bool {
+        self.holds(variant, format_args!("at least {limit:?}"), format_args!("{found:?}"), found >= limit)
+    }
+
     /// A value that must be exactly what is expected.
     pub fn same<T: PartialEq + Debug>(&mut self, variant: impl Into<String>, expected: &T, found: &T) -> bool {
         let passed = expected == found;

@@ -11,7 +11,7 @@ use crate::scene::{Aim, Hit, Lights, Scene, Standpoint, Tests};
 /// The share of a way of finding light with density `a`, where another has density `b`: the power heuristic with exponent 2 (Veach and
 /// Guibas 1995), by a ratio, because squares overflow.
 #[inline(always)]
-pub(super) fn power_heuristic(a: f64, b: f64) -> f64 {
+pub fn power_heuristic(a: f64, b: f64) -> f64 {
     let ratio = b / a;
     // Both zero cannot be: who found the light had a density for it.
     debug_assert!(!ratio.is_nan());

@@ -20,6 +20,7 @@ use crate::math::{Ray, Rgb};
 use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{Hit, Scene, Tests};
 
+pub use aimed::power_heuristic;
 pub use bsdf::Bsdf;
 pub use camera_ray::camera_ray;
 pub use path::{Aimed, MAX_BOUNCES, Path};

@@ -4,8 +4,13 @@
 //! for Random Number Generation", 2014; crate `rand_pcg`). Two PCGs are correlated when their states or streams differ in a simple way: by
 //! 10 to 900 standard deviations with raw pixel numbers, and still by 10 to 100 when only the streams differ and the states are the
 //! same well-mixed number. So everything goes into the state: a mix of (seed, pixel, sample) is mixed again with the dimension, which is
-//! (bounce, branch, purpose) and also the stream. Each mix is a bijection: within a seed, two samples never share a state at the same
-//! dimension, and two dimensions never share a stream, so no two addresses share a generator.
+//! (bounce, branch, purpose) and also the stream.
+//!
+//! No two addresses of a seed share a generator, by construction. (pixel, sample) are the halves of one number, (bounce, branch, purpose)
+//! lie beside each other in another, and nothing is cut off. [`mix`] is a bijection: an addition, multiplications by odd numbers and shifts
+//! added to what was shifted can each be undone. What differs before a mix or before an exclusive or with the same number therefore differs
+//! after it: at one dimension two samples have two states, and two dimensions have two streams. Two seeds may meet in a state, by a chance of
+//! 2^-64 for each two samples.
 
 use super::{Address, Sampler};
 use rand::Rng;
@@ -18,7 +23,7 @@ pub struct Independent;
 /// The finaliser of `SplitMix64` (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014, variant 13 of Stafford's
 /// mixers), a bijection of 64-bit numbers; the offset keeps zero from being its own image.
 #[inline(always)]
-pub(super) fn mix(x: u64) -> u64 {
+pub fn mix(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
@@ -27,7 +32,7 @@ pub(super) fn mix(x: u64) -> u64 {
 
 /// The top 53 bits as a multiple of 2^-53 in [0, 1): exact, and never 1.
 #[inline(always)]
-pub(super) fn unit(bits: u64) -> f64 {
+pub fn unit(bits: u64) -> f64 {
     const STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
     (bits >> 11) as f64 * STEP
 }

@@ -12,7 +12,7 @@ mod sobol;
 mod stratified;
 mod warp;
 
-pub use independent::Independent;
+pub use independent::{Independent, mix, unit};
 pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;

@@ -155,6 +155,11 @@ impl Lights {
         (density > 0.0 && density < f64::INFINITY).then_some(Aim { direction, primitive: light.primitive, density })
     }
 
+    /// How often each light is chosen.
+    pub fn chances(&self) -> impl Iterator<Item = f64> {
+        self.lights.iter().map(|light| light.chance)
+    }
+
     /// How likely [`Lights::aim`] was to choose the direction of a ray that met `hit`, per steradian; 0 if nothing is aimed at there.
     #[inline(always)]
     pub fn density(&self, ray: &Ray, from: Option<Standpoint>, hit: &Hit) -> f64 {

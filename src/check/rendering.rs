@@ -1,0 +1,80 @@
+//! Images for cases, and what they say about means.
+
+use super::Trials;
+use crate::film::Film;
+use crate::kernel::Spec;
+use crate::measure::{Outcome, Settings, Setup};
+use crate::scene::Scene;
+use std::sync::Arc;
+
+/// Renders a scene with about as little around it as there is.
+pub(super) fn render(
+    scene: &Scene,
+    kernel: &str,
+    estimator: &str,
+    (width, height): (u32, u32),
+    spp: u32,
+    seed: u64,
+) -> Outcome {
+    let spec = Spec { width, height, seed, estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
+    run(scene, spec, spp)
+}
+
+/// Renders a scene by a spec.
+pub(super) fn run(scene: &Scene, spec: Spec, spp: u32) -> Outcome {
+    let (decomposition, strategy) = ("rows".into(), "shared-counter".into());
+    let settings = Settings { spp, spec, decomposition, strategy, threads: 2, ..Settings::default() };
+    let setup = Setup::for_scene(Arc::new(scene.clone()), settings).expect("settings that the check has made");
+    setup.run(None).expect("a run that nothing stands in the way of")
+}
+
+/// Mean and variance over all samples of a film, within the pixels.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moments {
+    /// The mean.
+    pub(super) mean: f64,
+    /// The variance of a sample within its pixel.
+    pub(super) variance: f64,
+    /// How many samples.
+    pub(super) n: f64,
+}
+
+impl Moments {
+    /// Those of a channel.
+    pub(super) fn of(film: &Film, channel: usize) -> Self {
+        let (mut n, mut sum, mut spread) = (0.0, 0.0, 0.0);
+        for pixel in film.pixels() {
+            n += f64::from(pixel.count);
+            sum += pixel.sum[channel];
+            spread += pixel.square[channel] - pixel.sum[channel] * pixel.sum[channel] / f64::from(pixel.count);
+        }
+        Self { mean: sum / n, variance: spread.max(0.0) / (n - film.pixels().len() as f64), n }
+    }
+
+    /// The standard error of the mean.
+    pub(super) fn error(&self) -> f64 {
+        (self.variance / self.n).sqrt()
+    }
+}
+
+/// Whether two images of the same scene, by whatever ways of finding light, have one mean: the score of their difference.
+pub(super) fn difference(a: &Moments, b: &Moments) -> f64 {
+    let error = libm::hypot(a.error(), b.error());
+    if error > 0.0 {
+        (a.mean - b.mean) / error
+    } else if a.mean == b.mean {
+        0.0
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Insists on an exact value, within an error that must be below `widest` of it to mean anything.
+pub(super) fn exact(trials: &mut Trials, variant: &str, value: f64, found: &Moments, limit: f64, widest: f64) {
+    let power = limit * found.error() / value;
+    trials.at_most(format!("{variant}: limit times error, relative"), widest, power);
+    // The spot that is looked at is small, not a point.
+    let off = (found.mean - value).abs() - 1e-7 * value;
+    let score = if off > 0.0 { off / found.error() } else { 0.0 };
+    trials.deviates_below(format!("{variant}: {:.6} for {value:.6}", found.mean), limit, score);
+}
