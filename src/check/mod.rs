@@ -27,10 +27,12 @@
 //! ```
 
 mod analytic;
+pub mod exact;
 mod path;
 mod random_numbers;
 mod shading;
 mod sphere;
+pub mod stage;
 mod statistics;
 mod trials;
 mod triangle;
