@@ -36,7 +36,7 @@ fn the_error_falls_with_the_root_of_the_samples() {
     assert!(interval.contains(-0.5), "slope {slope}, interval {interval:?}");
 }
 
-/// M03: against a reference of as many samples a plain squared error is twice the image's own. The cross form of two such halves
+/// Against a reference of as many samples a plain squared error is twice the image's own. The cross form of two such halves
 /// agrees within 10 % with that of halves of a hundred times the samples.
 #[test]
 fn noisy_references_do_not_inflate_the_error() {
