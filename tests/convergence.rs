@@ -19,7 +19,7 @@ fn render(spp: u32, seed: u64) -> Image {
     Setup::prepare(settings).unwrap().run(None).unwrap().film.image()
 }
 
-/// M03: against a reference of as many samples a plain squared error is twice the image's own. The cross form of two such halves
+/// Against a reference of as many samples a plain squared error is twice the image's own. The cross form of two such halves
 /// agrees within 10 % with that of halves of a hundred times the samples.
 #[test]
 fn noisy_references_do_not_inflate_the_error() {

@@ -110,17 +110,6 @@ mod tests {
     }
 
     #[test]
-    fn odd_speedups_are_flagged() {
-        assert!(is_superlinear(2.01, 2) && !is_superlinear(2.0, 2));
-        assert!(serial_fraction(2.2, 2).unwrap() < 0.0);
-        assert!(serial_fraction(0.5, 2).unwrap() > 1.0);
-        let interval = |low, high| Interval { low, high, level: 0.95 };
-        assert_eq!(oddity(&interval(2.1, 2.4), 2), Some(Oddity::Superlinear));
-        assert_eq!(oddity(&interval(1.9, 2.1), 2), None);
-        assert_eq!(oddity(&interval(0.6, 0.9), 4), Some(Oddity::Slowdown));
-    }
-
-    #[test]
     fn degenerate_input_has_no_answer() {
         assert_eq!(speedup(0.0, 1.0), None);
         assert_eq!(speedup(1.0, 0.0), None);

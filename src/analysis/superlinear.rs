@@ -69,24 +69,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_cause_needs_its_evidence() {
-        let one = |low, high| Some(Interval { low, high, level: 0.95 });
-        let none = Evidence::default();
-        let table = [
-            (none, Cause::Unexplained),
-            (Evidence { at_one_worker: one(0.97, 1.02), ..none }, Cause::Unexplained),
-            (Evidence { at_one_worker: one(1.01, 1.05), warnings: 3, ..none }, Cause::SlowBaseline),
-            (Evidence { warnings: 1, ..none }, Cause::Disturbance),
-            (Evidence { processors: Some(4), physical_cores: Some(2), ..none }, Cause::SharedCores),
-            (Evidence { processors: Some(2), physical_cores: Some(2), ..none }, Cause::Unexplained),
-            (Evidence { processors: Some(4), ..none }, Cause::Unexplained),
-        ];
-        for (evidence, expected) in table {
-            assert_eq!(cause(&evidence), expected, "{evidence:?}");
-        }
-    }
-
-    #[test]
     fn only_evidence_is_called_a_cause() {
         for cause in [Cause::SlowBaseline, Cause::Disturbance, Cause::SharedCores] {
             assert!(cause.to_string().starts_with("likely cause: "));

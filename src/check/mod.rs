@@ -28,6 +28,7 @@
 
 mod analytic;
 mod chi_square;
+pub mod exact;
 mod path;
 mod random_numbers;
 mod rendering;
@@ -35,6 +36,7 @@ mod run;
 mod scene_text;
 mod shading;
 mod sphere;
+pub mod stage;
 mod statistics;
 mod trials;
 mod triangle;

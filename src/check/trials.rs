@@ -61,6 +61,11 @@ impl Trials {
         self.outcome
     }
 
+    /// How much may be tried.
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
     /// How many times to try: the first number quickly, the second thoroughly.
     pub fn times(&self, quick: u64, thorough: u64) -> u64 {
         match self.effort {
@@ -99,9 +104,10 @@ impl Trials {
     }
 
     /// A value that must be exactly what is expected.
-    pub fn same<T: PartialEq + Debug>(&mut self, variant: impl Into<String>, expected: &T, found: &T) -> bool {
-        let passed = expected == found;
-        self.holds(variant, format_args!("{expected:?}"), format_args!("{found:?}"), passed)
+    pub fn same<T: PartialEq + Debug>(&mut self, variant: impl Into<String>, expected: T, found: T) -> bool {
+        let pair = [expected, found];
+        let [expected, found] = pair.each_ref().map(|value| format!("{value:?}"));
+        self.holds(variant, expected, found, pair[0] == pair[1])
     }
 
     /// Something, named by `what`, that must not have happened in any of `of` tries.

@@ -1,15 +1,10 @@
-//! Fog: A17, A18 and A20 of the catalogue of hard cases, single scattering against quadrature, and none inside of glass.
+//! Fog: single scattering against quadrature, what is lost on the way of light, and none inside of glass.
 
 use super::estimate::{
-    arriving_estimators, assert_exact, camera, diffuse, mean, object, plane, point_light, render, scene, sphere,
+    arriving_estimators, assert_exact, camera, diffuse, fog, object, plane, point_light, render, scene, sphere,
 };
 use pathmark::estimator::ESTIMATORS;
 use std::f64::consts::PI;
-
-fn fog(absorption: f64, scattering: f64, emission: f64) -> String {
-    let (absorption, emission) = ([absorption; 3], [emission; 3]);
-    format!("[fog]\nabsorption = {absorption:?}\nscattering = {scattering:?}\nemission = {emission:?}\n")
-}
 
 /// A glowing plane at y = 0.
 fn lamp(emission: f64) -> String {
@@ -21,62 +16,6 @@ fn above(height: f64) -> String {
 }
 
 const CLEAR: &str = "{ dielectric = { eta = 1.0, tint = [1.0, 1.0, 1.0] } }";
-
-/// A17: exp(-tau) by Beer and Lambert, down to where f64 ends.
-#[test]
-fn absorption() {
-    for (tau, exact) in [
-        (1.0, 0.367_879_441_171_442_33),
-        (10.0, 4.539_992_976_248_485e-5),
-        (88.0, 6.054_601_895_401_186e-39),
-        (700.0, 9.859_676_543_759_77e-305),
-    ] {
-        // Powers of two keep tau exact; the spot's width is what remains.
-        for (sigma, height) in [(tau, 1.0), (tau / 4.0, 4.0)] {
-            let scene = scene(&[above(height), fog(sigma, 0.0, 0.0), lamp(1.0)]);
-            for entry in ESTIMATORS {
-                let (found, _) = mean(&render(&scene, entry.name, 1024, None), 0);
-                assert!((found / exact - 1.0).abs() < 1e-11, "tau {tau}, {}: {found}", entry.name);
-            }
-        }
-    }
-    for entry in ESTIMATORS {
-        let nothing = render(&scene(&[above(1.0), fog(800.0, 0.0, 0.0), lamp(1.0)]), entry.name, 1024, None);
-        assert_eq!(mean(&nothing, 0).0, 0.0, "{}", entry.name);
-    }
-}
-
-/// A18: fog that absorbs and glows, in front of black: 1 - exp(-tau), also where tau is so small that 1 - exp would lose half of its digits.
-#[test]
-fn emission() {
-    for (tau, exact) in [(1e-9, 9.999_999_995e-10), (0.01, 0.009_950_166_250_831_947), (1.0, 0.632_120_558_828_557_7)] {
-        let scene = scene(&[above(1.0), fog(tau, 0.0, 1.0), lamp(0.0)]);
-        for entry in ESTIMATORS {
-            let (found, _) = mean(&render(&scene, entry.name, 1024, None), 0);
-            assert!((found / exact - 1.0).abs() < 1e-11, "tau {tau}, {}: {found}", entry.name);
-        }
-    }
-    // Without an end, and without anything in it.
-    let ball = object(&sphere([0.0, 9.0, 0.0], 1.0), &diffuse(0.0), [0.0; 3]);
-    let endless = scene(&["background = [0.0, 0.0, 0.0]\n".to_string(), above(1.0), fog(0.3, 0.0, 2.5), ball]);
-    for entry in ESTIMATORS {
-        assert_eq!(mean(&render(&endless, entry.name, 1024, None), 0).0, 2.5, "{}", entry.name);
-    }
-}
-
-/// A20: in a furnace the radiance is 1, however much the fog scatters, absorbs and gives off.
-#[test]
-fn furnace() {
-    for (absorption, scattering) in [(0.0, 1.0), (0.0, 4.0), (0.5, 0.5), (2.0, 1.0)] {
-        let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.25), [0.75; 3]);
-        let scene = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), fog(absorption, scattering, 1.0), wall]);
-        for estimator in arriving_estimators() {
-            let outcome = render(&scene, estimator, 600_000, None);
-            assert_eq!((outcome.counts.escaped, outcome.counts.truncated), (0, 0));
-            assert_exact(&format!("{absorption}, {scattering}, {estimator}"), &outcome, 0, 1.0, 16);
-        }
-    }
-}
 
 /// Light of a point light that fog scatters once towards the camera: the integral over the line of sight, by Simpson's rule.
 #[test]

@@ -1,10 +1,13 @@
-//! Effects that only some scenes call for: fog, lenses, cut paths, Whitted's estimator; what they do, and that they do nothing elsewhere.
+//! Effects that only some scenes call for: fog, lenses, cut paths, metal, point lights, Whitted's estimator; what they do, and that they do nothing
+//! elsewhere.
 
 mod camera;
 mod depth;
 #[path = "../support/estimate.rs"]
 mod estimate;
 mod fog;
+mod metal;
+mod point_lights;
 mod scale;
 mod small_stack;
 mod unused;

@@ -1,7 +1,29 @@
-//! Paths, sums and images.
+//! Paths without an end, chance that ends them, what cuts and clamps take away, and how samples become sums, pieces and pictures.
 
+mod cuts;
+mod display;
 mod invalid_samples;
+mod long_paths;
+mod order;
+mod pieces;
+mod platform;
+mod roulette;
+mod sums;
+pub(in crate::check) mod unguarded;
 
 use super::Section;
 
-pub(super) const SECTION: Section = Section { title: "Paths, sums and images", cases: &[invalid_samples::CASES] };
+pub(super) const SECTION: Section = Section {
+    title: "Paths, sums and images",
+    cases: &[
+        long_paths::CASES,
+        roulette::CASES,
+        cuts::CASES,
+        invalid_samples::CASES,
+        sums::CASES,
+        order::CASES,
+        pieces::CASES,
+        display::CASES,
+        platform::CASES,
+    ],
+};

@@ -1,0 +1,70 @@
+//! Slabs of glass between two lamps.
+
+use crate::check::exact::{Bench, arriving_estimators, every_estimator, full_estimators};
+use crate::check::stage::{camera, diffuse, object, plane, scene};
+use crate::check::{Case, Trials};
+use crate::scene::Scene;
+
+pub(super) const CASES: &[Case] = &[
+    Case { id: "A14", tries: "a lossless slab, straight through", run: lossless },
+    Case { id: "A15", tries: "a slab that absorbs", run: absorbing },
+    Case { id: "A16", tries: "a lossless slab, at a slant", run: slanted },
+];
+
+/// A slab of index 1.5 with a red lamp behind it and a green one before it, both blue, seen at an angle to its normal.
+fn slab(degrees: f64, tint: f64, fresnel: &str) -> Scene {
+    let glass = format!("{{ dielectric = {{ eta = 1.5, tint = {:?}, fresnel = \"{fresnel}\" }} }}", [tint; 3]);
+    let up = [0.0, 1.0, 0.0];
+    let (sin, cos) = (libm::sin(degrees.to_radians()), libm::cos(degrees.to_radians()));
+    scene(&[
+        camera([2.0 * sin, 1.0 + 2.0 * cos, 0.0], [0.0, 1.0, 0.0]),
+        object(&plane([0.0, 1.0, 0.0], up), &glass, [0.0; 3]),
+        object(&plane([0.0, 0.0, 0.0], [0.0, -1.0, 0.0]), &glass, [0.0; 3]),
+        object(&plane([0.0, -1.0, 0.0], up), &diffuse(0.0), [1.0, 0.0, 1.0]),
+        object(&plane([0.0, 5.0, 0.0], up), &diffuse(0.0), [0.0, 1.0, 1.0]),
+    ])
+}
+
+/// T = 2n/(n^2 + 1) = 12/13 of the light behind it and R = 1/13 of that before it, whichever way the reflected share is worked out.
+fn lossless(trials: &mut Trials) {
+    let mut bench = Bench::new(trials);
+    // The rarest of the three decides.
+    bench.widest = [3e-2, 1e-3];
+    for fresnel in ["schlick", "exact"] {
+        let exact = [0.923_076_923_076_923_1, 0.076_923_076_923_076_92, 1.0];
+        bench.each(fresnel, &slab(0.0, 1.0, fresnel), every_estimator(), &exact);
+    }
+}
+
+/// T = (1 - R)^2 A/(1 - R^2 A^2) and R(A) likewise, for a way through of A = exp(-tau). Here it is the surfaces that absorb, each as much as
+/// one way through: a path that is reflected k times on the inside goes through k + 1 times and meets k + 2 surfaces, so that both shares
+/// have one factor A more.
+fn absorbing(trials: &mut Trials) {
+    let mut bench = Bench::new(trials);
+    for (tau, transmitted, reflected, widest) in [
+        (0.1, 0.834_991_978_239_793_7, 0.070_221_279_426_849_32, [3e-2, 1e-3]),
+        (1.0, 0.339_111_122_903_388_15, 0.044_990_080_415_548_75, [3e-2, 1e-3]),
+    ] {
+        let a = libm::exp(-tau);
+        bench.widest = widest;
+        bench.each(&format!("tau {tau}"), &slab(0.0, a, "exact"), every_estimator(), &[a * transmitted, a * reflected]);
+    }
+    // So little is left that roulette would leave it to luck.
+    let a = libm::exp(-10.0);
+    let exact = [a * 4.184_057_526_924_402_3e-5];
+    bench.each("tau 10", &slab(0.0, a, "exact"), every_estimator().filter(|name| *name == "whitted"), &exact);
+    bench.roulette = Some("never".to_string());
+    bench.each("tau 10", &slab(0.0, a, "exact"), full_estimators(), &exact);
+}
+
+/// With the mean of both polarisations at each surface, as renderers have it. Light that stays polarised on the way from one to the other would
+/// give 0.9073, 0.8481 and 0.4585.
+fn slanted(trials: &mut Trials) {
+    let mut bench = Bench::new(trials);
+    for (degrees, exact) in
+        [(45.0, 0.904_326_791_458_889), (60.0, 0.836_232_462_710_168), (80.0, 0.441_229_173_374_367)]
+    {
+        let scene = slab(degrees, 1.0, "exact");
+        bench.each(&format!("{degrees} degrees"), &scene, arriving_estimators(), &[exact, 1.0 - exact, 1.0]);
+    }
+}

@@ -1,0 +1,104 @@
+//! Paths that never end, or only after thousands of bounces.
+
+use crate::check::analytic::corridors::corridor;
+use crate::check::exact::{arriving_estimators, full_estimators, run};
+use crate::check::stage::{camera, diffuse, mirror, object, scene, sphere};
+use crate::check::{Case, Trials};
+use crate::estimator::MAX_BOUNCES;
+use crate::film::{Bounds, Piece, PixelSum, TileBuffer};
+use crate::kernel::{self, Counts, KERNELS, Spec};
+use crate::measure::{Settings, Warning};
+use crate::scene::Scene;
+use std::sync::Arc;
+use std::thread;
+
+pub(super) const CASES: &[Case] = &[
+    Case { id: "P01", tries: "a closed sphere that loses nothing", run: endless },
+    Case { id: "P02", tries: "ten thousand bounces on a stack of 64 KiB", run: ten_thousand },
+    Case { id: "P03", tries: "throughputs down to the smallest number", run: underflow },
+];
+
+fn hollow(material: &str, emission: [f64; 3]) -> Scene {
+    scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), object(&sphere([0.0; 3], 1.0), material, emission)])
+}
+
+/// One pixel's samples, rendered in a thread with a small stack, where Rust's own threads have 2 MiB.
+fn pixel(scene: &Scene, spec: Spec, spp: u32) -> (PixelSum, Counts) {
+    let kernel = kernel::build(&Arc::new(scene.clone()), &Spec { width: 1, height: 1, ..spec }).expect("a kernel");
+    let render = move || {
+        let bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
+        let mut buffer = TileBuffer::new(bounds);
+        let counts = kernel.render(&Piece { bounds, samples: 0..spp }, &mut buffer);
+        (buffer.row_mut(0)[0], counts)
+    };
+    let thread = thread::Builder::new().stack_size(64 << 10).spawn(render).expect("a thread");
+    thread.join().expect("no overflow of the stack")
+}
+
+/// The loop ends after 65 536 vertices, which is counted and said; each has added what it gave off.
+fn endless(trials: &mut Trials) {
+    for (material, name) in [(mirror(1.0), "mirror"), (diffuse(1.0), "matte")] {
+        for emission in [0.0, 1.0] {
+            let scene = hollow(&material, [emission; 3]);
+            for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+                let spec =
+                    Spec { width: 1, height: 1, estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
+                let outcome = run(&scene, Settings { spp: 4, spec, threads: 1, ..Settings::default() });
+                let counts = outcome.counts;
+                let what = format!("{name}, Le {emission}, {estimator}, {kernel}");
+                let found = (counts.paths, counts.truncated, counts.escaped, counts.invalid);
+                trials.same(format!("{what}: paths, cut, escaped, invalid"), (4, 4, 0, 0), found);
+                let is_told = outcome.warnings.contains(&Warning::Truncated(4));
+                trials.holds(format!("{what}: warning"), "truncated(4)", format_args!("{is_told}"), is_told);
+                if arriving_estimators().any(|name| name == estimator) {
+                    let vertices = u64::from(MAX_BOUNCES) + 1;
+                    trials.same(format!("{what}: rays"), 4 * vertices, counts.rays);
+                    let found = outcome.film.pixels()[0].mean()[0];
+                    trials.same(format!("{what}: radiance"), emission * vertices as f64, found);
+                }
+            }
+        }
+    }
+}
+
+/// 0.999^10000, to 1e-11 of it.
+fn ten_thousand(trials: &mut Trials) {
+    let scene = corridor(10_000, 0.999);
+    for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+        let roulette = Some("never".to_string());
+        let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), roulette, ..Spec::default() };
+        let (sum, counts) = pixel(&scene, spec, 8);
+        let what = format!("{estimator}, {kernel}");
+        let exact = 4.517_334_597_704_865e-5;
+        trials.close(&what, exact, sum.mean()[0], 1e-11 * exact);
+        trials.same(format!("{what}: rays"), 8 * 10_001, counts.rays);
+    }
+    // And where roulette ends the paths, among them very long ones.
+    let furnace = hollow(&diffuse(0.999), [1.0; 3]);
+    for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+        let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
+        let (_, counts) = pixel(&furnace, spec, 200);
+        let is_long = counts.rays > 300 * counts.paths && counts.escaped + counts.invalid + counts.truncated == 0;
+        trials.holds(format!("a furnace, {estimator}, {kernel}"), "long paths", format_args!("{counts:?}"), is_long);
+    }
+}
+
+/// Halved at each bounce, a throughput is 2^-1074 after 1074 bounces and nothing after the next, which ends the path: 1075 rays. The sum of a
+/// series is right to its last term, also where another channel loses nothing, so that the path goes on beyond all of it.
+fn underflow(trials: &mut Trials) {
+    for (estimator, kernel) in arriving_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
+        let what = format!("{estimator}, {kernel}");
+        let roulette = Some("never".to_string());
+        let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), roulette, ..Spec::default() };
+        let (sum, counts) = pixel(&hollow(&mirror(0.5), [1.0; 3]), spec.clone(), 4);
+        trials.same(format!("halves, {what}: radiance and rays"), (2.0, 4 * 1075), (sum.mean()[0], counts.rays));
+
+        let three = hollow("{ mirror = { albedo = [1.0, 0.999, 0.9] } }", [0.0, 1.0, 1.0]);
+        let (sum, counts) = pixel(&three, spec, 4);
+        let [red, green, blue] = sum.mean();
+        trials.close(format!("no light, {what}"), 0.0, red, 0.0);
+        trials.close(format!("0.999, {what}"), 1000.0, green, 1e-8);
+        trials.close(format!("0.9, {what}"), 10.0, blue, 1e-12);
+        trials.never(format!("0.9, {what}"), "samples that are no number", counts.invalid, counts.paths);
+    }
+}

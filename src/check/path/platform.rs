@@ -1,0 +1,69 @@
+//! The same bits on every machine.
+
+use crate::check::{Case, Trials};
+use crate::kernel::Spec;
+use crate::math::sin_cos_turns;
+use crate::measure::{Settings, Setup};
+use crate::sampling::SAMPLERS;
+use crate::scene::load;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::sync::Arc;
+
+pub(super) const CASES: &[Case] =
+    &[Case { id: "P18", tries: "the bits of another build and another machine", run: bits }];
+
+/// Checksums of cornell at 96x64, 8 spp, seed 7, by the scalar kernel. They are this program's own output and prove nothing about light: they
+/// are here so that a debug build, another compiler or another machine that changes a bit is noticed. A deliberate change of the arithmetic
+/// raises `kernel::REVISION` and replaces them.
+const GOLDEN: [(&str, &str, &str); 4] = [
+    ("smallpt", "independent", "9e8357a5a669ae5d"),
+    ("bsdf", "independent", "b1ebf84aaad23140"),
+    ("bsdf", "stratified", "0d0de625fc782297"),
+    ("bsdf", "sobol", "6c0274abd78ac137"),
+];
+
+fn bits(trials: &mut Trials) {
+    let scene = Arc::new(load("cornell").expect("a shipped scene"));
+    for entry in SAMPLERS.iter().filter(|entry| entry.deterministic) {
+        let is_there = GOLDEN.iter().any(|(_, sampler, _)| *sampler == entry.name);
+        trials.same(format!("{} has a checksum", entry.name), true, is_there);
+    }
+    for (estimator, sampler, expected) in GOLDEN {
+        let (estimator, sampler) = (estimator.to_string(), sampler.to_string());
+        let what = format!("cornell, {estimator}, {sampler}");
+        let spec = Spec { width: 96, height: 64, seed: 7, estimator, sampler, ..Spec::default() };
+        let settings = Settings { spp: 8, spec, ..Settings::default() };
+        let setup = Setup::for_scene(Arc::clone(&scene), settings).expect("settings that fit");
+        let found = setup.run(None).expect("a render").checksum;
+        trials.same(what, Some(expected.to_string()), found);
+    }
+    own_functions(trials);
+}
+
+/// Sine and cosine are our own: quarter turns are exact, the rest is within 2.3e-16 of an eighth of a turn's, where the argument is rounded by less
+/// than a tenth of that.
+fn own_functions(trials: &mut Trials) {
+    for (turns, expected) in
+        [(0.0, (0.0, 1.0)), (0.25, (1.0, 0.0)), (0.5, (0.0, -1.0)), (0.75, (-1.0, 0.0)), (1.0, (0.0, 1.0))]
+    {
+        let (sin, cos) = sin_cos_turns(turns);
+        trials.same(format!("{turns} turns"), expected, (sin + 0.0, cos + 0.0));
+    }
+    let (sin, cos) = sin_cos_turns(0.125);
+    trials.close("an eighth of a turn: sine", FRAC_1_SQRT_2, sin, 2.3e-16);
+    trials.close("an eighth of a turn: cosine", FRAC_1_SQRT_2, cos, 2.3e-16);
+    let steps = trials.times(100_000, 10_000_000);
+    let mut worst = 0.0_f64;
+    for k in 0..=steps {
+        let turns = 0.125 * k as f64 / steps as f64;
+        let (sin, cos) = sin_cos_turns(turns);
+        let (exact_sin, exact_cos) = (libm::sin(TAU * turns), libm::cos(TAU * turns));
+        worst = worst.max((sin - exact_sin).abs()).max((cos - exact_cos).abs());
+    }
+    trials.holds(
+        "against libm up to an eighth of a turn",
+        "at most 3.5e-16",
+        format_args!("{worst:.1e}"),
+        worst <= 3.5e-16,
+    );
+}

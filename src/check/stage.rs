@@ -1,0 +1,81 @@
+//! Scenes for cases, put together from a few words and read by the program's own reader.
+//!
+//! ```
+//! use pathmark::check::stage::{camera, diffuse, object, scene, sphere};
+//!
+//! let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.5), [1.0; 3]);
+//! let furnace = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), wall]);
+//! assert_eq!(furnace.objects.len(), 1);
+//! ```
+
+use crate::error::Result;
+use crate::scene::{Scene, load};
+use std::io::Write;
+
+/// A camera that looks at a spot that is so small that it is a point: 2e-8 wide at distance 1.
+pub fn camera(position: [f64; 3], look_at: [f64; 3]) -> String {
+    view(position, look_at, [0.36, 0.48, 0.8], 1e-6)
+}
+
+/// A camera with a field of view in degrees.
+pub fn view(position: [f64; 3], look_at: [f64; 3], up: [f64; 3], degrees: f64) -> String {
+    format!(
+        "[camera.pinhole]\nposition = {position:?}\nlook-at = {look_at:?}\nup = {up:?}\nfield-of-view = {degrees:?}\n"
+    )
+}
+
+/// An object; shape and material are what stands behind `=` in a scene file.
+pub fn object(shape: &str, material: &str, emission: [f64; 3]) -> String {
+    format!(
+        "[[objects]]\nname = '{shape} {material}'\nshape = {shape}\nmaterial = {material}\nemission = {emission:?}\n"
+    )
+}
+
+/// A sphere.
+pub fn sphere(center: [f64; 3], radius: f64) -> String {
+    format!("{{ sphere = {{ center = {center:?}, radius = {radius:?} }} }}")
+}
+
+/// A plane without an end.
+pub fn plane(point: [f64; 3], normal: [f64; 3]) -> String {
+    format!("{{ plane = {{ point = {point:?}, normal = {normal:?} }} }}")
+}
+
+/// Four corners around the edge.
+pub fn quad(corners: [[f64; 3]; 4]) -> String {
+    format!("{{ quad = {{ corners = {corners:?} }} }}")
+}
+
+/// A matte material, the same in all channels.
+pub fn diffuse(albedo: f64) -> String {
+    format!("{{ diffuse = {{ albedo = {:?} }} }}", [albedo; 3])
+}
+
+/// A mirror, the same in all channels.
+pub fn mirror(albedo: f64) -> String {
+    format!("{{ mirror = {{ albedo = {:?} }} }}", [albedo; 3])
+}
+
+/// A point light, the same in all channels.
+pub fn point_light(position: [f64; 3], intensity: f64) -> String {
+    format!("[[point-lights]]\nposition = {position:?}\nintensity = {:?}\n", [intensity; 3])
+}
+
+/// Fog, the same in all channels, per unit of length.
+pub fn fog(absorption: f64, scattering: f64, emission: f64) -> String {
+    let (absorption, emission) = ([absorption; 3], [emission; 3]);
+    format!("[fog]\nabsorption = {absorption:?}\nscattering = {scattering:?}\nemission = {emission:?}\n")
+}
+
+/// Reads a scene from its parts, or says what is wrong with it; what stands before the first table comes first.
+pub fn try_scene(parts: &[String]) -> Result<Scene> {
+    let mut file = tempfile::Builder::new().suffix(".toml").tempfile().expect("a temporary file");
+    let text = format!("about = 'a case'\n{}", parts.concat());
+    file.write_all(text.as_bytes()).expect("a written file");
+    load(file.path().to_str().expect("a path in UTF-8"))
+}
+
+/// Reads a scene from its parts.
+pub fn scene(parts: &[String]) -> Scene {
+    try_scene(parts).unwrap_or_else(|error| panic!("{error} in\n{}", parts.concat()))
+}
