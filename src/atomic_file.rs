@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
 
 /// Writes what `body` writes to the file `path`, or leaves `path` as it was. A symbolic link is followed, not replaced.
@@ -80,14 +81,17 @@ impl Target {
         // An output is as public as any file the user makes: the umask decides, not tempfile's 0600.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        step(Step::Create)?;
         builder.tempfile_in(&self.directory)
     }
 
     fn replace(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-        let mut out = BufWriter::new(self.temporary()?);
+        let mut out = BufWriter::new(OnDisk(self.temporary()?));
         body(&mut out)?;
-        let file = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+        let OnDisk(file) = out.into_inner().map_err(io::IntoInnerError::into_error)?;
+        step(Step::Sync)?;
         file.as_file().sync_all()?;
+        step(Step::Rename)?;
         file.persist(&self.file).map_err(|refusal| refusal.error)?;
         // The rename has happened and is visible. Where a directory cannot be synced (some network file systems), a power cut
         // may still bring the old file back, whole; that is no reason to report a failure.

@@ -23,7 +23,7 @@
 //! ```
 //!
 //! Layers, each importing only those above it: `error`, `digest`, `effect`, `math`, `input`,
-//! `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
+//! `disk`, `lock`, `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
 //! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`; `plot`,
 //! `report`, `check`; `cli`.
 
@@ -35,6 +35,7 @@ pub mod atomic_file;
 pub mod check;
 pub mod cli;
 pub mod digest;
+pub mod disk;
 pub mod effect;
 pub mod error;
 pub mod estimator;
@@ -43,6 +44,7 @@ pub mod film;
 pub mod image_io;
 pub mod input;
 pub mod kernel;
+pub mod lock;
 pub mod material;
 pub mod math;
 pub mod measure;

@@ -32,7 +32,9 @@ const RULES: &[Rule] = &[
     rule("digest", 0),
     rule("effect", 0),
     beside("input", 0, &["error", "math"]), // errors with a place; numbers that become vectors and colours
-    beside("atomic_file", 0, &["error"]),
+    rule("disk", 0),
+    beside("lock", 0, &["error"]),
+    beside("atomic_file", 0, &["error", "disk"]),
     rule("image_io", 1),
     beside("metric", 1, &["image_io"]), // metrics compare images
     only("analysis", 1, &[]),           // statistics on plain numbers, whatever was measured

@@ -1,4 +1,5 @@
-//! A sweep that is killed at any instant and resumed gives the rows of one that was not: each once, whole, with the same checksums.
+//! A sweep that is resumed gives the rows of one that was not stopped: each once, whole, with the same checksums. Kills at any instant are in
+//! `tests/faults`.
 
 #[path = "support/experiment.rs"]
 mod experiment;
@@ -11,15 +12,11 @@ use experiment::{TINY, write_tiny};
 use program::{finish, pathmark};
 use snapshot::{assert_untouched, snapshot};
 use std::collections::{BTreeMap, HashSet};
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
 
 const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
 const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
-const ROWS: usize = 5 * 3;
 
 /// A folder with `tiny.toml`, and where its rows will be.
 fn prepared(text: &str) -> (tempfile::TempDir, PathBuf) {
@@ -42,70 +39,6 @@ fn results(records: &Path) -> BTreeMap<(String, String), [String; 3]> {
     let results: BTreeMap<_, _> = rows.iter().map(|row| (key(row), value(row))).collect();
     assert_eq!(results.len(), rows.len(), "a row is doubled");
     results
-}
-
-/// What a run that nobody disturbed gives.
-fn undisturbed(text: &str) -> BTreeMap<(String, String), [String; 3]> {
-    let (folder, records) = prepared(text);
-    finish(pathmark(folder.path(), &RUN)).with_code(0);
-    let results = results(&records);
-    assert_eq!(results.len(), ROWS);
-    results
-}
-
-fn finished_rows(records: &Path) -> usize {
-    fs::read(records).map_or(0, |bytes| bytes.split(|byte| *byte == b'\n').count().saturating_sub(2))
-}
-
-/// Kills (SIGKILL) after the delay, counted from the start or, if `after_a_row`, from the next finished row.
-/// The exit code if the run ended by itself before.
-fn killed(mut child: Child, records: &Path, after_a_row: bool, delay: Duration) -> Option<i32> {
-    let (start, before) = (Instant::now(), finished_rows(records));
-    while after_a_row && finished_rows(records) == before {
-        assert!(start.elapsed() < Duration::from_mins(1), "no row for a minute");
-        if child.try_wait().unwrap().is_some() {
-            break;
-        }
-        thread::sleep(Duration::from_millis(1));
-    }
-    thread::sleep(delay);
-    child.kill().unwrap();
-    child.wait().unwrap().code()
-}
-
-#[test]
-fn killed_at_any_instant_it_is_resumed_to_the_same_rows() {
-    let text = TINY.replace("spp = [4]", "spp = [80]").replace("[24, 16]", "[48, 32]");
-    let expected = undisturbed(&text);
-    let (folder, records) = prepared(&text);
-    let mut kills = 0;
-    // The first instants fall into the sweep's own preparation, the later ones into cells and between them.
-    let early = (0..8).map(|k| (false, 3 * k));
-    let late = (0..ROWS as u64).map(|k| (true, k * 17 % 60));
-    for (after_a_row, milliseconds) in early.chain(late) {
-        // `--resume` on a folder where nothing is yet begins.
-        let mut command = pathmark(folder.path(), &RESUME);
-        // Into a file: nobody reads while the sweep is awaited, and a full pipe would block it.
-        let said = File::create(folder.path().join("said.txt")).unwrap();
-        command.stdout(Stdio::null()).stderr(said);
-        let child = command.spawn().unwrap();
-        match killed(child, &records, after_a_row, Duration::from_millis(milliseconds)) {
-            None => kills += 1,
-            Some(0) => break,
-            Some(code) => {
-                let said = fs::read_to_string(folder.path().join("said.txt")).unwrap();
-                panic!("resuming after {kills} kills ended with exit code {code}: {said}");
-            }
-        }
-        if records.with_file_name("experiment.toml").exists() && fs::read_to_string(&records).unwrap().ends_with('\n') {
-            let partial = results(&records);
-            assert!(partial.iter().all(|(key, value)| expected.get(key) == Some(value)), "{partial:?}");
-        }
-    }
-    assert!(kills >= 12, "only {kills} kills: the sweep is too short to be killed");
-    finish(pathmark(folder.path(), &RESUME)).with_code(0);
-    assert_eq!(results(&records), expected);
-    assert!(folder.path().join("out/report.html").is_file());
 }
 
 /// Resuming drops what the crash tore, whatever is left of it, and repeats that row alone.

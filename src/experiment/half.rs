@@ -7,14 +7,24 @@ use super::reference::reference_path;
 use super::{Progress, Reference};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Film, FilmKey, GrowingFilm, SAMPLE_BLOCK, read_film, write_film};
+use crate::lock::Lock;
 use crate::measure::{LARGEST_SPP, Rounds, Setup};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// The two halves, from the cache in `folder` where they are there and whole, rendered otherwise.
 pub fn render_reference(reference: &Reference, folder: &Path, progress: &dyn Progress) -> Result<[(PathBuf, Film); 2]> {
-    let half = |index| Half::new(reference, index, folder)?.render(reference.spp, progress);
-    Ok([half(0)?, half(1)?])
+    let mut halves = [Half::new(reference, 0, folder)?, Half::new(reference, 1, folder)?];
+    let are_cached = halves.iter().all(|half| half.path(reference.spp).is_file());
+    // What is only read may lie on a disk that is only read.
+    let _lock = if are_cached { None } else { Some(lock(folder)?) };
+    let [first, second] = &mut halves;
+    Ok([first.render(reference.spp, progress)?, second.render(reference.spp, progress)?])
+}
+
+/// Two processes in one folder would remove each other's films on the way.
+fn lock(folder: &Path) -> Result<Lock> {
+    Lock::new(&folder.join(".lock"), "references", folder)
 }
 
 /// Seconds of rendering that may be lost when the program is killed.
@@ -152,6 +162,7 @@ pub fn refine_reference(
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<[(PathBuf, Film); 2]> {
+    let _lock = lock(folder)?;
     let mut first = Half::new(reference, 0, folder)?;
     let mut second = Half::new(reference, 1, folder)?;
     let longest = subtrees().rev().find(|spp| first.path(*spp).is_file() && second.path(*spp).is_file());

@@ -1,14 +1,14 @@
 //! `records.csv`: written row by row, flushed to the disk after each, so that a killed sweep loses at most the row it was writing.
 
 use crate::atomic_file;
+use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
+use crate::lock;
 use crate::measure::{Record, SCHEMA};
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
-use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {
@@ -78,7 +78,8 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
 impl RecordsFile {
     /// Starts a new file; refuses to touch one that is there.
     pub fn create(path: &Path) -> Result<Self> {
-        let file = OpenOptions::new().write(true).create_new(true).open(path).map_err(|e| match e.kind() {
+        let create = || step(Step::Create).and_then(|()| OpenOptions::new().write(true).create_new(true).open(path));
+        let file = create().map_err(|e| match e.kind() {
             std::io::ErrorKind::AlreadyExists => {
                 let problem = "is there already: `--resume` goes on with it, another `--out` starts anew";
                 InputError::new("records", path.display().to_string(), problem).into()
@@ -125,39 +126,26 @@ impl RecordsFile {
     }
 
     fn locked(path: &Path, file: File) -> Result<Self> {
-        // A killed sweep's child holds the lock between its fork and its exec: that ends by itself.
-        let mut locked = file.try_lock();
-        for _ in 0..20 {
-            if !matches!(locked, Err(std::fs::TryLockError::WouldBlock)) {
-                break;
-            }
-            std::thread::sleep(Duration::from_millis(50));
-            locked = file.try_lock();
+        if lock::try_lock(&file, path).map_err(|e| Error::system("locking", path, e))? {
+            return Ok(Self { path: path.to_path_buf(), file });
         }
-        match locked {
-            Ok(()) if is_still_there(&file, path) => Ok(Self { path: path.to_path_buf(), file }),
-            Err(std::fs::TryLockError::Error(e)) => Err(Error::system("locking", path, e)),
-            // Locked, or, while we waited for the lock, another sweep put a new file in the place of this one: rows written here
-            // would have no name.
-            _ => {
-                Err(InputError::new("records", path.display().to_string(), "is being written by another sweep").into())
-            }
-        }
+        Err(InputError::new("records", path.display().to_string(), "is being written by another sweep").into())
     }
 
-    /// Appends a row and waits until the disk has it.
+    /// Appends a row and waits until the disk has it. If that fails, the file is as it was, as far as the disk lets it.
     pub fn append(&mut self, record: &Record) -> Result<()> {
-        let system = |e| Error::system("writing", &self.path, e);
-        let end = self.file.seek(SeekFrom::End(0)).map_err(system)?;
-        let bytes = row_bytes(record, end == 0).map_err(system)?;
-        self.file.write_all(&bytes).and_then(|()| self.file.sync_data()).map_err(system)
+        let end = self.file.seek(SeekFrom::End(0)).map_err(|e| Error::system("writing", &self.path, e))?;
+        let outcome = row_bytes(record, end == 0).and_then(|bytes| {
+            OnDisk(&self.file).write_all(&bytes)?;
+            step(Step::Sync)?;
+            self.file.sync_data()
+        });
+        outcome.map_err(|e| {
+            // Half a row would be found and dropped by the next `--resume`, but `report` would have to refuse it.
+            self.file.set_len(end).ok();
+            Error::system("writing", &self.path, e)
+        })
     }
-}
-
-/// Whether the path still leads to the open file.
-fn is_still_there(file: &File, path: &Path) -> bool {
-    let same = |a: std::fs::Metadata, b: std::fs::Metadata| a.dev() == b.dev() && a.ino() == b.ino();
-    file.metadata().and_then(|open| Ok(same(open, std::fs::metadata(path)?))).unwrap_or(false)
 }
 
 fn row_bytes(record: &Record, header: bool) -> std::io::Result<Vec<u8>> {

@@ -2,8 +2,9 @@
 
 use super::{PixelSum, TileBuffer};
 use crate::digest::Fingerprint;
-use crate::error::{InputError, Result};
+use crate::error::{Error, InputError, Result};
 use crate::image_io::Image;
+use std::io;
 
 /// Largest width and height.
 pub const LARGEST_SIDE: u32 = 1 << 16;
@@ -19,6 +20,17 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
     Err(InputError::new("size", format!("{width}x{height}"), "is no size that an image can have")
         .allowed(format!("1x1 to {LARGEST_SIDE}x{LARGEST_SIDE}, at most {LARGEST_AREA} pixels"))
         .into())
+}
+
+/// Asks the system for the memory that rendering a film of this size takes, and gives it back: its sums, and as much for the pieces on their
+/// way. Without it the program would be ended at the first allocation that fails, hours later perhaps.
+pub fn check_memory(width: u32, height: u32) -> Result<()> {
+    let mut sums: Vec<[PixelSum; 2]> = Vec::new();
+    let refused = sums.try_reserve_exact(width as usize * height as usize).err();
+    refused.map_or(Ok(()), |e| {
+        let what = format!("an image of {width}x{height} pixels");
+        Err(Error::system("reserving memory for", what, io::Error::new(io::ErrorKind::OutOfMemory, e)))
+    })
 }
 
 /// Sums of all pixels, row 0 at the top.

@@ -2,11 +2,12 @@
 //!
 //! Layout: [`crate::film::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. What it is of stands in its header, and
 //! a file that is of anything else is refused, never overwritten. It is written between rounds, in one rename, so that a reader finds
-//! one round or the next.
+//! one round or the next. Two renders cannot write one file: a lock file stands beside it, `.lock` behind its name, as long as the render runs.
 
 use super::{Position, Rounds, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{FilmKey, GrowingFilm, SumFile, sections};
+use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -29,6 +30,7 @@ struct Header {
 /// A file for one render's checkpoints.
 pub struct Checkpoint {
     path: PathBuf,
+    _lock: Lock,
     target_error: Option<f64>,
 }
 
@@ -41,14 +43,18 @@ pub struct Saved {
 }
 
 impl Checkpoint {
-    /// Reads the file, if there is one. Refuses what is damaged or of another render.
+    /// Locks the file and reads it, if there is one. Refuses what is damaged, of another render, or being written by one.
     pub fn open(path: &Path, setup: &Setup, target_error: Option<f64>) -> Result<(Self, Option<Saved>)> {
         let refuse = |problem: &str| InputError::new(FILE.field, path.display().to_string(), problem);
         if !setup.is_deterministic() {
             let problem = format!("is of no use: {} gives other numbers in each run", setup.settings().spec.sampler);
             return Err(refuse(&problem).into());
         }
-        let checkpoint = Self { path: path.to_path_buf(), target_error };
+        // Where the path is a link, the lock stands beside the file itself.
+        let mut lock = path.canonicalize().unwrap_or_else(|_| path.to_path_buf()).into_os_string();
+        lock.push(".lock");
+        let lock = Lock::new(Path::new(&lock), FILE.field, path)?;
+        let checkpoint = Self { path: path.to_path_buf(), _lock: lock, target_error };
         if !path.exists() {
             return Ok((checkpoint, None));
         }

@@ -6,9 +6,12 @@ mod meeting;
 #[cfg(feature = "openmp")]
 mod openmp;
 mod panics;
+mod panics_everywhere;
 mod parallelism;
 mod spawn_failure;
 mod support;
+#[path = "../support/watchdog.rs"]
+mod watchdog;
 
 use std::collections::HashSet;
 

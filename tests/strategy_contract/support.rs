@@ -1,14 +1,16 @@
-//! A watchdog, a record of what ran, and a source of threads that counts them and can run dry.
+//! A record of what ran, and a source of threads that counts them and can run dry.
 
 use std::io;
 use std::num::NonZeroUsize;
 use std::panic::{self, AssertUnwindSafe};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, mpsc};
-use std::thread::{self, JoinHandle};
+use std::thread::JoinHandle;
 use std::time::Duration;
 
 use pathmark::strategy::{Config, Job, Spawner, SystemThreads};
+
+use crate::watchdog::Watchdog;
 
 /// Far more than any test takes, so that it goes off for a hang only.
 const LIMIT: Duration = Duration::from_secs(20);
@@ -17,18 +19,14 @@ pub(crate) fn threads(threads: usize) -> NonZeroUsize {
     NonZeroUsize::new(threads).expect("at least one thread")
 }
 
-/// Runs `body`; a hang is a failure that names `what`.
-pub(crate) fn guarded(what: &str, body: impl FnOnce() + Send + 'static) {
-    let (tell, told) = mpsc::channel();
-    thread::spawn(move || tell.send(panic::catch_unwind(AssertUnwindSafe(body))));
-    match told.recv_timeout(LIMIT) {
-        Ok(Ok(())) => {}
-        Ok(Err(payload)) => {
-            // The payload may be a plain message: say which case it was.
-            eprintln!("in {what}");
-            panic::resume_unwind(payload)
-        }
-        Err(silence) => panic!("{what} hangs: {silence}"),
+/// Runs `body`; a hang ends the test program with a message that names `what`.
+pub(crate) fn guarded(what: &str, body: impl FnOnce()) {
+    let watchdog = Watchdog::new(LIMIT);
+    watchdog.now(what);
+    if let Err(payload) = panic::catch_unwind(AssertUnwindSafe(body)) {
+        // The payload may be a plain message: say which case it was.
+        eprintln!("in {what}");
+        panic::resume_unwind(payload)
     }
 }
 

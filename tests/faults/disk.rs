@@ -1,0 +1,201 @@
+//! F02: every step of every writer fails in every way: the exit code is the system's, the message names the file, and the old file is
+//! there as it was. A disk that takes a byte at a time, or is interrupted, gets the same bytes.
+
+use pathmark::disk::{Step, with_faults};
+use pathmark::error::Result;
+use pathmark::experiment::RecordsFile;
+use pathmark::film::{Film, write_film};
+use pathmark::image_io::{self, FORMATS, Image};
+use pathmark::kernel::Spec;
+use pathmark::measure::{Checkpoint, Position, Record, Rounds, Settings, Setup, TraceFile};
+use pathmark::{atomic_file, measure};
+use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Something that makes or replaces the file whose name it is given.
+type Writer = Box<dyn Fn(&Path) -> Result<()>>;
+
+fn setup() -> Setup {
+    let spec = Spec { width: 12, height: 9, ..Spec::default() };
+    Setup::prepare(Settings { spp: 16, spec, decomposition: "tiles:4x4".into(), ..Settings::default() }).unwrap()
+}
+
+fn record(repetition: u32) -> Record {
+    Record { cell: "a cell, quoted".into(), repetition, ..measure::failure(&Settings::default(), "") }
+}
+
+/// A writer for every kind of file, by the name that the file has. Those that go on with an old file are in [`the_rows_of_a_sweep`].
+fn writers() -> Vec<(String, Writer)> {
+    let image = Image { width: 2, height: 2, pixels: vec![[0.25, 0.5, 1.0]; 4] };
+    let mut writers: Vec<(String, Writer)> = Vec::new();
+    for format in FORMATS {
+        let image = image.clone();
+        writers.push((format!("image.{}", format.name), Box::new(move |path| image_io::write(path, &image))));
+    }
+    let mut rounds = Rounds::new(setup()).unwrap();
+    rounds.extend_to(16, None).unwrap();
+    let (key, film) = (rounds.film_key(), rounds.film());
+    writers.push(("half.film".into(), Box::new(move |path| write_film(path, &key, &film))));
+    let save = move |path: &Path| {
+        let (checkpoint, _) = Checkpoint::open(path, rounds.setup(), None)?;
+        checkpoint.save(&rounds, Position { rendering_s: 1.0, look: 16 })
+    };
+    writers.push(("render.checkpoint".into(), Box::new(save)));
+    let outcome = setup().run(None).unwrap();
+    let trace = TraceFile::new(&setup(), &outcome);
+    writers.push(("trace.csv".into(), Box::new(move |path| trace.write(path))));
+    let long = vec![b'x'; 100_000];
+    writers.push(("report.html".into(), Box::new(move |path| atomic_file::write(path, |out| out.write_all(&long)))));
+    writers
+}
+
+/// The files of a folder. Lock files of a checkpoint come and go.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    paths.map(|path| (path.clone(), fs::read(&path).unwrap())).collect()
+}
+
+/// The steps of an undisturbed write.
+fn steps_of(body: impl FnOnce() -> Result<()>) -> Vec<Step> {
+    let steps = Rc::new(std::cell::RefCell::new(Vec::new()));
+    let noted = Rc::clone(&steps);
+    let note = move |step| {
+        noted.borrow_mut().push(step);
+        Ok(usize::MAX)
+    };
+    with_faults(note, body).unwrap();
+    steps.take()
+}
+
+/// What the system says at one step: no space, no quota, a broken disk, a file system that has become read-only.
+const REFUSALS: [fn() -> io::Error; 4] = [
+    || ErrorKind::StorageFull.into(),
+    || ErrorKind::QuotaExceeded.into(),
+    || io::Error::from_raw_os_error(5),
+    || ErrorKind::ReadOnlyFilesystem.into(),
+];
+
+/// A disk that is sound until step `at`, takes `taken` bytes of that one if it is a write, and refuses all that follows.
+fn refuses_from(at: usize, taken: usize, refusal: fn() -> io::Error) -> impl FnMut(Step) -> io::Result<usize> {
+    let mut steps = 0..;
+    move |step| match steps.next().unwrap_or(at) {
+        now if now < at => Ok(usize::MAX),
+        now if now == at && taken > 0 && matches!(step, Step::Write(_)) => Ok(taken),
+        _ => Err(refusal()),
+    }
+}
+
+/// Insists that `body` fails as the system's fault on the file `path`, wherever the disk fails, and that `folder` is as it was.
+fn fails_everywhere(folder: &Path, path: &Path, steps: &[Step], body: impl Fn() -> Result<()>) {
+    let before = files(folder);
+    for (at, step) in steps.iter().enumerate() {
+        let lengths = if let Step::Write(length) = step { vec![0, 1, length / 2, length - 1] } else { vec![0] };
+        for (&taken, refusal) in lengths.iter().flat_map(|taken| REFUSALS.map(|refusal| (taken, refusal))) {
+            let what = format!("{}: {step:?}, step {at}, {taken} bytes, {}", path.display(), refusal());
+            let error = with_faults(refuses_from(at, taken, refusal), &body).expect_err(&what);
+            assert_eq!(error.exit_code(), 3, "{what}: {error}");
+            assert!(error.to_string().contains(path.to_str().unwrap()), "{what}: {error}");
+            assert!(error.to_string().contains(&refusal().to_string()), "{what}: {error}");
+            assert!(files(folder) == before, "{what}: a file has changed");
+        }
+    }
+}
+
+#[test]
+fn every_step_of_every_writer_may_fail() {
+    for (name, write) in writers() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(&name);
+        let steps = steps_of(|| write(&path));
+        assert!(matches!(steps[..], [Step::Create, Step::Write(_), .., Step::Sync, Step::Rename]), "{name}: {steps:?}");
+        // Over the file that is there, and where there was none.
+        fails_everywhere(folder.path(), &path, &steps, || write(&path));
+        fs::remove_file(&path).unwrap();
+        fails_everywhere(folder.path(), &path, &steps, || write(&path));
+    }
+}
+
+#[test]
+fn short_and_interrupted_writes_change_no_byte() {
+    for (name, write) in writers() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(&name);
+        write(&path).unwrap();
+        let expected = fs::read(&path).unwrap();
+        let calls = Rc::new(Cell::new(0));
+        let counted = Rc::clone(&calls);
+        let slow = move |step| {
+            counted.set(counted.get() + 1);
+            match step {
+                Step::Write(_) if counted.get() % 3 == 0 => Err(ErrorKind::Interrupted.into()),
+                _ => Ok(7),
+            }
+        };
+        with_faults(slow, || write(&path)).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), expected, "{name}");
+        assert!(calls.get() > expected.len() / 7, "{name}: {} calls", calls.get());
+    }
+}
+
+/// Rows are appended: a row that could not be written leaves the rows before it, and the same row can follow when there is space again.
+#[test]
+fn the_rows_of_a_sweep() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("records.csv");
+    let mut file = RecordsFile::create(&path).unwrap();
+    for repetition in 0..3 {
+        let row = record(repetition);
+        let steps = {
+            // In a copy, whose rows do not count.
+            let copy = folder.path().join("copy.csv");
+            fs::copy(&path, &copy).unwrap();
+            let (mut file, _) = RecordsFile::resume(&copy).unwrap();
+            let steps = steps_of(|| file.append(&row));
+            fs::remove_file(&copy).unwrap();
+            steps
+        };
+        assert!(matches!(steps[..], [Step::Write(_), Step::Sync]), "{steps:?}");
+        let file = std::cell::RefCell::new(&mut file);
+        fails_everywhere(folder.path(), &path, &steps, || file.borrow_mut().append(&row));
+        file.borrow_mut().append(&row).unwrap();
+        let rows = pathmark::experiment::read_records(&path).unwrap();
+        assert_eq!(rows, (0..=repetition).map(record).collect::<Vec<_>>());
+    }
+    drop(file);
+
+    // A resumed sweep writes the file anew without its torn row; until that is done, the old one stands.
+    let whole = fs::read(&path).unwrap();
+    let torn = [&whole[..], &whole[whole.len() - 20..whole.len() - 1]].concat();
+    fs::write(&path, &torn).unwrap();
+    let resume = || RecordsFile::resume(&path).map(|_| ());
+    let steps = steps_of(resume);
+    assert_eq!(fs::read(&path).unwrap(), whole);
+    fs::write(&path, &torn).unwrap();
+    fails_everywhere(folder.path(), &path, &steps, resume);
+
+    let other = folder.path().join("other.csv");
+    fails_everywhere(folder.path(), &other, &[Step::Create], || RecordsFile::create(&other).map(|_| ()));
+}
+
+/// What is kept of a film is what a film has: the writers above write no empty files.
+#[test]
+fn what_was_written_can_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, write) in writers() {
+        write(&folder.path().join(name)).unwrap();
+    }
+    let at = |name: &str| folder.path().join(name);
+    let (_, film): (_, Film) = pathmark::film::read_film(&at("half.film")).unwrap();
+    assert_eq!(film.checksum(), setup().run(None).unwrap().film.checksum());
+    let (_, saved) = Checkpoint::open(&at("render.checkpoint"), &setup(), None).unwrap();
+    assert_eq!(saved.unwrap().film.film(), film);
+    assert_eq!(TraceFile::read(&at("trace.csv")).unwrap().rows.len(), 3 * 3);
+    for format in FORMATS {
+        let image = image_io::read(&at(&format!("image.{}", format.name))).unwrap();
+        assert_eq!((image.width, image.height), (2, 2));
+    }
+}

@@ -1,0 +1,42 @@
+//! Ends the whole test program, naming the test, when one runs longer than anything but a hang could: a thread that never answers cannot
+//! be ended alone, and a hang in a `drop` would stop the report of the test that failed.
+
+use std::process;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Watches until it is dropped.
+pub(crate) struct Watchdog {
+    tell: Sender<String>,
+}
+
+impl Watchdog {
+    /// For the test that the calling thread runs. `limit` is far above what it takes on a slow and loaded machine: what is watched is
+    /// whether it ends, not how fast it is.
+    pub(crate) fn new(limit: Duration) -> Self {
+        let test = thread::current().name().unwrap_or("a test without a name").to_owned();
+        let (tell, told) = channel();
+        thread::spawn(move || watch(&test, limit, &told));
+        Self { tell }
+    }
+
+    /// Says what is tried next, which has the whole limit for itself.
+    pub(crate) fn now(&self, what: impl Into<String>) {
+        self.tell.send(what.into()).expect("the watchdog lives as long as what it watches");
+    }
+}
+
+fn watch(test: &str, limit: Duration, told: &Receiver<String>) {
+    let (mut what, mut start) = (String::new(), Instant::now());
+    loop {
+        match told.recv_timeout(limit.saturating_sub(start.elapsed())) {
+            Ok(next) => (what, start) = (next, Instant::now()),
+            Err(RecvTimeoutError::Disconnected) => return,
+            Err(RecvTimeoutError::Timeout) => {
+                eprintln!("WATCHDOG: {test} hangs: no end after {limit:?} {what}");
+                process::abort();
+            }
+        }
+    }
+}
