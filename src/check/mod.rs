@@ -28,10 +28,13 @@
 
 mod analytic;
 mod chi_square;
+mod double_double;
+mod image_mean;
 mod path;
+mod quadrature;
 mod random_numbers;
-mod rendering;
-mod scene_text;
+mod samplers;
+mod scene_words;
 mod shading;
 mod sphere;
 mod statistics;
