@@ -31,8 +31,8 @@ pub(super) fn even(counts: &[u32]) -> f64 {
     score(squares / mean, counts.len() as f64 - 1.0)
 }
 
-/// The score of counts against expected ones with the same sum. Cells that expect fewer than 5 are put together; what is then still fewer is
-/// judged as a count by itself: endless where more than 25 have come, which chance has not once in 1e10.
+/// The score of counts against expected ones with the same sum. Cells that expect fewer than 5 are put together; what is then still fewer
+/// is judged as a count by itself: endless where more than 25 have come, which chance has not once in 1e10.
 pub(super) fn against(observed: &[f64], expected: &[f64]) -> f64 {
     let (mut statistic, mut cells, mut pool) = (0.0, 0, (0.0, 0.0));
     for (&seen, &right) in observed.iter().zip(expected) {

@@ -28,12 +28,15 @@
 
 mod analytic;
 mod chi_square;
+mod double_double;
 pub mod exact;
+mod image_mean;
 mod path;
+mod quadrature;
 mod random_numbers;
-mod rendering;
 mod run;
-mod scene_text;
+mod samplers;
+mod scene_words;
 mod shading;
 mod sphere;
 pub mod stage;

@@ -93,20 +93,6 @@ impl Bsdf for Conductor {
 mod tests {
     use super::*;
 
-    /// H23: smooth is a type: one direction, F alone, nothing to evaluate.
-    #[test]
-    fn alpha_zero_is_a_mirror() {
-        let gold = Conductor { facets: Facets::of(0.0), f0: Rgb { r: 1.0, g: 0.75, b: 0.25 } };
-        let wo = Vec3::new(0.6, 0.0, 0.8);
-        let sample = gold.sample(wo, false, [0.3, 0.7]).unwrap();
-        assert_eq!((sample.wi, sample.density), (Vec3::new(-0.6, -0.0, 0.8), Density::Delta));
-        // (1 - 0.8)^5 = 0.00032.
-        let expected = [1.0, 0.750_08, 0.250_24];
-        assert!(sample.weight.channels().iter().zip(expected).all(|(found, right)| (found - right).abs() < 1e-15));
-        assert_eq!((gold.eval(wo, sample.wi), gold.pdf(wo, sample.wi)), (Rgb::BLACK, 0.0));
-        assert_eq!(gold.delta_lobes(wo, false), [Some(sample), None]);
-    }
-
     /// Lobes narrower than directions are exact, wider than GGX has them, and what is no number are refused with what is allowed.
     #[test]
     fn roughness_is_checked() {

@@ -51,23 +51,3 @@ impl Bsdf for FresnelMirror {
         Some(Rgb::WHITE * fresnel_dielectric(cos, self.eta))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// H29: at normal incidence ((n - 1)/(n + 1))², 0.7320 for the report's 12.85; along the surface everything, where the report's guard
-    /// makes it nothing.
-    #[test]
-    fn the_weight_is_the_fresnel_share() {
-        let mirror = FresnelMirror { eta: 12.85 };
-        let weight = |cos: f64| {
-            let sample = mirror.sample(Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos), false, [0.5; 2]).unwrap();
-            assert_eq!((sample.wi.z, sample.density), (cos, Density::Delta));
-            sample.weight.r
-        };
-        let root = 11.85 / 13.85;
-        assert!((weight(1.0) - root * root).abs() < 1e-15);
-        assert!(weight(0.000_5) > 0.97 && weight(0.0) == 1.0, "{} {}", weight(0.000_5), weight(0.0));
-    }
-}

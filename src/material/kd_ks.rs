@@ -169,20 +169,6 @@ impl Bsdf for KdKs {
 mod tests {
     use super::*;
 
-    /// H28: the report's numbers never give back more than arrives, at any roughness and angle.
-    #[test]
-    fn no_light_is_made() {
-        for roughness in [0.0, 0.25, 0.5, 1.0] {
-            let kd = Rgb { r: 0.3, g: 0.3, b: 0.25 };
-            let facets = Facets::of(roughness);
-            let material = KdKs { kd, eta: 12.85, facets, sampling: Sampling::Cosine };
-            for k in 1..=100 {
-                let albedo = material.albedo_at(f64::from(k) / 100.0).unwrap().max_channel();
-                assert!((0.2..=1.0).contains(&albedo), "roughness {roughness}, cosine {k} %: {albedo}");
-            }
-        }
-    }
-
     /// Smooth: chosen by F, and the two shares add up to F and (1 - F) Kd.
     #[test]
     fn roughness_zero_is_a_mirror_over_a_matte_body() {

@@ -1,5 +1,5 @@
 //! Every estimator that follows all light gives the same image, whichever way it finds light: emissive mirrors, light behind glass, a
-//! camera inside a light, enclosures that glow. H35 and H36 of the catalogue of hard cases.
+//! camera inside a light, enclosures that glow.
 //!
 //! Pixel by pixel, the standardised differences to `bsdf` must have the mean 0 and the variance 1, which is tested on both sides, at the
 //! family-wise level 1e-3. Each pixel gives one channel, by turns, because the channels of a pixel go together.

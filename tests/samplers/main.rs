@@ -1,15 +1,14 @@
-//! Every deterministic sampler of the table, judged by what the estimators rely on: R10, R14 and R15 of the catalogue of hard cases.
+//! Every deterministic sampler of the table, judged by what the estimators rely on besides the hard cases (`src/check/random_numbers`): nets,
+//! strata, rates, and what uses do together.
 //!
 //! Every group of tests has a family-wise level of 1e-3 (Sidak), two-sided: numbers that are too even are as wrong as numbers that are not
 //! even enough. Seeds are fixed, so a pass is reproducible.
 
-mod means;
 mod nets;
 mod projections;
 mod rate;
 
 use pathmark::sampling::{Address, Purpose, SAMPLERS, SampleKey, Sampler, SamplerVisitor, with_keyed_sampler};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 const LEVEL: f64 = 1e-3;
 
@@ -54,17 +53,4 @@ impl Use {
         let key = SampleKey { seed, pixel, sample };
         Address { key, bounce: self.bounce, branch: self.branch, purpose: self.purpose }
     }
-}
-
-/// Where a chi-square value lies at the level of one of so many tests.
-fn chi_square_range(freedom: f64, tests: usize) -> std::ops::Range<f64> {
-    let tail = pathmark::analysis::z_test::sidak(LEVEL, tests).unwrap() / 2.0;
-    let distribution = ChiSquared::new(freedom).unwrap();
-    distribution.inverse_cdf(tail)..distribution.inverse_cdf(1.0 - tail)
-}
-
-/// Chi-square of counts that are expected to be equal.
-fn chi_square(counts: &[u32]) -> f64 {
-    let mean = f64::from(counts.iter().sum::<u32>()) / counts.len() as f64;
-    counts.iter().map(|count| (f64::from(*count) - mean) * (f64::from(*count) - mean) / mean).sum()
 }

@@ -1,6 +1,6 @@
 //! Numbers of different uses have nothing to do with each other: every two of the first 64.
 
-use super::{LEVEL, Use, all_keyed, chi_square, chi_square_range, first_uses};
+use super::{LEVEL, Use, all_keyed, first_uses};
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::sampling::{REFERENCE_SEEDS, Sampler};
 
@@ -10,42 +10,6 @@ const PAIRS: usize = NUMBERS * (NUMBERS - 1) / 2;
 /// The first 64 numbers of a sample.
 fn numbers(sampler: &dyn Sampler, uses: &[Use], seed: u64, pixel: u32, sample: u32) -> Vec<f64> {
     uses.iter().flat_map(|used| sampler.pair(used.of(seed, pixel, sample))).collect()
-}
-
-/// Chi-square on 4x4 cells of every projection to two numbers, and on 64 cells of each number, one sample from each of 16384 pixels, so
-/// that counts are multinomial.
-#[test]
-fn no_two_of_the_first_64_numbers_correlate() {
-    const PIXELS: u32 = 1 << 14;
-    let uses = first_uses();
-    let samplers = all_keyed();
-    let samples = [0, 1, 6, 77, 70_001];
-    let tests = samplers.len() * samples.len();
-    for (name, sampler) in samplers {
-        for sample in samples {
-            let (mut alone, mut together) = (vec![[0; 64]; NUMBERS], vec![[0; 16]; PAIRS]);
-            for pixel in 0..PIXELS {
-                let all = numbers(&*sampler, &uses, 1, pixel, sample);
-                let cells: Vec<usize> = all.iter().map(|u| (u * 4.0) as usize).collect();
-                let mut pair = together.iter_mut();
-                for (index, cell) in cells.iter().enumerate() {
-                    alone[index][(all[index] * 64.0) as usize] += 1;
-                    for (other, counts) in cells[..index].iter().zip(pair.by_ref()) {
-                        counts[4 * cell + other] += 1;
-                    }
-                }
-            }
-            for (what, values, freedom) in [
-                ("a number", alone.iter().map(|counts| chi_square(counts)).collect::<Vec<_>>(), 63.0),
-                ("a projection", together.iter().map(|counts| chi_square(counts)).collect(), 15.0),
-            ] {
-                let range = chi_square_range(freedom, 2 * tests * values.len());
-                for (index, value) in values.iter().enumerate() {
-                    assert!(range.contains(value), "{name} sample {sample}: {what}, {index}: {value} not in {range:?}");
-                }
-            }
-        }
-    }
 }
 
 /// sqrt(n) times the correlation of two sequences of uniform numbers.

@@ -1,5 +1,45 @@
 //! Random numbers.
 
-use super::Section;
+mod conversion;
+mod extremes;
+mod fourier;
+mod keys;
+mod ledger;
+mod pixels;
+mod quality;
+mod rows;
+mod seeds;
+mod spread;
+mod threads;
+pub(in crate::check) mod unguarded;
 
-pub(super) const SECTION: Section = Section { title: "Random numbers", cases: &[] };
+use super::Section;
+use crate::sampling::{Address, Purpose, SampleKey, Sampler};
+
+pub(super) const SECTION: Section = Section {
+    title: "Random numbers",
+    cases: &[
+        rows::CASES,
+        pixels::CASES,
+        keys::CASES,
+        seeds::CASES,
+        threads::CASES,
+        extremes::CASES,
+        conversion::CASES,
+        ledger::CASES,
+        quality::CASES,
+        spread::CASES,
+    ],
+};
+
+/// The pair of one use of numbers on the main path.
+fn first(sampler: &dyn Sampler, seed: u64, pixel: u32, sample: u32, (bounce, purpose): (u16, Purpose)) -> [f64; 2] {
+    sampler.pair(Address { key: SampleKey { seed, pixel, sample }, bounce, branch: 0, purpose })
+}
+
+/// sqrt(n) times the correlation of two sequences of uniform numbers less 1/2, up to the end of the shorter: standard normal if they are
+/// independent.
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let sum: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
+    12.0 * sum / (a.len().min(b.len()) as f64).sqrt()
+}

@@ -66,7 +66,8 @@ fn poles(trials: &mut Trials) {
     trials.at_most("Duff et al., random normals, roundings", 6.0, worst(&random, Frame::around));
 }
 
-/// smallpt changes its axis at |n.x| = 0.1, where the cross product is still 0.995 long; Duff's frame changes sides at z = 0, with its sign.
+/// smallpt changes its axis at |n.x| = 0.1, where the cross product is still 0.995 long; Duff's frame changes sides at z = 0, with its
+/// sign.
 fn seams(trials: &mut Trials) {
     let (mut at_x, mut at_z) = (Vec::new(), Vec::new());
     for k in -1000..=1000_i32 {

@@ -1,6 +1,6 @@
 //! Every material, in the words of a scene file.
 
-use crate::check::scene_text::material;
+use crate::check::scene_words::material;
 use crate::material::{MATERIALS, Material};
 use crate::math::{Vec3, sin_cos_turns};
 

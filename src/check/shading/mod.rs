@@ -1,9 +1,20 @@
 //! Frames, Fresnel, microfacets, lights.
 
+mod agreement;
+mod balance;
+mod cones;
+mod degenerate;
+mod directions;
+mod facets;
 mod frames;
 mod fresnel;
 mod glass;
+mod lights;
 mod materials;
+mod report_b;
+mod shares;
+mod smooth;
+mod targets;
 pub(in crate::check) mod unguarded;
 mod warps;
 
@@ -11,5 +22,20 @@ use super::Section;
 
 pub(super) const SECTION: Section = Section {
     title: "Frames, Fresnel, microfacets, lights",
-    cases: &[frames::CASES, warps::CASES, fresnel::CASES, glass::CASES],
+    cases: &[
+        frames::CASES,
+        warps::CASES,
+        fresnel::CASES,
+        glass::CASES,
+        facets::CASES,
+        smooth::CASES,
+        report_b::CASES,
+        degenerate::CASES,
+        balance::CASES,
+        cones::CASES,
+        shares::CASES,
+        agreement::CASES,
+        lights::CASES,
+        directions::CASES,
+    ],
 };

@@ -1,14 +1,14 @@
-//! What shading comes to without its guards: Schlick's polynomial, frames with a pole, choosing by the cosine, GGX as it is usually written,
-//! the second report's guards, cones by 1 - cos. They are here to be priced and to show that the inputs of the cases are hard; nothing
-//! that renders calls them.
+//! What shading comes to without its guards: Schlick's polynomial, frames with a pole, choosing by the cosine, GGX as it is usually
+//! written, the second report's guards, cones by 1 - cos. They are here to be priced and to show that the inputs of the cases are hard;
+//! nothing that renders calls them.
 
 use crate::material::Ggx;
 use crate::math::{Frame, Vec3, dot, fresnel_schlick, sin_cos_turns};
 use crate::sampling::{cosine_hemisphere, mix, unit};
-use std::f64::consts::{FRAC_1_PI, PI};
+use std::f64::consts::PI;
 
-/// The reflectance of a dielectric by Schlick's polynomial, as [`crate::math::fresnel_dielectric`] is asked: the cosine on the side of the light and the
-/// index there over the index here. As smallpt does it takes the cosine in the thinner medium.
+/// The reflectance of a dielectric by Schlick's polynomial, as [`crate::math::fresnel_dielectric`] is asked: the cosine on the side of
+/// the light and the index there over the index here. As smallpt does it takes the cosine in the thinner medium.
 pub(in crate::check) fn schlick(cos: f64, eta: f64) -> f64 {
     let root = (eta - 1.0) / (eta + 1.0);
     if eta >= 1.0 {
@@ -162,8 +162,8 @@ pub(in crate::check) fn mirror_of_report_b(fresnel: f64, cos: f64) -> f64 {
     if cos < REPORT_GUARD { 0.0 } else { fresnel / cos * cos }
 }
 
-/// 1 - cos of the half angle under which a sphere is seen, as smallpt's explicit version has it: no digit is left at 1e8 radii, and NaN comes from
-/// within.
+/// 1 - cos of the half angle under which a sphere is seen, as smallpt's explicit version has it: no digit is left at 1e8 radii, and NaN
+/// comes from within.
 pub(in crate::check) fn naive_one_minus_cos(radius: f64, distance: f64) -> f64 {
     let sin = radius / distance;
     1.0 - (1.0 - sin * sin).sqrt()
@@ -183,9 +183,4 @@ pub(in crate::check) fn power_heuristic_by_squares(a: f64, b: f64) -> f64 {
 /// A triangle's warp that forgets the root: points crowd at one corner.
 pub(in crate::check) fn crowded_triangle([u, v]: [f64; 2]) -> [f64; 2] {
     [u * (1.0 - v), u * v]
-}
-
-/// The density of the cosine warp at a height, so that a sampler without its root can be told.
-pub(in crate::check) fn cosine_density(height: f64) -> f64 {
-    height * FRAC_1_PI
 }

@@ -1,5 +1,6 @@
 //! From the unit square to directions and points: H03, H04, H05.
 
+use super::targets::{cones, triangles};
 use crate::check::chi_square::{against, critical};
 use crate::check::{Case, Trials};
 use crate::math::{Vec3, dot};
@@ -9,7 +10,11 @@ use std::f64::consts::{FRAC_1_PI, PI};
 pub(super) const CASES: &[Case] = &[
     Case { id: "H03", tries: "the cosine warp at 0, 2^-53, 1/2, 1 - 2^-53 and 1", run: cosine },
     Case { id: "H04", tries: "the tent filter at its ends and its seam", run: tents },
-    Case { id: "H05", tries: "sphere, disk, cosine and tent: the square's corners, and chi-square", run: all },
+    Case {
+        id: "H05",
+        tries: "sphere, cone, disk, cosine, tent and triangle: the square's corners, and chi-square",
+        run: all,
+    },
 ];
 
 const U: f64 = 0.5 * f64::EPSILON;
@@ -102,9 +107,11 @@ fn all(trials: &mut Trials) {
     let disk = |u: [f64; 2]| concentric_disk(u).iter().map(|x| x * x).sum::<f64>();
     let outermost = corners().map(disk).fold(0.0, |worst, this| if this <= worst { worst } else { this });
     trials.at_most("disk: square of the radius", 1.0 + 8.0 * U, outermost);
-    trials.same("disk: its middle", [0.0, 0.0], concentric_disk([0.5, 0.5]));
+    trials.same("disk: its middle", &[0.0, 0.0], &concentric_disk([0.5, 0.5]));
     trials.close("sphere: density times area", 1.0, UNIFORM_SPHERE_DENSITY * 4.0 * PI, 2.0 * U);
     moments(trials);
+    cones(trials);
+    triangles(trials);
     let samples = trials.times(400_000, 100_000_000);
     let limit = critical(2 * WARPS.len());
     for (number, warp) in (0..).zip(&WARPS) {

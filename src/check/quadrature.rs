@@ -8,7 +8,7 @@ const NODES: [(f64, f64); 3] =
 const DEPTH: (u32, u32) = (1, 12);
 
 /// The integral of `f` over a rectangle. A part is quartered until that changes it by no more than the tolerance.
-pub(crate) fn integral(x: [f64; 2], y: [f64; 2], tolerance: f64, f: &impl Fn(f64, f64) -> f64) -> f64 {
+pub(super) fn integral(x: [f64; 2], y: [f64; 2], tolerance: f64, f: &impl Fn(f64, f64) -> f64) -> f64 {
     refined(x, y, rule(x, y, f), tolerance, 0, f)
 }
 

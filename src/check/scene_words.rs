@@ -28,17 +28,23 @@ pub(super) fn read(text: &str) -> Result<Scene> {
     load(&file.path().to_string_lossy())
 }
 
-/// Reads a scene that the check has written and knows to be right.
-pub(super) fn scene(text: &str) -> Scene {
-    read(text).unwrap_or_else(|error| panic!("{error} in\n{text}"))
+/// Reads a scene from parts that the check knows to be right; what stands before the first table comes first.
+pub(super) fn scene(parts: &[String]) -> Scene {
+    let text = format!("about = 'a hard case'\n{}", parts.concat());
+    read(&text).unwrap_or_else(|error| panic!("{error} in\n{text}"))
 }
 
-/// A camera that looks at a point along a narrow cone.
-pub(super) fn camera(position: [f64; 3], look_at: [f64; 3], degrees: f64) -> String {
+/// A camera with a field of view in degrees.
+pub(super) fn camera_above(position: [f64; 3], look_at: [f64; 3], degrees: f64) -> String {
     format!(
         "[camera.pinhole]\nposition = {position:?}\nlook-at = {look_at:?}\nup = [0.36, 0.48, 0.8]\n\
          field-of-view = {degrees:?}\n"
     )
+}
+
+/// A camera whose pixels all see one point.
+pub(super) fn camera_at_a_point(position: [f64; 3], look_at: [f64; 3]) -> String {
+    camera_above(position, look_at, 1e-6)
 }
 
 /// An object, named by what it is; shape and material are what stands behind `=` in a scene file.
@@ -52,16 +58,21 @@ pub(super) fn sphere(center: [f64; 3], radius: f64) -> String {
     format!("{{ sphere = {{ center = {center:?}, radius = {radius:?} }} }}")
 }
 
+/// A plane without an end.
+pub(super) fn plane(point: [f64; 3], normal: [f64; 3]) -> String {
+    format!("{{ plane = {{ point = {point:?}, normal = {normal:?} }} }}")
+}
+
 /// A matte material, the same in all channels.
 pub(super) fn diffuse(albedo: f64) -> String {
     format!("{{ diffuse = {{ albedo = {:?} }} }}", [albedo; 3])
 }
 
-/// Insists that a scene with `VALUE` in its material is refused because of that value of that field: by an error with its place, which makes
-/// the exit code 2 and says what is allowed.
+/// Insists that a scene with `VALUE` in its material is refused because of that value of that field: by an error with its place, which
+/// makes the exit code 2 and says what is allowed.
 pub(super) fn refused(trials: &mut Trials, material: &str, field: &str, value: &str, allowed: &str) {
     let material = material.replace("VALUE", value);
-    let view = camera([0.0, 0.0, 3.0], [0.0; 3], 40.0);
+    let view = camera_above([0.0, 0.0, 3.0], [0.0; 3], 40.0);
     let text = format!("about = 'a test'\n{view}{}", object(&sphere([0.0; 3], 1.0), &material, [0.0; 3]));
     let found = read(&text);
     let passed = match &found {
@@ -71,6 +82,6 @@ pub(super) fn refused(trials: &mut Trials, material: &str, field: &str, value: &
         }
         _ => false,
     };
-    let found = found.map_or_else(|error| error.to_string(), |scene| format!("a scene of {}", scene.objects[0].name));
+    let found = found.map_or_else(|error| error.to_string(), |scene| format!("a scene with {}", scene.objects[0].name));
     trials.holds(material, format_args!("refused: {field} = {value}, allowed {allowed}"), found, passed);
 }

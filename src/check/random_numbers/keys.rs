@@ -1,0 +1,138 @@
+//! Keys: none is zero, none is shared: R05, R06.
+
+use super::first;
+use super::unguarded::{fmix64, key_of_32_bits, wang_hash, xorshift32};
+use crate::check::samplers::keyed;
+use crate::check::{Case, Trials};
+use crate::measure::LARGEST_SEED;
+use crate::sampling::{Address, Purpose, REFERENCE_SEEDS, SampleKey, Sampler, mix};
+
+pub(super) const CASES: &[Case] = &[
+    Case { id: "R05", tries: "no key of pixels and seeds makes a generator of zeros", run: zeros },
+    Case { id: "R06", tries: "no two addresses share their numbers; the mix is a bijection", run: collisions },
+];
+
+/// The seeds at the ends of ranges.
+const SEEDS: [u64; 6] = [0, 1, 1 << 31, (1 << 32) - 1, 1 << 63, u64::MAX];
+
+/// Wang's hash of pixel 61 is 0, and of 0 xorshift makes zeros for ever; the finaliser of Murmur's hash keeps 0. In ours no pixel under
+/// no seed starts with four zeros.
+fn zeros(trials: &mut Trials) {
+    trials.same("Wang's hash of 61", &0, &wang_hash(61));
+    let mut state = wang_hash(61);
+    trials.same(
+        "xorshift of it, 1000 draws that are not 0",
+        &0,
+        &(0..1000).filter(|_| xorshift32(&mut state) != 0).count(),
+    );
+    trials.same("Murmur's finaliser of 0", &0, &fmix64(0));
+    trials.holds("our mix of 0", "not 0", mix(0), mix(0) != 0);
+    let pixels = trials.times(786_432, 8_294_400) as u32;
+    for (name, sampler) in keyed() {
+        let mut zeros = 0;
+        for seed in SEEDS {
+            for pixel in 0..pixels {
+                // The second pair is asked for only where the first is all zeros.
+                let is_zero = |bounce| first(&*sampler, seed, pixel, 0, (bounce, Purpose::Bsdf)) == [0.0, 0.0];
+                zeros += u64::from(is_zero(1) && is_zero(2));
+            }
+        }
+        trials.never(name, "pixels that start with zeros", zeros, u64::from(pixels) * SEEDS.len() as u64);
+    }
+}
+
+/// The number of which `mix` makes `x`: each of its steps, undone. That there is one for every number shows that no two share one.
+fn unmix(x: u64) -> u64 {
+    // A shift is undone by repeating it on what is known so far.
+    let unshift = |x: u64, by: u32| (0..64 / by).fold(x, |known, _| x ^ (known >> by));
+    let z = unshift(x, 31).wrapping_mul(inverse(0x94D0_49BB_1331_11EB));
+    let z = unshift(z, 27).wrapping_mul(inverse(0xBF58_476D_1CE4_E5B9));
+    unshift(z, 30).wrapping_sub(0x9E37_79B9_7F4A_7C15)
+}
+
+/// The inverse of an odd number modulo 2^64, by Newton's iteration: each step doubles the digits that are right.
+fn inverse(odd: u64) -> u64 {
+    (0..6).fold(odd, |x, _| x.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(x))))
+}
+
+fn bijection(trials: &mut Trials) {
+    let ends = [0, 1, u64::MAX, u64::MAX - 1, 1 << 63, (1 << 63) - 1, 0x9E37_79B9_7F4A_7C15, 0x61C8_8646_80B5_83EB];
+    let single = (0..64).map(|bit| 1_u64 << bit);
+    let n = trials.times(1_000_000, 100_000_000);
+    let many = (0..n).flat_map(|k| [k, !k, k.wrapping_mul(0xD134_2543_DE82_EF95)]);
+    let (mut wrong, mut tried) = (0, 0);
+    for x in ends.into_iter().chain(single).chain(many) {
+        tried += 1;
+        wrong += u64::from(unmix(mix(x)) != x || mix(unmix(x)) != x);
+    }
+    trials.never("mix", "numbers that do not come back", wrong, tried);
+}
+
+/// The 106 bits of a pair.
+fn bits([u, v]: [f64; 2]) -> u128 {
+    u128::from(u.to_bits()) << 64 | u128::from(v.to_bits())
+}
+
+/// How many of some pairs have come before. By chance one in 1e16 such sets has any.
+fn repeated(mut all: Vec<u128>) -> u64 {
+    all.sort_unstable();
+    all.windows(2).filter(|two| two[0] == two[1]).count() as u64
+}
+
+/// Exhaustively: every pixel and sample of an image, every use along a path with its branches, and two images of a seed and of a
+/// reference. Keys of 32 bits are shared by 72 pairs of the pixels of such an image.
+fn collisions(trials: &mut Trials) {
+    bijection(trials);
+    let mut short: Vec<u32> = (0..786_432).map(key_of_32_bits).collect();
+    short.sort_unstable();
+    let pairs = short.windows(2).filter(|two| two[0] == two[1]).count();
+    // 786432²/2/2^32, give or take five roots of it.
+    trials.close("keys of 32 bits: pairs that share one", 72.0, pairs as f64, 5.0 * 72.0_f64.sqrt());
+    trials.same("every seed is an image's or a reference's", &REFERENCE_SEEDS, &(LARGEST_SEED + 1));
+    let spp = trials.times(1, 8) as u32;
+    let bounces = trials.times(1 << 12, 1 << 16);
+    for (name, sampler) in keyed() {
+        let pair = |seed, pixel, sample| bits(first(&*sampler, seed, pixel, sample, (0, Purpose::Film)));
+        let others = trials.times(1 << 16, 786_432) as u32;
+        for (seed, reference, pixels) in
+            [(1, REFERENCE_SEEDS | 1, 786_432), (0, REFERENCE_SEEDS, others), (LARGEST_SEED, u64::MAX, others)]
+        {
+            let places = || (0..pixels).flat_map(|pixel| (0..spp).map(move |sample| (pixel, sample)));
+            let mut all: Vec<u128> = places().map(|(pixel, sample)| pair(seed, pixel, sample)).collect();
+            all.extend(places().map(|(pixel, sample)| pair(reference, pixel, sample)));
+            let n = all.len() as u64;
+            trials.never(
+                format!("{name}, images of seed {seed} and of reference {reference}"),
+                "pairs twice",
+                repeated(all),
+                n,
+            );
+        }
+        let all = along_a_path(&*sampler, bounces);
+        let n = all.len() as u64;
+        trials.never(format!("{name}, uses along a path"), "pairs twice", repeated(all), n);
+    }
+}
+
+fn along_a_path(sampler: &dyn Sampler, bounces: u64) -> Vec<u128> {
+    let purposes = [
+        Purpose::Film,
+        Purpose::Bsdf,
+        Purpose::Roulette,
+        Purpose::Lens,
+        Purpose::Medium,
+        Purpose::Light,
+        Purpose::LightChoice,
+    ];
+    let mut all = Vec::new();
+    for bounce in 0..bounces as u16 {
+        for branch in [0, 1, 2, 3, 255, u16::MAX] {
+            for purpose in purposes {
+                // The extremes of the key at once.
+                let key = SampleKey { seed: u64::MAX, pixel: u32::MAX, sample: u32::MAX };
+                all.push(bits(sampler.pair(Address { key, bounce, branch, purpose })));
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,81 @@
+//! Generators and keys that programs of this family have used, each with what is wrong with it. They are here to be priced and to show
+//! that the cases see it; nothing that renders draws from them.
+
+use crate::sampling::{mix, unit};
+use rand::Rng;
+use rand_pcg::Pcg32;
+
+/// smallpt's state at the start of row `y`: `Xi = {0, 0, y*y*y}` in 16-bit words, the last of which is the highest. The cube wraps, so
+/// rows share states, and the low 32 bits are alike in all of them for ever.
+pub(in crate::check) fn smallpt_row(y: u32) -> u64 {
+    u64::from(y.wrapping_mul(y).wrapping_mul(y) as u16) << 32
+}
+
+/// The next number of `erand48`, which smallpt draws from.
+pub(in crate::check) fn erand48(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(0x5_DEEC_E66D).wrapping_add(0xB) & 0xFFFF_FFFF_FFFF;
+    *state as f64 / (1_u64 << 48) as f64
+}
+
+/// The first number of a linear congruential generator of 32 bits ("Numerical Recipes") whose seed is the pixel: neighbours differ by a
+/// constant.
+pub(in crate::check) fn lcg_of_pixel(pixel: u32) -> f64 {
+    f64::from(pixel.wrapping_mul(1_664_525).wrapping_add(1_013_904_223)) / 4_294_967_296.0
+}
+
+/// A PCG32 whose state is the pixel.
+pub(in crate::check) fn sequential_state(pixel: u32) -> Pcg32 {
+    Pcg32::new(u64::from(pixel), 0)
+}
+
+/// A PCG32 whose stream is the pixel.
+pub(in crate::check) fn sequential_stream(pixel: u32) -> Pcg32 {
+    Pcg32::new(42, u64::from(pixel))
+}
+
+/// The next number of a PCG32, of 32 bits.
+pub(in crate::check) fn draw(pcg: &mut Pcg32) -> f64 {
+    f64::from(pcg.next_u32()) / 4_294_967_296.0
+}
+
+/// A number whose key is the sum of seed and pixel: the image of the next seed is the same noise, moved by a pixel.
+pub(in crate::check) fn seed_plus_pixel(seed: u64, pixel: u32) -> f64 {
+    unit(mix(seed.wrapping_add(u64::from(pixel))))
+}
+
+/// The key of a pixel in 32 bits: some pixels of an image share one.
+pub(in crate::check) fn key_of_32_bits(pixel: u32) -> u32 {
+    mix(u64::from(pixel)) as u32
+}
+
+/// Thomas Wang's hash of 32 bits: 0 for 61.
+pub(in crate::check) fn wang_hash(x: u32) -> u32 {
+    let x = (x ^ 0x3D ^ (x >> 16)).wrapping_mul(9);
+    let x = (x ^ (x >> 4)).wrapping_mul(0x27D4_EB2D);
+    x ^ (x >> 15)
+}
+
+/// Marsaglia's generator of 32 bits: zero stays zero for ever.
+pub(in crate::check) fn xorshift32(state: &mut u32) -> u32 {
+    *state ^= *state << 13;
+    *state ^= *state >> 17;
+    *state ^= *state << 5;
+    *state
+}
+
+/// The finaliser of `MurmurHash3`, a bijection that leaves zero where it is.
+pub(in crate::check) fn fmix64(x: u64) -> u64 {
+    let x = (x ^ (x >> 33)).wrapping_mul(0xFF51_AFD7_ED55_8CCD);
+    let x = (x ^ (x >> 33)).wrapping_mul(0xC4CE_B9FE_1A85_EC53);
+    x ^ (x >> 33)
+}
+
+/// 32 bits times 2^-32 in single precision: 1 for the topmost 128.
+pub(in crate::check) fn unit_in_f32(bits: u32) -> f32 {
+    bits as f32 * (1.0 / 4_294_967_296.0)
+}
+
+/// 64 bits times 2^-64 without cutting off those that do not fit: 1 for the topmost 1024.
+pub(in crate::check) fn unit_of_all_bits(bits: u64) -> f64 {
+    bits as f64 * (1.0 / 1.844_674_407_370_955_2e19)
+}

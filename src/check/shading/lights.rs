@@ -1,0 +1,62 @@
+//! Lights that are hardly there, and very many of them: H37.
+
+use crate::check::image_mean::{Moments, render};
+use crate::check::scene_words::{camera_at_a_point, diffuse, object, plane, scene, sphere};
+use crate::check::{Case, Trials};
+use crate::estimator::ESTIMATORS;
+use crate::kernel::KERNELS;
+use crate::scene::load;
+
+pub(super) const CASES: &[Case] = &[Case {
+    id: "H37",
+    tries: "lights below the horizon, edge on, inside of what is opaque, dark, and 100 000 of them",
+    run: hardly_there,
+}];
+
+/// What none of them lights is black, and no sample is NaN on the way to that.
+fn hardly_there(trials: &mut Trials) {
+    let floor = || object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
+    let lamp = |y: f64| object(&sphere([0.7, y, 0.0], 0.5), &diffuse(0.0), [3.0; 3]);
+    // A square that stands on the floor: the point that is seen lies in its plane.
+    let edge_on = "{ quad = { corners = [[0.5, 0.0, 0.0], [1.5, 0.0, 0.0], [1.5, 1.0, 0.0], [0.5, 1.0, 0.0]] } }";
+    let hood = |y: f64| object(&sphere([0.7, y, 0.0], 0.8), &diffuse(0.5), [0.0; 3]);
+    let spots = [
+        ("below the horizon", vec![floor(), lamp(-2.0)]),
+        ("touching the horizon from below", vec![floor(), lamp(-0.5)]),
+        ("edge on", vec![floor(), object(edge_on, &diffuse(0.0), [3.0; 3])]),
+        ("inside of what is opaque", vec![floor(), lamp(2.0), hood(2.0)]),
+        ("dark", vec![floor(), object(&sphere([0.0, 2.0, 0.0], 0.5), &diffuse(0.0), [0.0; 3])]),
+    ];
+    let spp = trials.times(16, 4096) as u32;
+    for (name, things) in spots {
+        let parts = ["background = [0.0, 0.0, 0.0]\n".to_string(), camera_at_a_point([2.0, 1.5, 1e-3], [0.0; 3])];
+        let scene = scene(&[parts.concat(), things.concat()]);
+        for kernel in KERNELS {
+            for entry in ESTIMATORS {
+                let outcome = render(&scene, kernel.name, entry.name, (16, 16), spp, 50);
+                let variant = format!("{name}, {}, {}", kernel.name, entry.name);
+                trials.same(format!("{variant}: invalid samples"), &0, &outcome.counts.invalid);
+                let brightest = (0..3).map(|channel| Moments::of(&outcome.film, channel).mean).fold(0.0, f64::max);
+                // Edge on the spot is a spot: its points are up to 3e-8 off the plane.
+                trials.at_most(format!("{variant}: radiance"), if name == "edge on" { 1e-6 } else { 0.0 }, brightest);
+            }
+        }
+    }
+    chances(trials);
+}
+
+/// Every one of very many lights is chosen, and the chances make 1; a light that gives off nothing is none.
+fn chances(trials: &mut Trials) {
+    let scene = load("spheres:100000").expect("a shipped scene").in_equilibrium();
+    let scene = scene.lit(&scene.camera.view(8, 6));
+    let chances: Vec<f64> = scene.lights.as_ref().map(|lights| lights.chances().collect()).unwrap_or_default();
+    trials.same("lights", &100_000, &chances.len());
+    trials.close("sum of the chances", 1.0, chances.iter().sum(), 1e-11);
+    // Half of the choices are even.
+    trials.at_least("smallest chance", 0.499_999_999e-5, chances.iter().copied().fold(f64::INFINITY, f64::min));
+    let dark = load("spheres:100").expect("a shipped scene");
+    let lit = dark.lit(&dark.camera.view(8, 6));
+    let lamps = dark.owners.iter().filter(|owner| !dark.objects[**owner as usize].emission.is_black()).count();
+    let found = lit.lights.map_or(0, |lights| lights.chances().count());
+    trials.holds("lights among 100 spheres", format_args!("at most {lamps}"), found, found <= lamps);
+}
