@@ -1,7 +1,7 @@
 //! H22: GGX's density of normals and its masking are right to 20 roundings at every roughness, against double-double arithmetic on the same inputs. The form with
 //! 1 + cos²(α² - 1), which loses its digits, would not pass.
 
-#[path = "support/double_double.rs"]
+#[path = "../src/check/double_double.rs"]
 mod double_double;
 
 use double_double::two_product;

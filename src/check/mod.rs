@@ -27,8 +27,16 @@
 //! ```
 
 mod analytic;
+mod bare_scene;
+mod double_double;
+#[cfg(test)]
+mod fixed_point;
+mod meshes;
 mod path;
+mod random;
 mod random_numbers;
+mod rendering;
+mod scene_text;
 mod shading;
 mod sphere;
 mod statistics;

@@ -89,7 +89,7 @@ impl Trials {
     }
 
     /// A value that must be exactly what is expected.
-    pub fn same<T: PartialEq + Debug>(&mut self, variant: impl Into<String>, expected: T, found: T) -> bool {
+    pub fn same<T: PartialEq + Debug>(&mut self, variant: impl Into<String>, expected: &T, found: &T) -> bool {
         let passed = expected == found;
         self.holds(variant, format_args!("{expected:?}"), format_args!("{found:?}"), passed)
     }

@@ -5,7 +5,6 @@ mod depth;
 #[path = "../support/estimate.rs"]
 mod estimate;
 mod fog;
-mod scale;
 mod small_stack;
 mod unused;
 mod whitted;

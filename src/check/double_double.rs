@@ -4,7 +4,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number as an unevaluated sum of two: 106 bits (Dekker, 1971; products split after Veltkamp, no fused operation).
 #[derive(Clone, Copy)]
-pub(crate) struct Dd(pub(crate) f64, f64);
+pub(super) struct Dd(pub(super) f64, f64);
 
 fn two_sum(a: f64, b: f64) -> Dd {
     let s = a + b;
@@ -13,7 +13,7 @@ fn two_sum(a: f64, b: f64) -> Dd {
 }
 
 /// The exact product.
-pub(crate) fn two_product(a: f64, b: f64) -> Dd {
+pub(super) fn two_product(a: f64, b: f64) -> Dd {
     let split = |x: f64| {
         let c = 134_217_729.0 * x;
         let high = c - (c - x);
@@ -56,12 +56,12 @@ impl Mul for Dd {
 
 impl Dd {
     /// The quotient, rounded once.
-    pub(crate) fn over(self, o: Self) -> f64 {
+    pub(super) fn over(self, o: Self) -> f64 {
         let q = self.0 / o.0;
         q + (self - o * Self(q, 0.0)).0 / o.0
     }
     /// The square root.
-    pub(crate) fn sqrt(self) -> Self {
+    pub(super) fn sqrt(self) -> Self {
         let root = self.0.sqrt();
         if root == 0.0 { self } else { two_sum(root, (self - two_product(root, root)).0 / (2.0 * root)) }
     }
