@@ -27,15 +27,22 @@
 //! ```
 
 mod analytic;
+mod bare_scene;
 mod chi_square;
 mod double_double;
 pub mod exact;
+#[cfg(test)]
+mod fixed_point;
 mod image_mean;
+mod meshes;
 mod path;
 mod quadrature;
+mod random;
 mod random_numbers;
+mod rendering;
 mod run;
 mod samplers;
+mod scene_text;
 mod scene_words;
 mod shading;
 mod sphere;

@@ -8,7 +8,6 @@ mod estimate;
 mod fog;
 mod metal;
 mod point_lights;
-mod scale;
 mod small_stack;
 mod unused;
 mod whitted;

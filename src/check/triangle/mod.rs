@@ -1,5 +1,30 @@
 //! Triangles, boxes and hierarchies.
 
+mod areas;
+mod arrangements;
+mod contact;
+mod edges;
+mod hierarchies;
+mod plane_distance;
+#[cfg(test)]
+mod plane_distance_tests;
+mod planes;
+mod single;
+mod slabs;
+pub(super) mod unguarded;
+
 use super::Section;
 
-pub(super) const SECTION: Section = Section { title: "Triangles, boxes and hierarchies", cases: &[] };
+pub(super) const SECTION: Section = Section {
+    title: "Triangles, boxes and hierarchies",
+    cases: &[
+        edges::CASES,
+        areas::CASES,
+        plane_distance::CASES,
+        slabs::CASES,
+        hierarchies::CASES,
+        arrangements::CASES,
+        planes::CASES,
+        contact::CASES,
+    ],
+};

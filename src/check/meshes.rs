@@ -1,11 +1,11 @@
 //! Closed meshes.
 
-use pathmark::math::Vec3;
-use pathmark::scene::Triangle;
+use crate::math::{Vec3, dot};
+use crate::scene::Triangle;
 
 /// A closed mesh around the origin, `rows` by `columns` on a sphere whose radius at each vertex is `radius` (drawn once for each). The
 /// corners of neighbours are the same bits.
-pub(crate) fn star(rows: usize, columns: usize, mut radius: impl FnMut() -> f64) -> Vec<Triangle> {
+pub(super) fn star(rows: usize, columns: usize, mut radius: impl FnMut() -> f64) -> Vec<Triangle> {
     let south = Vec3::new(0.0, 0.0, -radius());
     let north = Vec3::new(0.0, 0.0, radius());
     let rings: Vec<Vec<Vec3>> = (1..rows)
@@ -33,7 +33,7 @@ pub(crate) fn star(rows: usize, columns: usize, mut radius: impl FnMut() -> f64)
 }
 
 /// The surface of the cube from 0 to `n`, each face of n x n squares with corners on the integers.
-pub(crate) fn grid_cube(n: i32) -> Vec<Triangle> {
+pub(super) fn grid_cube(n: i32) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for axis in 0..3 {
         for side in [0, n] {
@@ -49,6 +49,40 @@ pub(crate) fn grid_cube(n: i32) -> Vec<Triangle> {
                 triangles.push(Triangle { corners: [a, c, d] });
             }
         }
+    }
+    triangles
+}
+
+/// An icosahedron on the unit sphere, each triangle cut into four so many times.
+pub(super) fn icosphere(cuts: u32) -> Vec<Triangle> {
+    let golden = 0.5 + 1.25_f64.sqrt();
+    // Corners by axis and signs: 0, +-1 and +-golden in cyclic order.
+    let corner = |axis: usize, one: f64, other: f64| {
+        let mut at = [0.0; 3];
+        at[(axis + 1) % 3] = one;
+        at[(axis + 2) % 3] = other * golden;
+        Vec3::from(at).normalized()
+    };
+    let signs = [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    let corners: Vec<Vec3> = (0..3).flat_map(|axis| signs.map(|(one, other)| corner(axis, one, other))).collect();
+    // Neighbours are 2 / sqrt(1 + golden²) apart, 1.05; the next nearest corners 1.7.
+    let are_near = |a: Vec3, b: Vec3| dot(a - b, a - b) < 1.5;
+    let mut triangles = Vec::new();
+    for (k, a) in corners.iter().enumerate() {
+        for (l, b) in corners.iter().enumerate().skip(k + 1).filter(|(_, b)| are_near(*a, **b)) {
+            for c in corners.iter().skip(l + 1).filter(|c| are_near(*a, **c) && are_near(*b, **c)) {
+                let outside = dot((*b - *a).cross(*c - *a), *a) > 0.0;
+                triangles.push(Triangle { corners: if outside { [*a, *b, *c] } else { [*a, *c, *b] } });
+            }
+        }
+    }
+    for _ in 0..cuts {
+        let middle = |a: Vec3, b: Vec3| (a + b).normalized();
+        let cut = |Triangle { corners: [a, b, c] }: &Triangle| {
+            let [ab, bc, ca] = [middle(*a, *b), middle(*b, *c), middle(*c, *a)];
+            [[*a, ab, ca], [ab, *b, bc], [ca, bc, *c], [ab, bc, ca]].map(|corners| Triangle { corners })
+        };
+        triangles = triangles.iter().flat_map(cut).collect();
     }
     triangles
 }

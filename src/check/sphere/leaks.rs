@@ -1,0 +1,134 @@
+//! Closed scenes lose no ray, and lights hide nothing of themselves.
+
+use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
+use crate::check::bare_scene::{intersect, searches};
+use crate::check::random::Random;
+use crate::check::rendering::{by_kernel, render};
+use crate::check::scene_text::{DIFFUSE, camera_at_a_point, object, read};
+use crate::check::{Case, Trials};
+use crate::estimator::ESTIMATORS;
+use crate::kernel::Spec;
+use crate::math::{Ray, Vec3};
+use crate::scene::{AllEffects, Scene, Standpoint, Tests, load};
+use std::sync::Arc;
+
+pub(super) const CASES: &[Case] = &[
+    Case {
+        id: "S42",
+        tries: "smallpt's closed box: no ray meets nothing, none passes behind an edge",
+        run: closed_box,
+    },
+    Case {
+        id: "S45",
+        tries: "rays at lights of radius 600 and 0.005: none is stopped by the light itself",
+        run: lights,
+    },
+];
+
+fn closed_box(trials: &mut Trials) {
+    let most = trials.times(400_000, 100_000_000);
+    let cornell = load("cornell").expect("a shipped scene");
+    let equilibrium = Arc::new(cornell.in_equilibrium());
+    for (scene, what) in [(Arc::new(cornell), "lit"), (equilibrium, "in equilibrium")] {
+        for estimator in ESTIMATORS {
+            let spec = Spec { width: 96, height: 72, estimator: estimator.name.into(), ..Spec::default() };
+            for spec in by_kernel(&spec) {
+                rays_that_escape(trials, &scene, what, &spec, most);
+            }
+        }
+    }
+    edges(trials);
+}
+
+/// Renders with other seeds until so many rays have been traced.
+fn rays_that_escape(trials: &mut Trials, scene: &Arc<Scene>, what: &str, spec: &Spec, most: u64) {
+    let (mut rays, mut lost, mut seed) = (0, 0, 0);
+    while rays < most {
+        seed += 1;
+        let spp = if most > 10_000_000 { 256 } else { 4 };
+        let Some(outcome) = render(trials, scene, Spec { seed, ..spec.clone() }, spp) else { return };
+        rays += outcome.counts.rays;
+        lost += outcome.counts.escaped + outcome.counts.invalid;
+    }
+    let variant = format!("{what}, {}, {}", spec.estimator, spec.kernel);
+    trials.never(variant, "rays that met nothing or samples that are no radiance", lost, rays);
+}
+
+/// A ray that leaves the ceiling 1e-1 to 1e-8 from the left wall, towards it. An epsilon of 1e-4 skips the wall, and the path goes on
+/// behind it, mostly without ever counting as escaped, because the other walls' spheres go on there too.
+fn edges(trials: &mut Trials) {
+    let rays = trials.times(20_000, 2_000_000);
+    let cornell = load("cornell").expect("a shipped scene");
+    for (accelerator, scene) in searches(&cornell) {
+        let name = |primitive: u32| scene.objects[scene.owners[primitive as usize] as usize].name.as_str();
+        let mut random = Random::new(42);
+        let (mut wrong, mut skipped) = (0, 0);
+        for _ in 0..rays {
+            let (gap, z) = (random.scale(-8.0, -1.0), 10.0 + 140.0 * random.unit());
+            // Where the spheres of left wall and ceiling meet: each bulges by (square of the distance from its middle) / 2r.
+            let sag = |a: f64, b: f64| (a * a + b * b) / (1e5 + (1e10 - a * a - b * b).sqrt());
+            let mut edge = 1.0;
+            for _ in 0..4 {
+                let height = 81.6 - sag(edge + gap - 50.0, z - 81.6);
+                edge = 1.0 + sag(height - 40.8, z - 81.6);
+            }
+            let up = Ray { origin: Vec3::new(edge + gap, 40.0, z), direction: Vec3::new(0.0, 1.0, 0.0) };
+            let Some(ceiling) = intersect(&scene, &up, None).filter(|hit| name(hit.primitive) == "ceiling") else {
+                wrong += 1;
+                continue;
+            };
+            let ray = Ray { origin: ceiling.point, direction: Vec3::new(-1.0, -0.3, 0.1).normalized() };
+            let from = Standpoint { primitive: ceiling.primitive, inside: true };
+            // The wall slopes by up to 1e-3 and its sphere's numbers are rounded at 1e-11.
+            let expected = gap / -ray.direction.x;
+            let wall = intersect(&scene, &ray, Some(from)).filter(|hit| name(hit.primitive) == "left wall");
+            wrong += u64::from(!wall.is_some_and(|hit| (hit.t - expected).abs() <= 1e-10 + 2e-3 * expected));
+            let f = ray.origin - Vec3::new(100_001.0, 40.8, 81.6);
+            skipped += u64::from(smallpt_first_root(f, ray.direction, 1e5, SMALLPT_EPSILON) == 0.0);
+        }
+        trials.never(format!("edges, accelerator {accelerator}"), "rays that do not meet the wall there", wrong, rays);
+        let told = format_args!("{skipped} of {rays}");
+        trials.holds("smallpt's epsilon", "skips the wall, or these rays would prove nothing", told, skipped > 0);
+    }
+}
+
+/// What aims at a light must arrive at it with nothing between, whatever its size, and nothing short of it may block the way.
+fn lights(trials: &mut Trials) {
+    let rays = trials.times(20_000, 2_000_000);
+    for (radius, height, across) in [(600.0, 681.33, 100.0), (0.005, 0.0051, 0.1), (0.005, 50.0, 100.0)] {
+        let light = format!("{{ sphere = {{ center = [0.0, {height:?}, 0.0], radius = {radius:?} }} }}");
+        let floor = "{ plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }";
+        let parts = [
+            camera_at_a_point([0.0, 0.5, 9.0], [0.0, 0.0, 9.0]),
+            object("light", &light, DIFFUSE, 1.0),
+            object("floor", floor, DIFFUSE, 0.0),
+        ];
+        let scene = read(&parts).expect("a right scene");
+        let lit = scene.lit(&scene.camera.view(4, 4));
+        for (name, scene) in searches(&lit) {
+            let Some(lights) = &scene.lights else { continue };
+            let mut random = Random::new(45);
+            let (mut missed, mut blocked, mut tried) = (0, 0, 0);
+            for _ in 0..rays {
+                let mut place = || (2.0 * random.unit() - 1.0) * across;
+                let point = Vec3::new(place(), 0.0, place());
+                // Not the very rim of the cone, where a tangent may miss.
+                let u = [random.unit(), (1.0 - 1e-9) * random.unit()];
+                let from = Some(Standpoint { primitive: 1, inside: false });
+                let Some(aim) = lights.aim(point, from, || 0.0, u) else { continue };
+                let ray = Ray { origin: point, direction: aim.direction };
+                tried += 1;
+                let Some(hit) = intersect(&scene, &ray, from).filter(|hit| hit.primitive == aim.primitive) else {
+                    missed += 1;
+                    continue;
+                };
+                let is_blocked = |limit: f64| scene.is_blocked::<AllEffects>(&ray, from, limit, &mut Tests::default());
+                // Up to the light itself the way is free; just beyond, the light is in the way.
+                blocked += u64::from(is_blocked(hit.t) || !is_blocked(hit.t.next_up()));
+            }
+            let variant = format!("radius {radius}, {height} above the floor, accelerator {name}");
+            trials.never(&variant, "aims that do not arrive", missed, tried);
+            trials.never(&variant, "lights that block their own way", blocked, tried);
+        }
+    }
+}

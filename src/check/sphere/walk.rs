@@ -1,0 +1,15 @@
+//! A walk from surface to surface by hand, without an estimator.
+
+use crate::material::Material;
+use crate::math::{Ray, Vec3};
+use crate::scene::{AllEffects, Hit, Scene, Standpoint};
+
+/// Where a ray that arrives along `direction` goes on when the surface takes `u` for what it chooses; the new direction is not normalised.
+pub(super) fn scatter(scene: &Scene, hit: &Hit, direction: Vec3, u: f64) -> (Ray, Standpoint) {
+    let frame = hit.frame();
+    let material: &Material = &scene.objects[hit.object as usize].material;
+    let sample = material.sample::<AllEffects>(frame.to_local(-direction), hit.inside, [u, 0.5]);
+    let wi = sample.expect("nothing here absorbs").wi;
+    let inside = (wi.z < 0.0) != hit.inside;
+    (Ray { origin: hit.point, direction: frame.to_world(wi) }, Standpoint { primitive: hit.primitive, inside })
+}
