@@ -33,6 +33,7 @@ mod double_double;
 pub mod exact;
 #[cfg(test)]
 mod fixed_point;
+pub mod guards;
 mod image_mean;
 mod meshes;
 mod path;

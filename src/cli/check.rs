@@ -1,13 +1,16 @@
 //! `pathmark check`: the hard cases on this machine, and what guarding against them costs.
 
+use super::guards;
 use super::output::{print, print_json};
 use super::progress::Talk;
+use crate::check::guards::PriceRow;
 use crate::check::{self, Case, Effort, Outcome, SECTIONS};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress;
 use crate::measure::available_threads;
 use clap::Args;
 use serde::Serialize;
+use std::path::PathBuf;
 
 /// `pathmark check --thorough`
 #[derive(Args)]
@@ -17,6 +20,9 @@ pub(super) struct Arguments {
     /// Try as many random inputs as the catalogue of hard cases asks for: minutes to hours
     #[arg(long)]
     thorough: bool,
+    /// Write the price list of the guards into this folder, beside the results of experiments, and a page of all of them
+    #[arg(long, value_name = "DIR", conflicts_with = "cases")]
+    out: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -43,10 +49,19 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         .zip(&outcomes)
         .map(|(case, outcome)| Row { id: case.id, tries: case.tries, pass: outcome.passed(), outcome })
         .collect();
+    // Guards are timed alone, and only where everything is asked for.
+    let prices = if arguments.cases.is_empty() { guards::measure(talk) } else { Vec::new() };
     if arguments.json {
-        print_json(&serde_json::json!({ "cases": rows }))?;
+        print_json(&serde_json::json!({ "cases": rows, "guards": prices }))?;
     } else {
         print(&table(&rows, !arguments.cases.is_empty()))?;
+        if !prices.is_empty() {
+            print(&price_list(&prices))?;
+        }
+    }
+    if let Some(out) = &arguments.out {
+        guards::write(out, &prices)?;
+        print(&format!("report in {}", crate::report::write(out)?.display()))?;
     }
     let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| row.id).collect();
     if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }
@@ -108,4 +123,18 @@ fn line(row: &Row<'_>) -> String {
         trials => format!("{} trials", trials.len()),
     };
     format!("  {:4} {verdict}  {}: {what}", row.id, row.tries)
+}
+
+/// The guards, two lines each.
+fn price_list(rows: &[PriceRow]) -> String {
+    let mut lines = vec!["\nWhat the guards cost, and what goes wrong without them (intervals of 95 %)\n".to_string()];
+    for row in rows {
+        let times = match (row.time_ratio, row.time_ratio_low, row.time_ratio_high) {
+            (Some(ratio), Some(low), Some(high)) => format!("{ratio:.2} times the time ({low:.2} to {high:.2})"),
+            _ => "not timed".to_string(),
+        };
+        lines.push(format!("  {}: {} instead of {}, {times}", row.guard, row.with, row.without));
+        lines.push(format!("    {}: {:.3e} instead of {:.3e}", row.error, row.error_with, row.error_without));
+    }
+    lines.join("\n")
 }

@@ -6,6 +6,7 @@ mod axes;
 mod bounces;
 mod check;
 mod compare;
+mod guards;
 mod list;
 mod output;
 mod price;

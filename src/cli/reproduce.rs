@@ -1,7 +1,7 @@
 //! `pathmark reproduce`: all committed experiments.
 
 use super::progress::Talk;
-use super::{command_line, output::print, strict::Strict};
+use super::{command_line, guards, output::print, strict::Strict};
 use crate::error::{Error, Result};
 use crate::experiment::{Definition, EXPERIMENTS, Options, Profile, Progress, RecordsFile, sweep};
 use clap::Args;
@@ -55,6 +55,9 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         failed += summary.failed;
         invalid += summary.invalid;
     }
+    if !guards::are_in(&arguments.out) {
+        guards::write(&arguments.out, &guards::measure(talk))?;
+    }
     let page = crate::report::write(&arguments.out)?;
     print(&format!("{rows} rows from {} experiments, report in {}", definitions.len(), page.display()))?;
     if failed > 0 {
@@ -73,11 +76,11 @@ fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> 
     }
     let stamp = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace(':', "-");
     let earlier = out.join("earlier").join(stamp);
-    for definition in definitions {
-        let folder = out.join(&definition.name);
+    for name in definitions.iter().map(|definition| definition.name.as_str()).chain([guards::FOLDER]) {
+        let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;
-            let target = earlier.join(&definition.name);
+            let target = earlier.join(name);
             std::fs::rename(&folder, &target).map_err(|e| Error::system("moving", &folder, e))?;
             talk.note(&format!("what was in {} is now in {}", folder.display(), target.display()));
         }

@@ -1,5 +1,6 @@
 //! `machine.toml`: what the rows beside it were measured on, and with which command.
 
+use super::Profile;
 use crate::atomic_file;
 use crate::error::{InputError, Result};
 use crate::input::{parse, read_text};
@@ -26,8 +27,14 @@ pub fn read_run_file(path: &Path) -> Result<RunFile> {
 }
 
 impl RunFile {
+    /// Of something that no definition describes, on this machine.
+    pub fn of_now(command: String) -> Self {
+        let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
+        Self { command, profile, definition_hash, machine: Machine::look() }
+    }
+
     /// Writes it.
-    pub(super) fn write(&self, path: &Path) -> Result<()> {
+    pub fn write(&self, path: &Path) -> Result<()> {
         let text = toml::to_string_pretty(self)
             .map_err(|e| InputError::new("machine", "", format!("cannot be written as TOML: {e}")))?;
         atomic_file::write(path, |out| out.write_all(text.as_bytes()))

@@ -1,4 +1,4 @@
-//! The number trait that leaf formulas are written over: `f64` today, SIMD lanes of the same formulas later.
+//! The number trait that leaf formulas are written over: `f64`, `f32` to see what it costs, and SIMD lanes of the same formulas.
 //!
 //! A formula over [`Real`] may not branch on a value; it computes both sides and selects. Each operation is one that IEEE 754 rounds
 //! exactly (no reciprocal estimate, no fused multiply-add), so every implementation gives the same bits per lane.
@@ -31,35 +31,42 @@ pub trait Real:
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 }
 
-impl Real for f64 {
-    type Mask = bool;
+macro_rules! float {
+    ($Float:ident) => {
+        impl Real for $Float {
+            type Mask = bool;
 
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        f64::abs(self)
-    }
-    #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        f64::copysign(self, sign)
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self < other
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> bool {
-        self <= other
-    }
-    #[inline(always)]
-    fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask { yes } else { no }
-    }
+            #[inline(always)]
+            fn splat(value: f64) -> Self {
+                value as $Float
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $Float::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $Float::abs(self)
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                $Float::copysign(self, sign)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> bool {
+                self < other
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> bool {
+                self <= other
+            }
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+        }
+    };
 }
+
+float!(f64);
+float!(f32);

@@ -4,6 +4,7 @@ mod block;
 mod contenders;
 mod figures;
 pub mod forecasts;
+mod guards;
 mod page;
 mod reference_image;
 mod results;
@@ -11,10 +12,12 @@ pub mod timeline;
 
 pub use block::{Block, Table};
 pub use figures::{FIGURES, FigureEntry, check_figures};
+pub use guards::FOLDER as GUARDS_FOLDER;
 pub use results::Results;
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use page::Section;
 use std::path::{Path, PathBuf};
 
 /// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path.
@@ -26,8 +29,9 @@ pub fn write(out: &Path) -> Result<PathBuf> {
         for block in &blocks {
             block.save(&folder.join("figures"))?;
         }
-        sections.push((results, blocks));
+        sections.push(Section::of(results, blocks));
     }
+    sections.extend(guards::section(out)?);
     if sections.is_empty() {
         let problem = "holds no experiment: no folder in it has a records.csv";
         return Err(InputError::new("folder", out.display().to_string(), problem).into());

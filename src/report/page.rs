@@ -3,7 +3,8 @@
 use super::block::{Block, Table};
 use super::results::Results;
 use crate::error::Result;
-use crate::experiment::RunFile;
+use crate::experiment::{Definition, RunFile};
+use crate::measure::Record;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -23,12 +24,34 @@ details { margin: 1rem 0; } td.text { text-align: left; white-space: normal; }
 /// Longer tables start closed.
 const OPEN_ROWS: usize = 12;
 
-/// The page.
-pub(super) fn html(sections: &[(Results, Vec<Block>)]) -> Result<String> {
-    let mut body = Vec::new();
-    for (results, blocks) in sections {
-        body.push(section(results, blocks)?);
+/// A chapter of the page.
+pub(super) struct Section {
+    /// What links point at.
+    pub(super) name: String,
+    pub(super) title: String,
+    pub(super) question: String,
+    pub(super) analysis: String,
+    /// Rows that failed.
+    pub(super) failed: Vec<Record>,
+    /// How many rows did not.
+    pub(super) rows: usize,
+    /// Command and machine.
+    pub(super) run: RunFile,
+    pub(super) blocks: Vec<Block>,
+}
+
+impl Section {
+    /// An experiment's.
+    pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
+        let Definition { name, title, question, analysis, .. } = results.definition;
+        let rows = results.records.len();
+        Self { name, title, question, analysis, failed: results.failed, rows, run: results.run, blocks }
     }
+}
+
+/// The page.
+pub(super) fn html(sections: &[Section]) -> Result<String> {
+    let body = sections.iter().map(section).collect::<Result<Vec<Markup>>>()?;
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -42,7 +65,7 @@ pub(super) fn html(sections: &[(Results, Vec<Block>)]) -> Result<String> {
                 h1 { "Pathmark: report" }
                 p { "How should unequal pieces of work be scheduled on many cores, and what does accuracy cost in time? "
                     "Every number below comes from the rows in " code { "records.csv" } " beside this page; " code { "METHODOLOGY.md" } " says how." }
-                nav { @for (results, _) in sections { a href={ "#" (results.definition.name) } { (results.definition.title) } } }
+                nav { @for section in sections { a href={ "#" (section.name) } { (section.title) } } }
                 @for part in &body { (part) }
             }
         }
@@ -50,22 +73,21 @@ pub(super) fn html(sections: &[(Results, Vec<Block>)]) -> Result<String> {
     Ok(page.into_string())
 }
 
-fn section(results: &Results, blocks: &[Block]) -> Result<Markup> {
-    let definition = &results.definition;
-    let parts = blocks.iter().map(part).collect::<Result<Vec<Markup>>>()?;
+fn section(section: &Section) -> Result<Markup> {
+    let parts = section.blocks.iter().map(part).collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
-        section id=(definition.name) {
-            h2 { (definition.title) }
-            p { strong { "Question. " } (prose(&definition.question)) }
-            @if !results.failed.is_empty() {
+        section id=(section.name) {
+            h2 { (section.title) }
+            p { strong { "Question. " } (prose(&section.question)) }
+            @if !section.failed.is_empty() {
                 div.failed {
-                    p { strong { (results.failed.len()) " rows failed." } " They are left out of figures and tables." }
-                    ul { @for record in results.failed.iter().take(10) { li { code { (record.cell) } ": " (record.error) } } }
+                    p { strong { (section.failed.len()) " rows failed." } " They are left out of figures and tables." }
+                    ul { @for record in section.failed.iter().take(10) { li { code { (record.cell) } ": " (record.error) } } }
                 }
             }
             @for part in &parts { (part) }
-            @for paragraph in definition.analysis.split("\n\n") { p { (prose(paragraph)) } }
-            (provenance(results))
+            @for paragraph in section.analysis.split("\n\n") { p { (prose(paragraph)) } }
+            (provenance(section))
         }
     })
 }
@@ -93,8 +115,8 @@ fn table_markup(table: &Table) -> Markup {
     }
 }
 
-fn provenance(results: &Results) -> Markup {
-    let RunFile { command, profile, machine, .. } = &results.run;
+fn provenance(section: &Section) -> Markup {
+    let RunFile { command, profile, machine, .. } = &section.run;
     let memory_gib = machine.memory_bytes as f64 / f64::from(1 << 30);
     let facts = [
         ("processor", machine.cpu.clone()),
@@ -105,7 +127,7 @@ fn provenance(results: &Results) -> Markup {
         ("load when the sweep began", machine.load_average.clone()),
         ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
         ("sources", format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" })),
-        ("rows", format!("{} done, {} failed", results.records.len(), results.failed.len())),
+        ("rows", format!("{} done, {} failed", section.rows, section.failed.len())),
     ];
     html! {
         details open[false] {

@@ -36,7 +36,7 @@ const SCHLICK: [(f64, f64, f64); 7] = [
 ];
 
 /// Index there over index here, cosine, reflectance: 202 rows of decimal numbers.
-fn oracle() -> Vec<(f64, f64, f64)> {
+pub(in crate::check) fn oracle() -> Vec<(f64, f64, f64)> {
     let text = include_str!("../../../tests/data/fresnel-oracle.json");
     let rows: Vec<[String; 3]> = serde_json::from_str(text).expect("the file of the oracle is well formed");
     let number = |text: &str| match text {

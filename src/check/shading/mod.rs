@@ -7,7 +7,7 @@ mod degenerate;
 mod directions;
 mod facets;
 mod frames;
-mod fresnel;
+pub(super) mod fresnel;
 mod glass;
 mod lights;
 mod materials;

@@ -15,7 +15,7 @@ pub(super) const CASES: &[Case] = &[
 
 /// Origin from the centre, unit direction and radius, aimed so that hits, misses and near tangents of every degree all occur. Every other
 /// ray has a radius and a distance from the catalogue's grid of powers of ten.
-pub(super) fn aimed(random: &mut Random) -> (Vec3, Vec3, f64) {
+pub(in crate::check) fn aimed(random: &mut Random) -> (Vec3, Vec3, f64) {
     let on_grid = random.below(2) == 0;
     let r =
         if on_grid { [1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6, 1e8][random.below(8)] } else { random.scale(-6.0, 8.0) };

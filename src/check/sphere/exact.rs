@@ -7,18 +7,18 @@ use crate::check::double_double::{Dd, two_product};
 use crate::math::{Vec3, dot};
 
 /// The rounding unit.
-pub(super) const U: f64 = f64::EPSILON / 2.0;
+pub(in crate::check) const U: f64 = f64::EPSILON / 2.0;
 
 /// Where a line meets a sphere.
-pub(super) struct Exact {
+pub(in crate::check) struct Exact {
     /// Distance of the line from the centre.
-    pub(super) line: f64,
+    pub(in crate::check) line: f64,
     /// The roots in lengths of `d`, nearer first, rounded once; `None` if the line misses.
-    pub(super) roots: Option<[f64; 2]>,
+    pub(in crate::check) roots: Option<[f64; 2]>,
 }
 
 impl Exact {
-    pub(super) fn of(f: Vec3, d: Vec3, r: f64) -> Self {
+    pub(in crate::check) fn of(f: Vec3, d: Vec3, r: f64) -> Self {
         let product = |p: Vec3, q: Vec3| two_product(p.x, q.x) + two_product(p.y, q.y) + two_product(p.z, q.z);
         let cross = |a: f64, b: f64, c: f64, e: f64| two_product(a, b) - two_product(c, e);
         let (x, y, z) = (cross(f.y, d.z, f.z, d.y), cross(f.z, d.x, f.x, d.z), cross(f.x, d.y, f.y, d.x));
@@ -35,13 +35,13 @@ impl Exact {
     }
 
     /// How far from the radius the line may pass and hit and miss be taken for each other: `8u(|f| + r)`.
-    pub(super) fn band(f: Vec3, r: f64) -> f64 {
+    pub(in crate::check) fn band(f: Vec3, r: f64) -> f64 {
         8.0 * U * (dot(f, f).sqrt() + r)
     }
 
     /// The bound `T_s` on the error of root `t`, in lengths of `d`: `8u(|t| + |f| + (r² + 2l|f|)/2s + (|f|² + r²)/(|b| + s))`. Infinite at
     /// tangency, where the roots' slope is.
-    pub(super) fn bound(&self, f: Vec3, d: Vec3, r: f64, t: f64) -> f64 {
+    pub(in crate::check) fn bound(&self, f: Vec3, d: Vec3, r: f64, t: f64) -> f64 {
         let (length, distance, line) = (dot(d, d).sqrt(), dot(f, f).sqrt(), self.line);
         let s = ((r - line) * (r + line)).max(0.0).sqrt();
         let b = dot(f, d).abs() / length;
@@ -52,7 +52,7 @@ impl Exact {
 }
 
 /// Whether `found` is the first root ahead. A root within its bound of zero may be seen as ahead or as behind.
-pub(super) fn is_first(found: Option<f64>, exact: [f64; 2], bounds: [f64; 2]) -> bool {
+pub(in crate::check) fn is_first(found: Option<f64>, exact: [f64; 2], bounds: [f64; 2]) -> bool {
     let near = |k: usize, t: f64| (t - exact[k]).abs() <= bounds[k];
     let behind = |k: usize| exact[k] <= bounds[k];
     match found {

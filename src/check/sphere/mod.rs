@@ -1,8 +1,8 @@
 //! Ray against sphere, and where rays start.
 
-mod bulk;
+pub(super) mod bulk;
 mod chains;
-mod exact;
+pub(super) mod exact;
 #[cfg(test)]
 mod exact_tests;
 mod formulas;

@@ -43,7 +43,7 @@ fn grid_ray(random: &mut Random, _primitives: &Primitives) -> Ray {
     let origin = Vec3::new(half(), half(), half());
     loop {
         let mut step = || [-1.0, -0.0, 0.0, 1.0][random.below(4)];
-        let direction = Vec3::new(step(), step(), step());
+        let direction: Vec3 = Vec3::new(step(), step(), step());
         let length = dot(direction, direction).sqrt();
         if length > 0.0 {
             return Ray { origin, direction: direction * (1.0 / length) };

@@ -1,0 +1,53 @@
+//! The formula for spheres: smallpt's own loses what is left of a small sphere far away and of a huge one nearby.
+
+use super::{Guard, Measured, Variant};
+use crate::check::random::Random;
+use crate::check::sphere::bulk::aimed;
+use crate::check::sphere::exact::Exact;
+use crate::check::sphere::unguarded::{smallpt_first_root, smallpt_roots};
+use crate::math::{Vec3, first_root, roots};
+
+pub(super) const GUARD: Guard = Guard {
+    name: "sphere formula",
+    error: "share of roots outside the bound, spheres of 1e-6 to 1e8 up to 1e8 radii away",
+    operation: "a ray against a sphere",
+    with: Variant {
+        name: "closest approach, c/q",
+        error: || error(|f, d, r| roots(f, d, 1.0, r)),
+        work: |count| work(count, |f, d, r| first_root(f, d, 1.0, r)),
+    },
+    without: Variant {
+        name: "smallpt's",
+        error: || error(smallpt_roots),
+        work: |count| work(count, |f, d, r| smallpt_first_root(f, d, r, 0.0)),
+    },
+};
+
+fn error(roots: impl Fn(Vec3, Vec3, f64) -> (f64, f64)) -> Measured {
+    let mut random = Random::new(83);
+    let (mut outside, mut all) = (0, 0);
+    for _ in 0..100_000 {
+        let (f, d, r) = aimed(&mut random);
+        let exact = Exact::of(f, d, r);
+        let Some(expected) = exact.roots else { continue };
+        let (near, far) = roots(f, d, r);
+        for (found, expected) in [(near, expected[0]), (far, expected[1])] {
+            all += 1;
+            let within = (found - expected).abs() <= exact.bound(f, d, r, expected);
+            outside += u64::from(!within);
+        }
+    }
+    Measured::share(outside, all)
+}
+
+fn work(count: u64, first: impl Fn(Vec3, Vec3, f64) -> f64) -> f64 {
+    let mut random = Random::new(84);
+    let rays: [(Vec3, Vec3, f64); 64] = std::array::from_fn(|_| aimed(&mut random));
+    let mut sum = 0.0;
+    for k in 0..count as usize {
+        let (f, d, r) = rays[k % 64];
+        let t = first(f, d, r);
+        sum += if t > 0.0 { t } else { 1.0 };
+    }
+    sum
+}
