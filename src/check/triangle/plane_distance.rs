@@ -6,7 +6,7 @@ use super::single::{U, meet, towards};
 use crate::check::double_double::{Dd, two_product};
 use crate::check::random::Random;
 use crate::check::{Case, Trials};
-use crate::math::Ray;
+use crate::math::{Ray, dot};
 use crate::scene::Triangle;
 
 pub(super) const CASES: &[Case] = &[Case {
@@ -28,11 +28,16 @@ pub(super) fn exact_distance(triangle: &Triangle, ray: &Ray) -> (f64, f64) {
     (across.over(along), along.0.abs() / product(n, n).sqrt().0)
 }
 
-/// What the distance may be off by, over the cosine at which the plane is met.
+/// What the distance may be off by: seven roundings of the largest coordinate, over the cosine at which the plane is met. In a sliver, more
+/// than 8 times as long as it is high, the weights of its corners are as many times less exact.
 pub(super) fn bound(triangle: &Triangle, ray: &Ray, cosine: f64) -> f64 {
     let gamma = 7.0 * U / (1.0 - 7.0 * U);
     let coordinates = triangle.corners.iter().chain([&ray.origin]).flat_map(|p| [p.x.abs(), p.y.abs(), p.z.abs()]);
-    gamma * coordinates.fold(0.0, f64::max) / cosine
+    let [a, b, c] = triangle.corners;
+    let longest = [b - a, c - b, a - c].map(|edge| dot(edge, edge)).into_iter().fold(0.0, f64::max);
+    let cross = (b - a).cross(c - a);
+    let length_over_height = longest / dot(cross, cross).sqrt();
+    gamma * coordinates.fold(0.0, f64::max) / cosine * (length_over_height / 8.0).max(1.0)
 }
 
 /// A triangle of some size somewhere, and a ray at a point of it.
