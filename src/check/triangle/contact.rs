@@ -5,7 +5,7 @@ use crate::analysis::z_test::{critical_value, sidak};
 use crate::check::bare_scene::{intersect, searches};
 use crate::check::random::Random;
 use crate::check::rendering::{by_kernel, mean, render};
-use crate::check::scene_text::{camera_at_a_point, object, read};
+use crate::check::scene_text::{ball, camera_at_a_point, object, read};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::{KERNELS, Spec};
@@ -58,7 +58,10 @@ fn contact(trials: &mut Trials) {
     // A light behind the ball: the way to it enters the ball after 0.01. And one on this side, as low as the camera.
     let light = |x: f64, y: f64| {
         let text = format!("[[point-lights]]\nposition = [{x:?}, {y:?}, 0.0]\nintensity = [1.0, 1.0, 1.0]\n");
-        scene("background = [0.0, 0.0, 0.0]\n", 0.0, &text)
+        // What is behind the light does not hide it.
+        let black = "{ diffuse = { albedo = [0.0, 0.0, 0.0] } }";
+        let behind = ball("behind", [1.6 * x, 1.6 * y, 0.0], 0.2 * x.abs(), black);
+        scene("background = [0.0, 0.0, 0.0]\n", 0.0, &(text + &behind))
     };
     let squared = (5.0 - AWAY) * (5.0 - AWAY) + 0.25;
     let lit = 0.5 / PI * 0.5 / (squared * squared.sqrt());

@@ -52,7 +52,7 @@ fn grid_ray(random: &mut Random, _primitives: &Primitives) -> Ray {
 }
 
 fn every_kind(trials: &mut Trials) {
-    let rays = trials.times(180_000, 100_000_000) / 6;
+    let rays = trials.times(180_000, 10_000_000) / 6;
     for (what, primitives, make_ray) in arrangements() {
         let all = scene_of(primitives);
         for (name, accelerated) in searches(&all).filter(|(_, scene)| scene.hierarchy.is_some()) {
@@ -87,7 +87,9 @@ fn compare(all: &Scene, accelerated: &Scene, rays: u64, make_ray: MakeRay) -> Ta
             tally.traced += 1;
             let bits = |hit: Option<Hit>| hit.map(|hit| (hit.t.to_bits(), hit.primitive, hit.inside));
             tally.differ += u64::from(bits(intersect(accelerated, &ray, from)) != bits(expected));
-            if tally.traced % 8 == 0 {
+            // In the plane of what it meets a ray's distance is rounding alone, farther off than a box is padded.
+            let is_flat = expected.is_some_and(|hit| dot(hit.normal, ray.direction).abs() < 1e-12);
+            if tally.traced % 8 == 0 && !is_flat {
                 let t = expected.map_or(1.0, |hit| hit.t);
                 let is_otherwise = [t.next_down(), t, t.next_up(), 0.5 * t].into_iter().any(|limit| {
                     let blocked =

@@ -66,7 +66,7 @@ fn exhaustive(trials: &mut Trials) {
     trials.holds("the rays", "neither answer is rare", told, hits > 3000 && hits < combinations / 2);
 }
 
-/// Beside the ray's way, on it, and behind.
+/// Beside the ray's way, on it, and behind; and the box that has no size at all.
 fn subnormal(trials: &mut Trials) {
     let tiny = 5.693_442e-39;
     let bounds = Bounds { low: [tiny, -5000.0, 5000.0], high: [tiny, -5000.0, 5000.0] };
@@ -75,6 +75,12 @@ fn subnormal(trials: &mut Trials) {
     trials.same("at x = 0 the ray is at y = 0", &false, &meets(-5000.0, -5000.0));
     trials.same("at x = 0 the ray is at y = -5000", &true, &meets(-5000.0, -10_000.0));
     trials.same("the box is behind", &false, &meets(5000.0, 0.0));
+    // A point at zero, from there: nothing has a padding, and every distance along the other axes is 0 times infinity.
+    let (zero, origin) = (Bounds { low: [0.0; 3], high: [0.0; 3] }, Vec3::new(0.0, 0.0, 0.0));
+    for direction in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, -0.0, 1.0]].map(Vec3::from) {
+        let meets = zero.meets(&Ray { origin, direction });
+        trials.same(format!("a point at zero, from there along {direction:?}"), &true, &meets);
+    }
 }
 
 /// Exactly on the face and as far outside as the padding reaches the ray is let in, at twice that it is outside.
