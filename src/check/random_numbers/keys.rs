@@ -89,13 +89,13 @@ fn collisions(trials: &mut Trials) {
     // 786432²/2/2^32, give or take five roots of it.
     trials.close("keys of 32 bits: pairs that share one", 72.0, pairs as f64, 5.0 * 72.0_f64.sqrt());
     trials.same("every seed is an image's or a reference's", &REFERENCE_SEEDS, &(LARGEST_SEED + 1));
-    let spp = trials.times(1, 8) as u32;
+    let spp = trials.times(4, 8) as u32;
     let bounces = trials.times(1 << 12, 1 << 16);
     for (name, sampler) in keyed() {
         let pair = |seed, pixel, sample| bits(first(&*sampler, seed, pixel, sample, (0, Purpose::Film)));
-        let others = trials.times(1 << 16, 786_432) as u32;
+        let (whole, others) = (trials.times(196_608, 786_432) as u32, trials.times(1 << 14, 786_432) as u32);
         for (seed, reference, pixels) in
-            [(1, REFERENCE_SEEDS | 1, 786_432), (0, REFERENCE_SEEDS, others), (LARGEST_SEED, u64::MAX, others)]
+            [(1, REFERENCE_SEEDS | 1, whole), (0, REFERENCE_SEEDS, others), (LARGEST_SEED, u64::MAX, others)]
         {
             let places = || (0..pixels).flat_map(|pixel| (0..spp).map(move |sample| (pixel, sample)));
             let mut all: Vec<u128> = places().map(|(pixel, sample)| pair(seed, pixel, sample)).collect();

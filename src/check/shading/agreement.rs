@@ -90,7 +90,7 @@ fn lights(trials: &mut Trials) {
             radiance: None,
         },
     ];
-    agree(trials, &spots, (256, 65_536), 0.08);
+    agree(trials, &spots, (256, 8192), 0.08);
 }
 
 /// Everything in the enclosure gives off what it does not reflect, so the radiance is 1 wherever one looks; were an emitter counted twice
@@ -119,5 +119,5 @@ fn counted_once(trials: &mut Trials) {
             radiance: None,
         },
     ];
-    agree(trials, &spots, (64, 16_384), 0.08);
+    agree(trials, &spots, (64, 2048), 0.08);
 }

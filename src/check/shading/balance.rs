@@ -101,7 +101,7 @@ fn mean_weights(trials: &mut Trials) {
     let materials = every_material();
     let cosines = [1.0, 0.6, 0.2];
     let limit = critical(materials.len() * cosines.len());
-    let n = trials.times(20_000, 10_000_000);
+    let n = trials.times(20_000, 2_000_000);
     for (number, (name, material)) in (0..).zip(&materials) {
         for cos in cosines {
             let (mut sum, mut square) = (0.0, 0.0);

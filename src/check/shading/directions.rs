@@ -85,7 +85,7 @@ fn every_sampler(trials: &mut Trials) {
         &[1.0, 0.6, 0.1]
     };
     let grid = if is_thorough { Grid { rings: 64, spokes: 128 } } else { Grid { rings: 16, spokes: 32 } };
-    let samples = trials.times(20_000, 10_000_000);
+    let samples = trials.times(20_000, 2_100_000);
     let materials = every_material();
     let limit = critical(materials.len() * cosines.len());
     let mut judged = 0;

@@ -27,7 +27,7 @@ fn hardly_there(trials: &mut Trials) {
         ("inside of what is opaque", vec![floor(), lamp(2.0), hood(2.0)]),
         ("dark", vec![floor(), object(&sphere([0.0, 2.0, 0.0], 0.5), &diffuse(0.0), [0.0; 3])]),
     ];
-    let spp = trials.times(16, 4096) as u32;
+    let spp = trials.times(16, 512) as u32;
     for (name, things) in spots {
         let parts = ["background = [0.0, 0.0, 0.0]\n".to_string(), camera_at_a_point([2.0, 1.5, 1e-3], [0.0; 3])];
         let scene = scene(&[parts.concat(), things.concat()]);

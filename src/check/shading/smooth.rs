@@ -63,7 +63,7 @@ fn continuity(trials: &mut Trials) {
         ])
     };
     let (rough, smooth) = (image("1e-4"), image("0.0"));
-    let spp = trials.times(32, 4096) as u32;
+    let spp = trials.times(32, 512) as u32;
     let estimators = || ESTIMATORS.iter().map(|entry| entry.name).filter(|name| !["whitted", "nee"].contains(name));
     let limit = critical(KERNELS.len() * estimators().count());
     for kernel in KERNELS {

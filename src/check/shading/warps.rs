@@ -92,7 +92,7 @@ const WARPS: [Warp; 4] = [
         name: "cosine hemisphere",
         place: |u| {
             let d = cosine_hemisphere(u);
-            [d.z * d.z, turns(d.x, d.y)]
+            [d.x * d.x + d.y * d.y, turns(d.x, d.y)]
         },
     },
     Warp { name: "tent", place: |[u, v]| [below(tent(u)), below(tent(v))] },
@@ -112,7 +112,7 @@ fn all(trials: &mut Trials) {
     moments(trials);
     cones(trials);
     triangles(trials);
-    let samples = trials.times(400_000, 100_000_000);
+    let samples = trials.times(400_000, 20_000_000);
     let limit = critical(2 * WARPS.len());
     for (number, warp) in (0..).zip(&WARPS) {
         let mut cells = vec![0.0; CELLS * CELLS];
