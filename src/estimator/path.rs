@@ -134,6 +134,13 @@ fn by_share(lobes: [BsdfSample; 2], u: f64) -> BsdfSample {
     BsdfSample { weight: lobe.weight * (1.0 / chance), ..lobe }
 }
 
+/// Whether nothing that a part still finds could reach the film. Below the smallest normal number a throughput may never become 0: nine tenths of
+/// 4 units are rounded to 4 units. What is no number goes on, so that it is counted.
+#[inline(always)]
+fn is_spent(throughput: Rgb) -> bool {
+    throughput.r < f64::MIN_POSITIVE && throughput.g < f64::MIN_POSITIVE && throughput.b < f64::MIN_POSITIVE
+}
+
 /// What is the same for all parts of a path.
 struct Walk<'a, S> {
     scene: &'a Scene,
@@ -304,8 +311,7 @@ impl<S: Sampler> Walk<'_, S> {
             object.material.sample::<X>(wo, hit.inside, numbers)
         };
         let next = sample.map(|sample| leave(sample, part.branch));
-        // Nothing that a black part still finds could reach the film.
-        let next = next.filter(|next| !next.throughput.is_black());
+        let next = next.filter(|next| !is_spent(next.throughput));
         if next.is_none() {
             probe.ended(part.vertices);
         }
@@ -322,6 +328,10 @@ impl<S: Sampler> Walk<'_, S> {
         probe: &mut P,
         collected: &mut Rgb,
     ) -> Option<(Part, Option<Part>)> {
+        if is_spent(part.throughput) {
+            probe.ended(part.vertices);
+            return None;
+        }
         if part.vertices == self.max_depth {
             probe.truncated();
             probe.ended(part.vertices);

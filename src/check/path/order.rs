@@ -72,10 +72,10 @@ fn orders(trials: &mut Trials) {
 /// Whoever renders an image, in which pieces, with how many threads.
 fn images(trials: &mut Trials) {
     let scene = Arc::new(load("cornell").expect("a shipped scene"));
-    // No multiple of a block of samples, so that the last part of a pixel is shorter than the others.
+    // Three subtrees of 32, 16 and 4 samples, so that the order in which they are added shows.
     let small = |kernel: &str| {
-        let spec = Spec { width: 13, height: 9, seed: 7, kernel: kernel.to_string(), ..Spec::default() };
-        Settings { spp: 20, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
+        let spec = Spec { width: 9, height: 7, seed: 7, kernel: kernel.to_string(), ..Spec::default() };
+        Settings { spp: 52, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
     };
     for kernel in KERNELS {
         let checksum = |settings| {
