@@ -189,7 +189,9 @@ fn a_log_that_ends_at_any_byte_keeps_its_whole_rows() {
     let path = folder.path().join("records.csv");
     let rows: Vec<Record> = (0..3).map(record).collect();
     let mut file = RecordsFile::create(&path).unwrap();
-    rows.iter().for_each(|row| file.append(row).unwrap());
+    for row in &rows {
+        file.append(row).unwrap();
+    }
     drop(file);
     let whole = fs::read(&path).unwrap();
     for end in 0..whole.len() {
