@@ -61,7 +61,7 @@ impl Tally {
         MEMORY.reset_peak_usage();
         let (before, start, cpu) = (MEMORY.current_usage(), Instant::now(), cpu_time());
         let outcome = catch_unwind(AssertUnwindSafe(|| (target.read)(path)));
-        let took = if start.elapsed() > LONGEST { cpu_time() - cpu } else { start.elapsed() };
+        let took = if start.elapsed() > LONGEST { cpu_time().saturating_sub(cpu) } else { start.elapsed() };
         let memory = MEMORY.peak_usage().saturating_sub(before);
         self.inputs += 1;
         self.longest = self.longest.max(took);
@@ -99,7 +99,9 @@ fn try_all(target: &Target, rounds: u64, watchdog: &Watchdog) -> Tally {
     let seeds = seeds(target);
     let mut tally = Tally::default();
     watchdog.now(format!("{}: on an input that is in {}", target.name, path.display()));
-    seeds.iter().for_each(|input| tally.read(target, &path, input));
+    for input in &seeds {
+        tally.read(target, &path, input);
+    }
     assert!(tally.accepted > 0, "{}: no seed is accepted", target.name);
     let short = seeds.iter().filter(|input| target.cut && input.len() < LONGEST_CUT);
     for input in short.flat_map(|input| (0..input.len()).map(|end| &input[..end])) {

@@ -98,7 +98,9 @@ proptest! {
 
 fn sum(values: &[[f64; 3]]) -> PixelSum {
     let mut sum = SampleSum::default();
-    values.iter().for_each(|value| sum.add(Rgb::from(*value)));
+    for value in values {
+        sum.add(Rgb::from(*value));
+    }
     sum.total()
 }
 
