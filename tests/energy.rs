@@ -1,17 +1,11 @@
-//! Samples that are no light, and the agreement of the estimators that split and do not split. What has a closed form is in the table of
-//! hard cases (`src/check`).
+//! The agreement of the estimators that split and do not split. What has a closed form is in the table of hard cases (`src/check`).
 //!
 //! Levels are family-wise 1e-3 (Sidak) within each test, two-sided.
 
-#[path = "support/scene_text.rs"]
-mod scene_text;
-
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::kernel::Spec;
-use pathmark::math::Rgb;
-use pathmark::measure::{Outcome, Settings, Setup, Warning};
+use pathmark::measure::{Outcome, Settings, Setup};
 use pathmark::scene::{Scene, load};
-use scene_text::{Ball, load_scene};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::sync::Arc;
 
@@ -29,16 +23,6 @@ fn run(scene: &Scene, spec: Spec, spp: u32) -> Outcome {
 
 fn spec(estimator: &str, (width, height): (u32, u32), seed: u64) -> Spec {
     Spec { width, height, seed, estimator: estimator.into(), ..Spec::default() }
-}
-
-/// A closed sphere around the camera.
-fn furnace(material: &str, emission: [f64; 3]) -> Scene {
-    let ball = Ball { center: [0.0; 3], radius: 2.0, material: material.into(), emission };
-    load_scene([0.3, -0.2, 0.5], &[ball]).unwrap()
-}
-
-fn diffuse(albedo: [f64; 3]) -> String {
-    format!("{{ diffuse = {{ albedo = {albedo:?} }} }}")
 }
 
 /// Means over blocks of 8 x 8 pixels and the channels, seed by seed: block -> (mean over seeds, its squared standard error).

@@ -165,10 +165,11 @@ struct Part {
 }
 
 impl Part {
-    /// The numbers of the vertex that this part is on its way to.
+    /// The numbers of the vertex that this part is on its way to. Behind the last vertex that there can be comes 0, the camera's, which asks
+    /// for none of what a path may still ask for there: how far it gets through fog.
     #[inline(always)]
     fn address(&self, key: SampleKey, purpose: Purpose) -> Address {
-        Address { key, bounce: self.vertices + 1, branch: self.branch, purpose }
+        Address { key, bounce: self.vertices.wrapping_add(1), branch: self.branch, purpose }
     }
 }
 

@@ -6,7 +6,7 @@ use super::output::{Delivery, Output};
 use super::usage::Usage;
 use super::{JobSpan, Setup, Trace, Warning, available_threads};
 use crate::error::{Error, Result};
-use crate::film::{Film, Plan};
+use crate::film::{Film, Plan, check_memory};
 use crate::kernel::{Counts, Kernel};
 use crate::strategy::Strategy;
 use std::ops::Range;
@@ -147,6 +147,8 @@ impl Account {
         sections: &[Range<u32>],
         watch: Watch<'_>,
     ) -> Result<Vec<Film>> {
+        let spec = &setup.settings().spec;
+        check_memory(spec.width, spec.height)?;
         let (kernel, build_s) = setup.kernel()?;
         self.build_s = build_s;
         let before_pilot = Instant::now();
@@ -154,7 +156,6 @@ impl Account {
         if setup.is_by_cost() {
             self.pilot_s += before_pilot.elapsed().as_secs_f64();
         }
-        let spec = &setup.settings().spec;
         let (width, height) = (spec.width, spec.height);
         let delivery = Delivery { plan: Arc::clone(&plan), width, height, sections: sections.to_vec() };
         let run = Arc::new(Run { kernel, ledger: Ledger::new(plan.len()), output: setup.new_output(delivery) });

@@ -5,7 +5,7 @@ use super::settings::{LARGEST_THREADS, strategy_named};
 use super::{Settings, THREAD_PER_ROW, Warning, available_threads, pilot};
 use crate::error::{Error, InputError, Result};
 use crate::estimator::Estimator;
-use crate::film::{Decomposition, FilmKey, Plan, check_memory};
+use crate::film::{Decomposition, FilmKey, Plan};
 use crate::kernel::{self, Choice, Clamp, Counts, Kernel};
 use crate::sampling::is_deterministic;
 use crate::scene::{Filter, SUBPIXELS, Scene};
@@ -61,7 +61,6 @@ impl Setup {
             let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
         }
-        check_memory(settings.spec.width, settings.spec.height)?;
         let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
         check_jobs(plan.len(), strategy, &settings.decomposition)?;
         let choice = kernel::choose(&scene, &settings.spec)?;

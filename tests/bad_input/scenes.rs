@@ -32,6 +32,10 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("radius = 20.0", "radius = 5e-324", &["radius", "5e-324", "1e-100 to 1e100"]),
     ("radius = 20.0", "radius = 1e400", &["radius", "1e400"]),
     ("radius = 20.0", "radius = 1,5", &["radius"]),
+    ("radius = 20.0", "radius = 1e-400", &["radius", "1e-100 to 1e100"]),
+    ("radius = 20.0", "radius = 0x", &["radius"]),
+    ("radius = 20.0", "radius = true", &["radius", "true", "f64"]),
+    ("radius = 20.0", "radius = 99999999999999999999", &["radius"]),
     ("radius = 20.0", "radius = \"large\"", &["radius", "large", "f64"]),
     ("radius = 20.0", "radius = [1.0]", &["radius", "[1.0]", "f64"]),
     ("radius = 20.0", "radios = 20.0", &["radios", "radius", "center"]),
@@ -170,6 +174,8 @@ fn files_that_are_no_scenes_are_refused() {
     refused_file(b"about = \"\xff\xfe\"\n", &["UTF-8"]);
     refused_file("about = \"no end", &["ball.toml:1:"]);
     refused_file(vec![b'#'; 20 << 20], &["3 MiB"]);
+    // One line that is as long as a file may be.
+    refused_file([b"about = '".as_slice(), &vec![b'x'; (3 << 20) - 9]].concat(), &["ball.toml:1:"]);
 }
 
 #[test]
@@ -178,6 +184,16 @@ fn a_scene_without_objects_is_refused_at_its_place() {
     let camera = &BALL[..end];
     refused_file(camera, &["ball.toml", "objects", "at least one"]);
     refused_file(format!("objects = []\n{camera}"), &["ball.toml:1:", "objects = []", "at least one"]);
+}
+
+/// A file of a gigabyte, which takes no room on the disk, costs no more than any other refusal.
+#[test]
+fn a_line_of_a_gigabyte_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::File::create(folder.path().join("ball.toml")).unwrap().set_len(1 << 30).unwrap();
+    // Not through `refused`, which would read the file to compare it.
+    let finished = finish(pathmark(folder.path(), &ARGUMENTS)).with_code(2);
+    assert!(finished.err.contains("ball.toml") && finished.err.contains("3 MiB"), "{}", finished.err);
 }
 
 /// A parser that calls itself for each bracket would overflow its stack.

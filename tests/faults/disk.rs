@@ -126,12 +126,12 @@ fn short_and_interrupted_writes_change_no_byte() {
         let path = folder.path().join(&name);
         write(&path).unwrap();
         let expected = fs::read(&path).unwrap();
-        let calls = Rc::new(Cell::new(0));
+        let calls = Rc::new(Cell::new(0_usize));
         let counted = Rc::clone(&calls);
         let slow = move |step| {
             counted.set(counted.get() + 1);
             match step {
-                Step::Write(_) if counted.get() % 3 == 0 => Err(ErrorKind::Interrupted.into()),
+                Step::Write(_) if counted.get().is_multiple_of(3) => Err(ErrorKind::Interrupted.into()),
                 _ => Ok(7),
             }
         };
@@ -179,6 +179,32 @@ fn the_rows_of_a_sweep() {
 
     let other = folder.path().join("other.csv");
     fails_everywhere(folder.path(), &other, &[Step::Create], || RecordsFile::create(&other).map(|_| ()));
+}
+
+/// F01, the model of a power cut: the log of rows ends at any of its bytes. Every whole row before that is kept, nothing else is, and the rows
+/// that follow make the log what it was.
+#[test]
+fn a_log_that_ends_at_any_byte_keeps_its_whole_rows() {
+    let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
+    let path = folder.path().join("records.csv");
+    let rows: Vec<Record> = (0..3).map(record).collect();
+    let mut file = RecordsFile::create(&path).unwrap();
+    for row in &rows {
+        file.append(row).unwrap();
+    }
+    drop(file);
+    let whole = fs::read(&path).unwrap();
+    for end in 0..whole.len() {
+        fs::write(&path, &whole[..end]).unwrap();
+        let (mut file, kept) = RecordsFile::resume(&path).unwrap();
+        // The first line is the header.
+        let finished = whole[..end].split(|byte| *byte == b'\n').count().saturating_sub(2);
+        assert!(kept == rows[..finished], "{end} bytes: {} rows instead of {finished}", kept.len());
+        for row in &rows[finished..] {
+            file.append(row).unwrap();
+        }
+        assert!(fs::read(&path).unwrap() == whole, "{end} bytes: another log");
+    }
 }
 
 /// What is kept of a film is what a film has: the writers above write no empty files.

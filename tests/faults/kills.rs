@@ -1,8 +1,8 @@
 //! F01: a checkpointed render that is ended by a signal at any instant, and goes on to the image that it would have given, bit for bit.
 
-use crate::is_thorough;
 use crate::program::{finish, pathmark};
 use crate::watchdog::Watchdog;
+use crate::{is_thorough, skip};
 use nix::sys::signal::{Signal, kill, killpg};
 use nix::unistd::Pid;
 use rand::{RngExt, SeedableRng};
@@ -22,8 +22,24 @@ pub(crate) enum Ending {
     Group(Signal),
 }
 
-pub(crate) const ENDINGS: [Ending; 3] =
+const ENDINGS: [Ending; 3] =
     [Ending::One(Signal::SIGKILL), Ending::One(Signal::SIGTERM), Ending::Group(Signal::SIGINT)];
+
+/// Those that end a program here: what this process was told to ignore, as shells tell jobs in the background, its children ignore too.
+pub(crate) fn endings() -> Vec<Ending> {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    let works = |ending: &Ending| {
+        let (Ending::One(signal) | Ending::Group(signal)) = *ending;
+        let works = ignored & 1 << (signal as i32 - 1) == 0;
+        if !works {
+            skip(&format!("{signal} is ignored here, as in the background of a shell"));
+        }
+        works
+    };
+    ENDINGS.into_iter().filter(works).collect()
+}
 
 /// Ends programs at instants that differ from run to run of the program, and not from run to run of the test.
 pub(crate) struct Killer<'a> {
@@ -119,7 +135,7 @@ fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
     let expected = fs::read(&image).unwrap();
     let mut killer = Killer::new(folder.path(), whole);
     let mut resumed = 0;
-    for ending in ENDINGS {
+    for ending in endings() {
         let (mut kills, mut renders) = (0, 0);
         while kills < Killer::kills() {
             fs::remove_file(&checkpoint).ok();

@@ -113,7 +113,9 @@ fn a_sweep_onto_a_small_disk_goes_on_when_there_is_space() {
 /// Rows that failed are run again, and so may stand at another place.
 fn sorted_rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
     let mut rows = sweep::rows(folder);
-    rows.iter_mut().for_each(|row| drop(row.remove("order")));
+    for row in &mut rows {
+        row.remove("order");
+    }
     rows.sort_by_key(|row| (row["cell"].clone(), row["repetition"].clone()));
     rows
 }

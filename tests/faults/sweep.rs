@@ -1,7 +1,7 @@
 //! F01: a sweep that is ended by a signal at any instant, and goes on to the rows and images of one that was not.
 
 use crate::experiment::{TINY, write_tiny};
-use crate::kills::{ENDINGS, End, Killer, leftovers};
+use crate::kills::{End, Killer, endings, leftovers};
 use crate::program::{finish, pathmark};
 use std::collections::BTreeMap;
 use std::fs;
@@ -61,7 +61,7 @@ fn a_sweep_killed_at_any_instant_is_resumed_to_the_same_rows() {
     assert!(expected.iter().all(|row| row["error"].is_empty()));
     let mut killer = Killer::new(folder, whole);
     let (mut torn, mut resumed) = (0, 0);
-    for ending in ENDINGS {
+    for ending in endings() {
         let (mut kills, mut sweeps) = (0, 0);
         while kills < Killer::kills() {
             fs::remove_dir_all(folder.join("out")).unwrap();

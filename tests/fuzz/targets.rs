@@ -1,0 +1,332 @@
+//! What is read: one line a target.
+
+use pathmark::error::Result;
+use pathmark::experiment::{
+    Definition, EXPERIMENTS, Profile, RecordsFile, read_calibration, read_records, read_run_file,
+};
+use pathmark::film::read_film;
+use pathmark::image_io::{self, Image};
+use pathmark::kernel::Spec;
+use pathmark::measure::{Checkpoint, Measured, Position, Record, Rounds, Settings, Setup, TraceFile};
+use pathmark::scene::{self, SCENES};
+use sha2::{Digest, Sha256};
+use std::fs;
+use std::path::Path;
+
+/// A kind of file and who reads it.
+pub(crate) struct Target {
+    /// Its name, and that of its corpus's folder.
+    pub(crate) name: &'static str,
+    /// What the file is called, as its reader goes by that.
+    pub(crate) file: &'static str,
+    /// Puts beside it what its reader looks for.
+    pub(crate) prepare: fn(&Path),
+    /// Whether the file was accepted. What is accepted must be of use.
+    pub(crate) read: fn(&Path) -> bool,
+    /// Makes a damaged file pass what guards it against damage, so that what lies behind is reached.
+    pub(crate) repair: fn(Vec<u8>) -> Vec<u8>,
+    /// Seeds beside the corpus, which the program carries or makes: those never grow old.
+    pub(crate) more: fn() -> Vec<Vec<u8>>,
+    /// Words of the format.
+    pub(crate) words: &'static [&'static str],
+    /// Whether beginnings of seeds are tried.
+    pub(crate) cut: bool,
+    /// How many mutations a round has.
+    pub(crate) mutations: u64,
+}
+
+const TARGET: Target = Target {
+    name: "",
+    file: "",
+    prepare: |_| {},
+    read: |_| false,
+    repair: |bytes| bytes,
+    more: Vec::new,
+    words: &[],
+    cut: true,
+    mutations: 7000,
+};
+
+/// All of them.
+pub(crate) const TARGETS: &[Target] = &[
+    Target {
+        name: "scene",
+        file: "scene.toml",
+        read: scene,
+        more: || texts(SCENES, 4000, "[generator.spheres]"),
+        words: SCENE_WORDS,
+        ..TARGET
+    },
+    Target { name: "mesh", file: "thing.obj", prepare: scene_with_a_mesh, read: mesh, words: MESH_WORDS, ..TARGET },
+    Target {
+        name: "experiment",
+        file: "tiny.toml",
+        read: experiment,
+        // The cells of a large matrix are many: what takes long is no news.
+        more: || texts(EXPERIMENTS, 1300, "spheres"),
+        words: EXPERIMENT_WORDS,
+        mutations: 1200,
+        ..TARGET
+    },
+    Target {
+        name: "records",
+        file: "records.csv",
+        read: |path| ok(read_records(path)),
+        more: rows,
+        words: CSV_WORDS,
+        ..TARGET
+    },
+    Target { name: "machine", file: "machine.toml", read: |path| ok(read_run_file(path)), ..TARGET },
+    Target {
+        name: "calibration",
+        file: "calibration.csv",
+        read: |path| ok(read_calibration(path)),
+        words: CSV_WORDS,
+        ..TARGET
+    },
+    Target { name: "trace", file: "trace.csv", read: |path| ok(TraceFile::read(path)), words: CSV_WORDS, ..TARGET },
+    Target { name: "film", file: "half.film", read: film, repair: with_checksum, words: JSON_WORDS, ..TARGET },
+    Target {
+        name: "checkpoint",
+        file: "a.checkpoint",
+        read: checkpoint,
+        more: checkpoints,
+        repair: with_checksum,
+        words: JSON_WORDS,
+        ..TARGET
+    },
+    Target { name: "ppm", file: "image.ppm", read: image, words: &["P6", "P3", "#", " 255 ", "65535"], ..TARGET },
+    Target { name: "pfm", file: "image.pfm", read: image, words: &["PF", "Pf", "-1.0", "1e38", "nan"], ..TARGET },
+    Target { name: "exr", file: "image.exr", read: image, words: EXR_WORDS, ..TARGET },
+    Target { name: "hdr", file: "image.hdr", read: image, words: HDR_WORDS, ..TARGET },
+    Target {
+        name: "png",
+        file: "image.png",
+        read: image,
+        words: &["IHDR", "IDAT", "IEND", "tRNS", "zTXt", "PLTE"],
+        ..TARGET
+    },
+    Target { name: "bmp", file: "image.bmp", read: image, ..TARGET },
+    Target {
+        name: "report",
+        file: "out/tiny/records.csv",
+        prepare: beside_the_records,
+        read: report,
+        more: rows,
+        words: CSV_WORDS,
+        cut: false,
+        mutations: 300,
+        ..TARGET
+    },
+];
+
+const SCENE_WORDS: &[&str] = &[
+    "base = 'cornell'\n",
+    "without = ['light']\n",
+    "background = [1, 1, 1]\n",
+    "estimator = 'nee'\n",
+    "[fog]\n",
+    "[camera.pinhole]\n",
+    "[camera.thin-lens]\n",
+    "[camera.smallpt]\n",
+    "[[objects]]\n",
+    "[[point-lights]]\n",
+    "[generator.furnace]\nalbedo = 0.5\n",
+    "sphere",
+    "plane",
+    "triangle",
+    "quad",
+    "mesh",
+    "diffuse",
+    "mirror",
+    "dielectric",
+    "polished",
+    "conductor",
+    "kd-ks",
+    "fresnel-mirror",
+    "albedo",
+    "emission",
+    "radius",
+    "corners",
+    "normal",
+    "point",
+    "file = '/dev/zero'",
+    "'''",
+    "\\u0000",
+    "{",
+    "}",
+    "\u{feff}",
+];
+const MESH_WORDS: &[&str] =
+    &["v ", "f ", "o ", "vn ", "vt ", "/", "//", "-1", "\\\n", "g ", "usemtl ", "mtllib ", "s off\n"];
+const EXPERIMENT_WORDS: &[&str] = &[
+    "\"all\"",
+    "\"default\"",
+    "curve = true\n",
+    "weak = true\n",
+    "clamp = 'subpixel'\n",
+    "[[matrix]]\n",
+    "[reference]\n",
+    "size = [0, 0]\n",
+    "max-depth = [0]\n",
+    "roulette = ['none']\n",
+    "keep = ['images']\n",
+    "reference-spp = 40\n",
+    "[[external]]\n",
+    "dynamic:0",
+    "samples:16",
+    "tiles:1x1",
+    "repetitions = 0\n",
+];
+const CSV_WORDS: &[&str] = &[",", "\"", "\"\"", "\r\n", "\n", ",,", "true", "false", "serial", "nan", "\0"];
+const JSON_WORDS: &[&str] =
+    &["{", "}", "\"width\":", "\"height\":", "\"spp\":", "null", "true", ":", "pathmark film 1\n", "\\ud800"];
+const EXR_WORDS: &[&str] = &[
+    "dataWindow\0box2i\0",
+    "channels\0chlist\0",
+    "compression\0compression\0",
+    "tiles\0tiledesc\0",
+    "R\0",
+    "lineOrder\0",
+];
+const HDR_WORDS: &[&str] =
+    &["EXPOSURE=", "FORMAT=32-bit_rle_rgbe\n", "-Y ", "+X ", "COLORCORR=1 1 1\n", "#?RADIANCE\n", "\u{2}\u{2}"];
+
+fn ok<T>(result: Result<T>) -> bool {
+    match result {
+        Ok(_) => true,
+        Err(error) => {
+            // Somebody reads it.
+            assert!(!error.to_string().is_empty());
+            false
+        }
+    }
+}
+
+/// Definitions that the program carries, but for long ones and those that ask for much by themselves.
+fn texts(table: &[(&str, &str)], most: usize, heavy: &str) -> Vec<Vec<u8>> {
+    let texts = table.iter().map(|(_, text)| *text).filter(|text| text.len() < most && !text.contains(heavy));
+    texts.map(|text| text.as_bytes().to_vec()).collect()
+}
+
+/// Whitted's rays branch at every glass surface.
+const DEEPEST: u16 = 6;
+
+/// A scene that is accepted can be rendered by every estimator, whatever it looks like.
+fn scene(path: &Path) -> bool {
+    let Ok(scene) = scene::load(path.to_str().unwrap()) else { return false };
+    let scene = std::sync::Arc::new(scene);
+    for entry in pathmark::estimator::ESTIMATORS {
+        // Fog that scatters again and again, or glass in a mirror, is not what is looked for here.
+        let spec =
+            Spec { width: 2, height: 1, estimator: entry.name.into(), max_depth: Some(DEEPEST), ..Spec::default() };
+        let settings = Settings { spp: 4, spec, strategy: "serial".into(), ..Settings::default() };
+        let setup = Setup::for_scene(std::sync::Arc::clone(&scene), settings).unwrap();
+        let outcome = setup.run(None).unwrap();
+        assert_eq!(outcome.film.pixels().len(), 2);
+        assert!(!outcome.film.checksum().is_empty());
+    }
+    true
+}
+
+fn scene_with_a_mesh(folder: &Path) {
+    let scene = "about = 'a mesh'\nbackground = [1.0, 1.0, 1.0]\n\n[camera.pinhole]\nposition = [0.0, 0.0, 5.0]\nlook-at = [0.0, 0.0, 0.0]\n\
+                 field-of-view = 40.0\n\n[[objects]]\nname = 'thing'\nshape = { mesh = { file = 'thing.obj' } }\n\
+                 material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }\n";
+    fs::write(folder.join("mesh.toml"), scene).unwrap();
+}
+
+fn mesh(path: &Path) -> bool {
+    scene(&path.with_file_name("mesh.toml"))
+}
+
+fn experiment(path: &Path) -> bool {
+    let Ok(definition) = Definition::load(path.to_str().unwrap()) else { return false };
+    [Profile::Quick, Profile::Full].into_iter().filter(|profile| ok(definition.cells(*profile))).count() > 0
+}
+
+/// With the checksum of the bytes before it; the beginnings of files keep the one that does not fit.
+fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
+    if let Some(end) = bytes.len().checked_sub(32) {
+        let digest = Sha256::digest(&bytes[..end]);
+        bytes[end..].copy_from_slice(&digest);
+    }
+    bytes
+}
+
+fn film(path: &Path) -> bool {
+    let Ok((key, film)) = read_film(path) else { return false };
+    assert_eq!((film.width(), film.height()), (key.width, key.height));
+    assert_eq!(film.pixels().len(), key.width as usize * key.height as usize);
+    assert!(!film.checksum().is_empty());
+    true
+}
+
+fn setup(strategy: &str) -> Setup {
+    let spec = Spec { width: 3, height: 2, ..Spec::default() };
+    Setup::prepare(Settings { spp: 16, spec, strategy: strategy.into(), ..Settings::default() }).unwrap()
+}
+
+fn checkpoints() -> Vec<Vec<u8>> {
+    let folder = tempfile::tempdir().unwrap();
+    let made = [16, 24, 40].map(|spp| {
+        let path = folder.path().join(spp.to_string());
+        let mut rounds = Rounds::new(setup("serial")).unwrap();
+        rounds.extend_to(spp, None).unwrap();
+        let (checkpoint, _) = Checkpoint::open(&path, rounds.setup(), None).unwrap();
+        checkpoint.save(&rounds, Position { rendering_s: 1.5, look: spp }).unwrap();
+        fs::read(path).unwrap()
+    });
+    made.to_vec()
+}
+
+/// Records of two strategies, three times each.
+fn rows() -> Vec<Vec<u8>> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("records.csv");
+    let mut file = RecordsFile::create(&path).unwrap();
+    for (repetition, strategy) in (0..3).flat_map(|repetition| [(repetition, "serial"), (repetition, "static-blocks")])
+    {
+        let setup = setup(strategy);
+        let outcome = setup.run(None).unwrap();
+        let (experiment, cell) = ("tiny".to_string(), format!("cornell/{strategy}"));
+        let record = Record::new(&setup, &outcome, Measured::default());
+        file.append(&Record { experiment, cell, repetition, ..record }).unwrap();
+    }
+    let whole = fs::read(path).unwrap();
+    let short = whole.split_inclusive(|byte| *byte == b'\n').take(2).collect::<Vec<_>>().concat();
+    vec![whole, short]
+}
+
+fn checkpoint(path: &Path) -> bool {
+    thread_local! { static SETUP: Setup = setup("serial"); }
+    let Ok((_, saved)) = SETUP.with(|setup| Checkpoint::open(path, setup, None)) else { return false };
+    saved.is_none_or(|saved| saved.film.film().pixels().len() == 6)
+}
+
+/// What is accepted has the pixels that it says; and if its format can hold them, they come back.
+fn image(path: &Path) -> bool {
+    let Ok(image) = image_io::read(path) else { return false };
+    assert_eq!(image.pixels.len(), image.width as usize * image.height as usize);
+    let bits = |image: &Image| image.pixels.iter().map(|pixel| pixel.map(f64::to_bits)).collect::<Vec<_>>();
+    let copy = path.with_file_name("copy.pfm");
+    let is_exact =
+        image.pixels.as_flattened().iter().all(|value| f64::from(*value as f32).to_bits() == value.to_bits());
+    if image.pixels.len() < 100 && is_exact && image_io::write(&copy, &image).is_ok() {
+        assert_eq!(bits(&image_io::read(&copy).unwrap()), bits(&image));
+    }
+    true
+}
+
+fn beside_the_records(folder: &Path) {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus");
+    let to = folder.join("out/tiny");
+    fs::create_dir_all(&to).unwrap();
+    fs::copy(corpus.join("experiment/tiny.toml"), to.join("experiment.toml")).unwrap();
+    fs::copy(corpus.join("machine/machine.toml"), to.join("machine.toml")).unwrap();
+}
+
+/// The whole page from rows that somebody may have edited.
+fn report(path: &Path) -> bool {
+    ok(pathmark::report::write(path.parent().and_then(Path::parent).unwrap()))
+}
