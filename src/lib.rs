@@ -24,8 +24,8 @@
 //!
 //! Layers, each importing only those above it: `error`, `digest`, `effect`, `math`, `input`,
 //! `disk`, `lock`, `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
-//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`; `plot`,
-//! `report`, `check`; `cli`.
+//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`, `check`;
+//! `plot`, `report`; `cli`.
 
 // A test may unwrap; the library tells its user what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]

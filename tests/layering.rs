@@ -51,9 +51,9 @@ const RULES: &[Rule] = &[
     rule("measure", 6),
     only("simulate", 7, &["analysis", "measure", "strategy"]), // numbers in, numbers out: no pixel, no thread, no clock
     rule("experiment", 8),
+    beside("check", 8, &["experiment"]), // tries all that the renderer is made of
     only("plot", 9, &["error", "atomic_file", "metric", "image_io"]), // draws numbers, whatever they were measured on
     beside("report", 9, &["plot"]),
-    rule("check", 9), // tries all that the renderer is made of
     rule("cli", 10),
 ];
 
