@@ -125,7 +125,7 @@ fn along_a_path(sampler: &dyn Sampler, bounces: u64) -> Vec<u128> {
         Purpose::LightChoice,
     ];
     let mut all = Vec::new();
-    for bounce in 0..bounces as u16 {
+    for bounce in 0..=(bounces - 1) as u16 {
         for branch in [0, 1, 2, 3, 255, u16::MAX] {
             for purpose in purposes {
                 // The extremes of the key at once.

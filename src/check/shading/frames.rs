@@ -20,7 +20,8 @@ fn deviation(frame: &Frame) -> f64 {
     let handed = s.cross(t) - n;
     let lengths = [dot(s, s), dot(t, t)].map(|square| square.sqrt() - 1.0);
     let [a, b] = lengths;
-    let all = [dot(s, t), dot(s, n), dot(t, n), a, b, dot(handed, handed).sqrt()];
+    // The last is the length of a vector of errors and not one of them, so that half of it counts.
+    let all = [dot(s, t), dot(s, n), dot(t, n), a, b, 0.5 * dot(handed, handed).sqrt()];
     // `max` would pass over NaN.
     all.into_iter().map(f64::abs).fold(0.0, |worst, this| if this <= worst { worst } else { this })
 }
