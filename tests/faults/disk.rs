@@ -25,7 +25,9 @@ fn setup() -> Setup {
 }
 
 fn record(repetition: u32) -> Record {
-    Record { cell: "a cell, quoted".into(), repetition, ..measure::failure(&Settings::default(), "") }
+    // The same whenever it is made.
+    let started_utc = "2000-01-01T00:00:00Z".to_string();
+    Record { cell: "a cell, quoted".into(), repetition, started_utc, ..measure::failure(&Settings::default(), "") }
 }
 
 /// A writer for every kind of file, by the name that the file has. Those that go on with an old file are in [`the_rows_of_a_sweep`].
