@@ -4,7 +4,7 @@ use crate::math::Ray;
 use crate::scene::{ACCELERATORS, AllEffects, Hit, Primitives, Scene, Sphere, Standpoint, Tests, load};
 
 /// A scene of these primitives, all of one object; its camera is of no interest.
-pub(super) fn scene_of(primitives: Primitives) -> Scene {
+pub fn scene_of(primitives: Primitives) -> Scene {
     let mut scene = load("furnace").expect("a shipped scene");
     scene.owners = vec![0; primitives.counts().iter().sum()];
     scene.primitives = primitives;
@@ -12,16 +12,16 @@ pub(super) fn scene_of(primitives: Primitives) -> Scene {
 }
 
 /// A scene of spheres.
-pub(super) fn scene_of_spheres(spheres: Vec<Sphere>) -> Scene {
+pub fn scene_of_spheres(spheres: Vec<Sphere>) -> Scene {
     scene_of(Primitives { spheres, ..Primitives::default() })
 }
 
 /// The scene as each accelerator has it: without one every primitive is tested.
-pub(super) fn searches(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> + '_ {
+pub fn searches(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> + '_ {
     ACCELERATORS.iter().map(|entry| (entry.name, scene.accelerated(entry.name).unwrap_or_else(|| scene.clone())))
 }
 
 /// What the ray meets first.
-pub(super) fn intersect(scene: &Scene, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
+pub fn intersect(scene: &Scene, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
     scene.intersect::<AllEffects>(ray, from, &mut Tests::default())
 }

@@ -27,7 +27,7 @@
 //! ```
 
 mod analytic;
-mod bare_scene;
+pub mod bare_scene;
 mod chi_square;
 mod double_double;
 pub mod exact;
@@ -35,16 +35,16 @@ pub mod exact;
 mod fixed_point;
 pub mod guards;
 mod image_mean;
+pub mod materials;
 mod meshes;
 mod path;
 mod quadrature;
 mod random;
 mod random_numbers;
+mod refusals;
 mod rendering;
 mod run;
 mod samplers;
-mod scene_text;
-mod scene_words;
 mod shading;
 mod sphere;
 pub mod stage;

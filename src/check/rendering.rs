@@ -19,15 +19,3 @@ pub(super) fn render(trials: &mut Trials, scene: &Arc<Scene>, spec: Spec, spp: u
 pub(super) fn by_kernel(spec: &Spec) -> impl Iterator<Item = Spec> + '_ {
     KERNELS.iter().map(|kernel| Spec { kernel: kernel.name.to_string(), ..spec.clone() })
 }
-
-/// The mean of a channel over all samples, and its standard error.
-pub(super) fn mean(outcome: &Outcome, channel: usize) -> (f64, f64) {
-    let (mut n, mut sum, mut square) = (0.0, 0.0, 0.0);
-    for pixel in outcome.film.pixels() {
-        n += f64::from(pixel.count);
-        sum += pixel.sum[channel];
-        square += pixel.square[channel];
-    }
-    let mean = sum / n;
-    (mean, ((square / n - mean * mean).max(0.0) / (n - 1.0)).sqrt())
-}

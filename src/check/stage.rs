@@ -24,11 +24,37 @@ pub fn view(position: [f64; 3], look_at: [f64; 3], up: [f64; 3], degrees: f64) -
     )
 }
 
-/// An object; shape and material are what stands behind `=` in a scene file.
+/// A camera with a field of view in degrees that stands above nothing in particular.
+pub fn camera_above(position: [f64; 3], look_at: [f64; 3], degrees: f64) -> String {
+    view(position, look_at, [0.36, 0.48, 0.8], degrees)
+}
+
+/// A camera at the origin that looks along -z; for scenes of which only the geometry matters.
+pub const ANY_CAMERA: &str =
+    "[camera.smallpt]\nposition = [0.0, 0.0, 0.0]\ndirection = [0.0, 0.0, -1.0]\nfield = 0.5\nadvance = 0.0\n";
+
+/// Materials in which only the kind matters.
+pub const DIFFUSE: &str = "{ diffuse = { albedo = [0.5, 0.5, 0.5] } }";
+/// Loses nothing.
+pub const MIRROR: &str = "{ mirror = { albedo = [1.0, 1.0, 1.0] } }";
+/// Loses nothing.
+pub const GLASS: &str = "{ dielectric = { eta = 1.5, tint = [1.0, 1.0, 1.0] } }";
+
+/// An object, named by what it is; shape and material are what stands behind `=` in a scene file.
 pub fn object(shape: &str, material: &str, emission: [f64; 3]) -> String {
-    format!(
-        "[[objects]]\nname = '{shape} {material}'\nshape = {shape}\nmaterial = {material}\nemission = {emission:?}\n"
-    )
+    let name = format!("{shape} {material}").replace('\'', "\"");
+    format!("[[objects]]\nname = '{name}'\nshape = {shape}\nmaterial = {material}\nemission = {emission:?}\n")
+}
+
+/// An object with a name of its own, which gives off the same in all channels.
+pub fn named(name: &str, shape: &str, material: &str, emission: f64) -> String {
+    let emission = [emission; 3];
+    format!("[[objects]]\nname = '{name}'\nshape = {shape}\nmaterial = {material}\nemission = {emission:?}\n")
+}
+
+/// A dark sphere with a name of its own.
+pub fn ball(name: &str, center: [f64; 3], radius: f64, material: &str) -> String {
+    named(name, &sphere(center, radius), material, 0.0)
 }
 
 /// A sphere.

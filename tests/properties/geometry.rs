@@ -1,7 +1,7 @@
 //! Rays against primitives and hierarchies; frames and refraction.
 
-use crate::bare_scene::{intersect, scene_of};
 use crate::cases;
+use pathmark::check::bare_scene::{intersect, scene_of};
 use pathmark::math::{Frame, Ray, Vec3, dot, fresnel_dielectric, refract};
 use pathmark::scene::{ACCELERATORS, Bounds, Primitive, Primitives, Sphere, Triangle};
 use proptest::prelude::*;

@@ -1,12 +1,8 @@
 //! What holds for all inputs, tried on many: of geometry, sampling, plans, files and paths. Inputs are drawn from fixed seeds; one that fails is
 //! made smaller before it is shown. `PATHMARK_THOROUGH=1` draws a hundred times as many.
 
-#[path = "../support/bare_scene.rs"]
-mod bare_scene;
 mod files;
 mod geometry;
-#[path = "../support/materials.rs"]
-mod materials;
 mod paths;
 mod plans;
 mod sampling;

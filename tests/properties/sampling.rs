@@ -1,7 +1,7 @@
 //! Samplers, warps, materials and sums.
 
-use crate::materials::every_material;
 use crate::{cases, pair};
+use pathmark::check::materials::every_material;
 use pathmark::film::{PixelSum, SAMPLE_BLOCK, SampleSum};
 use pathmark::material::Density;
 use pathmark::math::{Rgb, Vec3, dot, sin_cos_turns};

@@ -2,7 +2,7 @@
 
 use crate::check::chi_square::critical;
 use crate::check::image_mean::{Moments, difference, exact, render};
-use crate::check::scene_words::{camera_at_a_point, diffuse, object, plane, scene, sphere};
+use crate::check::stage::{camera, diffuse, object, plane, scene, sphere};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::KERNELS;
@@ -63,7 +63,7 @@ fn lights(trials: &mut Trials) {
     let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
     let (radius, height) = (0.000_282_094_791_773_878_16, 6e-4);
     let dark = "background = [0.0, 0.0, 0.0]\n".to_string();
-    let camera = |reach: f64| camera_at_a_point([reach, 0.8 * reach, 0.0], [0.0; 3]);
+    let camera = |reach: f64| camera([reach, 0.8 * reach, 0.0], [0.0; 3]);
     let spots = [
         Spot {
             name: "area 1e-6",
@@ -97,7 +97,7 @@ fn lights(trials: &mut Trials) {
 /// or not at all, it would not be. Through glass light cannot be aimed at: there what chance finds must count in full.
 fn counted_once(trials: &mut Trials) {
     let enclosure = || object(&sphere([0.0; 3], 10.0), &diffuse(0.0), [1.0; 3]);
-    let seen = |things: &[String]| scene(&[camera_at_a_point([0.0, 0.3, 5.0], [0.0; 3]), enclosure(), things.concat()]);
+    let seen = |things: &[String]| scene(&[camera([0.0, 0.3, 5.0], [0.0; 3]), enclosure(), things.concat()]);
     let ball = |radius: f64| object(&sphere([0.0; 3], radius), &diffuse(0.8), [0.2; 3]);
     let mirror = object(&sphere([0.0; 3], 1.0), "{ mirror = { albedo = [0.7, 0.7, 0.7] } }", [0.3; 3]);
     let exact = |name, scene| Spot { name, scene, radiance: Some(1.0) };
@@ -111,7 +111,7 @@ fn counted_once(trials: &mut Trials) {
             name: "a lamp inside glass over a floor",
             scene: scene(&[
                 "background = [0.0, 0.0, 0.0]\n".to_string(),
-                camera_at_a_point([2.0, 1.5, 0.0], [0.0; 3]),
+                camera([2.0, 1.5, 0.0], [0.0; 3]),
                 object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]),
                 object(&sphere([0.0, 1.0, 0.0], 0.6), GLASS, [0.0; 3]),
                 object(&sphere([0.0, 1.0, 0.0], 0.3), &diffuse(0.0), [3.0; 3]),

@@ -1,9 +1,9 @@
 //! Light that goes back the way it came, and light that comes back at all: H26.
 
-use super::materials::{every_material, towards};
 use super::unguarded::{albedo_by_cosines, albedo_by_normals, albedo_by_visible_normals};
 use crate::check::chi_square::critical;
-use crate::check::scene_words::material;
+use crate::check::materials::{every_material, towards};
+use crate::check::refusals::material;
 use crate::check::{Case, Trials};
 use crate::material::{Ggx, Material};
 use crate::math::{Vec3, fresnel_dielectric};

@@ -3,7 +3,7 @@
 use super::unguarded::{naive_one_minus_cos, naive_one_minus_cos_f32};
 use crate::check::chi_square::{against, critical};
 use crate::check::double_double::two_product;
-use crate::check::scene_words::{camera_above, diffuse, object, scene, sphere};
+use crate::check::stage::{camera_above, diffuse, object, scene, sphere};
 use crate::check::{Case, Trials};
 use crate::math::{Vec3, dot};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, mix, unit};

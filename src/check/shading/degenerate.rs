@@ -1,7 +1,7 @@
 //! Directions that are too long, opposite, along the surface or below it: H25, H27.
 
-use super::materials::{every_material, towards};
 use super::unguarded::squared_tangent_of_angle;
+use crate::check::materials::{every_material, towards};
 use crate::check::{Case, Trials};
 use crate::material::{Density, Ggx};
 use crate::math::{Vec3, dot};

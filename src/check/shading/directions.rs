@@ -1,7 +1,7 @@
 //! Directions go where their density says: G7, for every material, roughness and angle.
 
-use super::materials::{every_material, towards};
 use crate::check::chi_square::{against, critical};
+use crate::check::materials::{every_material, towards};
 use crate::check::quadrature::integral;
 use crate::check::{Case, Trials};
 use crate::material::{Density, Material};

@@ -1,8 +1,8 @@
 //! GGX: H20, H21, H22.
 
-use super::materials::towards;
 use super::unguarded::{cancelling_density, cancelling_density_f32, density_f32, weight_by_normals};
 use crate::check::double_double::two_product;
+use crate::check::materials::towards;
 use crate::check::quadrature::integral;
 use crate::check::{Case, Trials};
 use crate::material::{Conductor, Density, Facets, Ggx, Material};

@@ -1,7 +1,7 @@
 //! Fresnel's formula, and Schlick's approximation of it: H10, H11, H12.
 
 use super::unguarded::schlick;
-use crate::check::scene_words::refused;
+use crate::check::refusals::refused;
 use crate::check::{Case, Trials};
 use crate::math::{Vec3, dot, fresnel_dielectric, fresnel_schlick, refract};
 use crate::sampling::{mix, unit};

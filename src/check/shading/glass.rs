@@ -1,9 +1,9 @@
 //! Glass and other choices between lobes: H13, H14.
 
-use super::materials::{every_material, towards};
 use super::unguarded::schlick;
 use crate::check::chi_square::critical;
 use crate::check::image_mean::{Moments, render};
+use crate::check::materials::{every_material, towards};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::KERNELS;

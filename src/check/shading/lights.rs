@@ -1,7 +1,7 @@
 //! Lights that are hardly there, and very many of them: H37.
 
 use crate::check::image_mean::{Moments, render};
-use crate::check::scene_words::{camera_at_a_point, diffuse, object, plane, scene, sphere};
+use crate::check::stage::{camera, diffuse, object, plane, scene, sphere};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::KERNELS;
@@ -29,7 +29,7 @@ fn hardly_there(trials: &mut Trials) {
     ];
     let spp = trials.times(16, 512) as u32;
     for (name, things) in spots {
-        let parts = ["background = [0.0, 0.0, 0.0]\n".to_string(), camera_at_a_point([2.0, 1.5, 1e-3], [0.0; 3])];
+        let parts = ["background = [0.0, 0.0, 0.0]\n".to_string(), camera([2.0, 1.5, 1e-3], [0.0; 3])];
         let scene = scene(&[parts.concat(), things.concat()]);
         for kernel in KERNELS {
             for entry in ESTIMATORS {

@@ -10,7 +10,6 @@ mod frames;
 pub(super) mod fresnel;
 mod glass;
 mod lights;
-mod materials;
 mod report_b;
 mod shares;
 mod smooth;

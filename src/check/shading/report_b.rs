@@ -1,7 +1,7 @@
 //! What the second report's guards do to its material, and that ours makes no light: H24, H28.
 
-use super::materials::towards;
 use super::unguarded::reflection_of_report_b;
+use crate::check::materials::towards;
 use crate::check::quadrature::integral;
 use crate::check::{Case, Trials};
 use crate::material::{Bsdf, Conductor, Facets, KdKs, Sampling};

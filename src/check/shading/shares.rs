@@ -1,7 +1,7 @@
 //! Densities and the shares that are made of them: H33, H34.
 
-use super::materials::{every_material, towards};
 use super::unguarded::power_heuristic_by_squares;
+use crate::check::materials::{every_material, towards};
 use crate::check::{Case, Trials};
 use crate::estimator::power_heuristic;
 use crate::material::Density;

@@ -1,10 +1,11 @@
 //! Smooth surfaces are mirrors by type: H23, H29.
 
-use super::materials::{every_material, towards};
 use super::unguarded::mirror_of_report_b;
 use crate::check::chi_square::critical;
 use crate::check::image_mean::{Moments, difference, render};
-use crate::check::scene_words::{camera_above, diffuse, material, object, refused, scene, sphere};
+use crate::check::materials::{every_material, towards};
+use crate::check::refusals::{material, refused};
+use crate::check::stage::{camera_above, diffuse, object, scene, sphere};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::KERNELS;

@@ -3,7 +3,7 @@
 use super::unguarded::crowded_triangle;
 use crate::check::Trials;
 use crate::check::chi_square::{against, critical};
-use crate::check::scene_words::{camera_above, diffuse, object, scene, sphere};
+use crate::check::stage::{camera_above, diffuse, object, scene, sphere};
 use crate::math::{Frame, Vec3, dot};
 use crate::sampling::{mix, unit};
 use crate::scene::{Scene, one_minus_cos};

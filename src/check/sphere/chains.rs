@@ -3,7 +3,7 @@
 use super::walk::scatter;
 use crate::check::bare_scene::{intersect, searches};
 use crate::check::rendering::{by_kernel, render};
-use crate::check::scene_text::{ANY_CAMERA, MIRROR, ball, object, read};
+use crate::check::stage::{ANY_CAMERA, MIRROR, ball, named, try_scene};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::Spec;
@@ -21,13 +21,13 @@ pub(super) const CASES: &[Case] = &[
 
 /// A black room that glows: its radiance is 1, exactly, and one ray a path is enough to know it.
 fn black_walls(trials: &mut Trials) {
-    let room = object(
+    let room = named(
         "room",
         "{ sphere = { center = [0.0, 0.0, 0.0], radius = 9.0 } }",
         "{ diffuse = { albedo = [0.0, 0.0, 0.0] } }",
         1.0,
     );
-    let scene = Arc::new(read(&[ANY_CAMERA.to_string(), room]).expect("a right scene"));
+    let scene = Arc::new(try_scene(&[ANY_CAMERA.to_string(), room]).expect("a right scene"));
     for estimator in ESTIMATORS {
         let rules = [None, Some("albedo:0"), Some("throughput:0")].map(|rule| rule.map(ToString::to_string));
         for roulette in rules.into_iter().filter(|rule| rule.is_none() || estimator.roulette.is_some()) {
@@ -49,7 +49,7 @@ fn black_walls(trials: &mut Trials) {
 /// Without renormalising |d| must stay 1 within 1e-12. With it, as paths do, every chord is as long as the first: 2 r cos.
 fn mirror_chain(trials: &mut Trials) {
     let parts = [ANY_CAMERA.to_string(), ball("room", [50.0, 40.8, 81.6], 1e5, MIRROR)];
-    let room = read(&parts).expect("a right scene");
+    let room = try_scene(&parts).expect("a right scene");
     for (name, scene) in searches(&room) {
         for renormalise in [false, true] {
             let direction = Vec3::new(0.3, -0.2, 0.93).normalized();

@@ -4,7 +4,7 @@ use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
 use crate::check::bare_scene::{intersect, searches};
 use crate::check::random::Random;
 use crate::check::rendering::{by_kernel, render};
-use crate::check::scene_text::{DIFFUSE, camera_at_a_point, object, read};
+use crate::check::stage::{DIFFUSE, camera, named, try_scene};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::Spec;
@@ -99,11 +99,11 @@ fn lights(trials: &mut Trials) {
         let light = format!("{{ sphere = {{ center = [0.0, {height:?}, 0.0], radius = {radius:?} }} }}");
         let floor = "{ plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }";
         let parts = [
-            camera_at_a_point([0.0, 0.5, 9.0], [0.0, 0.0, 9.0]),
-            object("light", &light, DIFFUSE, 1.0),
-            object("floor", floor, DIFFUSE, 0.0),
+            camera([0.0, 0.5, 9.0], [0.0, 0.0, 9.0]),
+            named("light", &light, DIFFUSE, 1.0),
+            named("floor", floor, DIFFUSE, 0.0),
         ];
-        let scene = read(&parts).expect("a right scene");
+        let scene = try_scene(&parts).expect("a right scene");
         let lit = scene.lit(&scene.camera.view(4, 4));
         for (name, scene) in searches(&lit) {
             let Some(lights) = &scene.lights else { continue };

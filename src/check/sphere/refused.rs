@@ -2,7 +2,8 @@
 
 use super::exact::U;
 use super::formulas::first_hits;
-use crate::check::scene_text::{ANY_CAMERA, DIFFUSE, ball, read, refuses_shape};
+use crate::check::refusals::refuses_shape;
+use crate::check::stage::{ANY_CAMERA, DIFFUSE, ball, try_scene};
 use crate::check::{Case, Trials};
 use crate::math::Vec3;
 
@@ -22,7 +23,7 @@ fn radii(trials: &mut Trials, radii: &[&str]) {
 
 /// A sphere that must be read, and met from `away` radii before it.
 fn is_read_and_met(trials: &mut Trials, center: [f64; 3], radius: f64, away: f64) {
-    let scene = read(&[ANY_CAMERA.to_string(), ball("ball", center, radius, DIFFUSE)]);
+    let scene = try_scene(&[ANY_CAMERA.to_string(), ball("ball", center, radius, DIFFUSE)]);
     let told = scene.as_ref().map_or_else(ToString::to_string, |_| "it is read".to_string());
     trials.holds(format!("radius {radius:e} at {center:?}"), "it is read", told, scene.is_ok());
     let center = Vec3::from(center);

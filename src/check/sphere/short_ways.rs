@@ -5,7 +5,7 @@ use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
 use super::walk::scatter;
 use crate::check::bare_scene::{intersect, searches};
 use crate::check::random::Random;
-use crate::check::scene_text::{ANY_CAMERA, DIFFUSE, GLASS, ball, read};
+use crate::check::stage::{ANY_CAMERA, DIFFUSE, GLASS, ball, try_scene};
 use crate::check::{Case, Trials};
 use crate::math::{Frame, Ray, Vec3};
 use crate::scene::{Scene, Standpoint};
@@ -24,7 +24,7 @@ pub(super) const CASES: &[Case] = &[
 /// A glass ball in the middle of a dark one.
 fn glass(center: [f64; 3], radius: f64, around: f64) -> Scene {
     let parts = [ANY_CAMERA.into(), ball("glass", center, radius, GLASS), ball("around", center, around, DIFFUSE)];
-    read(&parts).expect("a right scene")
+    try_scene(&parts).expect("a right scene")
 }
 
 /// The lengths of a path in radii: into the glass, once around inside by reflection, out, on to the sphere around it.
@@ -113,7 +113,7 @@ fn chords_in_glass(trials: &mut Trials) {
 /// A cosine law finds chords so short once in 4e18 bounces: here smallpt's epsilon does no harm, which says nothing of smaller spheres.
 fn chords_of_walls(trials: &mut Trials) {
     let parts = [ANY_CAMERA.into(), ball("left wall", [100_001.0, 40.8, 81.6], 1e5, DIFFUSE)];
-    let scene = read(&parts).expect("a right scene");
+    let scene = try_scene(&parts).expect("a right scene");
     let wall = (Vec3::new(100_001.0, 40.8, 81.6), 1e5);
     // A coordinate of 2e5 is rounded at 2^-36, and the chord sees it twice.
     chords(trials, &scene, wall, 8.0 * U * 2e5, |random| random.scale(-9.3, -6.0));

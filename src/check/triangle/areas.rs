@@ -3,7 +3,8 @@
 use super::single::{U, meet, scene, towards, triangle};
 use crate::check::bare_scene::{intersect, searches};
 use crate::check::random::Random;
-use crate::check::scene_text::{ANY_CAMERA, DIFFUSE, object, read, refuses_shape};
+use crate::check::refusals::refuses_shape;
+use crate::check::stage::{ANY_CAMERA, DIFFUSE, named, try_scene};
 use crate::check::{Case, Trials};
 use crate::math::{Ray, Vec3};
 use crate::scene::{Primitive, Triangle};
@@ -78,7 +79,7 @@ fn counted(trials: &mut Trials) {
     mesh.write_all(text.as_bytes()).expect("a written file");
     let path = mesh.path().to_str().expect("a path in UTF-8");
     let shape = format!("{{ mesh = {{ file = '{path}' }} }}");
-    let scene = read(&[ANY_CAMERA.to_string(), object("mesh", &shape, DIFFUSE, 0.0)]);
+    let scene = try_scene(&[ANY_CAMERA.to_string(), named("mesh", &shape, DIFFUSE, 0.0)]);
     let counts = scene.map(|scene| (scene.primitives.triangles.len(), scene.primitives.degenerate));
     trials.same("a mesh of one good triangle and three bad", &Some((1, 3)), &counts.ok());
 }

@@ -3,7 +3,7 @@
 use super::hierarchies::{any_ray, in_cube};
 use crate::check::bare_scene::{intersect, scene_of, scene_of_spheres, searches};
 use crate::check::random::Random;
-use crate::check::scene_text::refuses_shape;
+use crate::check::refusals::refuses_shape;
 use crate::check::{Case, Trials};
 use crate::math::{Ray, Vec3};
 use crate::scene::{Hit, Plane, Primitives, Scene, Sphere};

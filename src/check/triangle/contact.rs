@@ -3,9 +3,10 @@
 use super::single::U;
 use crate::analysis::z_test::{critical_value, sidak};
 use crate::check::bare_scene::{intersect, searches};
+use crate::check::exact::mean;
 use crate::check::random::Random;
-use crate::check::rendering::{by_kernel, mean, render};
-use crate::check::scene_text::{ball, camera_at_a_point, object, read};
+use crate::check::rendering::{by_kernel, render};
+use crate::check::stage::{ball, camera, named, try_scene};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::{KERNELS, Spec};
@@ -31,14 +32,14 @@ const LEVEL: f64 = 1e-3;
 fn scene(before: &str, glow: f64, after: &str) -> Arc<Scene> {
     let parts = [
         before.to_string(),
-        camera_at_a_point([3.0, 0.3, 0.0], [AWAY, 0.0, 0.0]),
-        object(
+        camera([3.0, 0.3, 0.0], [AWAY, 0.0, 0.0]),
+        named(
             "ball",
             "{ sphere = { center = [0.0, 1.0, 0.0], radius = 1.0 } }",
             "{ diffuse = { albedo = [0.0, 0.0, 0.0] } }",
             glow,
         ),
-        object(
+        named(
             "floor",
             "{ plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }",
             "{ diffuse = { albedo = [0.5, 0.5, 0.5] } }",
@@ -46,7 +47,7 @@ fn scene(before: &str, glow: f64, after: &str) -> Arc<Scene> {
         ),
         after.to_string(),
     ];
-    Arc::new(read(&parts).expect("a right scene"))
+    Arc::new(try_scene(&parts).expect("a right scene"))
 }
 
 fn contact(trials: &mut Trials) {
@@ -75,7 +76,7 @@ fn contact(trials: &mut Trials) {
             for (what, scene, expected) in [("hidden light", light(-5.0, 3.0), 0.0), ("light", light(5.0, 0.5), lit)] {
                 let Some(outcome) = render(trials, &scene, spec.clone(), 4) else { continue };
                 // All pixels see points within 3e-7 of each other.
-                trials.close(format!("{what}, {who}"), expected, mean(&outcome, 0).0, 1e-6 * expected);
+                trials.close(format!("{what}, {who}"), expected, mean(&outcome.film, 0).0, 1e-6 * expected);
             }
             if spec.estimator == "whitted" {
                 trials.skip("whitted, ball and sky: it takes no light by way of diffuse surfaces");
@@ -84,7 +85,7 @@ fn contact(trials: &mut Trials) {
             for (what, scene, expected) in [("glowing ball", &glowing, 0.5 * share), ("sky", &sky, 0.5 * (1.0 - share))]
             {
                 let Some(outcome) = render(trials, scene, spec.clone(), spp) else { continue };
-                let (found, error) = mean(&outcome, 0);
+                let (found, error) = mean(&outcome.film, 0);
                 trials.deviates_below(format!("{what}, {who}, {found:.6}"), critical, (found - expected) / error);
                 let told = format_args!("{:.1} standard errors", expected / error);
                 trials.holds(

@@ -3,7 +3,8 @@
 use super::single::U;
 use crate::check::bare_scene::{intersect, scene_of, searches};
 use crate::check::random::Random;
-use crate::check::scene_text::{ANY_CAMERA, DIFFUSE, object, read, refuses_shape};
+use crate::check::refusals::refuses_shape;
+use crate::check::stage::{ANY_CAMERA, DIFFUSE, named, try_scene};
 use crate::check::{Case, Trials};
 use crate::math::{Frame, Ray, Vec3, dot};
 use crate::scene::{Plane, Primitive, Primitives, Scene, Standpoint};
@@ -90,7 +91,7 @@ fn in_the_plane(trials: &mut Trials) {
     refuses_shape(trials, "{ plane = { point = [0.0, 0.0, 0.0], normal = [0.0, nan, 0.0] } }", "normal", "nan");
     for normal in ["[0.0, 7.0, 0.0]", "[0.0, 1e-90, 0.0]", "[0.0, 1e90, 0.0]"] {
         let shape = format!("{{ plane = {{ point = [0.0, 0.0, 0.0], normal = {normal} }} }}");
-        let read = read(&[ANY_CAMERA.to_string(), object("plane", &shape, DIFFUSE, 0.0)]);
+        let read = try_scene(&[ANY_CAMERA.to_string(), named("plane", &shape, DIFFUSE, 0.0)]);
         trials.same(format!("normal {normal}"), &Some(UP), &read.ok().map(|scene| scene.primitives.planes[0].normal));
     }
     starting_on_it(trials);

@@ -1,21 +1,21 @@
 //! Every material, in the words of a scene file.
 
-use crate::check::scene_words::material;
+use crate::check::refusals::material;
 use crate::material::{MATERIALS, Material};
 use crate::math::{Vec3, sin_cos_turns};
 
 /// The roughnesses at which what has one is tried.
-pub(super) const ROUGHNESSES: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
+pub const ROUGHNESSES: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
 
 /// The unit direction with that cosine to the normal, so many turns around it.
-pub(super) fn towards(cos: f64, turns: f64) -> Vec3 {
+pub fn towards(cos: f64, turns: f64) -> Vec3 {
     let rim = (1.0 - cos * cos).max(0.0).sqrt();
     let (s, c) = sin_cos_turns(turns);
     Vec3::new(rim * c, rim * s, cos)
 }
 
 /// Instances of every material in the table, each with its text: rough ones at every roughness and smooth.
-pub(super) fn every_material() -> Vec<(String, Material)> {
+pub fn every_material() -> Vec<(String, Material)> {
     let texts = MATERIALS.iter().flat_map(|entry| texts(entry.name));
     texts.map(|text| (text.clone(), material(&text))).collect()
 }
