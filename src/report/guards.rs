@@ -30,7 +30,8 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
     let line = format!("{}, {} processors", run.machine.cpu, run.machine.processors);
     let blocks = vec![
         Block::Figure { stem: "guards", figure: Box::new(plot(&rows, line)) },
-        Block::Table { stem: "guards-table", table: table(&rows) },
+        Block::Table { stem: "price-list", table: prices(&rows) },
+        Block::Table { stem: "meanings", table: meanings(&rows) },
     ];
     for block in &blocks {
         block.save(&folder.join("figures"))?;
@@ -58,17 +59,8 @@ fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
     plot
 }
 
-fn table(rows: &[PriceRow]) -> Table {
-    let columns = [
-        "guard",
-        "what is measured",
-        "error with it",
-        "error without",
-        "operation",
-        "ns with it",
-        "ns without",
-        "time ratio",
-    ];
+fn prices(rows: &[PriceRow]) -> Table {
+    let columns = ["guard", "error with it", "error without", "ns with it", "ns without", "time with / without"];
     let short = |value: f64| number::short(value, 3);
     let error = |value: f64, low: f64, high: f64| {
         if low < high { format!("{} ({} to {})", short(value), short(low), short(high)) } else { short(value) }
@@ -80,16 +72,22 @@ fn table(rows: &[PriceRow]) -> Table {
             _ => "-".to_string(),
         };
         vec![
-            format!("{}: {} instead of {}", row.guard, row.with, row.without),
-            row.error.clone(),
+            row.guard.clone(),
             error(row.error_with, row.error_with_low, row.error_with_high),
             error(row.error_without, row.error_without_low, row.error_without_high),
-            row.operation.clone(),
             cell(row.ns_with),
             cell(row.ns_without),
             ratio,
         ]
     };
     let title = "Price list of the guards, intervals of 95 %".to_string();
+    Table { title, columns: columns.map(String::from).to_vec(), rows: rows.iter().map(row).collect() }
+}
+
+fn meanings(rows: &[PriceRow]) -> Table {
+    let columns = ["guard", "the program's way", "the other way", "what the error is", "what is timed"];
+    let row =
+        |row: &PriceRow| [&row.guard, &row.with, &row.without, &row.error, &row.operation].map(String::clone).to_vec();
+    let title = "What is compared".to_string();
     Table { title, columns: columns.map(String::from).to_vec(), rows: rows.iter().map(row).collect() }
 }

@@ -49,6 +49,9 @@ impl Section {
     }
 }
 
+/// Longer cells are prose and may be broken.
+const LONGEST_CELL: usize = 56;
+
 /// The page.
 pub(super) fn html(sections: &[Section]) -> Result<String> {
     let body = sections.iter().map(section).collect::<Result<Vec<Markup>>>()?;
@@ -109,7 +112,7 @@ fn table_markup(table: &Table) -> Markup {
             summary { (table.title) }
             table {
                 thead { tr { @for column in &table.columns { th { (column) } } } }
-                tbody { @for row in &table.rows { tr { @for cell in row { td { (cell) } } } } }
+                tbody { @for row in &table.rows { tr { @for cell in row { td.text[cell.len() > LONGEST_CELL] { (cell) } } } } }
             }
         }
     }
