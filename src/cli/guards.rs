@@ -1,16 +1,13 @@
 //! Measuring the price list of the guards, for `check` and `reproduce`.
 
-use crate::check::guards::{GUARDS, PriceRow, write_prices};
+use crate::check::guards::{FILE, FOLDER, GUARDS, PriceRow, write_prices};
 use crate::error::{Error, Result};
 use crate::experiment::{Progress, RunFile};
-pub(super) use crate::report::GUARDS_FOLDER as FOLDER;
 use std::path::Path;
-
-const PRICES: &str = "guards.csv";
 
 /// Whether a folder of results has the list already.
 pub(super) fn are_in(out: &Path) -> bool {
-    out.join(FOLDER).join(PRICES).is_file()
+    out.join(FOLDER).join(FILE).is_file()
 }
 
 /// Measures all guards, one after the other.
@@ -30,5 +27,5 @@ pub(super) fn write(out: &Path, rows: &[PriceRow]) -> Result<()> {
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
     RunFile::of_now(super::command_line()).write(&folder.join("machine.toml"))?;
-    write_prices(&folder.join(PRICES), rows)
+    write_prices(&folder.join(FILE), rows)
 }

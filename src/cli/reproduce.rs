@@ -2,6 +2,7 @@
 
 use super::progress::Talk;
 use super::{command_line, guards, output::print, strict::Strict};
+use crate::check::guards::FOLDER;
 use crate::error::{Error, Result};
 use crate::experiment::{Definition, EXPERIMENTS, Options, Profile, Progress, RecordsFile, sweep};
 use clap::Args;
@@ -76,7 +77,7 @@ fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> 
     }
     let stamp = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace(':', "-");
     let earlier = out.join("earlier").join(stamp);
-    for name in definitions.iter().map(|definition| definition.name.as_str()).chain([guards::FOLDER]) {
+    for name in definitions.iter().map(|definition| definition.name.as_str()).chain([FOLDER]) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;

@@ -56,6 +56,11 @@ fn values<'a>(text: &'a str, key: &'a str) -> impl Iterator<Item = &'a str> {
 }
 
 impl Machine {
+    /// The machine in a few words, for figures.
+    pub fn line(&self) -> String {
+        format!("{} processors, {}", self.processors, self.cpu)
+    }
+
     /// Looks at this machine and this build.
     pub fn look() -> Self {
         let cpuinfo = read("/proc/cpuinfo").unwrap_or_default();

@@ -2,15 +2,11 @@
 
 use super::block::{Block, Table};
 use super::page::Section;
-use crate::check::guards::{PriceRow, read_prices};
+use crate::check::guards::{FILE, FOLDER, PriceRow, read_prices};
 use crate::error::Result;
 use crate::experiment::read_run_file;
 use crate::plot::{Axis, Dot, DotPlot, Row, number};
 use std::path::Path;
-
-/// Folder and file of the list, and of what it was measured on.
-pub const FOLDER: &str = "guards";
-const PRICES: &str = "guards.csv";
 
 const QUESTION: &str = "What does it cost to be right on hard inputs, and how wrong is what would do on easy ones?";
 
@@ -21,15 +17,14 @@ The simpler variants are not options of the program: a table of hard cases (`pat
 /// The section, if a folder has such a list. Its figure and table are written beside it.
 pub(super) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
-    let path = folder.join(PRICES);
+    let path = folder.join(FILE);
     if !path.is_file() {
         return Ok(None);
     }
     let rows = read_prices(&path)?;
     let run = read_run_file(&folder.join("machine.toml"))?;
-    let line = format!("{}, {} processors", run.machine.cpu, run.machine.processors);
     let blocks = vec![
-        Block::Figure { stem: "guards", figure: Box::new(plot(&rows, line)) },
+        Block::Figure { stem: "guards", figure: Box::new(plot(&rows, run.machine.line())) },
         Block::Table { stem: "price-list", table: prices(&rows) },
         Block::Table { stem: "meanings", table: meanings(&rows) },
     ];

@@ -12,7 +12,6 @@ pub mod timeline;
 
 pub use block::{Block, Table};
 pub use figures::{FIGURES, FigureEntry, check_figures};
-pub use guards::FOLDER as GUARDS_FOLDER;
 pub use results::Results;
 
 use crate::atomic_file;

@@ -102,8 +102,7 @@ impl Results {
 
     /// The machine alone, where the figure's rows differ in scene or size.
     pub(super) fn machine_line(&self) -> String {
-        let machine = &self.run.machine;
-        format!("{} processors, {}", machine.processors, machine.cpu)
+        self.run.machine.line()
     }
 
     /// What is rendered, apart from samples and seed, where the experiment compares several; empty where there is only one.

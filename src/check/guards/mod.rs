@@ -21,7 +21,7 @@ mod visible_normals;
 mod watertight;
 
 pub use measured::Measured;
-pub use price_file::{PriceRow, read_prices, write_prices};
+pub use price_file::{FILE, FOLDER, PriceRow, read_prices, write_prices};
 
 use crate::measure::in_turns;
 use std::hint::black_box;

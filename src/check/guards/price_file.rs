@@ -7,6 +7,11 @@ use crate::measure::InTurns;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
+/// The folder of results that has the list.
+pub const FOLDER: &str = "guards";
+/// The list's file in it.
+pub const FILE: &str = "guards.csv";
+
 /// What one guard costs and saves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
