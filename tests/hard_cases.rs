@@ -1,66 +1,47 @@
-//! The table of hard cases that `pathmark check` prints, section by section. `PATHMARK_THOROUGH=1` takes as many random inputs as the
-//! catalogue asks for.
+//! The table of hard cases that `pathmark check` prints. `PATHMARK_THOROUGH=1` takes as many random inputs as the catalogue asks for.
 
-use pathmark::check::{Effort, SECTIONS};
+use pathmark::check::{Case, Effort, Outcome, cases, run};
+use pathmark::measure::available_threads;
 use std::collections::BTreeSet;
 
 fn effort() -> Effort {
     if std::env::var_os("PATHMARK_THOROUGH").is_some() { Effort::Thorough } else { Effort::Quick }
 }
 
-/// Tries the cases of the section whose title begins so, and prints what came of each.
-fn section_holds(title: &str) {
-    let section = SECTIONS.iter().find(|section| section.title.starts_with(title)).expect("a section of that title");
-    let mut wrong = Vec::new();
-    for case in section.cases.iter().copied().flatten() {
-        let outcome = case.run(effort());
+/// What went wrong in a case, if anything.
+fn wrong(case: &Case, outcome: &Outcome) -> Vec<String> {
+    let name = format!("{} {}", case.id, case.tries);
+    let failures: Vec<String> = outcome.failures().map(|trial| format!("{name}: {trial:?}")).collect();
+    if failures.is_empty() && !outcome.passed() { vec![format!("{name}: nothing was tried")] } else { failures }
+}
+
+#[test]
+fn all_cases_pass() {
+    let all: Vec<&'static Case> = cases().collect();
+    let outcomes = run(&all, effort(), available_threads(), &|_| ());
+    for (case, outcome) in all.iter().zip(&outcomes) {
         println!("{} {}: {} trials", case.id, case.tries, outcome.trials.len());
         outcome.skipped.iter().for_each(|why| println!("  not tried: {why}"));
-        wrong.extend(outcome.failures().map(|trial| format!("{} {}: {trial:?}", case.id, case.tries)));
-        if !outcome.passed() && outcome.failures().next().is_none() {
-            wrong.push(format!("{} {}: nothing was tried", case.id, case.tries));
-        }
     }
+    let wrong: Vec<String> = all.iter().zip(&outcomes).flat_map(|(case, outcome)| wrong(case, outcome)).collect();
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
+/// A panic is a failed trial, and a case that tries nothing and does not say why has not passed.
 #[test]
-fn sphere_holds() {
-    section_holds("Ray against sphere");
-}
-
-#[test]
-fn triangle_holds() {
-    section_holds("Triangles");
-}
-
-#[test]
-fn shading_holds() {
-    section_holds("Frames");
-}
-
-#[test]
-fn path_holds() {
-    section_holds("Paths");
-}
-
-#[test]
-fn random_numbers_hold() {
-    section_holds("Random numbers");
-}
-
-#[test]
-fn statistics_hold() {
-    section_holds("Statistics");
-}
-
-#[test]
-fn analytic_scenes_hold() {
-    section_holds("Scenes");
+fn cases_can_fail() {
+    let case = |run| Case { id: "X00", tries: "to fail", run };
+    let failed = case(|_| panic!("on purpose")).run(Effort::Quick);
+    assert!(!failed.passed() && failed.failures().any(|trial| trial.found.contains("on purpose")));
+    let off = case(|trials| _ = trials.close("a number", 1.0, f64::NAN, 1.0));
+    assert_eq!(wrong(&off, &off.run(Effort::Quick)).len(), 1);
+    let empty = case(|_| ());
+    assert_eq!(wrong(&empty, &empty.run(Effort::Quick)).len(), 1);
+    assert!(case(|trials| trials.skip("not here")).run(Effort::Quick).passed());
 }
 
 #[test]
 fn names_are_unique() {
-    let names: Vec<&str> = pathmark::check::cases().map(|case| case.id).collect();
+    let names: Vec<&str> = cases().map(|case| case.id).collect();
     assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
 }

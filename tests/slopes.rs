@@ -7,10 +7,10 @@ use pathmark::analysis::Estimate;
 use pathmark::analysis::jackknife::{Curve, SeedCurves};
 use pathmark::analysis::slope::{PowerLaw, power_law};
 use pathmark::analysis::z_test::sidak;
+use pathmark::check::stage::{camera, diffuse, object, plane, scene, sphere};
 use pathmark::kernel::Spec;
 use pathmark::measure::{Rounds, Settings, Setup};
 use pathmark::scene::{SCENES, Scene, load};
-use std::io::Write;
 use std::sync::Arc;
 
 /// The widest that an interval of 95 % may be, to either side.
@@ -76,98 +76,23 @@ fn check(what: &str, law: Option<PowerLaw>) {
     assert!(half_width <= HALF_WIDTH, "{what}: {interval:?}");
 }
 
-/// A scene with an exact answer, which every pixel sees.
-struct Analytic {
-    /// In the catalogue of hard cases.
-    name: &'static str,
-    exact: f64,
-    position: [f64; 3],
-    look_at: [f64; 3],
-    background: f64,
-    objects: &'static str,
-}
-
-const ANALYTIC: [Analytic; 4] = [
-    Analytic {
-        name: "A1",
-        exact: 2.0,
-        position: [0.1, 0.2, 0.3],
-        look_at: [1.0, 0.0, 0.0],
-        background: 0.0,
-        objects: "[[objects]]
-        name = 'glowing wall'
-        shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }
-        material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
-        emission = [1.0, 1.0, 1.0]",
-    },
-    Analytic {
-        name: "A4",
-        exact: 0.2,
-        position: [0.0, 0.75, 0.0],
-        look_at: [0.6, 0.8, 0.0],
-        background: 0.0,
-        objects: "[[objects]]
-        name = 'wall'
-        shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }
-        material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
-        [[objects]]
-        name = 'source'
-        shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 0.5 } }
-        material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
-        emission = [1.0, 1.0, 1.0]",
-    },
-    Analytic {
-        name: "A6",
-        exact: 0.125,
-        position: [3.0, 0.02, 0.0],
-        look_at: [0.0, 0.0, 0.0],
-        background: 0.0,
-        objects: "[[objects]]
-        name = 'floor'
-        shape = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
-        material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
-        [[objects]]
-        name = 'lamp'
-        shape = { sphere = { center = [0.0, 2.0, 0.0], radius = 1.0 } }
-        material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
-        emission = [1.0, 1.0, 1.0]",
-    },
-    Analytic {
-        name: "A12",
-        exact: 0.25,
-        position: [4.0, 0.0, 0.0],
-        look_at: [0.0, 0.0, 0.0],
-        background: 1.0,
-        objects: "[[objects]]
-        name = 'earth'
-        shape = { plane = { point = [0.0, -5.0, 0.0], normal = [0.0, 1.0, 0.0] } }
-        material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
-        [[objects]]
-        name = 'ball'
-        shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }
-        material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }",
-    },
-];
-
-impl Analytic {
-    fn scene(&self) -> Scene {
-        let Self { position, look_at, background, objects, .. } = self;
-        let camera =
-            format!("position = {position:?}\nlook-at = {look_at:?}\nup = [0.36, 0.48, 0.8]\nfield-of-view = 1e-6");
-        let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
-        let background = [background; 3];
-        write!(file, "about = 'a test'\nbackground = {background:?}\n[camera.pinhole]\n{camera}\n{objects}").unwrap();
-        load(file.path().to_str().unwrap()).unwrap()
-    }
-}
-
 #[test]
 fn analytic_scenes() {
-    for analytic in ANALYTIC {
-        let scene = Arc::new(analytic.scene());
+    let hollow = |albedo: f64, emission: f64| object(&sphere([0.0; 3], 1.0), &diffuse(albedo), [emission; 3]);
+    let lamp = |center: [f64; 3], radius: f64| object(&sphere(center, radius), &diffuse(0.0), [1.0; 3]);
+    let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
+    let earth = object(&plane([0.0, -5.0, 0.0], [0.0, 1.0, 0.0]), &diffuse(0.0), [0.0; 3]);
+    let sky = "background = [1.0, 1.0, 1.0]\n".to_string();
+    let scenes = [
+        ("A1", 2.0, vec![camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), hollow(0.5, 1.0)]),
+        ("A4", 0.2, vec![camera([0.0, 0.75, 0.0], [0.6, 0.8, 0.0]), hollow(0.5, 0.0), lamp([0.0; 3], 0.5)]),
+        ("A6", 0.125, vec![camera([3.0, 0.02, 0.0], [0.0; 3]), floor, lamp([0.0, 2.0, 0.0], 1.0)]),
+        ("A12", 0.25, vec![sky, camera([4.0, 0.0, 0.0], [0.0; 3]), earth, hollow(0.5, 0.0)]),
+    ];
+    for (name, exact, parts) in scenes {
         let spps = (2..=9).map(|power| 1 << power).collect();
-        let curves = Curves { scene, estimator: "bsdf", size: (32, 32), spps };
-        check(analytic.name, curves.by_truth(analytic.exact, 10, 0.95));
+        let curves = Curves { scene: Arc::new(scene(&parts)), estimator: "bsdf", size: (32, 32), spps };
+        check(name, curves.by_truth(exact, 10, 0.95));
     }
 }
 

@@ -3,9 +3,8 @@
 use super::Trials;
 use crate::film::Film;
 use crate::kernel::Spec;
-use crate::measure::{Outcome, Settings, Setup};
+use crate::measure::{Outcome, Settings};
 use crate::scene::Scene;
-use std::sync::Arc;
 
 /// Renders a scene with about as little around it as there is.
 pub(super) fn render(
@@ -24,8 +23,7 @@ pub(super) fn render(
 pub(super) fn run(scene: &Scene, spec: Spec, spp: u32) -> Outcome {
     let (decomposition, strategy) = ("rows".into(), "shared-counter".into());
     let settings = Settings { spp, spec, decomposition, strategy, threads: 2, ..Settings::default() };
-    let setup = Setup::for_scene(Arc::new(scene.clone()), settings).expect("settings that the check has made");
-    setup.run(None).expect("a run that nothing stands in the way of")
+    super::exact::run(scene, settings)
 }
 
 /// Mean and variance over all samples of a film, within the pixels.

@@ -14,9 +14,9 @@ pub fn run(cases: &[&'static Case], effort: Effort, threads: usize, told: &dyn F
         for _ in 0..threads.max(1) {
             let (sender, next) = (sender.clone(), &next);
             scope.spawn(move || {
-                while let Some((index, case)) =
-                    Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, cases.get(i)?)))
-                {
+                loop {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(case) = cases.get(index) else { break };
                     // Whoever collects has gone only if it panicked, and then nobody asks.
                     let _ = sender.send((index, case.run(effort)));
                 }

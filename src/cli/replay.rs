@@ -4,7 +4,6 @@ use super::axes::What;
 use super::output::{print, print_json};
 use crate::error::{Error, InputError, Result};
 use crate::estimator;
-use crate::film::{Bounds, Piece, TileBuffer};
 use crate::kernel::{self, Event, PathLog, Spec};
 use crate::math::{Rgb, Vec3};
 use crate::measure::{LARGEST_SPP, Setup};
@@ -87,10 +86,7 @@ fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
 
 /// Renders the sample once more as an image does, with the kernel that fits the scene.
 fn check(scene: &Arc<Scene>, spec: &Spec, (x, y, sample): (u32, u32, u32), radiance: Rgb) -> Result<()> {
-    let bounds = Bounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
-    let mut buffer = TileBuffer::new(bounds);
-    kernel::build(scene, spec)?.render(&Piece { bounds, samples: sample..sample + 1 }, &mut buffer);
-    let given = buffer.row_mut(y)[0].sum;
+    let (given, _) = kernel::one_sample(&*kernel::build(scene, spec)?, [x, y], sample);
     let expected = if radiance.is_valid_radiance() { radiance } else { Rgb::BLACK };
     if given.map(f64::to_bits) == expected.channels().map(f64::to_bits) {
         return Ok(());

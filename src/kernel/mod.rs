@@ -7,9 +7,10 @@ mod scalar;
 use crate::effect::EffectSet;
 use crate::error::{InputError, Result};
 use crate::estimator::{self, ESTIMATORS, Estimator, EstimatorVisitor, Options, Roulette, with_estimator};
-use crate::film::{Piece, TileBuffer};
+use crate::film::{Bounds, Piece, TileBuffer};
 use crate::sampling::{
-    Independent, SAMPLERS, Sampler, SamplerVisitor, is_deterministic, stateful_sampler, with_keyed_sampler,
+    Independent, SAMPLERS, Sampler, SamplerVisitor, is_deterministic, keyed_sampler, stateful_sampler,
+    with_keyed_sampler,
 };
 use crate::scene::{
     ACCELERATORS, Accelerator, AllEffects, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, SmallptEffects,
@@ -293,7 +294,7 @@ pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
 /// name (its lights, its multiple of samples) is taken from the table's entry of that name.
 pub fn build_of<E: Estimator + 'static>(scene: &Arc<Scene>, spec: &Spec, estimator: E) -> Result<Box<dyn Kernel>> {
     let choice = choose(scene, spec)?;
-    let Some(sampler) = with_keyed_sampler(&spec.sampler, KeyedSampler) else {
+    let Some(sampler) = keyed_sampler(&spec.sampler) else {
         let names = SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name);
         return Err(unknown("sampler", &spec.sampler, names).into());
     };
@@ -301,14 +302,12 @@ pub fn build_of<E: Estimator + 'static>(scene: &Arc<Scene>, spec: &Spec, estimat
     Ok(Box::new(Scalar::<E, Box<dyn Sampler>, AllEffects>::new(scene, spec, estimator, sampler)))
 }
 
-/// From the sampler's name to the sampler, as one type for all.
-struct KeyedSampler;
-
-impl SamplerVisitor for KeyedSampler {
-    type Output = Box<dyn Sampler>;
-    fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-        Box::new(sampler)
-    }
+/// What an image is given of one sample, in sum and counts. A kernel that is asked for no more gives the same bits.
+pub fn one_sample(kernel: &dyn Kernel, [x, y]: [u32; 2], sample: u32) -> ([f64; 3], Counts) {
+    let bounds = Bounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
+    let mut buffer = TileBuffer::new(bounds);
+    let counts = kernel.render(&Piece { bounds, samples: sample..sample + 1 }, &mut buffer);
+    (buffer.row_mut(y)[0].sum, counts)
 }
 
 /// From the profile's name to a type.

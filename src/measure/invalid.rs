@@ -1,8 +1,8 @@
 //! Where the invalid samples of a run are. Kernels only count them; as samples can be had again by their address, the few that are worth telling
 //! are looked for afterwards, and a run without any pays nothing.
 
-use crate::film::{Bounds, Piece, Plan, TileBuffer};
-use crate::kernel::{Counts, Kernel};
+use crate::film::{Piece, Plan};
+use crate::kernel::{Counts, Kernel, one_sample};
 use serde::Serialize;
 use std::fmt;
 
@@ -38,7 +38,7 @@ pub(super) fn first_invalid(kernel: &dyn Kernel, plan: &Plan, counts: &[Counts])
         for piece in affected.iter().filter(|piece| (piece.bounds.y0..piece.bounds.y1).contains(&y)) {
             for x in piece.bounds.x0..piece.bounds.x1 {
                 let samples = piece.samples.clone().map(|sample| InvalidSample { y, x, sample });
-                in_row.extend(samples.filter(|sample| is_invalid(kernel, *sample)));
+                in_row.extend(samples.filter(|at| one_sample(kernel, [at.x, at.y], at.sample).1.invalid > 0));
             }
         }
         in_row.sort_unstable();
@@ -49,10 +49,4 @@ pub(super) fn first_invalid(kernel: &dyn Kernel, plan: &Plan, counts: &[Counts])
         }
     }
     found
-}
-
-fn is_invalid(kernel: &dyn Kernel, at: InvalidSample) -> bool {
-    let bounds = Bounds { x0: at.x, y0: at.y, x1: at.x + 1, y1: at.y + 1 };
-    let piece = Piece { bounds, samples: at.sample..at.sample + 1 };
-    kernel.render(&piece, &mut TileBuffer::new(bounds)).invalid > 0
 }

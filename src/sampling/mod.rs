@@ -54,6 +54,12 @@ pub enum Purpose {
     LightChoice = 6,
 }
 
+impl Purpose {
+    /// Every purpose there is.
+    pub const ALL: [Self; 7] =
+        [Self::Film, Self::Bsdf, Self::Roulette, Self::Lens, Self::Medium, Self::Light, Self::LightChoice];
+}
+
 /// Where a pair of numbers is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Address {
@@ -165,6 +171,18 @@ samplers! {
         "locked", "one PCG32 behind a lock; not deterministic" => Locked::new;
         "per-thread", "a PCG32 for each thread; not deterministic" => PerThread::new;
     }
+}
+
+/// The deterministic sampler of that name behind a pointer, as one type for all of them; `None` if there is none.
+pub fn keyed_sampler(name: &str) -> Option<Box<dyn Sampler>> {
+    struct Boxed;
+    impl SamplerVisitor for Boxed {
+        type Output = Box<dyn Sampler>;
+        fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
+            Box::new(sampler)
+        }
+    }
+    with_keyed_sampler(name, Boxed)
 }
 
 /// Whether the sampler of that name gives the same numbers in each run.

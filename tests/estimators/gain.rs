@@ -1,11 +1,11 @@
 //! What aiming at light and spreading samples gain, by the spread of images over seeds.
 
 use pathmark::analysis::fit::log_log;
+use pathmark::check::stage::{diffuse, object, plane, scene, sphere, view};
 use pathmark::film::Film;
 use pathmark::kernel::Spec;
 use pathmark::measure::{Settings, Setup};
 use pathmark::scene::{Scene, load};
-use std::io::Write;
 use std::sync::Arc;
 
 fn film(scene: &Arc<Scene>, (width, height): (u32, u32), estimator: &str, sampler: &str, spp: u32, seed: u64) -> Film {
@@ -32,34 +32,15 @@ fn variance(scene: &Arc<Scene>, size: (u32, u32), estimator: &str, sampler: &str
     total / (3 * images[0].len()) as f64
 }
 
-const LAMP_OVER_A_PLANE: &str = "
-about = 'a lamp over a plane'
-
-[camera.pinhole]
-position = [3.0, 0.5, 0.0]
-look-at = [1.0, 0.0, 0.0]
-field-of-view = 16.0
-
-[[objects]]
-name = 'floor'
-shape = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
-material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
-
-[[objects]]
-name = 'lamp'
-shape = { sphere = { center = [0.0, 2.0, 0.0], radius = 0.5 } }
-material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
-emission = [1.0, 1.0, 1.0]
-";
-
 /// A6: a lamp over a plane, aimed at by its cone of directions, is smooth in all four numbers of a sample, film and light. Spread over them
 /// together they are far steeper than spread over each pair by itself, which gives about -0.65. Weighted against directions that miss the lamp
 /// (`mis`) light is less smooth. Independent samples have the slope -1/2.
 #[test]
 fn sobol_is_steep_where_light_is_smooth() {
-    let mut file = tempfile::Builder::new().suffix(".toml").tempfile().unwrap();
-    file.write_all(LAMP_OVER_A_PLANE.as_bytes()).unwrap();
-    let scene = Arc::new(load(file.path().to_str().unwrap()).unwrap());
+    let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
+    let lamp = object(&sphere([0.0, 2.0, 0.0], 0.5), &diffuse(0.0), [1.0; 3]);
+    let view = view([3.0, 0.5, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], 16.0);
+    let scene = Arc::new(scene(&[view, floor, lamp]));
     let spps = [16_u32, 32, 64, 128, 256, 512, 1024];
     let slope = |estimator: &str, sampler: &str| {
         let points = spps.map(|spp| (f64::from(spp), variance(&scene, (4, 4), estimator, sampler, spp, 16).sqrt()));

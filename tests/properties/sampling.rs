@@ -6,37 +6,17 @@ use pathmark::film::{PixelSum, SAMPLE_BLOCK, SampleSum};
 use pathmark::material::Density;
 use pathmark::math::{Rgb, Vec3, dot, sin_cos_turns};
 use pathmark::sampling::{
-    Address, Purpose, SAMPLERS, SampleKey, Sampler, SamplerVisitor, concentric_disk, cosine_hemisphere, tent,
-    uniform_sphere, with_keyed_sampler,
+    Address, Purpose, SAMPLERS, SampleKey, Sampler, concentric_disk, cosine_hemisphere, keyed_sampler, tent,
+    uniform_sphere,
 };
 use pathmark::scene::AllEffects;
 use proptest::prelude::*;
 
-const PURPOSES: [Purpose; 7] = [
-    Purpose::Film,
-    Purpose::Bsdf,
-    Purpose::Roulette,
-    Purpose::Lens,
-    Purpose::Medium,
-    Purpose::Light,
-    Purpose::LightChoice,
-];
-
 fn address() -> impl Strategy<Value = Address> {
     let key =
         (any::<u64>(), any::<u32>(), any::<u32>()).prop_map(|(seed, pixel, sample)| SampleKey { seed, pixel, sample });
-    let place = (any::<u16>(), any::<u16>(), prop::sample::select(&PURPOSES));
+    let place = (any::<u16>(), any::<u16>(), prop::sample::select(&Purpose::ALL));
     (key, place).prop_map(|(key, (bounce, branch, purpose))| Address { key, bounce, branch, purpose })
-}
-
-/// Asks a sampler about an address, twice.
-struct Twice(Address);
-
-impl SamplerVisitor for Twice {
-    type Output = [[f64; 2]; 2];
-    fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-        [sampler.pair(self.0), sampler.pair(self.0)]
-    }
 }
 
 fn length(v: Vec3) -> f64 {
@@ -49,7 +29,8 @@ proptest! {
     #[test]
     fn samplers_are_functions_into_the_unit_square(at in address()) {
         for entry in SAMPLERS.iter().filter(|entry| entry.deterministic) {
-            let [first, second] = with_keyed_sampler(entry.name, Twice(at)).expect("a sampler of the table");
+            let sampler = keyed_sampler(entry.name).expect("a sampler of the table");
+            let [first, second] = [sampler.pair(at), sampler.pair(at)];
             prop_assert!(first.iter().all(|u| (0.0..1.0).contains(u)), "{}: {first:?}", entry.name);
             prop_assert_eq!(first.map(f64::to_bits), second.map(f64::to_bits), "{}", entry.name);
         }

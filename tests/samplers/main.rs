@@ -8,24 +8,15 @@ mod nets;
 mod projections;
 mod rate;
 
-use pathmark::sampling::{Address, Purpose, SAMPLERS, SampleKey, Sampler, SamplerVisitor, with_keyed_sampler};
+use pathmark::sampling::{Address, Purpose, SAMPLERS, SampleKey, Sampler, keyed_sampler};
 
 const LEVEL: f64 = 1e-3;
 
 /// A sampler and its name.
 type Named = (&'static str, Box<dyn Sampler>);
 
-struct Boxed;
-
-impl SamplerVisitor for Boxed {
-    type Output = Box<dyn Sampler>;
-    fn visit<S: Sampler + 'static>(self, sampler: S) -> Box<dyn Sampler> {
-        Box::new(sampler)
-    }
-}
-
 fn keyed(name: &str) -> Box<dyn Sampler> {
-    with_keyed_sampler(name, Boxed).unwrap()
+    keyed_sampler(name).unwrap()
 }
 
 fn all_keyed() -> Vec<Named> {

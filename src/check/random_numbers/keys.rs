@@ -115,19 +115,10 @@ fn collisions(trials: &mut Trials) {
 }
 
 fn along_a_path(sampler: &dyn Sampler, bounces: u64) -> Vec<u128> {
-    let purposes = [
-        Purpose::Film,
-        Purpose::Bsdf,
-        Purpose::Roulette,
-        Purpose::Lens,
-        Purpose::Medium,
-        Purpose::Light,
-        Purpose::LightChoice,
-    ];
     let mut all = Vec::new();
     for bounce in 0..=(bounces - 1) as u16 {
         for branch in [0, 1, 2, 3, 255, u16::MAX] {
-            for purpose in purposes {
+            for purpose in Purpose::ALL {
                 // The extremes of the key at once.
                 let key = SampleKey { seed: u64::MAX, pixel: u32::MAX, sample: u32::MAX };
                 all.push(bits(sampler.pair(Address { key, bounce, branch, purpose })));

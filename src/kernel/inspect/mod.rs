@@ -9,7 +9,7 @@ use super::{Spec, choose, prepared, unknown};
 use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Probe, with_estimator};
 use crate::math::Rgb;
-use crate::sampling::{SAMPLERS, Sampler, SamplerVisitor, is_deterministic, with_keyed_sampler};
+use crate::sampling::{SAMPLERS, Sampler, is_deterministic, keyed_sampler};
 use crate::scene::{AllEffects, Scene};
 pub use by_bounce::{BounceRow, LightByBounce};
 pub use path_log::{Event, PathLog};
@@ -31,24 +31,10 @@ pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Inspect>> {
         return Err(InputError::new("sampler", &spec.sampler, problem).allowed(names.join(", ")).into());
     }
     let scene = prepared(scene, spec, choice);
-    let inspector = with_keyed_sampler(&spec.sampler, BySampler { scene, spec }).flatten();
+    let inspector = keyed_sampler(&spec.sampler)
+        .and_then(|sampler| with_estimator(&spec.estimator, spec.options(), ByEstimator { scene, spec, sampler }));
     // Every name has been checked, so there is one.
     inspector.ok_or_else(|| unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name)).into())
-}
-
-/// From the sampler's name to one type for all samplers, then from the estimator's.
-struct BySampler<'a> {
-    scene: Arc<Scene>,
-    spec: &'a Spec,
-}
-
-impl SamplerVisitor for BySampler<'_> {
-    type Output = Option<Box<dyn Inspect>>;
-    fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-        let options = self.spec.options();
-        let sampler: Box<dyn Sampler> = Box::new(sampler);
-        with_estimator(&self.spec.estimator, options, ByEstimator { scene: self.scene, spec: self.spec, sampler })
-    }
 }
 
 /// From the estimator's name to a kernel.
