@@ -52,6 +52,7 @@ pub mod metric;
 pub mod plot;
 pub mod report;
 pub mod sampling;
+pub mod simd;
 pub mod scene;
 pub mod simulate;
 pub mod strategy;

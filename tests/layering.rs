@@ -33,6 +33,7 @@ const RULES: &[Rule] = &[
     rule("effect", 0),
     beside("input", 0, &["error", "math"]), // errors with a place; numbers that become vectors and colours
     rule("disk", 0),
+    beside("simd", 0, &["math"]), // the same formulas, several numbers at once
     beside("lock", 0, &["error"]),
     beside("atomic_file", 0, &["error", "disk"]),
     rule("image_io", 1),

@@ -4,18 +4,17 @@ use super::Probe;
 use super::medium::Medium;
 use super::path::Light;
 use crate::effect::EffectSet;
-use crate::math::{Frame, Ray, Rgb, Vec3, dot};
+use crate::math::{Frame, Ray, Real, Rgb, Vec3, dot};
 use crate::sampling::UNIFORM_SPHERE_DENSITY;
 use crate::scene::{Aim, Hit, Lights, Scene, Standpoint, Tests};
 
 /// The share of a way of finding light with density `a`, where another has density `b`: the power heuristic with exponent 2 (Veach and
 /// Guibas 1995), by a ratio, because squares overflow.
 #[inline(always)]
-pub fn power_heuristic(a: f64, b: f64) -> f64 {
-    let ratio = b / a;
+pub fn power_heuristic<T: Real>(a: T, b: T) -> T {
     // Both zero cannot be: who found the light had a density for it.
-    debug_assert!(!ratio.is_nan());
-    1.0 / (1.0 + ratio * ratio)
+    let ratio = b / a;
+    T::splat(1.0) / (T::splat(1.0) + ratio * ratio)
 }
 
 /// The share of light at the end of a ray that counts, when the ray's direction was chosen by a surface or by fog with `density`.

@@ -88,6 +88,19 @@ impl Probe for &mut dyn Probe {
     }
 }
 
+/// What tells apart the estimators that follow paths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Course {
+    /// At this many vertices, counted from the first, a surface that reflects and transmits is followed both ways; at most 2.
+    pub splits: u16,
+    /// Whether vertices aim at light, and then whether what is found is weighted with what is arrived at.
+    pub aims: Option<bool>,
+    /// After so many bounces a path is cut.
+    pub max_depth: u16,
+    /// When and how chance ends paths.
+    pub roulette: Roulette,
+}
+
 /// An estimate of radiance, one sample at a time: unbiased unless it has a [`Estimator::MAX_DEPTH`] of its own.
 pub trait Estimator: Send + Sync {
     /// Samples per pixel must be a multiple of this.
@@ -107,6 +120,11 @@ pub trait Estimator: Send + Sync {
 
     /// The largest number of bounces that it can be asked for.
     const LARGEST_DEPTH: u16 = u16::MAX;
+
+    /// How it follows paths, for kernels that follow many at once; `None` if it does something else.
+    fn course(&self) -> Option<Course> {
+        None
+    }
 
     /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as sample `key` estimates it.
     fn sample<S: Sampler, X: EffectSet, P: Probe>(

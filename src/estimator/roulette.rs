@@ -5,7 +5,7 @@
 //! Synthesis", 1990).
 
 use crate::error::{InputError, Result};
-use crate::math::Rgb;
+use crate::math::{Real, Rgb};
 use std::fmt;
 
 /// What the chance to survive follows.
@@ -47,6 +47,23 @@ impl Roulette {
         Ok(Self { by, after })
     }
 
+    /// Behind so many vertices no path is ended by chance.
+    pub fn after(self) -> u16 {
+        self.after
+    }
+
+    /// The chance to survive where a vertex lets on `passed` of what arrives with `throughput`.
+    #[inline(always)]
+    pub fn chance<T: Real>(self, throughput: Rgb<T>, passed: Rgb<T>) -> T {
+        match self.by {
+            By::Albedo => passed.largest(),
+            By::Throughput => {
+                let (one, largest) = (T::splat(1.0), (throughput * passed).largest());
+                T::select(largest.lt(one), largest, one)
+            }
+        }
+    }
+
     /// The chance to go on behind the `vertices`-th vertex, which lets on `passed` of what arrives with `throughput`; `None` before roulette
     /// begins.
     #[inline(always)]
@@ -54,10 +71,7 @@ impl Roulette {
         if vertices <= self.after {
             return None;
         }
-        Some(match self.by {
-            By::Albedo => passed().max_channel(),
-            By::Throughput => (throughput * passed()).max_channel().min(1.0),
-        })
+        Some(self.chance(throughput, passed()))
     }
 }
 

@@ -1,22 +1,24 @@
 //! How an estimator is executed over a piece of the film. A kernel never sees a thread.
 
 mod inspect;
+mod lanes;
 mod recursion_clamp;
 mod scalar;
 
 use crate::effect::EffectSet;
 use crate::error::{InputError, Result};
-use crate::estimator::{self, ESTIMATORS, Estimator, EstimatorVisitor, Options, Roulette, with_estimator};
+use crate::estimator::{self, Course, ESTIMATORS, Estimator, EstimatorVisitor, Options, Roulette, with_estimator};
 use crate::film::{Bounds, Piece, TileBuffer};
 use crate::sampling::{
-    Independent, SAMPLERS, Sampler, SamplerVisitor, is_deterministic, keyed_sampler, stateful_sampler,
+    InLanes, Independent, SAMPLERS, Sampler, SamplerVisitor, is_deterministic, keyed_sampler, stateful_sampler,
     with_keyed_sampler,
 };
 use crate::scene::{
-    ACCELERATORS, Accelerator, AllEffects, HIERARCHY, PROFILES, ProfileEntry, ProfileVisitor, Scene, SmallptEffects,
+    ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES, ProfileEntry, ProfileVisitor, Scene, SmallptEffects,
     accelerator, effect_names, with_profile,
 };
 pub use inspect::{BounceRow, Event, Inspect, LightByBounce, PathLog, inspect};
+use lanes::Lanes;
 use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
@@ -163,7 +165,12 @@ pub struct Entry {
 }
 
 /// The kernels, in the order in which they are listed.
-pub const KERNELS: &[Entry] = &[Entry { name: "scalar", about: "one path at a time in f64" }];
+pub const KERNELS: &[Entry] = &[
+    Entry { name: "scalar", about: "one path at a time in f64" },
+    Entry { name: LANES, about: "many paths at a time in SIMD lanes; what it cannot do, `scalar` does" },
+];
+
+const LANES: &str = "lanes";
 
 /// What a spec comes to for a scene.
 #[derive(Clone, Copy)]
@@ -267,9 +274,43 @@ fn prepared(scene: &Arc<Scene>, spec: &Spec, choice: Choice) -> Arc<Scene> {
     prepared
 }
 
+/// Why lanes cannot render a scene with these settings; `None` if they can.
+fn no_lanes(scene: &Scene, spec: &Spec) -> Option<&'static str> {
+    let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
+    if let Some((_, name)) = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)) {
+        return Some(name);
+    }
+    if spec.clamp.is_some() {
+        return Some("clamp");
+    }
+    if InLanes::find(&spec.sampler).is_none() {
+        return Some("sampler");
+    }
+    course(spec).is_none().then_some("estimator")
+}
+
+/// How the estimator follows paths, if it does.
+fn course(spec: &Spec) -> Option<Course> {
+    struct OfEstimator;
+    impl EstimatorVisitor for OfEstimator {
+        type Output = Option<Course>;
+        fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
+            estimator.course()
+        }
+    }
+    with_estimator(&spec.estimator, spec.options(), OfEstimator).flatten()
+}
+
 /// Builds the kernel for a scene, and what accelerates it.
 pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
     let choice = choose(scene, spec)?;
+    if spec.kernel == LANES
+        && no_lanes(scene, spec).is_none()
+        && let (Some(course), Some(sampler)) = (course(spec), InLanes::find(&spec.sampler))
+    {
+        let level = match std::env::var("PM_SIMD") { Ok(name) => crate::simd::LEVELS.iter().find(|l| l.name == name).unwrap(), _ => crate::simd::best() };
+        return Ok(Box::new(Lanes::new(prepared(scene, spec, choice), spec, course, sampler, level)));
+    }
     if spec.clamp == Some(Clamp::Recursion) {
         return Ok(Box::new(RecursionClamp(inspect(scene, spec)?)));
     }

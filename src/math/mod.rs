@@ -2,6 +2,7 @@
 //!
 //! Nothing here calls the platform's elementary functions, so a path has the same bits everywhere.
 
+mod bits;
 mod frame;
 mod optics;
 mod ray;
@@ -11,11 +12,12 @@ mod sphere;
 mod trig;
 mod vector;
 
+pub use bits::{Bits, unit};
 pub use frame::Frame;
 pub use optics::{fresnel_dielectric, fresnel_schlick, reflect, refract};
 pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;
-pub use sphere::{first_root, roots};
+pub use sphere::{first_root, other_root, roots};
 pub use trig::sin_cos_turns;
 pub use vector::{Vec3, dot};

@@ -59,6 +59,28 @@ impl Rgb {
     }
 }
 
+impl<T: Real> Rgb<T> {
+    /// The same colour in every lane.
+    #[inline(always)]
+    pub fn splat(colour: Rgb) -> Self {
+        Self { r: T::splat(colour.r), g: T::splat(colour.g), b: T::splat(colour.b) }
+    }
+
+    /// Channel by channel: `yes` where the mask holds, `no` elsewhere.
+    #[inline(always)]
+    #[must_use]
+    pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Self { r: T::select(mask, yes.r, no.r), g: T::select(mask, yes.g, no.g), b: T::select(mask, yes.b, no.b) }
+    }
+
+    /// The largest channel of what has no NaN.
+    #[inline(always)]
+    pub fn largest(self) -> T {
+        let larger = T::select(self.r.lt(self.g), self.g, self.r);
+        T::select(larger.lt(self.b), self.b, larger)
+    }
+}
+
 impl<T> From<[T; 3]> for Rgb<T> {
     fn from([r, g, b]: [T; 3]) -> Self {
         Self { r, g, b }

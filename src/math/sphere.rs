@@ -40,3 +40,10 @@ pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T {
     // From inside (c <= 0) and forward (q > 0) the far root q/a is the first ahead; in every other case that hits it is c/q.
     T::select(zero.lt(q) & c.le(zero), q / a, c / q)
 }
+
+/// Where a ray that starts on the sphere and goes inside meets it again, in lengths of `d`, which has length 1: one root is the start, the other is
+/// twice the way to the closest approach.
+#[inline(always)]
+pub fn other_root<T: Real>(f: Vec3<T>, d: Vec3<T>) -> T {
+    T::splat(2.0) * dot(f, d).abs()
+}

@@ -29,14 +29,19 @@ const COS: [f64; 9] = [
 ];
 
 #[inline(always)]
-fn polynomial<T: Real>(coefficients: &[f64; 9], x: T) -> T {
-    let c = |k: usize| T::splat(coefficients[k]);
+fn polynomial<T: Real>(c: &[f64; 9], x: T) -> T {
     // Estrin's grouping: a third of Horner's dependency chain, and as fixed an order.
     let x2 = x * x;
     let x4 = x2 * x2;
-    let low = (c(0) + c(1) * x) + (c(2) + c(3) * x) * x2;
-    let high = (c(4) + c(5) * x) + (c(6) + c(7) * x) * x2;
-    low + (high + c(8) * x4) * x4
+    let low = (T::splat(c[0]) + T::splat(c[1]) * x) + (T::splat(c[2]) + T::splat(c[3]) * x) * x2;
+    let high = (T::splat(c[4]) + T::splat(c[5]) * x) + (T::splat(c[6]) + T::splat(c[7]) * x) * x2;
+    low + (high + T::splat(c[8]) * x4) * x4
+}
+
+/// Whether a whole number is `k`.
+#[inline(always)]
+fn is<T: Real>(number: T, k: f64) -> T::Mask {
+    (number - T::splat(k)).abs().lt(T::splat(0.5))
 }
 
 /// (sin 2πu, cos 2πu) for `u` in turns, 0 <= u <= 1; absolute error below 2.3e-16 each.
@@ -51,10 +56,10 @@ pub fn sin_cos_turns<T: Real>(u: T) -> (T, T) {
     let x2 = x * x;
     let s = x * polynomial(&SIN, x2);
     let c = polynomial(&COS, x2);
-    let at = |k: f64| (quarter - T::splat(k)).abs().lt(T::splat(0.5));
-    let odd = at(1.0) | at(3.0);
+    let (first, second, third) = (is(quarter, 1.0), is(quarter, 2.0), is(quarter, 3.0));
+    let odd = first | third;
     let (sin, cos) = (T::select(odd, c, s), T::select(odd, s, c));
-    (T::select(at(2.0) | at(3.0), -sin, sin), T::select(at(1.0) | at(2.0), -cos, cos))
+    (T::select(second | third, -sin, sin), T::select(first | second, -cos, cos))
 }
 
 #[cfg(test)]

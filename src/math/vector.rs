@@ -29,6 +29,19 @@ impl<T> Vec3<T> {
 }
 
 impl<T: Real> Vec3<T> {
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat(v: Vec3) -> Self {
+        Self::new(T::splat(v.x), T::splat(v.y), T::splat(v.z))
+    }
+
+    /// Component by component: `yes` where the mask holds, `no` elsewhere.
+    #[inline(always)]
+    #[must_use]
+    pub fn select(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Self::new(T::select(mask, yes.x, no.x), T::select(mask, yes.y, no.y), T::select(mask, yes.z, no.z))
+    }
+
     /// The vector product, right-handed.
     #[inline(always)]
     #[must_use]

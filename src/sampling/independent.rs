@@ -12,7 +12,8 @@
 //! after it: at one dimension two samples have two states, and two dimensions have two streams. Two seeds may meet in a state, by a chance of
 //! 2^-64 for each two samples.
 
-use super::{Address, Sampler};
+use super::{Address, SampleKey, Sampler};
+use crate::math::{Bits, unit};
 use rand::Rng;
 use rand_pcg::Pcg32;
 
@@ -23,28 +24,47 @@ pub struct Independent;
 /// The finaliser of `SplitMix64` (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014, variant 13 of Stafford's
 /// mixers), a bijection of 64-bit numbers; the offset keeps zero from being its own image.
 #[inline(always)]
-pub fn mix(x: u64) -> u64 {
-    let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
+pub fn mix<B: Bits>(x: B) -> B {
+    let z = x.plus(B::splat(0x9E37_79B9_7F4A_7C15));
+    let z = (z ^ z.down::<30>()).times(B::splat(0xBF58_476D_1CE4_E5B9));
+    let z = (z ^ z.down::<27>()).times(B::splat(0x94D0_49BB_1331_11EB));
+    z ^ z.down::<31>()
 }
 
-/// The top 53 bits as a multiple of 2^-53 in [0, 1): exact, and never 1.
+/// What the generators of a sample's addresses have in common.
 #[inline(always)]
-pub fn unit(bits: u64) -> f64 {
-    const STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
-    (bits >> 11) as f64 * STEP
+pub(super) fn path(key: SampleKey) -> u64 {
+    mix(mix(u64::from(key.pixel) << 32 | u64::from(key.sample)) ^ mix(key.seed))
+}
+
+/// What a PCG32 in this state gives.
+#[inline(always)]
+fn output<B: Bits>(state: B) -> B {
+    let low = B::splat(u64::from(u32::MAX));
+    let x = (state.down::<18>() ^ state).down::<27>() & low;
+    // Twice side by side: what a rotation brings round is there already.
+    (x | x.up::<32>()).down_by(state.down::<59>()) & low
+}
+
+/// The first two 64-bit numbers of a PCG32 with this state and stream, as `rand_pcg` gives them, in every lane. (No closures: a compiler may
+/// leave them outside of the function that has the instructions of lanes.)
+#[inline(always)]
+pub(super) fn pcg32<B: Bits>(state: B, stream: B) -> [B; 2] {
+    let multiplier = B::splat(0x5851_F42D_4C95_7F2D);
+    let increment = stream.up::<1>() | B::splat(1);
+    let first = state.plus(increment).times(multiplier).plus(increment);
+    let second = first.times(multiplier).plus(increment);
+    let third = second.times(multiplier).plus(increment);
+    let fourth = third.times(multiplier).plus(increment);
+    [output(first) | output(second).up::<32>(), output(third) | output(fourth).up::<32>()]
 }
 
 impl Sampler for Independent {
     #[inline(always)]
     fn pair(&self, at: Address) -> [f64; 2] {
-        let place = u64::from(at.key.pixel) << 32 | u64::from(at.key.sample);
         let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
         // The same for a whole path, so a compiler takes it out of the loop over bounces.
-        let path = mix(mix(place) ^ mix(at.key.seed));
-        let mut pcg = Pcg32::new(mix(path ^ dimension), dimension);
+        let mut pcg = Pcg32::new(mix(path(at.key) ^ dimension), dimension);
         [unit(pcg.next_u64()), unit(pcg.next_u64())]
     }
 }
@@ -58,5 +78,15 @@ mod tests {
     fn pcg32_is_oneills() {
         let mut pcg = Pcg32::new(42, 54);
         assert_eq!([pcg.next_u32(), pcg.next_u32(), pcg.next_u32()], [0xa15c_02b7, 0x7b47_f409, 0xba1d_3330]);
+    }
+
+    /// Lanes have the crate's numbers.
+    #[test]
+    fn pcg32_of_lanes_is_the_crates() {
+        for k in 0..10_000_u64 {
+            let (state, stream) = (mix(2 * k), mix(2 * k + 1));
+            let mut pcg = Pcg32::new(state, stream);
+            assert_eq!(pcg32(state, stream), [pcg.next_u64(), pcg.next_u64()]);
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! shifts nobody else's. `pathmark list samplers` prints the table; `--sampler independent` chooses.
 
 mod independent;
+mod lanes;
 mod libc_rand;
 mod locked;
 mod owen;
@@ -12,7 +13,9 @@ mod sobol;
 mod stratified;
 mod warp;
 
-pub use independent::{Independent, mix, unit};
+pub use crate::math::unit;
+pub use independent::{Independent, mix};
+pub use lanes::{InLanes, PathWords};
 pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;

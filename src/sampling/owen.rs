@@ -1,23 +1,24 @@
 //! Owen's scrambling of binary digits by arithmetic (A. B. Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995).
 
+use crate::math::Bits;
+
 /// Scrambles binary digits, the first in the lowest bit: each is flipped or not by what the keys make of those before it. Zeros beyond the
 /// last digit become random ones.
 ///
 /// The idea is that of S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011: sums and products carry upwards
 /// only. Their steps flip digits together that ought to be independent, so these are others, keyed throughout.
 #[inline(always)]
-pub(super) fn scramble(mut digits: u64, [a, b]: [u64; 2]) -> u64 {
-    digits ^= digits.wrapping_mul(b << 1);
-    digits = digits.wrapping_add(a);
-    digits = digits.wrapping_mul(b.rotate_left(32) | 1);
-    digits ^= digits.wrapping_mul(a.rotate_left(32) << 1);
-    digits.wrapping_add(b.rotate_left(16))
+pub(super) fn scramble<B: Bits>(digits: B, [a, b]: [B; 2]) -> B {
+    let digits = digits ^ digits.times(b.up::<1>());
+    let digits = digits.plus(a).times(b.up::<32>() | b.down::<32>() | B::splat(1));
+    let digits = digits ^ digits.times((a.up::<32>() | a.down::<32>()).up::<1>());
+    digits.plus(b.up::<16>() | b.down::<48>())
 }
 
 /// Puts the numbers of 0..2^32 in another order: each aligned block of 2^k stays together and goes where such a block was.
 #[inline(always)]
-pub(super) fn shuffle(index: u32, keys: [u64; 2]) -> u32 {
-    (scramble(u64::from(index.reverse_bits()), keys) as u32).reverse_bits()
+pub(super) fn shuffle<B: Bits>(index: B, keys: [B; 2]) -> B {
+    scramble(index.reversed().down::<32>(), keys).up::<32>().reversed()
 }
 
 #[cfg(test)]
@@ -78,7 +79,7 @@ mod tests {
     #[test]
     fn shuffling_keeps_blocks() {
         for key in 0..100 {
-            let all: Vec<u32> = (0..1 << 12).map(|index| shuffle(index, [mix(key), mix(!key)])).collect();
+            let all: Vec<u64> = (0..1 << 12).map(|index| shuffle(index, [mix(key), mix(!key)])).collect();
             for level in 0..=12 {
                 for block in all.chunks(1 << level) {
                     let first = block[0] >> level;

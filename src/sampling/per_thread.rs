@@ -3,7 +3,7 @@
 //! The usual cure for a shared generator: nobody waits. But which pixel gets which number depends on which thread renders it, so no two runs
 //! with more than one thread are alike, and an error cannot be looked for by rendering a pixel again. Here to be measured, not to be used.
 
-use super::independent::unit;
+use crate::math::unit;
 use super::{Address, Sampler};
 use rand::Rng;
 use rand_pcg::Pcg32;

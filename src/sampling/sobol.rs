@@ -20,9 +20,10 @@
 //! So k modulo 4 is made the first digit of a fifth dimension, that of a quadratic polynomial in Niederreiter's construction: of 4^m
 //! samples, those of a subpixel are a (1, m-1, 4)-net in base 4, in the four numbers together.
 
-use super::independent::{mix, unit};
+use super::independent::mix;
 use super::owen::{scramble, shuffle};
-use super::{Address, Purpose, Sampler};
+use super::{Address, Purpose, SampleKey, Sampler};
+use crate::math::{Bits, unit};
 
 /// The sampler; it has no state.
 #[derive(Debug, Clone, Copy, Default)]
@@ -64,24 +65,24 @@ fn over_powers(elements: u32) -> u32 {
 
 /// Pascal's triangle modulo 2 on sixteen elements: four times the Kronecker product of 1 1 and 0 1.
 #[inline(always)]
-fn pascal_of_elements(mut elements: u32) -> u32 {
-    elements ^= elements >> 2 & 0x3333_3333;
-    elements ^= elements >> 4 & 0x0F0F_0F0F;
-    elements ^= elements >> 8 & 0x00FF_00FF;
-    elements ^ elements >> 16
+fn pascal_of_elements<B: Bits>(elements: B) -> B {
+    let elements = elements ^ elements.down::<2>() & B::splat(0x3333_3333);
+    let elements = elements ^ elements.down::<4>() & B::splat(0x0F0F_0F0F);
+    let elements = elements ^ elements.down::<8>() & B::splat(0x00FF_00FF);
+    elements ^ elements.down::<16>()
 }
 
 /// The digits of Sobol's second dimension, the first in the lowest bit: the index times Pascal's triangle of bits. (The first dimension
 /// is the index itself.)
 #[inline(always)]
-fn pascal(index: u32) -> u32 {
-    pascal_of_elements(index ^ index >> 1 & LOWER)
+fn pascal<B: Bits>(index: B) -> B {
+    pascal_of_elements(index ^ index.down::<1>() & B::splat(u64::from(LOWER)))
 }
 
 /// The index times Pascal's triangle to the power ω, whose entries are those of the triangle times ω^(column - row).
 #[inline(always)]
 fn pascal_to_omega(index: u32) -> u32 {
-    over_powers(pascal_of_elements(times_powers(index)))
+    over_powers(pascal_of_elements(u64::from(times_powers(index))) as u32)
 }
 
 /// The coefficients of the fifth dimension's first digit, a bit of each product at a time. They follow the recurrence of x² + ω²x + 1, a
@@ -122,11 +123,39 @@ const ORDERS: [u8; 24] = {
 /// with the sample's subpixel.
 #[inline(always)]
 fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
-    let fours = shuffle(sample >> 2, [a, b]) << 2;
+    let fours = (shuffle(u64::from(sample >> 2), [a, b]) as u32) << 2;
     let order = ORDERS[(((a >> 32) * ORDERS.len() as u64) >> 32) as usize];
     let subpixel = u32::from(order >> (2 * (sample & 3))) & 3;
     let [lower, higher] = SUBPIXEL.map(|mask| (fours & mask).count_ones() & 1);
     fours | subpixel ^ lower ^ higher << 1
+}
+
+/// What the numbers of a pixel have in common.
+#[inline(always)]
+pub(super) fn pixel(key: SampleKey) -> u64 {
+    mix(mix(u64::from(key.pixel)) ^ mix(key.seed))
+}
+
+/// The places of a sample in the order that the leading uses share: for the film, and for what the first vertex asks for its direction or light.
+#[inline(always)]
+pub(super) fn joined(pixel: u64, sample: u32) -> [u32; 2] {
+    // No dimension is so large.
+    let place = leading(sample, [mix(pixel ^ u64::MAX), mix(pixel ^ (u64::MAX - 1))]);
+    [place, pascal_to_omega(place)]
+}
+
+/// The place of a sample in the order of a use of its own.
+#[inline(always)]
+pub(super) fn own_place<B: Bits>(key: B, sample: B) -> B {
+    shuffle(sample, [mix(key), mix(key ^ B::splat(1))])
+}
+
+/// The two numbers of a place in the sequence, scrambled for a use, as 64-bit fractions.
+#[inline(always)]
+pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
+    let first = [mix(key ^ B::splat(2)), mix(key ^ B::splat(3))];
+    let second = [mix(key ^ B::splat(4)), mix(key ^ B::splat(5))];
+    [scramble(place, first).reversed(), scramble(pascal(place), second).reversed()]
 }
 
 impl Sampler for Sobol {
@@ -134,18 +163,14 @@ impl Sampler for Sobol {
     fn pair(&self, at: Address) -> [f64; 2] {
         let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
         // The same for a whole path, so a compiler takes it out of the loop over bounces.
-        let pixel = mix(mix(u64::from(at.key.pixel)) ^ mix(at.key.seed));
+        let pixel = pixel(at.key);
         let key = mix(pixel ^ dimension);
-        let [order, first, second] = [0, 2, 4].map(|k| [mix(key ^ k), mix(key ^ (k + 1))]);
-        // No dimension is so large.
-        let shared = [mix(pixel ^ u64::MAX), mix(pixel ^ (u64::MAX - 1))];
-        let index = match (at.bounce, at.branch, at.purpose) {
-            (0, 0, Purpose::Film) => leading(at.key.sample, shared),
-            (1, 0, Purpose::Bsdf | Purpose::Light) => pascal_to_omega(leading(at.key.sample, shared)),
-            _ => shuffle(at.key.sample, order),
+        let place = match (at.bounce, at.branch, at.purpose) {
+            (0, 0, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
+            (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
+            _ => own_place(key, u64::from(at.key.sample)),
         };
-        let digits = [scramble(u64::from(index), first), scramble(u64::from(pascal(index)), second)];
-        digits.map(|digits| unit(digits.reverse_bits()))
+        fractions(key, place).map(unit)
     }
 }
 
@@ -163,7 +188,7 @@ mod tests {
         for index in (0..1 << 12).chain((0..32).map(|k| 1 << k)).chain([u32::MAX, 0xDEAD_BEEF]) {
             let bits = (0..32).filter(|k| index >> k & 1 == 1);
             let expected = bits.fold(0, |sum, k| sum ^ directions[k]);
-            assert_eq!(pascal(index).reverse_bits(), expected, "{index}");
+            assert_eq!((pascal(u64::from(index)) as u32).reverse_bits(), expected, "{index}");
         }
     }
 
@@ -173,7 +198,8 @@ mod tests {
         for index in (0..1000).chain((0..32).map(|k| 1 << k)).chain([u32::MAX, 0xDEAD_BEEF]) {
             let twice = pascal_to_omega(pascal_to_omega(index));
             assert_eq!(twice, index, "ω + ω = 0");
-            assert_eq!(pascal_of_elements(pascal_to_omega(index)), pascal_to_omega(pascal_of_elements(index)));
+            let once = |index: u32| pascal_of_elements(u64::from(index)) as u32;
+            assert_eq!(once(pascal_to_omega(index)), pascal_to_omega(once(index)));
         }
         assert_eq!(pascal_to_omega(0b01_00), 0b01_10, "its first row is 1, ω, ω², ...");
         assert_eq!(pascal_to_omega(0b01_00_00), 0b01_00_11);

@@ -6,7 +6,8 @@
 //!
 //! The error falls as that of independent samples does, by a factor below it: what differs within a cell remains.
 
-use super::independent::{mix, unit};
+use super::independent::mix;
+use crate::math::unit;
 use super::{Address, Sampler};
 
 /// The sampler; it has no state.

@@ -38,9 +38,11 @@ pub const UNIFORM_SPHERE_DENSITY: f64 = 0.25 / PI;
 
 /// A direction with the density [`UNIFORM_SPHERE_DENSITY`].
 #[inline(always)]
-pub fn uniform_sphere([u, v]: [f64; 2]) -> Vec3 {
-    let z = 1.0 - 2.0 * v;
-    let r = (1.0 - z * z).max(0.0).sqrt();
+pub fn uniform_sphere<T: Real>([u, v]: [T; 2]) -> Vec3<T> {
+    let (zero, one) = (T::splat(0.0), T::splat(1.0));
+    let z = one - T::splat(2.0) * v;
+    let square = one - z * z;
+    let r = T::select(square.lt(zero), zero, square).sqrt();
     let (sin, cos) = sin_cos_turns(u);
     Vec3::new(r * cos, r * sin, z)
 }

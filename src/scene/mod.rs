@@ -20,7 +20,7 @@ pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{ACCELERATORS, Bounds, Entry as Accelerator, Hierarchy, Tests, accelerator};
 pub use library::{SCENES, load};
-pub use light::{Aim, Lights, one_minus_cos};
+pub use light::{Aim, Aims, Lights, SphereLights, Start, one_minus_cos};
 pub use point_light::PointLight;
 pub use profile::{
     AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects,
@@ -150,6 +150,11 @@ impl Scene {
         let point = ray.at(t);
         let normal = self.primitives.normal::<X>(primitive, point);
         Some(Hit { t, primitive, object, point, normal, inside: dot(normal, ray.direction) > 0.0 })
+    }
+
+    /// The distance and the number of the first primitive along the ray.
+    pub fn nearest(&self, ray: &Ray, from: Option<Standpoint>, tests: &mut Tests) -> Nearest {
+        self.primitives.nearest::<AllEffects>(self.hierarchy.as_ref(), ray, from, f64::INFINITY, tests)
     }
 
     /// The object that a primitive belongs to.

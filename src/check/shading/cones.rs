@@ -51,7 +51,7 @@ fn digits(trials: &mut Trials) {
         trials.at_least(format!("{distance} radii, naive in f32: relative error"), 0.5 * naive_f32, off);
     }
     // The series 1/(2 d²): what comes next is 1e-24 of it.
-    trials.at_most("1e12 radii: roundings", 8.0, (one_minus_cos(1.0, 1e12) / 5e-25 - 1.0).abs() / U);
+    trials.at_most("1e12 radii: roundings", 8.0, (one_minus_cos(1.0_f64, 1e12) / 5e-25 - 1.0).abs() / U);
     let mut worst: f64 = 0.0;
     for k in 0..trials.times(100_000, 10_000_000) {
         // From 2^-40 to 2^40 radii above the sphere, evenly in the logarithm.

@@ -8,7 +8,7 @@ mod smallpt;
 mod thin_lens;
 
 use crate::effect::{EffectSet, Effects};
-use crate::math::{Ray, Vec3};
+use crate::math::{Ray, Real, Vec3};
 use crate::sampling::{concentric_disk, tent};
 use crate::scene::LENS;
 use serde::Deserialize;
@@ -141,17 +141,7 @@ impl View {
         film: [f64; 2],
         lens: impl FnOnce() -> [f64; 2],
     ) -> Ray {
-        let [dx, dy] = match self.camera.filter {
-            Filter::Subpixels => {
-                let subpixel = sample % SUBPIXELS;
-                let (sx, sy) = (f64::from(subpixel % 2), f64::from(subpixel / 2));
-                [(sx + 0.5 + tent(film[0])) / 2.0, (sy + 0.5 + tent(film[1])) / 2.0]
-            }
-            Filter::Pixel => film,
-        };
-        let across = (dx + f64::from(x)) / self.width - 0.5;
-        let upward = (dy + f64::from(self.rows - 1 - y)) / self.height - 0.5;
-        let towards = self.right * across + self.up * upward + self.camera.direction;
+        let towards = self.towards([x, y].map(f64::from), self.subpixel(sample), film);
         if X::EFFECTS.cover(LENS)
             && let Some(Lens { radius, focus }) = self.camera.lens
         {
@@ -161,7 +151,46 @@ impl View {
             let direction = (towards * focus - offset).normalized();
             return Ray { origin: self.camera.position + offset + direction * self.camera.advance, direction };
         }
+        self.from_pinhole(towards)
+    }
+
+    /// Column and row of the subpixel that a sample belongs to; not looked at where pixels have none.
+    #[inline(always)]
+    fn subpixel(&self, sample: u32) -> [f64; 2] {
+        let subpixel = sample % SUBPIXELS;
+        [subpixel % 2, subpixel / 2].map(f64::from)
+    }
+
+    /// The direction, of any length, through a place in pixel (`x`, `y`).
+    #[inline(always)]
+    fn towards<T: Real>(&self, [x, y]: [T; 2], subpixel: [T; 2], film: [T; 2]) -> Vec3<T> {
+        let (half, two) = (T::splat(0.5), T::splat(2.0));
+        let [dx, dy] = match self.camera.filter {
+            Filter::Subpixels => {
+                [(subpixel[0] + half + tent(film[0])) / two, (subpixel[1] + half + tent(film[1])) / two]
+            }
+            Filter::Pixel => film,
+        };
+        let row = T::splat(f64::from(self.rows - 1)) - y;
+        let across = (dx + x) / T::splat(self.width) - half;
+        let upward = (dy + row) / T::splat(self.height) - half;
+        Vec3::splat(self.right) * across + Vec3::splat(self.up) * upward + Vec3::splat(self.camera.direction)
+    }
+
+    #[inline(always)]
+    fn from_pinhole<T: Real>(&self, towards: Vec3<T>) -> Ray<T> {
         let direction = towards.normalized();
-        Ray { origin: self.camera.position + direction * self.camera.advance, direction }
+        let start = direction * T::splat(self.camera.advance);
+        Ray { origin: Vec3::splat(self.camera.position) + start, direction }
+    }
+
+    /// [`View::ray`] without a lens, in lanes. `subpixel` is the sample's number modulo [`SUBPIXELS`].
+    #[inline(always)]
+    pub fn rays<T: Real>(&self, pixel: [T; 2], subpixel: T, film: [T; 2]) -> Ray<T> {
+        let (one, two) = (T::splat(1.0), T::splat(2.0));
+        let upper = two.le(subpixel);
+        let column = T::select(upper, subpixel - two, subpixel);
+        let row = T::select(upper, one, T::splat(0.0));
+        self.from_pinhole(self.towards(pixel, [column, row], film))
     }
 }

@@ -3,6 +3,7 @@
 //! Planes have no end, a background has no place, and of a sphere the part may be left out that no path can reach; such light is found by the
 //! directions of surfaces alone. [`Lights::density`] says which, so what is not aimed at is not lost.
 
+mod lanes;
 mod reach;
 mod sphere;
 mod triangle;
@@ -13,6 +14,7 @@ use reach::{Part, Walls};
 use sphere::SphereTarget;
 use triangle::TriangleTarget;
 
+pub use lanes::{Aims, SphereLights, Start};
 pub use sphere::one_minus_cos;
 
 /// A direction towards a light.

@@ -2,7 +2,7 @@
 //! Lighting Calculations", 1996), evenly over all directions from within it, and by area where little of it can be reached.
 
 use super::Target;
-use crate::math::{Frame, Ray, Vec3, dot, sin_cos_turns};
+use crate::math::{Frame, Ray, Real, Vec3, dot, sin_cos_turns};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, uniform_sphere};
 use crate::scene::{Hit, Sphere};
 use std::f64::consts::PI;
@@ -35,15 +35,30 @@ enum Way<'a> {
 
 /// 1 - cos of the half angle under which a sphere is seen from that distance of its centre, beyond the radius: to a few roundings whatever
 /// the ratio, where 1 - sqrt(1 - (r/d)²) has no digit left at 1e8.
-pub fn one_minus_cos(radius: f64, distance: f64) -> f64 {
+#[inline(always)]
+pub fn one_minus_cos<T: Real>(radius: T, distance: T) -> T {
     let sin = radius / distance;
     let cos2 = (distance - radius) / distance * ((distance + radius) / distance);
-    sin * sin / (1.0 + cos2.sqrt())
+    sin * sin / (T::splat(1.0) + cos2.sqrt())
+}
+
+/// A direction evenly in the cone around an axis whose half angle has this 1 - cos.
+#[inline(always)]
+pub(super) fn towards_cap<T: Real>(axis: Vec3<T>, one_minus_cos: T, u: [T; 2]) -> Vec3<T> {
+    let z = u[1] * one_minus_cos;
+    let (sin, cos) = sin_cos_turns(u[0]);
+    let r = (z * (T::splat(2.0) - z)).sqrt();
+    Frame::around(axis).to_world(Vec3::new(r * cos, r * sin, T::splat(1.0) - z))
 }
 
 impl SphereTarget {
     pub(super) fn new(sphere: Sphere, cap: Option<Cap>) -> Self {
         Self { sphere, cap }
+    }
+
+    /// The sphere, and the part of it that is aimed at, if that is not all.
+    pub(super) fn parts(&self) -> (Sphere, Option<Cap>) {
+        (self.sphere, self.cap)
     }
 
     /// `None` from its own outside, where it is hidden by itself.
@@ -73,17 +88,11 @@ impl SphereTarget {
 impl Target for SphereTarget {
     #[inline(always)]
     fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
-        let round = |axis: Vec3, one_minus_cos: f64| {
-            let z = u[1] * one_minus_cos;
-            let (sin, cos) = sin_cos_turns(u[0]);
-            let r = (z * (2.0 - z)).sqrt();
-            Frame::around(axis).to_world(Vec3::new(r * cos, r * sin, 1.0 - z))
-        };
         match self.way(point, own)? {
             Way::Everywhere => Some((uniform_sphere(u), UNIFORM_SPHERE_DENSITY)),
-            Way::Cone { axis, one_minus_cos } => Some((round(axis, one_minus_cos), 0.5 / (PI * one_minus_cos))),
+            Way::Cone { axis, one_minus_cos } => Some((towards_cap(axis, one_minus_cos, u), 0.5 / (PI * one_minus_cos))),
             Way::Area(cap) => {
-                let normal = round(cap.axis, cap.height / self.sphere.radius);
+                let normal = towards_cap(cap.axis, cap.height / self.sphere.radius, u);
                 let towards = self.sphere.center + normal * self.sphere.radius - point;
                 let square = dot(towards, towards);
                 let direction = towards * (1.0 / square.sqrt());

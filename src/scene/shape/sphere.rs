@@ -6,7 +6,7 @@
 
 use super::{Bounds, Primitive};
 use crate::input::{length, point};
-use crate::math::{Ray, Vec3, dot, first_root};
+use crate::math::{Ray, Vec3, first_root, other_root};
 use serde::Deserialize;
 
 /// A sphere, in scene units.
@@ -32,10 +32,10 @@ impl Primitive for Sphere {
         first_root(ray.origin - self.center, ray.direction, 1.0, self.radius)
     }
 
-    /// One root is the start, the other is twice the way to the closest approach. To the outside there is none.
+    /// To the outside there is no other root.
     #[inline(always)]
     fn leave(&self, ray: &Ray, inside: bool) -> f64 {
-        if inside { 2.0 * dot(self.center - ray.origin, ray.direction).abs() } else { f64::NAN }
+        if inside { other_root(self.center - ray.origin, ray.direction) } else { f64::NAN }
     }
 
     #[inline(always)]

@@ -1,0 +1,149 @@
+//! Paths side by side: what of each is between two vertices.
+
+use crate::math::{Bits, Ray, Rgb, Vec3};
+use crate::sampling::PathWords;
+use crate::simd::{Float, MOST_LANES, Mask};
+
+/// Two splits leave at most three unfinished parts.
+const LARGEST_STACK: usize = 3;
+
+/// The rays of a packet, and where they start.
+#[derive(Clone, Copy)]
+pub(super) struct Rays<V: Float> {
+    pub(super) ray: Ray<V>,
+    /// Number of the primitive that a ray starts on; -1 if on none.
+    pub(super) from: V,
+    /// Distance to where the ray meets that primitive again; NaN if it does not.
+    pub(super) own_root: V,
+}
+
+/// A part of a path that waits to be followed.
+#[derive(Clone, Copy)]
+pub(super) struct Part {
+    pub(super) origin: Vec3,
+    pub(super) direction: Vec3,
+    pub(super) from: f64,
+    pub(super) own_root: f64,
+    pub(super) throughput: Rgb,
+    pub(super) vertices: u64,
+    pub(super) branch: u64,
+}
+
+const NO_PART: Part = Part {
+    origin: Vec3::new(0.0, 0.0, 0.0),
+    direction: Vec3::new(0.0, 0.0, 0.0),
+    from: -1.0,
+    own_root: f64::NAN,
+    throughput: Rgb::BLACK,
+    vertices: 0,
+    branch: 0,
+};
+
+/// The paths.
+pub(super) struct Packet<V: Float> {
+    /// The lanes in which there is one.
+    pub(super) alive: u32,
+    pub(super) rays: Rays<V>,
+    pub(super) throughput: Rgb<V>,
+    pub(super) collected: Rgb<V>,
+    pub(super) vertices: V::Bits,
+    pub(super) branch: V::Bits,
+    pub(super) words: PathWords<V::Bits>,
+    /// How likely the direction was, per steradian; -1 if light was not aimed at where the ray starts.
+    pub(super) density: V,
+    /// By what the sample is given back.
+    pub(super) slots: [u16; MOST_LANES],
+    waiting: [[Part; LARGEST_STACK]; MOST_LANES],
+    depth: [u8; MOST_LANES],
+}
+
+impl<V: Float> Packet<V> {
+    #[inline(always)]
+    pub(super) fn new() -> Self {
+        let zero = V::splat(0.0);
+        let (vector, colour) = (Vec3::new(zero, zero, zero), Rgb { r: zero, g: zero, b: zero });
+        let none = V::Bits::splat(0);
+        Self {
+            alive: 0,
+            rays: Rays { ray: Ray { origin: vector, direction: vector }, from: V::splat(-1.0), own_root: V::splat(f64::NAN) },
+            throughput: colour,
+            collected: colour,
+            vertices: none,
+            branch: none,
+            words: PathWords { path: none, sample: none, joined: [none; 2] },
+            density: V::splat(-1.0),
+            slots: [0; MOST_LANES],
+            waiting: [[NO_PART; LARGEST_STACK]; MOST_LANES],
+            depth: [0; MOST_LANES],
+        }
+    }
+
+    /// Puts a part aside until the lane's own has ended.
+    #[inline(always)]
+    pub(super) fn push(&mut self, lane: usize, part: Part) {
+        self.waiting[lane][usize::from(self.depth[lane])] = part;
+        self.depth[lane] += 1;
+    }
+
+    /// Goes on with the part that was put aside last; `false` if there is none.
+    #[inline(always)]
+    pub(super) fn pop(&mut self, lane: usize) -> bool {
+        if self.depth[lane] == 0 {
+            return false;
+        }
+        self.depth[lane] -= 1;
+        let part = self.waiting[lane][usize::from(self.depth[lane])];
+        set_vector(&mut self.rays.ray.origin, lane, part.origin);
+        set_vector(&mut self.rays.ray.direction, lane, part.direction);
+        self.rays.from.set_lane(lane, part.from);
+        self.rays.own_root.set_lane(lane, part.own_root);
+        self.throughput.r.set_lane(lane, part.throughput.r);
+        self.throughput.g.set_lane(lane, part.throughput.g);
+        self.throughput.b.set_lane(lane, part.throughput.b);
+        V::set_word(&mut self.vertices, lane, part.vertices);
+        V::set_word(&mut self.branch, lane, part.branch);
+        true
+    }
+}
+
+/// A vector of one lane.
+#[inline(always)]
+pub(super) fn vector<V: Float>(of: &Vec3<V>, lane: usize) -> Vec3 {
+    Vec3::new(of.x.lane(lane), of.y.lane(lane), of.z.lane(lane))
+}
+
+#[inline(always)]
+pub(super) fn set_vector<V: Float>(of: &mut Vec3<V>, lane: usize, value: Vec3) {
+    of.x.set_lane(lane, value.x);
+    of.y.set_lane(lane, value.y);
+    of.z.set_lane(lane, value.z);
+}
+
+/// A colour of one lane.
+#[inline(always)]
+pub(super) fn colour<V: Float>(of: &Rgb<V>, lane: usize) -> Rgb {
+    Rgb { r: of.r.lane(lane), g: of.g.lane(lane), b: of.b.lane(lane) }
+}
+
+/// The lanes of a mask, from the lowest.
+pub(super) struct LanesOf(pub(super) u32);
+
+impl Iterator for LanesOf {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let lane = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(lane)
+    }
+}
+
+/// Whether exactly one of two masks holds.
+#[inline(always)]
+pub(super) fn differ<M: Mask>(a: M, b: M) -> M {
+    (a & !b) | (!a & b)
+}

@@ -1,0 +1,91 @@
+//! What lanes look up of the primitives they meet: rows of four numbers, one a primitive.
+
+use crate::material::{Fresnel, Material};
+use crate::math::{Rgb, Vec3};
+use crate::scene::{AllEffects, Scene};
+use crate::simd::Table;
+
+/// Surfaces by how lanes shade them, as a number in a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Diffuse = 0,
+    Mirror = 1,
+    Dielectric = 2,
+    /// One lane after the other, by the material itself.
+    Other = 3,
+}
+
+impl Kind {
+    fn of(material: &Material) -> Self {
+        match material {
+            Material::Diffuse(_) => Self::Diffuse,
+            Material::Mirror(_) => Self::Mirror,
+            Material::Dielectric(_) => Self::Dielectric,
+            _ => Self::Other,
+        }
+    }
+
+    /// The number in the table.
+    pub(super) fn number(self) -> f64 {
+        f64::from(self as u8)
+    }
+}
+
+/// The tables of a scene.
+pub(super) struct Tables {
+    /// The centre of a sphere or the normal of what is flat, and 1 for spheres.
+    pub(super) surfaces: Table,
+    /// The radiance, and 1 for what gives off any.
+    pub(super) emissions: Table,
+    /// The albedo, and the [`Kind`].
+    pub(super) materials: Table,
+    /// Of dielectrics: index of refraction, Schlick's reflectance at normal incidence, 1 for the exact formula.
+    pub(super) interfaces: Table,
+    /// Which kinds there are besides diffuse.
+    pub(super) has: [bool; 4],
+    /// Whether everything is a sphere.
+    pub(super) is_round: bool,
+}
+
+impl Tables {
+    pub(super) fn of(scene: &Scene) -> Self {
+        let primitives = &scene.primitives;
+        let flat = |normal: Vec3| [normal.x, normal.y, normal.z, 0.0];
+        let round = primitives.spheres.iter().map(|sphere| [sphere.center.x, sphere.center.y, sphere.center.z, 1.0]);
+        let first_flat = primitives.spheres.len() as u32;
+        let nowhere = Vec3::new(0.0, 0.0, 0.0);
+        let flats = (first_flat..scene.owners.len() as u32)
+            .map(|primitive| flat(primitives.normal::<AllEffects>(primitive, nowhere)));
+        let surfaces = Table::new(round.chain(flats).collect());
+
+        let of_objects = |row: fn(&crate::scene::Object) -> [f64; 4]| {
+            Table::new(scene.owners.iter().map(|owner| row(&scene.objects[*owner as usize])).collect())
+        };
+        let with = |Rgb { r, g, b }: Rgb, number: f64| [r, g, b, number];
+        let emissions = scene.owners.iter().map(|owner| {
+            let emission = scene.objects[*owner as usize].emission;
+            with(emission, f64::from(u8::from(!emission.is_black())))
+        });
+        let materials = scene.owners.iter().map(|owner| {
+            let material = &scene.objects[*owner as usize].material;
+            with(material.albedo::<AllEffects>(), Kind::of(material).number())
+        });
+        let interfaces = of_objects(|object| match &object.material {
+            Material::Dielectric(glass) => {
+                let root = (glass.eta - 1.0) / (glass.eta + 1.0);
+                [glass.eta, root * root, f64::from(u8::from(glass.fresnel == Fresnel::Exact)), 0.0]
+            }
+            _ => [1.0, 0.0, 0.0, 0.0],
+        });
+        let has = [Kind::Diffuse, Kind::Mirror, Kind::Dielectric, Kind::Other]
+            .map(|kind| scene.objects.iter().any(|object| Kind::of(&object.material) == kind));
+        Self {
+            surfaces,
+            emissions: Table::new(emissions.collect()),
+            materials: Table::new(materials.collect()),
+            interfaces,
+            has,
+            is_round: first_flat as usize == scene.owners.len(),
+        }
+    }
+}

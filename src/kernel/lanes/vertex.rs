@@ -1,0 +1,322 @@
+//! What happens where paths arrive: the steps of [`crate::estimator::Path`], with a mask for each of its branches.
+
+use super::Lanes;
+use super::packet::{LanesOf, Packet, Part, colour, differ, set_vector, vector};
+use super::tables::Kind;
+use crate::kernel::Counts;
+use crate::math::{Bits, Frame, Ray, Rgb, Vec3, dot, fresnel_dielectric, fresnel_schlick, other_root, reflect, refract};
+use crate::material::Density;
+use crate::sampling::{Purpose, cosine_hemisphere};
+use crate::scene::AllEffects;
+use crate::simd::{Float, Mask};
+
+/// Where rays arrived.
+#[derive(Clone, Copy)]
+pub(super) struct Arrival<V: Float> {
+    /// The lanes that the rest is of.
+    pub(super) lanes: V::Mask,
+    pub(super) t: V,
+    pub(super) primitive: V,
+    pub(super) point: Vec3<V>,
+    /// The centre of a sphere, the normal of what is flat.
+    pub(super) anchor: Vec3<V>,
+    pub(super) is_round: V::Mask,
+    /// The outward normal.
+    pub(super) normal: Vec3<V>,
+    /// Whether the ray comes from the inside.
+    pub(super) inside: V::Mask,
+    /// Its normal is on the ray's side.
+    pub(super) frame: Frame<V>,
+}
+
+/// Directions that surfaces scatter to.
+struct Scattered<V: Float> {
+    wi: Vec3<V>,
+    weight: Rgb<V>,
+    is_delta: V::Mask,
+    /// The directions' densities where they are not deltas.
+    density: V,
+    /// The lanes whose surface swallowed the light.
+    absorbed: u32,
+}
+
+/// The other way of lanes that split.
+struct Split<V: Float> {
+    lanes: u32,
+    wi: Vec3<V>,
+    weight: Rgb<V>,
+}
+
+impl Lanes {
+    /// Traces each path to its next vertex and on from there. The lanes whose part of a path has ended.
+    #[inline(always)]
+    pub(super) fn advance<V: Float, const AIMS: bool>(&self, packet: &mut Packet<V>, counts: &mut Counts) -> u32 {
+        let (t, primitive) = self.nearest(&packet.rays, packet.alive, counts);
+        counts.rays += u64::from(packet.alive.count_ones());
+        let alive = V::Mask::from_bits(packet.alive);
+        let met = alive & V::splat(0.0).le(primitive);
+        let escaped = packet.alive & !met.bits();
+        if escaped != 0 {
+            self.escape(packet, escaped, counts);
+        }
+        let mut ended = escaped;
+        if ended == packet.alive {
+            return ended;
+        }
+        let at = self.arrive(packet, met, t, primitive);
+
+        let [r, g, b, gives_off] = V::rows(&self.tables.emissions, primitive);
+        let lit = at.lanes & V::splat(0.5).lt(gives_off);
+        if lit.any() {
+            let mut emission = Rgb { r, g, b };
+            if AIMS {
+                emission = emission * self.share_of_arrival(packet, &at, lit);
+            }
+            packet.collected += packet.throughput * emission;
+        }
+        if self.cuts {
+            let cut = (V::same(packet.vertices, V::Bits::splat(u64::from(self.course.max_depth))) & at.lanes).bits();
+            counts.truncated += u64::from(cut.count_ones());
+            ended |= cut;
+        }
+        let vertices = packet.vertices.plus(V::Bits::splat(1));
+
+        let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);
+        let albedo = Rgb { r, g, b };
+        if AIMS {
+            self.aim(packet, &at, vertices, albedo, kind, ended, counts);
+        }
+        ended |= self.roulette(packet, at.lanes, vertices, albedo);
+        let numbers = self.sampler.pair::<V>(&packet.words, vertices, packet.branch, Purpose::Bsdf);
+        let (scattered, split) = self.scatter::<V, AIMS>(packet, &at, vertices, albedo, kind, numbers, ended);
+        ended |= scattered.absorbed;
+        self.leave(packet, &at, vertices, &scattered, split, &mut ended);
+        ended
+    }
+
+    /// Rays that meet nothing find the background.
+    #[inline(always)]
+    fn escape<V: Float>(&self, packet: &mut Packet<V>, escaped: u32, counts: &mut Counts) {
+        counts.escaped += u64::from(escaped.count_ones());
+        if let Some(background) = self.scene.background {
+            let found = packet.collected + packet.throughput * Rgb::splat(background);
+            packet.collected = Rgb::select(V::Mask::from_bits(escaped), found, packet.collected);
+        }
+    }
+
+    #[inline(always)]
+    fn arrive<V: Float>(&self, packet: &Packet<V>, lanes: V::Mask, t: V, primitive: V) -> Arrival<V> {
+        let point = packet.rays.ray.at(t);
+        let [x, y, z, round] = V::rows(&self.tables.surfaces, primitive);
+        let anchor = Vec3::new(x, y, z);
+        let is_round = V::splat(0.5).lt(round);
+        let of_sphere = (point - anchor).normalized();
+        let normal = if self.tables.is_round { of_sphere } else { Vec3::select(is_round, of_sphere, anchor) };
+        let inside = V::splat(0.0).lt(dot(normal, packet.rays.ray.direction));
+        let frame = Frame::around(Vec3::select(inside, -normal, normal));
+        Arrival { lanes, t, primitive, point, anchor, is_round, normal, inside, frame }
+    }
+
+    /// The lanes that chance ends.
+    #[inline(always)]
+    fn roulette<V: Float>(&self, packet: &mut Packet<V>, lanes: V::Mask, vertices: V::Bits, albedo: Rgb<V>) -> u32 {
+        let begun = lanes & V::less(V::Bits::splat(u64::from(self.course.roulette.after())), vertices);
+        if !begun.any() {
+            return 0;
+        }
+        let survival = self.course.roulette.chance(packet.throughput, albedo);
+        let [number, _] = self.sampler.pair::<V>(&packet.words, vertices, packet.branch, Purpose::Roulette);
+        let raised = packet.throughput * (V::splat(1.0) / survival);
+        packet.throughput = Rgb::select(begun, raised, packet.throughput);
+        (begun & survival.le(number)).bits()
+    }
+
+    /// The directions in which paths go on.
+    #[inline(always)]
+    fn scatter<V: Float, const AIMS: bool>(
+        &self,
+        packet: &Packet<V>,
+        at: &Arrival<V>,
+        vertices: V::Bits,
+        albedo: Rgb<V>,
+        kind: V,
+        numbers: [V; 2],
+        ended: u32,
+    ) -> (Scattered<V>, Option<Split<V>>) {
+        let none = V::Mask::from_bits(0);
+        let wi = cosine_hemisphere(numbers);
+        let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
+        let mut scattered = Scattered { wi, weight: albedo, is_delta: none, density, absorbed: 0 };
+        let mut split = None;
+        let going_on = at.lanes & !V::Mask::from_bits(ended);
+        let others = going_on & V::splat(0.5).lt(kind);
+        if !others.any() {
+            return (scattered, split);
+        }
+        let wo = at.frame.to_local(-packet.rays.ray.direction);
+        let is_mirror = others & kind.equal(V::splat(Kind::Mirror.number()));
+        scattered.wi = Vec3::select(is_mirror, reflect(wo), scattered.wi);
+        scattered.is_delta = is_mirror;
+        let is_glass = others & kind.equal(V::splat(Kind::Dielectric.number()));
+        if is_glass.any() {
+            split = self.refract::<V, AIMS>(at, vertices, wo, albedo, numbers[0], is_glass, &mut scattered);
+        }
+        let is_other = others & kind.equal(V::splat(Kind::Other.number()));
+        if is_other.any() {
+            self.scatter_one_by_one(at, wo, numbers, is_other, &mut scattered);
+        }
+        (scattered, split)
+    }
+
+    /// Glass: reflected or refracted, or both.
+    #[inline(always)]
+    fn refract<V: Float, const AIMS: bool>(
+        &self,
+        at: &Arrival<V>,
+        vertices: V::Bits,
+        wo: Vec3<V>,
+        tint: Rgb<V>,
+        number: V,
+        lanes: V::Mask,
+        scattered: &mut Scattered<V>,
+    ) -> Option<Split<V>> {
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        let [eta, r0, is_exact, _] = V::rows(&self.tables.interfaces, at.primitive);
+        let inverse = one / eta;
+        let crossed = V::select(at.inside, eta, inverse);
+        let (refracted, cos2) = refract(wo, crossed);
+        let is_total = cos2.lt(zero);
+        let thinner = V::select(crossed.lt(one), wo.z, -refracted.z);
+        let mut reflectance = fresnel_schlick(thinner, r0);
+        let is_exact = lanes & V::splat(0.5).lt(is_exact);
+        if is_exact.any() {
+            let exact = fresnel_dielectric(wo.z, V::select(at.inside, inverse, eta));
+            reflectance = V::select(is_exact, exact, reflectance);
+        }
+        let transmittance = one - reflectance;
+        let goes_both_ways = lanes & !is_total & V::less(vertices, V::Bits::splat(u64::from(self.course.splits) + 1));
+
+        let (chance, reflects, weight);
+        if AIMS {
+            // Each lobe as often as its share of the light.
+            let (first, second) = ((tint * reflectance).largest(), (tint * transmittance).largest());
+            let both = first + second;
+            chance = V::select(zero.lt(both), first / both, V::splat(0.5));
+            reflects = number.lt(chance);
+            let share = V::select(reflects, reflectance, transmittance);
+            weight = tint * share * (one / V::select(reflects, chance, one - chance));
+        } else {
+            chance = V::splat(0.25) + V::splat(0.5) * reflectance;
+            reflects = number.lt(chance);
+            let share = V::select(reflects, reflectance / chance, transmittance / (one - chance));
+            weight = tint * V::select(goes_both_ways, reflectance, share);
+        }
+        let reflects = is_total | reflects | goes_both_ways;
+        let weight = Rgb::select(is_total, tint, weight);
+        scattered.wi = Vec3::select(lanes, Vec3::select(reflects, reflect(wo), refracted), scattered.wi);
+        scattered.weight = Rgb::select(lanes, weight, scattered.weight);
+        scattered.is_delta = scattered.is_delta | lanes;
+        let lanes = goes_both_ways.bits();
+        (lanes != 0).then(|| Split { lanes, wi: refracted, weight: tint * transmittance })
+    }
+
+    /// Surfaces that lanes have no code for.
+    #[inline(always)]
+    fn scatter_one_by_one<V: Float>(
+        &self,
+        at: &Arrival<V>,
+        wo: Vec3<V>,
+        numbers: [V; 2],
+        lanes: V::Mask,
+        scattered: &mut Scattered<V>,
+    ) {
+        let inside = at.inside.bits();
+        let mut deltas = 0;
+        for lane in LanesOf(lanes.bits()) {
+            let owner = self.scene.owners[at.primitive.lane(lane) as usize];
+            let material = &self.scene.objects[owner as usize].material;
+            let numbers = [numbers[0].lane(lane), numbers[1].lane(lane)];
+            let Some(sample) = material.sample::<AllEffects>(vector(&wo, lane), inside >> lane & 1 == 1, numbers) else {
+                scattered.absorbed |= 1 << lane;
+                continue;
+            };
+            set_vector(&mut scattered.wi, lane, sample.wi);
+            scattered.weight.r.set_lane(lane, sample.weight.r);
+            scattered.weight.g.set_lane(lane, sample.weight.g);
+            scattered.weight.b.set_lane(lane, sample.weight.b);
+            match sample.density {
+                Density::Delta => deltas |= 1 << lane,
+                Density::PerSolidAngle(density) => scattered.density.set_lane(lane, density),
+            }
+        }
+        scattered.is_delta = scattered.is_delta | V::Mask::from_bits(deltas);
+    }
+
+    /// Sets out in the new directions.
+    #[inline(always)]
+    fn leave<V: Float>(
+        &self,
+        packet: &mut Packet<V>,
+        at: &Arrival<V>,
+        vertices: V::Bits,
+        scattered: &Scattered<V>,
+        split: Option<Split<V>>,
+        ended: &mut u32,
+    ) {
+        let mut direction = at.frame.to_world(scattered.wi);
+        if scattered.is_delta.any() {
+            direction = Vec3::select(scattered.is_delta, direction.normalized(), direction);
+        }
+        let mut splits = 0;
+        if let Some(split) = split {
+            splits = split.lanes & !*ended;
+            self.put_aside(packet, at, vertices, &split, splits);
+        }
+        packet.rays.own_root = own_root(at, scattered.wi, direction);
+        packet.rays.ray = Ray { origin: at.point, direction };
+        packet.rays.from = at.primitive;
+        packet.throughput = packet.throughput * scattered.weight;
+        packet.vertices = vertices;
+        packet.density = V::select(scattered.is_delta, V::splat(-1.0), scattered.density);
+        // Parts of a split are looked at when they have been traced.
+        let smallest = V::splat(f64::MIN_POSITIVE);
+        let Rgb { r, g, b } = packet.throughput;
+        let spent = r.lt(smallest) & g.lt(smallest) & b.lt(smallest);
+        *ended |= (at.lanes & spent).bits() & !splits;
+    }
+
+    /// The refracted parts of paths that split.
+    #[inline(never)]
+    fn put_aside<V: Float>(
+        &self,
+        packet: &mut Packet<V>,
+        at: &Arrival<V>,
+        vertices: V::Bits,
+        split: &Split<V>,
+        lanes: u32,
+    ) {
+        let direction = at.frame.to_world(split.wi).normalized();
+        let own_root = own_root(at, split.wi, direction);
+        let throughput = packet.throughput * split.weight;
+        for lane in LanesOf(lanes) {
+            let vertices = V::word(&vertices, lane);
+            let part = Part {
+                origin: vector(&at.point, lane),
+                direction: vector(&direction, lane),
+                from: at.primitive.lane(lane),
+                own_root: own_root.lane(lane),
+                throughput: colour(&throughput, lane),
+                vertices,
+                branch: V::word(&packet.branch, lane) | 1 << (vertices - 1),
+            };
+            packet.push(lane, part);
+        }
+    }
+}
+
+/// Where rays that leave along the local direction `wi` meet the surface again; NaN if they do not.
+#[inline(always)]
+pub(super) fn own_root<V: Float>(at: &Arrival<V>, wi: Vec3<V>, direction: Vec3<V>) -> V {
+    let to_inside = differ(wi.z.lt(V::splat(0.0)), at.inside);
+    V::select(at.is_round & to_inside, other_root(at.anchor - at.point, direction), V::splat(f64::NAN))
+}

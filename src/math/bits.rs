@@ -1,0 +1,67 @@
+//! Sixty-four bits as random numbers are mixed from them: `u64`, or SIMD lanes of it, with the same results per lane.
+
+use std::ops::{BitAnd, BitOr, BitXor};
+
+/// 64 bits, or several such words side by side.
+pub trait Bits:
+    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self>
+{
+    /// The same word in every lane.
+    fn splat(word: u64) -> Self;
+    /// The sum modulo 2^64.
+    #[must_use]
+    fn plus(self, other: Self) -> Self;
+    /// The product modulo 2^64.
+    #[must_use]
+    fn times(self, other: Self) -> Self;
+    /// Shifted towards the higher bits by `N` < 64.
+    #[must_use]
+    fn up<const N: u32>(self) -> Self;
+    /// Shifted towards the lower bits by `N` < 64; zeros come in.
+    #[must_use]
+    fn down<const N: u32>(self) -> Self;
+    /// Likewise, each lane by its own number, below 64.
+    #[must_use]
+    fn down_by(self, count: Self) -> Self;
+    /// The first bit last.
+    #[must_use]
+    fn reversed(self) -> Self;
+}
+
+impl Bits for u64 {
+    #[inline(always)]
+    fn splat(word: u64) -> Self {
+        word
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self.wrapping_add(other)
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        self.wrapping_mul(other)
+    }
+    #[inline(always)]
+    fn up<const N: u32>(self) -> Self {
+        self << N
+    }
+    #[inline(always)]
+    fn down<const N: u32>(self) -> Self {
+        self >> N
+    }
+    #[inline(always)]
+    fn down_by(self, count: Self) -> Self {
+        self >> count
+    }
+    #[inline(always)]
+    fn reversed(self) -> Self {
+        self.reverse_bits()
+    }
+}
+
+/// The top 53 bits as a multiple of 2^-53 in [0, 1): exact, and never 1.
+#[inline(always)]
+pub fn unit(bits: u64) -> f64 {
+    const STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
+    (bits >> 11) as f64 * STEP
+}

@@ -1,0 +1,149 @@
+//! Numbers side by side in the registers of a processor: the same formulas as for one number, over more of them at once.
+//!
+//! One instruction set a file; this file is their table. What the processor has is found out at run time, so the program needs no build flags
+//! and runs anywhere. Every level gives the same bits, lane by lane: each operation is one that IEEE 754 rounds exactly, none is fused, and
+//! there are no estimates.
+//!
+//! To add an instruction set: write its file with types that implement [`Float`] and [`Bits`], and a line in `levels!` below.
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod plain;
+mod two;
+
+use crate::math::{Bits, Real};
+use std::ops::{BitAnd, BitOr, Not};
+
+/// The answers of a comparison, one bit a lane.
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// From bits, the lowest for lane 0; those beyond the last lane are not looked at.
+    fn from_bits(bits: u32) -> Self;
+    /// To bits; none is set beyond the last lane.
+    fn bits(self) -> u32;
+    /// Whether it holds in a lane.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.bits() != 0
+    }
+}
+
+/// Numbers in lanes, at most [`MOST_LANES`] of them.
+pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
+    /// The number in one lane.
+    type One: Copy + Into<f64>;
+    /// As many words of 64 bits.
+    type Bits: Bits;
+    /// How many there are.
+    const LANES: usize;
+
+    /// The number in a lane.
+    fn lane(&self, lane: usize) -> f64;
+    /// Puts a number, rounded if need be, into a lane.
+    fn set_lane(&mut self, lane: usize, value: f64);
+    /// The word in a lane.
+    fn word(bits: &Self::Bits, lane: usize) -> u64;
+    /// Puts a word into a lane.
+    fn set_word(bits: &mut Self::Bits, lane: usize, word: u64);
+    /// `self == other`; false if either is NaN.
+    fn equal(self, other: Self) -> Self::Mask;
+    /// Words below 2^53 as numbers, rounded if need be.
+    fn number(bits: Self::Bits) -> Self;
+    /// The leading bits of a word as a number in [0, 1), as many as a number has: exact, and never 1.
+    fn unit(bits: Self::Bits) -> Self;
+    /// `yes` where the mask holds, `no` elsewhere.
+    fn choose(mask: Self::Mask, yes: Self::Bits, no: Self::Bits) -> Self::Bits;
+    /// Whether words below 2^63 are less than others.
+    fn less(a: Self::Bits, b: Self::Bits) -> Self::Mask;
+    /// Whether words are equal.
+    fn same(a: Self::Bits, b: Self::Bits) -> Self::Mask;
+    /// Rows of a table by their numbers, turned so that lane k of result j is `table[rows[k]][j]`. Numbers must be whole and in the table.
+    fn rows(table: &Table, rows: Self) -> [Self; 4];
+}
+
+/// The most lanes that any level has: masks are words of 32 bits.
+pub const MOST_LANES: usize = 32;
+
+/// Rows of four numbers that lanes look up, each its own.
+pub struct Table {
+    rows: Vec<[f64; 4]>,
+    /// The columns of a table of at most 16 rows, padded with zeros: they fit registers.
+    columns: Option<[[f64; 16]; 4]>,
+}
+
+impl Table {
+    /// A table; there must be a row.
+    pub fn new(rows: Vec<[f64; 4]>) -> Self {
+        assert!(!rows.is_empty(), "a table needs a row");
+        let columns = (rows.len() <= 16).then(|| {
+            [0, 1, 2, 3].map(|j| {
+                let mut column = [0.0; 16];
+                column.iter_mut().zip(&rows).for_each(|(entry, row)| *entry = row[j]);
+                column
+            })
+        });
+        Self { rows, columns }
+    }
+
+    #[inline(always)]
+    fn row(&self, number: f64) -> &[f64; 4] {
+        // What is in a lane without a ray may be no row at all.
+        self.rows.get(number as usize).unwrap_or(&self.rows[0])
+    }
+}
+
+/// What runs on a level: a function that is compiled once for each.
+pub trait Work {
+    /// What it returns.
+    type Output;
+    /// Does it, with numbers of double precision in lanes. Everything that it calls must be `#[inline(always)]`, or it is compiled without the
+    /// instructions of the level.
+    fn run<V: Float<One = f64>>(self) -> Self::Output;
+}
+
+/// One line of the table of levels.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    /// Its name on the command line, in CSV and TOML.
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+    is_available: fn() -> bool,
+}
+
+impl Entry {
+    /// Whether this processor has it.
+    pub fn is_available(&self) -> bool {
+        (self.is_available)()
+    }
+}
+
+macro_rules! levels {
+    ($($(#[$attribute:meta])* $name:literal, $about:literal => $module:ident;)*) => {
+        /// The levels, the fastest first; the last one is everywhere.
+        pub const LEVELS: &[Entry] =
+            &[$($(#[$attribute])* Entry { name: $name, about: $about, is_available: $module::is_available }),*];
+
+        /// Does some work on the level of that name; `None` if there is none or this processor does not have it.
+        pub fn on_level<W: Work>(name: &str, work: W) -> Option<W::Output> {
+            match name {
+                $($(#[$attribute])* $name => $module::run(work),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+levels! {
+    #[cfg(target_arch = "x86_64")]
+    "avx512", "AVX-512 (F, DQ, VL, BW): 512-bit registers, two at a time" => avx512;
+    #[cfg(target_arch = "x86_64")]
+    "avx2", "AVX2: 256-bit registers, two at a time" => avx2;
+    "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
+}
+
+/// The fastest level of this processor.
+pub fn best() -> &'static Entry {
+    LEVELS.iter().find(|level| level.is_available()).unwrap_or(&LEVELS[LEVELS.len() - 1])
+}

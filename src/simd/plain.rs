@@ -1,0 +1,191 @@
+//! Small arrays, which compilers turn into what every processor of its kind has: SSE2 or NEON.
+
+use super::{Float, Mask, Table, Work};
+use crate::math::{Bits, Real};
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+const LANES: usize = 4;
+
+/// Everywhere.
+pub(super) fn is_available() -> bool {
+    true
+}
+
+/// Does the work.
+pub(super) fn run<W: Work>(work: W) -> Option<W::Output> {
+    Some(work.run::<Plain<f64>>())
+}
+
+/// Four of something.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plain<T>([T; LANES]);
+
+/// One value from each lane of one or two or three others. Written out, because a closure in the loop may stay a call.
+macro_rules! each {
+    ($k:ident => $value:expr) => {
+        Plain([{ let $k = 0; $value }, { let $k = 1; $value }, { let $k = 2; $value }, { let $k = 3; $value }])
+    };
+}
+
+macro_rules! operators {
+    ($($Trait:ident $method:ident),*) => {$(
+        impl<T: Copy + $Trait<Output = T>> $Trait for Plain<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                each!(k => self.0[k].$method(other.0[k]))
+            }
+        }
+    )*};
+}
+
+operators!(Add add, Sub sub, Mul mul, Div div, BitAnd bitand, BitOr bitor, BitXor bitxor);
+
+impl<T: Copy + Neg<Output = T>> Neg for Plain<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        each!(k => -self.0[k])
+    }
+}
+
+impl<T: Copy + Not<Output = T>> Not for Plain<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        each!(k => !self.0[k])
+    }
+}
+
+impl<T: Real<Mask = bool>> Real for Plain<T> {
+    type Mask = Plain<bool>;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self([T::splat(value); LANES])
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        each!(k => self.0[k].sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        each!(k => self.0[k].abs())
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        each!(k => self.0[k].copysign(sign.0[k]))
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Plain<bool> {
+        each!(k => self.0[k].lt(other.0[k]))
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Plain<bool> {
+        each!(k => self.0[k].le(other.0[k]))
+    }
+    #[inline(always)]
+    fn select(mask: Plain<bool>, yes: Self, no: Self) -> Self {
+        each!(k => if mask.0[k] { yes.0[k] } else { no.0[k] })
+    }
+}
+
+impl Bits for Plain<u64> {
+    #[inline(always)]
+    fn splat(word: u64) -> Self {
+        Self([word; LANES])
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        each!(k => self.0[k].wrapping_add(other.0[k]))
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        each!(k => self.0[k].wrapping_mul(other.0[k]))
+    }
+    #[inline(always)]
+    fn up<const N: u32>(self) -> Self {
+        each!(k => self.0[k] << N)
+    }
+    #[inline(always)]
+    fn down<const N: u32>(self) -> Self {
+        each!(k => self.0[k] >> N)
+    }
+    #[inline(always)]
+    fn down_by(self, count: Self) -> Self {
+        each!(k => self.0[k] >> count.0[k])
+    }
+    #[inline(always)]
+    fn reversed(self) -> Self {
+        each!(k => self.0[k].reverse_bits())
+    }
+}
+
+impl Mask for Plain<bool> {
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        each!(k => bits >> k & 1 == 1)
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        let [a, b, c, d] = self.0.map(u32::from);
+        a | b << 1 | c << 2 | d << 3
+    }
+}
+
+impl Float for Plain<f64> {
+    type One = f64;
+    type Bits = Plain<u64>;
+    const LANES: usize = LANES;
+
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, value: f64) {
+        self.0[lane] = value;
+    }
+    #[inline(always)]
+    fn word(bits: &Plain<u64>, lane: usize) -> u64 {
+        bits.0[lane]
+    }
+    #[inline(always)]
+    fn set_word(bits: &mut Plain<u64>, lane: usize, word: u64) {
+        bits.0[lane] = word;
+    }
+    #[inline(always)]
+    fn equal(self, other: Self) -> Plain<bool> {
+        each!(k => self.0[k] == other.0[k])
+    }
+    #[inline(always)]
+    fn number(bits: Plain<u64>) -> Self {
+        each!(k => bits.0[k] as f64)
+    }
+    #[inline(always)]
+    fn unit(bits: Plain<u64>) -> Self {
+        each!(k => crate::math::unit(bits.0[k]))
+    }
+    #[inline(always)]
+    fn choose(mask: Plain<bool>, yes: Plain<u64>, no: Plain<u64>) -> Plain<u64> {
+        each!(k => if mask.0[k] { yes.0[k] } else { no.0[k] })
+    }
+    #[inline(always)]
+    fn less(a: Plain<u64>, b: Plain<u64>) -> Plain<bool> {
+        each!(k => a.0[k] < b.0[k])
+    }
+    #[inline(always)]
+    fn same(a: Plain<u64>, b: Plain<u64>) -> Plain<bool> {
+        each!(k => a.0[k] == b.0[k])
+    }
+    #[inline(always)]
+    fn rows(table: &Table, rows: Self) -> [Self; 4] {
+        let [a, b, c, d] = [table.row(rows.0[0]), table.row(rows.0[1]), table.row(rows.0[2]), table.row(rows.0[3])];
+        [
+            Self([a[0], b[0], c[0], d[0]]),
+            Self([a[1], b[1], c[1], d[1]]),
+            Self([a[2], b[2], c[2], d[2]]),
+            Self([a[3], b[3], c[3], d[3]]),
+        ]
+    }
+}

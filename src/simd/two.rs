@@ -1,0 +1,172 @@
+//! Two vectors as one: each operation is done on one and then on the other, so that the second's work hides the first's latency.
+
+use super::{Float, Mask, Table};
+use crate::math::{Bits, Real};
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+/// The lower lanes and the upper ones.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Two<V>(pub(super) V, pub(super) V);
+
+macro_rules! operators {
+    ($($Trait:ident $method:ident),*) => {$(
+        impl<V: $Trait<Output = V>> $Trait for Two<V> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(self.0.$method(other.0), self.1.$method(other.1))
+            }
+        }
+    )*};
+}
+
+operators!(Add add, Sub sub, Mul mul, Div div, BitAnd bitand, BitOr bitor, BitXor bitxor);
+
+impl<V: Neg<Output = V>> Neg for Two<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0, -self.1)
+    }
+}
+
+impl<V: Not<Output = V>> Not for Two<V> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(!self.0, !self.1)
+    }
+}
+
+impl<V: Real> Real for Two<V> {
+    type Mask = Two<V::Mask>;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(V::splat(value), V::splat(value))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        Self(self.0.copysign(sign.0), self.1.copysign(sign.1))
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> Self::Mask {
+        Two(self.0.lt(other.0), self.1.lt(other.1))
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> Self::Mask {
+        Two(self.0.le(other.0), self.1.le(other.1))
+    }
+    #[inline(always)]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
+        Self(V::select(mask.0, yes.0, no.0), V::select(mask.1, yes.1, no.1))
+    }
+}
+
+impl<B: Bits> Bits for Two<B> {
+    #[inline(always)]
+    fn splat(word: u64) -> Self {
+        Self(B::splat(word), B::splat(word))
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        Self(self.0.plus(other.0), self.1.plus(other.1))
+    }
+    #[inline(always)]
+    fn times(self, other: Self) -> Self {
+        Self(self.0.times(other.0), self.1.times(other.1))
+    }
+    #[inline(always)]
+    fn up<const N: u32>(self) -> Self {
+        Self(self.0.up::<N>(), self.1.up::<N>())
+    }
+    #[inline(always)]
+    fn down<const N: u32>(self) -> Self {
+        Self(self.0.down::<N>(), self.1.down::<N>())
+    }
+    #[inline(always)]
+    fn down_by(self, count: Self) -> Self {
+        Self(self.0.down_by(count.0), self.1.down_by(count.1))
+    }
+    #[inline(always)]
+    fn reversed(self) -> Self {
+        Self(self.0.reversed(), self.1.reversed())
+    }
+}
+
+/// Masks of two vectors; how many lanes the lower one has is known to the vectors alone.
+impl<M: HalfMask> Mask for Two<M> {
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        Self(M::from_bits(bits), M::from_bits(bits >> M::LANES))
+    }
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        self.0.bits() | self.1.bits() << M::LANES
+    }
+}
+
+/// A mask that knows how many lanes it is for.
+pub(super) trait HalfMask: Mask {
+    const LANES: u32;
+}
+
+impl<V: Float<Mask: HalfMask>> Float for Two<V> {
+    type One = V::One;
+    type Bits = Two<V::Bits>;
+    const LANES: usize = 2 * V::LANES;
+
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        if lane < V::LANES { self.0.lane(lane) } else { self.1.lane(lane - V::LANES) }
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, value: f64) {
+        if lane < V::LANES { self.0.set_lane(lane, value) } else { self.1.set_lane(lane - V::LANES, value) }
+    }
+    #[inline(always)]
+    fn word(bits: &Self::Bits, lane: usize) -> u64 {
+        if lane < V::LANES { V::word(&bits.0, lane) } else { V::word(&bits.1, lane - V::LANES) }
+    }
+    #[inline(always)]
+    fn set_word(bits: &mut Self::Bits, lane: usize, word: u64) {
+        if lane < V::LANES { V::set_word(&mut bits.0, lane, word) } else { V::set_word(&mut bits.1, lane - V::LANES, word) }
+    }
+    #[inline(always)]
+    fn equal(self, other: Self) -> Self::Mask {
+        Two(self.0.equal(other.0), self.1.equal(other.1))
+    }
+    #[inline(always)]
+    fn number(bits: Self::Bits) -> Self {
+        Self(V::number(bits.0), V::number(bits.1))
+    }
+    #[inline(always)]
+    fn unit(bits: Self::Bits) -> Self {
+        Self(V::unit(bits.0), V::unit(bits.1))
+    }
+    #[inline(always)]
+    fn choose(mask: Self::Mask, yes: Self::Bits, no: Self::Bits) -> Self::Bits {
+        Two(V::choose(mask.0, yes.0, no.0), V::choose(mask.1, yes.1, no.1))
+    }
+    #[inline(always)]
+    fn less(a: Self::Bits, b: Self::Bits) -> Self::Mask {
+        Two(V::less(a.0, b.0), V::less(a.1, b.1))
+    }
+    #[inline(always)]
+    fn same(a: Self::Bits, b: Self::Bits) -> Self::Mask {
+        Two(V::same(a.0, b.0), V::same(a.1, b.1))
+    }
+    #[inline(always)]
+    fn rows(table: &Table, rows: Self) -> [Self; 4] {
+        let ([a, b, c, d], [e, f, g, h]) = (V::rows(table, rows.0), V::rows(table, rows.1));
+        [Self(a, e), Self(b, f), Self(c, g), Self(d, h)]
+    }
+}
