@@ -12,7 +12,7 @@
 //! after it: at one dimension two samples have two states, and two dimensions have two streams. Two seeds may meet in a state, by a chance of
 //! 2^-64 for each two samples.
 
-use super::{Address, SampleKey, Sampler};
+use super::{Address, Sampler};
 use crate::math::{Bits, unit};
 use rand::Rng;
 use rand_pcg::Pcg32;
@@ -33,8 +33,8 @@ pub fn mix<B: Bits>(x: B) -> B {
 
 /// What the generators of a sample's addresses have in common.
 #[inline(always)]
-pub(super) fn path(key: SampleKey) -> u64 {
-    mix(mix(u64::from(key.pixel) << 32 | u64::from(key.sample)) ^ mix(key.seed))
+pub(super) fn path<B: Bits>(seed: u64, place: B) -> B {
+    mix(mix(place) ^ B::splat(mix(seed)))
 }
 
 /// What a PCG32 in this state gives.
@@ -64,7 +64,8 @@ impl Sampler for Independent {
     fn pair(&self, at: Address) -> [f64; 2] {
         let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
         // The same for a whole path, so a compiler takes it out of the loop over bounces.
-        let mut pcg = Pcg32::new(mix(path(at.key) ^ dimension), dimension);
+        let path = path(at.key.seed, u64::from(at.key.pixel) << 32 | u64::from(at.key.sample));
+        let mut pcg = Pcg32::new(mix(path ^ dimension), dimension);
         [unit(pcg.next_u64()), unit(pcg.next_u64())]
     }
 }

@@ -15,7 +15,7 @@ pub enum InLanes {
 
 /// What the numbers of a sample have in common, worked out once for each.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct PathWords<B = u64> {
+pub struct PathWords<B> {
     /// A mix of the seed, the pixel and, if it matters, the sample.
     pub path: B,
     /// The sample's index.
@@ -34,17 +34,29 @@ impl InLanes {
         }
     }
 
-    /// What a sample's numbers have in common.
+    /// Whether a number depends on more of its sample than [`PathWords::path`] tells.
     #[inline(always)]
-    pub fn path(self, key: SampleKey) -> PathWords {
-        let sample = u64::from(key.sample);
+    pub fn is_spread(self) -> bool {
+        self != Self::Independent
+    }
+
+    /// The places of a sample that the film and the first vertex share; 0 if there are none.
+    #[inline(always)]
+    pub fn joined(self, key: SampleKey) -> [u64; 2] {
         match self {
-            Self::Independent => PathWords { path: independent::path(key), sample, joined: [0; 2] },
-            Self::Sobol => {
-                let path = sobol::pixel(key);
-                PathWords { path, sample, joined: sobol::joined(path, key.sample).map(u64::from) }
-            }
+            Self::Independent => [0; 2],
+            Self::Sobol => sobol::joined(sobol::pixel(key.seed, u64::from(key.pixel)), key.sample).map(u64::from),
         }
+    }
+
+    /// What the numbers of samples of some pixels have in common.
+    #[inline(always)]
+    pub fn words<B: Bits>(self, seed: u64, pixel: B, sample: B, joined: [B; 2]) -> PathWords<B> {
+        let path = match self {
+            Self::Independent => independent::path(seed, pixel.up::<32>() | sample),
+            Self::Sobol => sobol::pixel(seed, pixel),
+        };
+        PathWords { path, sample, joined }
     }
 
     /// The pairs at vertex `bounce` of part `branch` of each path.

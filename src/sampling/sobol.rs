@@ -22,7 +22,7 @@
 
 use super::independent::mix;
 use super::owen::{scramble, shuffle};
-use super::{Address, Purpose, SampleKey, Sampler};
+use super::{Address, Purpose, Sampler};
 use crate::math::{Bits, unit};
 
 /// The sampler; it has no state.
@@ -132,8 +132,8 @@ fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
 
 /// What the numbers of a pixel have in common.
 #[inline(always)]
-pub(super) fn pixel(key: SampleKey) -> u64 {
-    mix(mix(u64::from(key.pixel)) ^ mix(key.seed))
+pub(super) fn pixel<B: Bits>(seed: u64, pixel: B) -> B {
+    mix(mix(pixel) ^ B::splat(mix(seed)))
 }
 
 /// The places of a sample in the order that the leading uses share: for the film, and for what the first vertex asks for its direction or light.
@@ -163,7 +163,7 @@ impl Sampler for Sobol {
     fn pair(&self, at: Address) -> [f64; 2] {
         let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
         // The same for a whole path, so a compiler takes it out of the loop over bounces.
-        let pixel = pixel(at.key);
+        let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
         let key = mix(pixel ^ dimension);
         let place = match (at.bounce, at.branch, at.purpose) {
             (0, 0, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),

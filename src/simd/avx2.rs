@@ -181,6 +181,35 @@ impl Float for F64x4 {
     const LANES: usize = 4;
 
     #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        assert!(from.len() >= 4);
+        Self(op!(_mm256_loadu_pd(from.as_ptr())))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        assert!(to.len() >= 4);
+        op!(_mm256_storeu_pd(to.as_mut_ptr(), self.0));
+    }
+    #[inline(always)]
+    fn fill(self, mask: Mask4, from: &[f64]) -> Self {
+        let next = op!(_mm256_castpd_si256(Self::load(from).0));
+        Self::select(mask, Self(op!(_mm256_castsi256_pd(spread(mask, next)))), self)
+    }
+    #[inline(always)]
+    fn fill_words(bits: U64x4, mask: Mask4, from: &[u64]) -> U64x4 {
+        Self::choose(mask, U64x4(spread(mask, Self::load_words(from).0)), bits)
+    }
+    #[inline(always)]
+    fn store_words(bits: U64x4, to: &mut [u64]) {
+        assert!(to.len() >= 4);
+        op!(_mm256_storeu_si256(to.as_mut_ptr().cast(), bits.0));
+    }
+    #[inline(always)]
+    fn load_words(from: &[u64]) -> U64x4 {
+        assert!(from.len() >= 4);
+        U64x4(op!(_mm256_loadu_si256(from.as_ptr().cast())))
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         let mut all = [0.0; 4];
         op!(_mm256_storeu_pd(all.as_mut_ptr(), self.0));
@@ -256,6 +285,31 @@ impl Float for F64x4 {
             ]
         })
     }
+}
+
+/// For each mask, the halves of words that its lanes take: the first lane that it holds the first word, and so on.
+const SPREAD: [[i32; 8]; 16] = {
+    let (mut table, mut mask) = ([[0; 8]; 16], 0);
+    while mask < 16 {
+        let (mut lane, mut next) = (0, 0);
+        while lane < 4 {
+            if mask >> lane & 1 == 1 {
+                table[mask][2 * lane] = 2 * next;
+                table[mask][2 * lane + 1] = 2 * next + 1;
+                next += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};
+
+/// The lowest words, moved to the lanes of a mask in order.
+#[inline(always)]
+fn spread(mask: Mask4, words: __m256i) -> __m256i {
+    let order = &SPREAD[mask.bits() as usize & 15];
+    op!(_mm256_permutevar8x32_epi32(words, _mm256_loadu_si256(order.as_ptr().cast())))
 }
 
 const TWO_52: f64 = 4_503_599_627_370_496.0;

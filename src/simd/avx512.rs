@@ -193,6 +193,34 @@ impl Float for F64x8 {
     const LANES: usize = 8;
 
     #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        assert!(from.len() >= 8);
+        Self(op!(_mm512_loadu_pd(from.as_ptr())))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        assert!(to.len() >= 8);
+        op!(_mm512_storeu_pd(to.as_mut_ptr(), self.0));
+    }
+    #[inline(always)]
+    fn fill(self, mask: Mask8, from: &[f64]) -> Self {
+        Self(op!(_mm512_mask_expand_pd(self.0, mask.0, Self::load(from).0)))
+    }
+    #[inline(always)]
+    fn fill_words(bits: U64x8, mask: Mask8, from: &[u64]) -> U64x8 {
+        U64x8(op!(_mm512_mask_expand_epi64(bits.0, mask.0, Self::load_words(from).0)))
+    }
+    #[inline(always)]
+    fn store_words(bits: U64x8, to: &mut [u64]) {
+        assert!(to.len() >= 8);
+        op!(_mm512_storeu_si512(to.as_mut_ptr().cast(), bits.0));
+    }
+    #[inline(always)]
+    fn load_words(from: &[u64]) -> U64x8 {
+        assert!(from.len() >= 8);
+        U64x8(op!(_mm512_loadu_si512(from.as_ptr().cast())))
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         let mut all = [0.0; 8];
         op!(_mm512_storeu_pd(all.as_mut_ptr(), self.0));

@@ -38,6 +38,19 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// How many there are.
     const LANES: usize;
 
+    /// From at least as many numbers as there are lanes, rounded if need be.
+    fn load(from: &[f64]) -> Self;
+    /// To at least as many numbers as there are lanes.
+    fn store(self, to: &mut [f64]);
+    /// `self`, but where the mask holds the next of the numbers, in order; there must be as many as there are lanes.
+    #[must_use]
+    fn fill(self, mask: Self::Mask, from: &[f64]) -> Self;
+    /// Likewise, of words.
+    fn fill_words(bits: Self::Bits, mask: Self::Mask, from: &[u64]) -> Self::Bits;
+    /// To at least as many words as there are lanes.
+    fn store_words(bits: Self::Bits, to: &mut [u64]);
+    /// From at least as many words as there are lanes.
+    fn load_words(from: &[u64]) -> Self::Bits;
     /// The number in a lane.
     fn lane(&self, lane: usize) -> f64;
     /// Puts a number, rounded if need be, into a lane.

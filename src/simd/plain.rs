@@ -139,6 +139,44 @@ impl Float for Plain<f64> {
     const LANES: usize = LANES;
 
     #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        each!(k => from[k])
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        to[..LANES].copy_from_slice(&self.0);
+    }
+    #[inline(always)]
+    fn fill(mut self, mask: Plain<bool>, from: &[f64]) -> Self {
+        let mut next = 0;
+        for (lane, wanted) in self.0.iter_mut().zip(mask.0) {
+            if wanted {
+                *lane = from[next];
+                next += 1;
+            }
+        }
+        self
+    }
+    #[inline(always)]
+    fn fill_words(mut bits: Plain<u64>, mask: Plain<bool>, from: &[u64]) -> Plain<u64> {
+        let mut next = 0;
+        for (lane, wanted) in bits.0.iter_mut().zip(mask.0) {
+            if wanted {
+                *lane = from[next];
+                next += 1;
+            }
+        }
+        bits
+    }
+    #[inline(always)]
+    fn store_words(bits: Plain<u64>, to: &mut [u64]) {
+        to[..LANES].copy_from_slice(&bits.0);
+    }
+    #[inline(always)]
+    fn load_words(from: &[u64]) -> Plain<u64> {
+        each!(k => from[k])
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         self.0[lane]
     }

@@ -125,6 +125,38 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     const LANES: usize = 2 * V::LANES;
 
     #[inline(always)]
+    fn load(from: &[f64]) -> Self {
+        let (lower, upper) = from.split_at(V::LANES);
+        Self(V::load(lower), V::load(upper))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [f64]) {
+        let (lower, upper) = to.split_at_mut(V::LANES);
+        self.0.store(lower);
+        self.1.store(upper);
+    }
+    #[inline(always)]
+    fn fill(self, mask: Self::Mask, from: &[f64]) -> Self {
+        let upper = &from[mask.0.bits().count_ones() as usize..];
+        Self(self.0.fill(mask.0, from), self.1.fill(mask.1, upper))
+    }
+    #[inline(always)]
+    fn fill_words(bits: Self::Bits, mask: Self::Mask, from: &[u64]) -> Self::Bits {
+        let upper = &from[mask.0.bits().count_ones() as usize..];
+        Two(V::fill_words(bits.0, mask.0, from), V::fill_words(bits.1, mask.1, upper))
+    }
+    #[inline(always)]
+    fn store_words(bits: Self::Bits, to: &mut [u64]) {
+        let (lower, upper) = to.split_at_mut(V::LANES);
+        V::store_words(bits.0, lower);
+        V::store_words(bits.1, upper);
+    }
+    #[inline(always)]
+    fn load_words(from: &[u64]) -> Self::Bits {
+        let (lower, upper) = from.split_at(V::LANES);
+        Two(V::load_words(lower), V::load_words(upper))
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         if lane < V::LANES { self.0.lane(lane) } else { self.1.lane(lane - V::LANES) }
     }

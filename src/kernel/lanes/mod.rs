@@ -5,6 +5,7 @@
 mod light;
 mod nearest;
 mod packet;
+mod supply;
 mod tables;
 mod vertex;
 mod window;
@@ -12,13 +13,14 @@ mod window;
 use super::{Counts, Kernel, Spec};
 use crate::estimator::Course;
 use crate::film::{Piece, TileBuffer};
-use crate::math::{Bits, Rgb, Vec3};
-use crate::sampling::{InLanes, PathWords, Purpose, SampleKey};
-use crate::scene::{SUBPIXELS, Scene, View};
-use crate::simd::{self, Float, MOST_LANES, Mask, Work, on_level};
+use crate::math::Rgb;
+use crate::sampling::InLanes;
+use crate::scene::{Scene, View};
+use crate::simd::{self, Float, MOST_LANES, Work, on_level};
 use light::Targets;
-use packet::{LanesOf, Packet, colour};
+use packet::{LanesOf, Packet};
 use std::sync::Arc;
+use supply::Supply;
 use tables::Tables;
 use window::Window;
 
@@ -61,43 +63,20 @@ impl Lanes {
         }
     }
 
-    /// Gives free lanes their next samples.
+    /// Gives back the samples whose paths have ended; paths that have another part go on with that.
     #[inline(always)]
-    fn refill<V: Float>(&self, packet: &mut Packet<V>, window: &mut Window<'_>) {
-        let mut filled = 0;
-        let (mut x, mut y, mut subpixel) = (V::splat(0.0), V::splat(0.0), V::splat(0.0));
-        let free = !packet.alive & (u32::MAX >> (MOST_LANES - V::LANES));
-        for lane in LanesOf(free) {
-            let Some((place, slot)) = window.hand_out() else { break };
-            let pixel = place.y * self.width + place.x;
-            let PathWords { path, sample, joined } = self.sampler.path(SampleKey { seed: self.seed, pixel, sample: place.sample });
-            V::set_word(&mut packet.words.path, lane, path);
-            V::set_word(&mut packet.words.sample, lane, sample);
-            V::set_word(&mut packet.words.joined[0], lane, joined[0]);
-            V::set_word(&mut packet.words.joined[1], lane, joined[1]);
-            x.set_lane(lane, f64::from(place.x));
-            y.set_lane(lane, f64::from(place.y));
-            subpixel.set_lane(lane, f64::from(place.sample % SUBPIXELS));
-            packet.slots[lane] = slot;
-            filled |= 1 << lane;
+    fn retire<V: Float>(&self, packet: &mut Packet<V>, ended: u32, window: &mut Window<'_>, counts: &mut Counts) {
+        let [mut r, mut g, mut b] = [[0.0; MOST_LANES]; 3];
+        packet.collected.r.store(&mut r);
+        packet.collected.g.store(&mut g);
+        packet.collected.b.store(&mut b);
+        for lane in LanesOf(ended) {
+            if self.course.splits > 0 && packet.pop(lane) {
+                continue;
+            }
+            packet.alive &= !(1 << lane);
+            window.give_back(packet.slots[lane], Rgb { r: r[lane], g: g[lane], b: b[lane] }, counts);
         }
-        if filled == 0 {
-            return;
-        }
-        let none = V::Bits::splat(0);
-        let film = self.sampler.pair::<V>(&packet.words, none, none, Purpose::Film);
-        let ray = self.view.rays([x, y], subpixel, film);
-        let mask = V::Mask::from_bits(filled);
-        packet.rays.ray.origin = Vec3::select(mask, ray.origin, packet.rays.ray.origin);
-        packet.rays.ray.direction = Vec3::select(mask, ray.direction, packet.rays.ray.direction);
-        packet.rays.from = V::select(mask, V::splat(-1.0), packet.rays.from);
-        packet.rays.own_root = V::select(mask, V::splat(f64::NAN), packet.rays.own_root);
-        packet.throughput = Rgb::select(mask, Rgb::splat(Rgb::WHITE), packet.throughput);
-        packet.collected = Rgb::select(mask, Rgb::splat(Rgb::BLACK), packet.collected);
-        packet.vertices = V::choose(mask, none, packet.vertices);
-        packet.branch = V::choose(mask, none, packet.branch);
-        packet.density = V::select(mask, V::splat(-1.0), packet.density);
-        packet.alive |= filled;
     }
 
     #[inline(always)]
@@ -105,28 +84,19 @@ impl Lanes {
         let mut counts = Counts::default();
         let mut window = Window::over(piece, out);
         let mut packet = Packet::<V>::new();
-        let full = u32::MAX >> (MOST_LANES - V::LANES);
+        let mut supply = Supply::new();
         loop {
-            let free = full & !packet.alive;
-            if free.count_ones() >= REFILL * V::LANES as u32 / 16 || packet.alive == 0 {
-                self.refill(&mut packet, &mut window);
-                if packet.alive == 0 {
-                    return counts;
-                }
+            self.refill(&mut packet, &mut supply, &mut window);
+            if packet.alive == 0 {
+                return counts;
             }
             let ended = self.advance::<V, AIMS>(&mut packet, &mut counts) & packet.alive;
-            for lane in LanesOf(ended) {
-                if !packet.pop(lane) {
-                    packet.alive &= !(1 << lane);
-                    window.give_back(packet.slots[lane], colour(&packet.collected, lane), &mut counts);
-                }
+            if ended != 0 {
+                self.retire(&mut packet, ended, &mut window, &mut counts);
             }
         }
     }
 }
-
-/// Sixteenths of the lanes that wait for samples before some are handed out: what makes camera rays is done for all lanes at once.
-const REFILL: u32 = 3;
 
 /// A piece to render.
 struct Render<'a> {
