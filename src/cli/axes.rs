@@ -22,8 +22,11 @@ pub(super) struct What {
     #[arg(long, value_name = "NAME", default_value = "independent")]
     pub(super) sampler: String,
     /// Kernel
-    #[arg(long, value_name = "NAME", default_value = "scalar")]
+    #[arg(long, value_name = "NAME", default_value = "lanes")]
     pub(super) kernel: String,
+    /// Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]
+    #[arg(long, value_name = "LEVEL")]
+    pub(super) simd: Option<String>,
     /// Effect profile [default: the smallest that covers the scene]
     #[arg(long, value_name = "PROFILE")]
     pub(super) effects: Option<String>,
@@ -105,6 +108,7 @@ impl What {
             estimator,
             sampler: self.sampler.clone(),
             kernel: self.kernel.clone(),
+            simd: self.simd.clone(),
             effects: self.effects.clone(),
             accelerator: self.accelerator.clone(),
             max_depth: self.max_depth,

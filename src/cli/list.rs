@@ -12,6 +12,7 @@ use crate::measure::OUTPUTS;
 use crate::metric::METRICS;
 use crate::sampling::SAMPLERS;
 use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, GENERATORS, PROFILES, SCENES, SHAPES, effect_names, load};
+use crate::simd::LEVELS;
 use crate::strategy::STRATEGIES;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -35,6 +36,7 @@ enum Kind {
     Estimators,
     Samplers,
     Kernels,
+    Simd,
     Effects,
     Accelerators,
     Cameras,
@@ -75,7 +77,7 @@ fn scene_item(name: &str) -> Result<Item> {
     let choice = choose(&scene, &Spec::default())?;
     let more = SceneItem {
         calls_for: effect_names(scene.effects()),
-        profile: choice.effects(),
+        profile: choice.profile(),
         primitives: scene.owners.len(),
         estimator: scene.default_estimator.unwrap_or(Spec::default().estimator),
     };
@@ -91,6 +93,7 @@ fn items(kind: Kind) -> Result<Vec<Item>> {
         Kind::Estimators => ESTIMATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Kernels => KERNELS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Simd => LEVELS.iter().map(|level| item(level.name, level.about)).collect(),
         Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Accelerators => ACCELERATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Cameras => CAMERAS.iter().map(|(name, about)| item(name, about)).collect(),

@@ -61,7 +61,14 @@ impl Cell {
         if settings.output != Settings::default().output {
             schedule = format!("{schedule}/{}", settings.output);
         }
-        for (axis, value) in [("effects", &spec.effects), ("accelerator", &spec.accelerator)] {
+        let kernel = Some(spec.kernel.clone()).filter(|kernel| *kernel != Spec::default().kernel);
+        let axes = [
+            ("kernel", &kernel),
+            ("simd", &spec.simd),
+            ("effects", &spec.effects),
+            ("accelerator", &spec.accelerator),
+        ];
+        for (axis, value) in axes {
             if let Some(value) = value {
                 schedule = format!("{schedule}/{axis}-{value}");
             }
@@ -88,6 +95,8 @@ impl Cell {
             ("seed", spec.seed.to_string()),
             ("decomposition", settings.decomposition.clone()),
             ("output", settings.output.clone()),
+            ("kernel", spec.kernel.clone()),
+            ("simd", spec.simd.clone().unwrap_or_default()),
             ("effects", spec.effects.clone().unwrap_or_default()),
             ("accelerator", spec.accelerator.clone().unwrap_or_default()),
             ("max-depth", spec.max_depth.map(|depth| depth.to_string()).unwrap_or_default()),

@@ -29,6 +29,11 @@ pub(super) struct Matrix {
     pub(super) decomposition: Vec<String>,
     #[serde(default = "slots")]
     pub(super) output: Vec<String>,
+    #[serde(default = "lanes")]
+    pub(super) kernel: Vec<String>,
+    /// Instruction sets of lanes.
+    #[serde(default = "fitting")]
+    pub(super) simd: Vec<String>,
     #[serde(default = "fitting")]
     pub(super) effects: Vec<String>,
     #[serde(default = "fitting")]
@@ -52,6 +57,10 @@ pub(super) struct Matrix {
 
 fn independent() -> Vec<String> {
     vec!["independent".to_string()]
+}
+
+fn lanes() -> Vec<String> {
+    vec![Spec::default().kernel]
 }
 
 /// Whatever fits the scene best.
@@ -162,6 +171,8 @@ impl Definition {
             ("estimator", matrix.estimator.is_empty()),
             ("sampler", matrix.sampler.is_empty()),
             ("output", matrix.output.is_empty()),
+            ("kernel", matrix.kernel.is_empty()),
+            ("simd", matrix.simd.is_empty()),
             ("effects", matrix.effects.is_empty()),
             ("accelerator", matrix.accelerator.is_empty()),
             ("spp", spps.is_empty()),
@@ -197,11 +208,16 @@ impl Definition {
                             ..Spec::default()
                         };
                         let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };
+                        let kernels = matrix.kernel.iter().flat_map(|k| matrix.simd.iter().map(move |s| (k, s)));
                         let rules = matrix.effects.iter().flat_map(|e| {
                             matrix.accelerator.iter().flat_map(move |a| matrix.roulette.iter().map(move |r| (e, a, r)))
                         });
-                        for (effects, accelerator, roulette) in rules {
+                        for ((kernel, simd), (effects, accelerator, roulette)) in
+                            kernels.flat_map(|kernel| rules.clone().map(move |rules| (kernel, rules)))
+                        {
                             let mut image = image.clone();
+                            image.spec.kernel.clone_from(kernel);
+                            image.spec.simd = unless_fitting(simd);
                             image.spec.roulette = unless_fitting(roulette);
                             image.spec.effects = unless_fitting(effects);
                             image.spec.accelerator = unless_fitting(accelerator);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 4;
+pub const SCHEMA: u32 = 5;
 
 /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
@@ -40,10 +40,14 @@ pub struct Record {
     pub estimator: String,
     /// Sampler.
     pub sampler: String,
-    /// Kernel.
+    /// Kernel that rendered.
     pub kernel: String,
+    /// Why it was not the one that was asked for; empty if it was.
+    pub kernel_fallback: String,
     /// Floating-point format of the kernel.
     pub precision: String,
+    /// Instruction set of its lanes; empty if it had none.
+    pub simd: String,
     /// What the search for the nearest primitive goes by.
     pub accelerator: String,
     /// After so many bounces paths were cut; empty if only their throughput ended them.
@@ -254,6 +258,9 @@ impl Record {
         record.started_utc.clone_from(&outcome.started_utc);
         record.scene.clone_from(&setup.scene().name);
         record.scene_hash.clone_from(&setup.scene().hash);
+        record.kernel = setup.choice().kernel().to_string();
+        record.kernel_fallback = setup.choice().fallback().to_string();
+        record.simd = setup.choice().simd().to_string();
         record.effects = setup.effects().to_string();
         record.accelerator = setup.accelerator().to_string();
         record.build_s = Some(outcome.build_s);

@@ -3,7 +3,7 @@
 use crate::error::{InputError, Result};
 use crate::estimator::find;
 use crate::film::check_size;
-use crate::kernel::{KERNELS, Spec};
+use crate::kernel::Spec;
 use crate::sampling::REFERENCE_SEEDS;
 use crate::strategy::{self, Entry, STRATEGIES, StrategyError};
 use serde::{Deserialize, Serialize};
@@ -124,12 +124,6 @@ impl Settings {
             let allowed = format!("1 to {LARGEST_THREADS}");
             return Err(InputError::new("threads", self.threads.to_string(), "is out of range")
                 .allowed(allowed)
-                .into());
-        }
-        if !KERNELS.iter().any(|entry| entry.name == self.spec.kernel) {
-            let names: Vec<&str> = KERNELS.iter().map(|entry| entry.name).collect();
-            return Err(InputError::new("kernel", &self.spec.kernel, "there is none of that name")
-                .allowed(names.join(", "))
                 .into());
         }
         Ok(())

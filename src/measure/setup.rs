@@ -118,6 +118,11 @@ impl Setup {
         self.choice.effects()
     }
 
+    /// What the settings come to.
+    pub fn choice(&self) -> Choice {
+        self.choice
+    }
+
     /// Name of the accelerator.
     pub fn accelerator(&self) -> &'static str {
         self.choice.accelerator()

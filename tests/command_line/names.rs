@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 17] = [
+const KINDS: [&str; 18] = [
     "scenes",
     "strategies",
     "decompositions",
@@ -13,6 +13,7 @@ const KINDS: [&str; 17] = [
     "estimators",
     "samplers",
     "kernels",
+    "simd",
     "effects",
     "accelerators",
     "cameras",

@@ -10,11 +10,12 @@ mod tables;
 mod vertex;
 mod window;
 
+use super::choice::InLanes;
 use super::{Counts, Kernel, Spec};
 use crate::estimator::Course;
 use crate::film::{Piece, TileBuffer};
 use crate::math::Rgb;
-use crate::sampling::InLanes;
+use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
 use crate::simd::{self, Float, MOST_LANES, Work, on_level};
 use light::Targets;
@@ -31,7 +32,7 @@ pub(super) struct Lanes {
     width: u32,
     seed: u64,
     course: Course,
-    sampler: InLanes,
+    sampler: Sampler,
     tables: Tables,
     targets: Option<Targets>,
     /// Whether a number is needed to choose among them.
@@ -39,12 +40,10 @@ pub(super) struct Lanes {
     level: &'static simd::Entry,
     /// Whether every sphere is tested, because there are few and nothing else.
     scans: bool,
-    /// Whether paths can be cut.
-    cuts: bool,
 }
 
 impl Lanes {
-    pub(super) fn new(scene: Arc<Scene>, spec: &Spec, course: Course, sampler: InLanes, level: &'static simd::Entry) -> Self {
+    pub(super) fn new(scene: Arc<Scene>, spec: &Spec, InLanes { level, course, sampler }: InLanes) -> Self {
         let tables = Tables::of(&scene);
         let targets = scene.lights.as_ref().map(Targets::of);
         Self {
@@ -59,7 +58,6 @@ impl Lanes {
             sampler,
             tables,
             level,
-            cuts: true,
         }
     }
 

@@ -1,7 +1,7 @@
 //! Camera rays made ahead, a whole packet of them at a time, so that lanes which end one by one can be given their next one by one.
 
 use super::Lanes;
-use super::packet::Packet;
+use super::packet::{LanesOf, Packet};
 use super::window::Window;
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::{PathWords, Purpose, SampleKey};
@@ -113,17 +113,21 @@ impl Lanes {
             packet.words.joined[0] = V::fill_words(joined[0], mask, &words[2][first..]);
             packet.words.joined[1] = V::fill_words(joined[1], mask, &words[3][first..]);
         }
-        for (lane, slot) in super::packet::LanesOf(taken).zip(&supply.slots[first..]) {
+        for (lane, slot) in LanesOf(taken).zip(&supply.slots[first..]) {
             packet.slots[lane] = *slot;
         }
+        // What is on nothing has no use for `own_root`.
         packet.rays.from = V::select(mask, V::splat(-1.0), packet.rays.from);
-        packet.rays.own_root = V::select(mask, V::splat(f64::NAN), packet.rays.own_root);
         packet.throughput = Rgb::select(mask, Rgb::splat(Rgb::WHITE), packet.throughput);
         packet.collected = Rgb::select(mask, Rgb::splat(Rgb::BLACK), packet.collected);
         let none = V::Bits::splat(0);
         packet.vertices = V::choose(mask, none, packet.vertices);
-        packet.branch = V::choose(mask, none, packet.branch);
-        packet.density = V::select(mask, V::splat(-1.0), packet.density);
+        if self.course.splits > 0 {
+            packet.branch = V::choose(mask, none, packet.branch);
+        }
+        if self.course.aims.is_some() {
+            packet.density = V::select(mask, V::splat(-1.0), packet.density);
+        }
         packet.alive |= taken;
         let count = taken.count_ones() as usize;
         supply.first += count;

@@ -74,11 +74,9 @@ impl Lanes {
             }
             packet.collected += packet.throughput * emission;
         }
-        if self.cuts {
-            let cut = (V::same(packet.vertices, V::Bits::splat(u64::from(self.course.max_depth))) & at.lanes).bits();
-            counts.truncated += u64::from(cut.count_ones());
-            ended |= cut;
-        }
+        let cut = (V::same(packet.vertices, V::Bits::splat(u64::from(self.course.max_depth))) & at.lanes).bits();
+        counts.truncated += u64::from(cut.count_ones());
+        ended |= cut;
         let vertices = packet.vertices.plus(V::Bits::splat(1));
 
         let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);

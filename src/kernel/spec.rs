@@ -1,0 +1,100 @@
+//! The *what* of a render, by name.
+
+use super::LANES;
+use crate::estimator::{self, Options, Roulette};
+use serde::{Deserialize, Serialize};
+
+/// What of the light is clamped to 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Clamp {
+    /// The mean of each subpixel before averaging, as smallpt does.
+    Subpixel,
+    /// What each recursion returns, as report B does.
+    Recursion,
+}
+
+impl Clamp {
+    /// Its name in records.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Subpixel => "subpixel",
+            Self::Recursion => "recursion",
+        }
+    }
+}
+
+/// Which kernel to build: the *what* of a render.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Spec {
+    /// Columns of the image.
+    pub width: u32,
+    /// Rows of the image.
+    pub height: u32,
+    /// Seed of the image.
+    pub seed: u64,
+    /// Estimator by name.
+    pub estimator: String,
+    /// Sampler by name.
+    pub sampler: String,
+    /// Kernel by name.
+    pub kernel: String,
+    /// Instruction set of lanes by name; the fastest of this processor if `None`.
+    #[serde(default)]
+    pub simd: Option<String>,
+    /// Effect profile by name; the smallest that covers the scene if `None`.
+    pub effects: Option<String>,
+    /// Accelerator by name; the fitting one for so many primitives if `None`.
+    pub accelerator: Option<String>,
+    /// After so many bounces a path is cut; `None` leaves it to the estimator.
+    pub max_depth: Option<u16>,
+    /// When and how chance ends paths, as [`Roulette`] reads it; `None` leaves it to the estimator.
+    #[serde(default)]
+    pub roulette: Option<String>,
+    /// What is clamped to 1: biased.
+    pub clamp: Option<Clamp>,
+}
+
+impl Default for Spec {
+    fn default() -> Self {
+        Self {
+            width: 256,
+            height: 192,
+            seed: 1,
+            estimator: "smallpt".to_string(),
+            sampler: "independent".to_string(),
+            kernel: LANES.to_string(),
+            simd: None,
+            effects: None,
+            accelerator: None,
+            max_depth: None,
+            roulette: None,
+            clamp: None,
+        }
+    }
+}
+
+impl Spec {
+    /// Whether an option is on that changes what the image converges to.
+    pub fn is_biased(&self) -> bool {
+        self.clamp.is_some() || self.depth().is_some()
+    }
+
+    /// What the estimator is told; what cannot be read is what [`choose`] refuses.
+    pub(super) fn options(&self) -> Options {
+        let roulette = self.roulette.as_deref().and_then(|text| Roulette::parse(text).ok());
+        Options { max_depth: self.max_depth, roulette }
+    }
+
+    /// When and how chance ends paths, as [`Roulette`] reads it: what was asked for, or else the estimator's own rule.
+    pub fn roulette(&self) -> Option<String> {
+        let own = estimator::find(&self.estimator).and_then(|entry| entry.roulette);
+        self.options().roulette.or(own).map(|rule| rule.to_string())
+    }
+
+    /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
+    pub fn depth(&self) -> Option<u16> {
+        let own = estimator::find(&self.estimator).and_then(|entry| entry.max_depth);
+        self.max_depth.or(own)
+    }
+}

@@ -1,0 +1,156 @@
+//! Every operation of every level against the same operation on one number, lane by lane: bit for bit, NaN for NaN.
+
+use super::{Float, LEVELS, MOST_LANES, Mask, Table, Work, on_level};
+use crate::math::{Bits, unit};
+
+/// Numbers of all kinds, and words with all their bits in use.
+fn numbers(from: usize) -> [f64; MOST_LANES] {
+    const SPECIAL: [f64; 16] = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::MIN_POSITIVE,
+        5e-324,
+        -5e-324,
+        f64::MAX,
+        f64::EPSILON,
+        1.0 / 3.0,
+        -2.5,
+        1e200,
+        -1e-200,
+    ];
+    std::array::from_fn(|k| SPECIAL[(k + from) % SPECIAL.len()])
+}
+
+fn words(from: u64) -> [u64; MOST_LANES] {
+    std::array::from_fn(|k| match (k as u64 + from) % 8 {
+        0 => 0,
+        1 => u64::MAX,
+        2 => 1 << 63,
+        3 => 0xFFFF_FFFF,
+        k => (k ^ from << 7).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(k as u32),
+    })
+}
+
+struct Operations;
+
+fn same(found: f64, expected: f64) -> bool {
+    found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan())
+}
+
+impl Work for Operations {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Float<One = f64>>(self) {
+        for shift in 0..16 {
+            let (a, b) = (numbers(0), numbers(shift));
+            let (v, w) = (V::load(&a), V::load(&b));
+            let mask = v.lt(w);
+            for lane in 0..V::LANES {
+                let (x, y) = (a[lane], b[lane]);
+                let numbers = [
+                    ("sum", (v + w).lane(lane), x + y),
+                    ("difference", (v - w).lane(lane), x - y),
+                    ("product", (v * w).lane(lane), x * y),
+                    ("quotient", (v / w).lane(lane), x / y),
+                    ("opposite", (-v).lane(lane), -x),
+                    ("root", v.sqrt().lane(lane), x.sqrt()),
+                    ("magnitude", v.abs().lane(lane), x.abs()),
+                    ("sign", v.copysign(w).lane(lane), x.copysign(y)),
+                    ("choice", V::select(mask, v, w).lane(lane), if x < y { x } else { y }),
+                ];
+                for (what, found, expected) in numbers {
+                    assert!(same(found, expected), "{what} of {x} and {y}: {found}, not {expected}");
+                }
+                let answers = [
+                    ("<", v.lt(w), x < y),
+                    ("<=", v.le(w), x <= y),
+                    ("=", v.equal(w), x == y),
+                    ("not <", !mask, !(x < y)),
+                    ("and", v.le(w) & v.equal(w), x == y),
+                    ("or", mask | v.equal(w), x <= y),
+                ];
+                for (what, found, expected) in answers {
+                    assert_eq!(found.bits() >> lane & 1 == 1, expected, "{x} {what} {y}");
+                }
+            }
+        }
+        for shift in 0..8 {
+            let (a, b) = (words(0), words(shift));
+            let (v, w) = (V::load_words(&a), V::load_words(&b));
+            for lane in 0..V::LANES {
+                let (x, y) = (a[lane], b[lane]);
+                let count = V::Bits::splat(63) & w;
+                for (what, found, expected) in [
+                    ("sum", v.plus(w), x.wrapping_add(y)),
+                    ("product", v.times(w), x.wrapping_mul(y)),
+                    ("and", v & w, x & y),
+                    ("or", v | w, x | y),
+                    ("exclusive or", v ^ w, x ^ y),
+                    ("up", v.up::<17>(), x << 17),
+                    ("down", v.down::<41>(), x >> 41),
+                    ("down by", v.down_by(count), x >> (y & 63)),
+                    ("reversed", v.reversed(), x.reverse_bits()),
+                    ("choice", V::choose(V::same(v, w), v, w), if x == y { x } else { y }),
+                ] {
+                    assert_eq!(V::word(&found, lane), expected, "{what} of {x:x} and {y:x}");
+                }
+                assert!(same(V::unit(v).lane(lane), unit(x)), "{x:x}");
+                assert!(same(V::number(v.down::<11>()).lane(lane), (x >> 11) as f64), "{x:x}");
+                let less = V::less(v.down::<1>(), w.down::<1>()).bits() >> lane & 1 == 1;
+                assert_eq!(less, x >> 1 < y >> 1, "{x:x} {y:x}");
+            }
+        }
+        lanes_move::<V>();
+    }
+}
+
+/// What puts numbers into lanes and takes them out.
+#[inline(always)]
+fn lanes_move<V: Float<One = f64>>() {
+    let from: [f64; MOST_LANES] = std::array::from_fn(|k| k as f64 + 0.5);
+    let mut to = [0.0; MOST_LANES];
+    V::load(&from).store(&mut to);
+    assert_eq!(to[..V::LANES], from[..V::LANES]);
+    let all = u32::MAX >> (MOST_LANES - V::LANES);
+    for mask in (0..=all.min(0xFFFF)).step_by(if V::LANES > 8 { 97 } else { 1 }) {
+        assert_eq!(V::Mask::from_bits(mask).bits(), mask);
+        let mut next = 0..;
+        let expected: Vec<Option<usize>> =
+            (0..V::LANES).map(|lane| (mask >> lane & 1 == 1).then(|| next.next().unwrap())).collect();
+        let filled = V::splat(-1.0).fill(V::Mask::from_bits(mask), &from);
+        let bits: [u64; MOST_LANES] = std::array::from_fn(|k| k as u64 + 7);
+        let words = V::fill_words(V::Bits::splat(0), V::Mask::from_bits(mask), &bits);
+        for (lane, place) in expected.into_iter().enumerate() {
+            assert_eq!(filled.lane(lane), place.map_or(-1.0, |place| from[place]), "{mask:b}");
+            assert_eq!(V::word(&words, lane), place.map_or(0, |place| bits[place]), "{mask:b}");
+        }
+    }
+    for rows in [1_usize, 5, 16, 17, 40] {
+        let table = Table::new((0..rows).map(|row| [0, 1, 2, 3].map(|j| (10 * row + j) as f64)).collect());
+        let numbers: [f64; MOST_LANES] = std::array::from_fn(|k| (k * 7 % rows) as f64);
+        for (j, column) in V::rows(&table, V::load(&numbers)).into_iter().enumerate() {
+            for (lane, number) in numbers.iter().enumerate().take(V::LANES) {
+                assert_eq!(column.lane(lane), 10.0 * number + j as f64, "{rows} rows");
+            }
+        }
+    }
+    let (mut v, mut w) = (V::splat(0.0), V::Bits::splat(0));
+    for lane in 0..V::LANES {
+        v.set_lane(lane, lane as f64);
+        V::set_word(&mut w, lane, lane as u64);
+    }
+    assert!((0..V::LANES).all(|lane| v.lane(lane) == lane as f64 && V::word(&w, lane) == lane as u64));
+}
+
+#[test]
+fn every_level_computes_what_one_number_does() {
+    let available = LEVELS.iter().filter(|level| level.is_available());
+    assert!(available.map(|level| on_level(level.name, Operations)).filter(Option::is_some).count() >= 1);
+    assert!(on_level("mmx", Operations).is_none());
+}

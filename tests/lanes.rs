@@ -1,0 +1,147 @@
+//! The kernel of SIMD lanes gives what the scalar kernel gives, sample by sample and bit for bit, on every instruction set that this processor
+//! has. The scalar kernel is the oracle here; that it is right is what the other tests are about.
+
+#[path = "support/watchdog.rs"]
+mod watchdog;
+
+use pathmark::estimator::ESTIMATORS;
+use pathmark::film::{Bounds, Piece, TileBuffer};
+use pathmark::kernel::{Clamp, Counts, Kernel, Spec, build, choose};
+use pathmark::scene::{SCENES, Scene, load};
+use pathmark::simd::{Entry, LEVELS};
+use std::sync::Arc;
+use std::time::Duration;
+use watchdog::Watchdog;
+
+fn levels() -> impl Iterator<Item = &'static Entry> {
+    LEVELS.iter().filter(|level| level.is_available())
+}
+
+fn render(kernel: &dyn Kernel, piece: &Piece) -> (TileBuffer, Counts) {
+    let mut buffer = TileBuffer::new(piece.bounds);
+    let counts = kernel.render(piece, &mut buffer);
+    (buffer, counts)
+}
+
+/// Insists that lanes on every level render a piece as the scalar kernel does, and that it is lanes that render.
+fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
+    let scalar = build(scene, &Spec { kernel: "scalar".into(), ..spec.clone() }).unwrap();
+    let expected: Vec<_> = pieces.iter().map(|piece| render(&*scalar, piece)).collect();
+    for level in levels() {
+        let spec = Spec { kernel: "lanes".into(), simd: Some(level.name.into()), ..spec.clone() };
+        let what = format!("{}, {}, {}, {}", scene.name, spec.estimator, spec.sampler, level.name);
+        let choice = choose(scene, &spec).unwrap();
+        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("lanes", level.name, ""), "{what}");
+        let lanes = build(scene, &spec).unwrap();
+        for (piece, (buffer, counts)) in pieces.iter().zip(&expected) {
+            let found = render(&*lanes, piece);
+            assert_eq!(found.1, *counts, "{what}: counts of {piece:?}");
+            assert!(found.0 == *buffer, "{what}: sums of {piece:?}");
+        }
+    }
+}
+
+/// Whether lanes render a scene at all; [`what_lanes_cannot_do_is_told`] says which they do not.
+fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
+    choose(scene, spec).unwrap().kernel() == "lanes"
+}
+
+#[test]
+fn every_scene_has_the_scalar_kernels_bits() {
+    let watchdog = Watchdog::new(Duration::from_secs(300));
+    let (mut compared, mut scenes) = (0, 0);
+    for (name, _) in SCENES {
+        watchdog.now(*name);
+        let scene = Arc::new(load(name).unwrap());
+        let before = compared;
+        for estimator in ESTIMATORS {
+            for sampler in ["independent", "sobol"] {
+                let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
+                let spec = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
+                if !is_for_lanes(&scene, &spec) {
+                    continue;
+                }
+                let bounds = Bounds { x0: 0, y0: 0, x1: 24, y1: 18 };
+                assert_same(&scene, &spec, &[Piece { bounds, samples: 0..8 }]);
+                compared += 1;
+            }
+        }
+        scenes += usize::from(compared > before);
+    }
+    assert!(scenes >= 24 && compared >= 8 * 24, "{compared} comparisons of {scenes} scenes");
+}
+
+/// Of any shape: a pixel alone, a sample alone, more samples than may be out at once, a row, samples from the middle, and none.
+#[test]
+fn pieces_of_any_shape_have_the_scalar_kernels_bits() {
+    let watchdog = Watchdog::new(Duration::from_secs(120));
+    let scene = Arc::new(load("cornell").unwrap());
+    let piece = |x0, y0, x1, y1, samples| Piece { bounds: Bounds { x0, y0, x1, y1 }, samples };
+    let pieces = [
+        piece(5, 7, 6, 8, 0..1),
+        piece(20, 20, 21, 21, 0..1500),
+        piece(0, 11, 64, 12, 3..5),
+        piece(40, 30, 47, 41, 16..48),
+        piece(63, 47, 64, 48, 1000..1017),
+        piece(9, 9, 12, 10, 4..4),
+    ];
+    for estimator in ["smallpt", "mis"] {
+        watchdog.now(estimator);
+        let spec = Spec { width: 64, height: 48, seed: 5, estimator: estimator.into(), ..Spec::default() };
+        assert_same(&scene, &spec, &pieces);
+    }
+}
+
+/// Limits and rules: cut at every depth, ended by chance in every way.
+#[test]
+fn options_have_the_scalar_kernels_bits() {
+    let watchdog = Watchdog::new(Duration::from_secs(120));
+    let scene = Arc::new(load("cornell").unwrap());
+    let pieces = [Piece { bounds: Bounds { x0: 0, y0: 0, x1: 32, y1: 24 }, samples: 0..4 }];
+    for estimator in ["smallpt", "bsdf", "nee", "mis"] {
+        watchdog.now(estimator);
+        let spec = Spec { width: 32, height: 24, estimator: estimator.into(), ..Spec::default() };
+        for depth in [0, 1, 2, 3, 6, 40] {
+            assert_same(&scene, &Spec { max_depth: Some(depth), ..spec.clone() }, &pieces);
+        }
+        for roulette in ["albedo:0", "throughput:0", "throughput:3", "albedo:9"] {
+            assert_same(&scene, &Spec { roulette: Some(roulette.into()), ..spec.clone() }, &pieces);
+        }
+        for accelerator in ["none", "sah"] {
+            assert_same(&scene, &Spec { accelerator: Some(accelerator.into()), ..spec.clone() }, &pieces);
+        }
+    }
+}
+
+/// The scalar kernel does it instead, and says why.
+#[test]
+fn what_lanes_cannot_do_is_told() {
+    let spec = Spec::default;
+    for (scene, spec, reason) in [
+        ("cornell-fog", spec(), "fog"),
+        ("cornell-lens", spec(), "lens"),
+        ("report-c", spec(), "point-light"),
+        ("cornell", Spec { estimator: "whitted".into(), ..spec() }, "estimator"),
+        ("cornell", Spec { sampler: "stratified".into(), ..spec() }, "sampler"),
+        ("cornell", Spec { sampler: "locked".into(), ..spec() }, "sampler"),
+        ("cornell", Spec { effects: Some("smallpt".into()), ..spec() }, "effects"),
+        ("cornell", Spec { clamp: Some(Clamp::Subpixel), ..spec() }, "clamp"),
+    ] {
+        let choice = choose(&load(scene).unwrap(), &spec).unwrap();
+        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("scalar", "", reason), "{scene}");
+    }
+    let asked = choose(&load("cornell").unwrap(), &Spec { kernel: "scalar".into(), ..spec() }).unwrap();
+    assert_eq!((asked.kernel(), asked.fallback()), ("scalar", ""));
+}
+
+#[test]
+fn unknown_levels_are_refused() {
+    for (field, spec) in [
+        ("simd", Spec { simd: Some("mmx".into()), ..Spec::default() }),
+        ("kernel", Spec { kernel: "spectral".into(), ..Spec::default() }),
+    ] {
+        let Err(error) = choose(&load("cornell").unwrap(), &spec) else { panic!("{field} is taken") };
+        let text = error.to_string();
+        assert!(text.contains(field) && text.contains("there is none of that name"), "{text}");
+    }
+}
