@@ -72,7 +72,9 @@ impl Lanes {
             if AIMS {
                 emission = emission * self.share_of_arrival(packet, &at, lit);
             }
-            packet.collected += packet.throughput * emission;
+            // A ray that met nothing has looked up some surface or other.
+            let found = packet.collected + packet.throughput * emission;
+            packet.collected = Rgb::select(lit, found, packet.collected);
         }
         let cut = (V::same(packet.vertices, V::Bits::splat(u64::from(self.course.max_depth))) & at.lanes).bits();
         counts.truncated += u64::from(cut.count_ones());
