@@ -18,6 +18,9 @@ pub(super) struct Supply {
     /// What the numbers of their samples have in common.
     words: [[u64; SIZE]; 4],
     slots: [u16; SIZE],
+    /// Columns and rows, pixels, samples and their places of those that are being made.
+    pixels: [[f64; MOST_LANES]; 2],
+    keys: [[u64; MOST_LANES]; 4],
     /// The next one.
     first: usize,
     /// How many there are.
@@ -26,7 +29,15 @@ pub(super) struct Supply {
 
 impl Supply {
     pub(super) fn new() -> Self {
-        Self { rays: [[0.0; SIZE]; 6], words: [[0; SIZE]; 4], slots: [0; SIZE], first: 0, count: 0 }
+        Self {
+            rays: [[0.0; SIZE]; 6],
+            words: [[0; SIZE]; 4],
+            slots: [0; SIZE],
+            pixels: [[0.0; MOST_LANES]; 2],
+            keys: [[0; MOST_LANES]; 4],
+            first: 0,
+            count: 0,
+        }
     }
 }
 
@@ -49,27 +60,28 @@ impl Lanes {
     /// Makes as many rays as there are lanes, or samples left.
     #[inline(always)]
     fn produce<V: Float>(&self, supply: &mut Supply, window: &mut Window<'_>) {
-        let (mut pixels, mut samples) = ([0; MOST_LANES], [0; MOST_LANES]);
-        let mut joined = [[0; MOST_LANES]; 2];
-        let (mut xs, mut ys) = ([0.0; MOST_LANES], [0.0; MOST_LANES]);
         supply.first = 0;
         while supply.count < V::LANES {
             let Some((place, slot)) = window.hand_out() else { break };
             let k = supply.count;
             let key = SampleKey { seed: self.seed, pixel: place.y * self.width + place.x, sample: place.sample };
-            [joined[0][k], joined[1][k]] = self.sampler.joined(key);
-            (pixels[k], samples[k]) = (u64::from(key.pixel), u64::from(key.sample));
-            (xs[k], ys[k]) = (f64::from(place.x), f64::from(place.y));
+            let [first, second] = self.sampler.joined(key);
+            for (words, word) in supply.keys.iter_mut().zip([key.pixel.into(), key.sample.into(), first, second]) {
+                words[k] = word;
+            }
+            (supply.pixels[0][k], supply.pixels[1][k]) = (f64::from(place.x), f64::from(place.y));
             supply.slots[k] = slot;
             supply.count += 1;
         }
         let none = V::Bits::splat(0);
-        let samples = V::load_words(&samples);
-        let joined = [V::load_words(&joined[0]), V::load_words(&joined[1])];
-        let words = self.sampler.words(self.seed, V::load_words(&pixels), samples, joined);
+        let [pixels, samples, film, first] = &supply.keys;
+        let samples = V::load_words(samples);
+        let joined = [V::load_words(film), V::load_words(first)];
+        let words = self.sampler.words(self.seed, V::load_words(pixels), samples, joined);
         let film = self.sampler.pair::<V>(&words, none, none, Purpose::Film);
         let subpixel = V::number(samples & V::Bits::splat(u64::from(SUBPIXELS - 1)));
-        let Ray { origin, direction } = self.view.rays([V::load(&xs), V::load(&ys)], subpixel, film);
+        let pixel = [V::load(&supply.pixels[0]), V::load(&supply.pixels[1])];
+        let Ray { origin, direction } = self.view.rays(pixel, subpixel, film);
         origin.x.store(&mut supply.rays[0]);
         origin.y.store(&mut supply.rays[1]);
         origin.z.store(&mut supply.rays[2]);

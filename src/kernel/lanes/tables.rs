@@ -39,7 +39,7 @@ pub(super) struct Tables {
     pub(super) emissions: Table,
     /// The albedo, and the [`Kind`].
     pub(super) materials: Table,
-    /// Of dielectrics: index of refraction, Schlick's reflectance at normal incidence, 1 for the exact formula.
+    /// Of dielectrics: index of refraction and its inverse, Schlick's reflectance at normal incidence, 1 for the exact formula.
     pub(super) interfaces: Table,
     /// Which kinds there are besides diffuse.
     pub(super) has: [bool; 4],
@@ -73,9 +73,9 @@ impl Tables {
         let interfaces = of_objects(|object| match &object.material {
             Material::Dielectric(glass) => {
                 let root = (glass.eta - 1.0) / (glass.eta + 1.0);
-                [glass.eta, root * root, f64::from(u8::from(glass.fresnel == Fresnel::Exact)), 0.0]
+                [glass.eta, 1.0 / glass.eta, root * root, f64::from(u8::from(glass.fresnel == Fresnel::Exact))]
             }
-            _ => [1.0, 0.0, 0.0, 0.0],
+            _ => [1.0, 1.0, 0.0, 0.0],
         });
         let has = [Kind::Diffuse, Kind::Mirror, Kind::Dielectric, Kind::Other]
             .map(|kind| scene.objects.iter().any(|object| Kind::of(&object.material) == kind));

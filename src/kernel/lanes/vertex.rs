@@ -63,30 +63,33 @@ impl Lanes {
         if ended == packet.alive {
             return ended;
         }
-        let at = self.arrive(packet, met, t, primitive);
-
+        let vertices = packet.vertices.plus(V::Bits::splat(1));
+        let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);
+        let albedo = Rgb { r, g, b };
+        // Where nothing is aimed at, the point is worked out after what needs none: so less waits in registers.
+        let early = if AIMS { Some(self.arrive(packet, met, t, primitive)) } else { None };
         let [r, g, b, gives_off] = V::rows(&self.tables.emissions, primitive);
-        let lit = at.lanes & V::splat(0.5).lt(gives_off);
+        let lit = met & V::splat(0.5).lt(gives_off);
         if lit.any() {
             let mut emission = Rgb { r, g, b };
-            if AIMS {
-                emission = emission * self.share_of_arrival(packet, &at, lit);
+            if let Some(at) = &early {
+                emission = emission * self.share_of_arrival(packet, at, lit);
             }
             // A ray that met nothing has looked up some surface or other.
             let found = packet.collected + packet.throughput * emission;
             packet.collected = Rgb::select(lit, found, packet.collected);
         }
-        let cut = (V::same(packet.vertices, V::Bits::splat(u64::from(self.course.max_depth))) & at.lanes).bits();
+        let cut = (V::same(packet.vertices, V::Bits::splat(u64::from(self.course.max_depth))) & met).bits();
         counts.truncated += u64::from(cut.count_ones());
         ended |= cut;
-        let vertices = packet.vertices.plus(V::Bits::splat(1));
-
-        let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);
-        let albedo = Rgb { r, g, b };
-        if AIMS {
-            self.aim(packet, &at, vertices, albedo, kind, ended, counts);
+        if let Some(at) = &early {
+            self.aim(packet, at, vertices, albedo, kind, ended, counts);
         }
-        ended |= self.roulette(packet, at.lanes, vertices, albedo);
+        ended |= self.roulette(packet, met, vertices, albedo);
+        let at = match early {
+            Some(at) => at,
+            None => self.arrive(packet, met, t, primitive),
+        };
         let numbers = self.sampler.pair::<V>(&packet.words, vertices, packet.branch, Purpose::Bsdf);
         let (scattered, split) = self.scatter::<V, AIMS>(packet, &at, vertices, albedo, kind, numbers, ended);
         ended |= scattered.absorbed;
@@ -181,8 +184,7 @@ impl Lanes {
         scattered: &mut Scattered<V>,
     ) -> Option<Split<V>> {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
-        let [eta, r0, is_exact, _] = V::rows(&self.tables.interfaces, at.primitive);
-        let inverse = one / eta;
+        let [eta, inverse, r0, is_exact] = V::rows(&self.tables.interfaces, at.primitive);
         let crossed = V::select(at.inside, eta, inverse);
         let (refracted, cos2) = refract(wo, crossed);
         let is_total = cos2.lt(zero);
