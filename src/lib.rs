@@ -52,7 +52,7 @@ pub mod metric;
 pub mod plot;
 pub mod report;
 pub mod sampling;
-pub mod simd;
 pub mod scene;
+pub mod simd;
 pub mod simulate;
 pub mod strategy;

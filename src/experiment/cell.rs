@@ -62,12 +62,8 @@ impl Cell {
             schedule = format!("{schedule}/{}", settings.output);
         }
         let kernel = Some(spec.kernel.clone()).filter(|kernel| *kernel != Spec::default().kernel);
-        let axes = [
-            ("kernel", &kernel),
-            ("simd", &spec.simd),
-            ("effects", &spec.effects),
-            ("accelerator", &spec.accelerator),
-        ];
+        let axes =
+            [("kernel", &kernel), ("simd", &spec.simd), ("effects", &spec.effects), ("accelerator", &spec.accelerator)];
         for (axis, value) in axes {
             if let Some(value) = value {
                 schedule = format!("{schedule}/{axis}-{value}");

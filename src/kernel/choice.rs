@@ -6,7 +6,7 @@ use crate::estimator::{self, Course, ESTIMATORS, Estimator, EstimatorVisitor, Ro
 use crate::sampling::{InLanes as LaneSampler, SAMPLERS, is_deterministic};
 use crate::scene::{
     ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES, ProfileEntry,
-    Scene, SmallptEffects, accelerator, effect_names,
+    Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
 use crate::simd::{Entry as Level, LEVELS, best};
 
@@ -86,7 +86,9 @@ fn profiles_for(sampler: &str) -> &'static [&'static str] {
 
 /// Checks every name of the spec and chooses what it leaves open.
 pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
-    let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len()) else {
+    let lanes = lanes_for(scene, spec)?;
+    let side_by_side = lanes.is_ok() && scene.primitives.effects() == Sphere::EFFECT;
+    let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len(), side_by_side) else {
         let names = ACCELERATORS.iter().map(|entry| entry.name);
         return Err(unknown("accelerator", spec.accelerator.as_deref().unwrap_or_default(), names).into());
     };
@@ -133,7 +135,6 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
             return Err(InputError::new("roulette", roulette, problem).allowed("none").into());
         }
     }
-    let lanes = lanes_for(scene, spec)?;
     Ok(Choice { profile, accelerator, lanes })
 }
 

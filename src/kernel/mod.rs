@@ -18,11 +18,11 @@ use crate::scene::{AllEffects, ProfileVisitor, Scene, SmallptEffects, with_profi
 pub use choice::{Choice, choose};
 use choice::{INDEPENDENT, unknown};
 pub use inspect::{BounceRow, Event, Inspect, LightByBounce, PathLog, inspect};
-pub use spec::{Clamp, Spec};
 use lanes::Lanes;
 use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
+pub use spec::{Clamp, Spec};
 use std::sync::Arc;
 
 /// Version of the arithmetic. It changes when the same settings give other bits than before, and films of the old ones are no longer used.

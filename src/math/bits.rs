@@ -3,9 +3,7 @@
 use std::ops::{BitAnd, BitOr, BitXor};
 
 /// 64 bits, or several such words side by side.
-pub trait Bits:
-    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self>
-{
+pub trait Bits: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Output = Self> {
     /// The same word in every lane.
     fn splat(word: u64) -> Self;
     /// The sum modulo 2^64.

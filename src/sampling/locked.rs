@@ -3,8 +3,8 @@
 //! What a program gets that makes its one generator safe for threads in the simplest way. As with the C library's `rand` threads take
 //! turns, and no two runs with more than one thread are alike. Here to be measured, not to be used.
 
-use crate::math::unit;
 use super::{Address, Sampler};
+use crate::math::unit;
 use rand::Rng;
 use rand_pcg::Pcg32;
 use std::sync::{Mutex, PoisonError};

@@ -3,8 +3,8 @@
 //! The usual cure for a shared generator: nobody waits. But which pixel gets which number depends on which thread renders it, so no two runs
 //! with more than one thread are alike, and an error cannot be looked for by rendering a pixel again. Here to be measured, not to be used.
 
-use crate::math::unit;
 use super::{Address, Sampler};
+use crate::math::unit;
 use rand::Rng;
 use rand_pcg::Pcg32;
 use std::cell::RefCell;

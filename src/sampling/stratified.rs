@@ -7,8 +7,8 @@
 //! The error falls as that of independent samples does, by a factor below it: what differs within a cell remains.
 
 use super::independent::mix;
-use crate::math::unit;
 use super::{Address, Sampler};
+use crate::math::unit;
 
 /// The sampler; it has no state.
 #[derive(Debug, Clone, Copy, Default)]

@@ -207,7 +207,7 @@ impl Scene {
 
     /// The same scene with the search structure of that name; `None` if it is to have none.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
-        let hierarchy = accelerator(Some(name), 0)?.build(&self.primitives.bounds())?;
+        let hierarchy = accelerator(Some(name), 0, false)?.build(&self.primitives.bounds())?;
         Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 }

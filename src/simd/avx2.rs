@@ -1,6 +1,9 @@
 //! AVX2: four numbers in a register; a mask is a register whose lanes are all ones or all zeros.
 
-#![expect(unsafe_code, reason = "instructions that not every processor has; `run` alone lets anyone near them, behind `is_available`")]
+#![expect(
+    unsafe_code,
+    reason = "instructions that not every processor has; `run` alone lets anyone near them, behind `is_available`"
+)]
 
 use super::two::{HalfMask, Two};
 use super::{Float, Mask, Table, Work};

@@ -1,6 +1,9 @@
 //! AVX-512: eight numbers in a register, masks in registers of their own.
 
-#![expect(unsafe_code, reason = "instructions that not every processor has; `run` alone lets anyone near them, behind `is_available`")]
+#![expect(
+    unsafe_code,
+    reason = "instructions that not every processor has; `run` alone lets anyone near them, behind `is_available`"
+)]
 
 use super::two::{HalfMask, Two};
 use super::{Float, Mask, Table, Work};

@@ -23,7 +23,24 @@ pub(super) struct Plain<T>([T; LANES]);
 /// One value from each lane of one or two or three others. Written out, because a closure in the loop may stay a call.
 macro_rules! each {
     ($k:ident => $value:expr) => {
-        Plain([{ let $k = 0; $value }, { let $k = 1; $value }, { let $k = 2; $value }, { let $k = 3; $value }])
+        Plain([
+            {
+                let $k = 0;
+                $value
+            },
+            {
+                let $k = 1;
+                $value
+            },
+            {
+                let $k = 2;
+                $value
+            },
+            {
+                let $k = 3;
+                $value
+            },
+        ])
     };
 }
 

@@ -52,7 +52,7 @@ fn consumers(trials: &mut Trials) {
 fn scenes() -> impl Iterator<Item = Scene> {
     let name = |name: &'static str| if name == "spheres" { "spheres:100" } else { name };
     let fast = |scene: Scene| {
-        let fitting = accelerator(None, scene.owners.len()).and_then(|entry| scene.accelerated(entry.name));
+        let fitting = accelerator(None, scene.owners.len(), false).and_then(|entry| scene.accelerated(entry.name));
         fitting.unwrap_or(scene)
     };
     SCENES.iter().map(move |(scene, _)| fast(load(name(scene)).expect("a shipped scene")))

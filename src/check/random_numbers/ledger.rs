@@ -83,7 +83,7 @@ fn once(trials: &mut Trials) {
         ESTIMATORS.iter().map(|_| ledgers.iter().map(|_| Found::default()).collect()).collect();
     for (scene, _) in SCENES {
         let scene = load(if *scene == "spheres" { "spheres:100" } else { scene }).expect("a shipped scene");
-        let fitting = accelerator(None, scene.owners.len()).and_then(|entry| scene.accelerated(entry.name));
+        let fitting = accelerator(None, scene.owners.len(), false).and_then(|entry| scene.accelerated(entry.name));
         let scene = fitting.unwrap_or(scene);
         let lit = scene.lit(&scene.camera.view(16, 12));
         for (entry, all) in ESTIMATORS.iter().zip(&mut all) {

@@ -176,8 +176,12 @@ impl Lanes {
     #[inline(always)]
     fn aim_one_by_one<V: Float>(&self, at: &Arrival<V>, choice: V, place: [V; 2], lanes: V::Mask) -> Aims<V> {
         let zero = V::splat(0.0);
-        let mut aims =
-            Aims { lanes: V::Mask::from_bits(0), direction: Vec3::new(zero, zero, zero), primitive: zero, density: zero };
+        let mut aims = Aims {
+            lanes: V::Mask::from_bits(0),
+            direction: Vec3::new(zero, zero, zero),
+            primitive: zero,
+            density: zero,
+        };
         let Some(lights) = &self.scene.lights else { return aims };
         let mut found = 0;
         for lane in LanesOf(lanes.bits()) {

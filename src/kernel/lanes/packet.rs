@@ -65,7 +65,11 @@ impl<V: Float> Packet<V> {
         let none = V::Bits::splat(0);
         Self {
             alive: 0,
-            rays: Rays { ray: Ray { origin: vector, direction: vector }, from: V::splat(-1.0), own_root: V::splat(f64::NAN) },
+            rays: Rays {
+                ray: Ray { origin: vector, direction: vector },
+                from: V::splat(-1.0),
+                own_root: V::splat(f64::NAN),
+            },
             throughput: colour,
             collected: colour,
             vertices: none,

@@ -4,8 +4,10 @@ use super::Lanes;
 use super::packet::{LanesOf, Packet, Part, colour, differ, set_vector, vector};
 use super::tables::Kind;
 use crate::kernel::Counts;
-use crate::math::{Bits, Frame, Ray, Rgb, Vec3, dot, fresnel_dielectric, fresnel_schlick, other_root, reflect, refract};
 use crate::material::Density;
+use crate::math::{
+    Bits, Frame, Ray, Rgb, Vec3, dot, fresnel_dielectric, fresnel_schlick, other_root, reflect, refract,
+};
 use crate::sampling::{Purpose, cosine_hemisphere};
 use crate::scene::AllEffects;
 use crate::simd::{Float, Mask};
@@ -238,7 +240,8 @@ impl Lanes {
             let owner = self.scene.owners[at.primitive.lane(lane) as usize];
             let material = &self.scene.objects[owner as usize].material;
             let numbers = [numbers[0].lane(lane), numbers[1].lane(lane)];
-            let Some(sample) = material.sample::<AllEffects>(vector(&wo, lane), inside >> lane & 1 == 1, numbers) else {
+            let Some(sample) = material.sample::<AllEffects>(vector(&wo, lane), inside >> lane & 1 == 1, numbers)
+            else {
                 scattered.absorbed |= 1 << lane;
                 continue;
             };

@@ -51,7 +51,8 @@ impl<'a> Window<'a> {
     pub(super) fn over(piece: &Piece, out: &'a mut TileBuffer) -> Self {
         let Piece { bounds, samples } = piece.clone();
         // A piece without samples has nothing to hand out.
-        let first = Place { x: bounds.x0, y: if samples.is_empty() { bounds.y1 } else { bounds.y0 }, sample: samples.start };
+        let first =
+            Place { x: bounds.x0, y: if samples.is_empty() { bounds.y1 } else { bounds.y0 }, sample: samples.start };
         if samples.is_empty() {
             for y in bounds.y0..bounds.y1 {
                 out.row_mut(y)[..bounds.width() as usize].fill(PixelSum::default());

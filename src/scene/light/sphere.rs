@@ -90,7 +90,9 @@ impl Target for SphereTarget {
     fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
         match self.way(point, own)? {
             Way::Everywhere => Some((uniform_sphere(u), UNIFORM_SPHERE_DENSITY)),
-            Way::Cone { axis, one_minus_cos } => Some((towards_cap(axis, one_minus_cos, u), 0.5 / (PI * one_minus_cos))),
+            Way::Cone { axis, one_minus_cos } => {
+                Some((towards_cap(axis, one_minus_cos, u), 0.5 / (PI * one_minus_cos)))
+            }
             Way::Area(cap) => {
                 let normal = towards_cap(cap.axis, cap.height / self.sphere.radius, u);
                 let towards = self.sphere.center + normal * self.sphere.radius - point;
