@@ -3,8 +3,8 @@
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
 use crate::watchdog::Watchdog;
-use pathmark::lock::Lock;
-use std::fs;
+use pathmark::lock::{Lock, try_lock};
+use std::fs::{self, File};
 use std::path::Path;
 use std::process::Child;
 use std::time::Duration;
@@ -102,4 +102,22 @@ fn a_lock_is_taken_by_one_at_a_time() {
         }
     });
     assert!(!path.exists());
+}
+
+/// Who waited for a file that was removed meanwhile has locked nothing: the next one makes a file of that name and locks that.
+#[test]
+fn the_lock_of_a_removed_file_is_none() {
+    let _watchdog = Watchdog::new(Duration::from_mins(1));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lock");
+    let [held, waited_for] = [(); 2].map(|()| File::create(&path).unwrap());
+    held.lock().unwrap();
+    std::thread::scope(|scope| {
+        let waiting = scope.spawn(|| try_lock(&waited_for, &path).unwrap());
+        // Long enough for it to find the lock held, and shorter than its patience.
+        std::thread::sleep(Duration::from_millis(300));
+        fs::remove_file(&path).unwrap();
+        drop(held);
+        assert!(!waiting.join().unwrap());
+    });
 }
