@@ -8,7 +8,16 @@
 use super::two::{HalfMask, Two};
 use super::{Float, Mask, Table, Work};
 use crate::math::{Bits, Real};
-use std::arch::x86_64::*;
+use std::arch::x86_64::{
+    __m512d, __m512i, __mmask8, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadu_si128, _mm512_abs_pd, _mm512_add_epi64,
+    _mm512_add_pd, _mm512_and_si512, _mm512_broadcast_i32x4, _mm512_castpd_si512, _mm512_castsi512_pd,
+    _mm512_cmp_pd_mask, _mm512_cmpeq_epu64_mask, _mm512_cmplt_epu64_mask, _mm512_cvtepu64_pd, _mm512_cvttpd_epi64,
+    _mm512_div_pd, _mm512_loadu_pd, _mm512_loadu_si512, _mm512_mask_blend_epi64, _mm512_mask_blend_pd,
+    _mm512_mask_expand_epi64, _mm512_mask_expand_pd, _mm512_mask_mov_epi64, _mm512_mask_mov_pd, _mm512_mul_pd,
+    _mm512_mullo_epi64, _mm512_or_si512, _mm512_permutex2var_pd, _mm512_set1_epi64, _mm512_set1_pd,
+    _mm512_shuffle_epi8, _mm512_slli_epi64, _mm512_sqrt_pd, _mm512_srli_epi64, _mm512_srlv_epi64, _mm512_storeu_pd,
+    _mm512_storeu_si512, _mm512_sub_pd, _mm512_ternarylogic_epi64, _mm512_xor_pd, _mm512_xor_si512,
+};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// Whether this processor has what is used here.

@@ -171,9 +171,9 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     #[inline(always)]
     fn set_word(bits: &mut Self::Bits, lane: usize, word: u64) {
         if lane < V::LANES {
-            V::set_word(&mut bits.0, lane, word)
+            V::set_word(&mut bits.0, lane, word);
         } else {
-            V::set_word(&mut bits.1, lane - V::LANES, word)
+            V::set_word(&mut bits.1, lane - V::LANES, word);
         }
     }
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::Lanes;
 use super::packet::{LanesOf, Packet, Rays, set_vector, vector};
 use super::tables::Kind;
-use super::vertex::{Arrival, own_root};
+use super::vertex::{Arrival, Vertex, own_root};
 use crate::estimator::power_heuristic;
 use crate::kernel::Counts;
 use crate::math::{Ray, Rgb, Vec3};
@@ -15,7 +15,7 @@ use std::f64::consts::FRAC_1_PI;
 /// What paths aim at.
 pub(super) enum Targets {
     /// Spheres.
-    Spheres(SphereLights),
+    Spheres(Box<SphereLights>),
     /// Triangles, too: one lane after the other.
     Others,
 }
@@ -30,7 +30,7 @@ impl Targets {
     }
 
     pub(super) fn of(lights: &Lights) -> Self {
-        SphereLights::of(lights).map_or(Self::Others, Self::Spheres)
+        SphereLights::of(lights).map_or(Self::Others, |lights| Self::Spheres(Box::new(lights)))
     }
 }
 
@@ -98,17 +98,15 @@ impl Lanes {
         &self,
         packet: &mut Packet<V>,
         at: &Arrival<V>,
-        vertices: V::Bits,
-        albedo: Rgb<V>,
-        kind: V,
+        vertex: &Vertex<V>,
         ended: u32,
         counts: &mut Counts,
     ) {
         let Some(targets) = &self.targets else { return };
         let going_on = at.lanes & !V::Mask::from_bits(ended);
-        let place = self.sampler.pair::<V>(&packet.words, vertices, packet.branch, Purpose::Light);
+        let place = self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::Light);
         let choice = if self.chooses {
-            self.sampler.pair::<V>(&packet.words, vertices, packet.branch, Purpose::LightChoice)[0]
+            self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::LightChoice)[0]
         } else {
             V::splat(0.0)
         };
@@ -120,7 +118,7 @@ impl Lanes {
             Targets::Others => self.aim_one_by_one(at, choice, place, going_on),
         };
         let wi = at.frame.to_local(aims.direction);
-        let lit = self.scattered(packet, at, albedo, kind, wi, going_on & aims.lanes);
+        let lit = self.scattered(packet, at, vertex, wi, going_on & aims.lanes);
         if !lit.lanes.any() {
             return;
         }
@@ -144,19 +142,18 @@ impl Lanes {
         &self,
         packet: &Packet<V>,
         at: &Arrival<V>,
-        albedo: Rgb<V>,
-        kind: V,
+        vertex: &Vertex<V>,
         wi: Vec3<V>,
         lanes: V::Mask,
     ) -> Lit<V> {
         let zero = V::splat(0.0);
         let wo = at.frame.to_local(-packet.rays.ray.direction);
         let cos = wi.z.abs();
-        let mut scattered = albedo * V::splat(FRAC_1_PI) * cos;
+        let mut scattered = vertex.albedo * V::splat(FRAC_1_PI) * cos;
         let mut density = cos * V::splat(FRAC_1_PI);
-        let mut scatters = lanes & kind.equal(zero) & zero.lt(wo.z * wi.z);
+        let mut scatters = lanes & vertex.kind.equal(zero) & zero.lt(wo.z * wi.z);
         if self.tables.has[Kind::Other as usize] {
-            let others = lanes & kind.equal(V::splat(Kind::Other.number()));
+            let others = lanes & vertex.kind.equal(V::splat(Kind::Other.number()));
             for lane in LanesOf(others.bits()) {
                 let owner = self.scene.owners[at.primitive.lane(lane) as usize];
                 let material = &self.scene.objects[owner as usize].material;

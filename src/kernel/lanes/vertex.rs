@@ -31,6 +31,16 @@ pub(super) struct Arrival<V: Float> {
     pub(super) frame: Frame<V>,
 }
 
+/// What is known of the vertices before their points are.
+#[derive(Clone, Copy)]
+pub(super) struct Vertex<V: Float> {
+    /// How many there are up to this one.
+    pub(super) number: V::Bits,
+    pub(super) albedo: Rgb<V>,
+    /// The [`Kind`] of surface.
+    pub(super) kind: V,
+}
+
 /// Directions that surfaces scatter to.
 struct Scattered<V: Float> {
     wi: Vec3<V>,
@@ -65,9 +75,9 @@ impl Lanes {
         if ended == packet.alive {
             return ended;
         }
-        let vertices = packet.vertices.plus(V::Bits::splat(1));
+        let number = packet.vertices.plus(V::Bits::splat(1));
         let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);
-        let albedo = Rgb { r, g, b };
+        let vertex = Vertex { number, albedo: Rgb { r, g, b }, kind };
         // Where nothing is aimed at, the point is worked out after what needs none: so less waits in registers.
         let early = if AIMS { Some(self.arrive(packet, met, t, primitive)) } else { None };
         let [r, g, b, gives_off] = V::rows(&self.tables.emissions, primitive);
@@ -85,17 +95,17 @@ impl Lanes {
         counts.truncated += u64::from(cut.count_ones());
         ended |= cut;
         if let Some(at) = &early {
-            self.aim(packet, at, vertices, albedo, kind, ended, counts);
+            self.aim(packet, at, &vertex, ended, counts);
         }
-        ended |= self.roulette(packet, met, vertices, albedo);
+        ended |= self.roulette(packet, met, &vertex);
         let at = match early {
             Some(at) => at,
             None => self.arrive(packet, met, t, primitive),
         };
-        let numbers = self.sampler.pair::<V>(&packet.words, vertices, packet.branch, Purpose::Bsdf);
-        let (scattered, split) = self.scatter::<V, AIMS>(packet, &at, vertices, albedo, kind, numbers, ended);
+        let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
+        let (scattered, split) = self.scatter::<V, AIMS>(packet, &at, &vertex, numbers, ended);
         ended |= scattered.absorbed;
-        self.leave(packet, &at, vertices, &scattered, split, &mut ended);
+        leave(packet, &at, number, &scattered, split, &mut ended);
         ended
     }
 
@@ -124,13 +134,13 @@ impl Lanes {
 
     /// The lanes that chance ends.
     #[inline(always)]
-    fn roulette<V: Float>(&self, packet: &mut Packet<V>, lanes: V::Mask, vertices: V::Bits, albedo: Rgb<V>) -> u32 {
-        let begun = lanes & V::less(V::Bits::splat(u64::from(self.course.roulette.after())), vertices);
+    fn roulette<V: Float>(&self, packet: &mut Packet<V>, lanes: V::Mask, vertex: &Vertex<V>) -> u32 {
+        let begun = lanes & V::less(V::Bits::splat(u64::from(self.course.roulette.after())), vertex.number);
         if !begun.any() {
             return 0;
         }
-        let survival = self.course.roulette.chance(packet.throughput, albedo);
-        let [number, _] = self.sampler.pair::<V>(&packet.words, vertices, packet.branch, Purpose::Roulette);
+        let survival = self.course.roulette.chance(packet.throughput, vertex.albedo);
+        let [number, _] = self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::Roulette);
         let raised = packet.throughput * (V::splat(1.0) / survival);
         packet.throughput = Rgb::select(begun, raised, packet.throughput);
         (begun & survival.le(number)).bits()
@@ -142,31 +152,29 @@ impl Lanes {
         &self,
         packet: &Packet<V>,
         at: &Arrival<V>,
-        vertices: V::Bits,
-        albedo: Rgb<V>,
-        kind: V,
+        vertex: &Vertex<V>,
         numbers: [V; 2],
         ended: u32,
     ) -> (Scattered<V>, Option<Split<V>>) {
         let none = V::Mask::from_bits(0);
         let wi = cosine_hemisphere(numbers);
         let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
-        let mut scattered = Scattered { wi, weight: albedo, is_delta: none, density, absorbed: 0 };
+        let mut scattered = Scattered { wi, weight: vertex.albedo, is_delta: none, density, absorbed: 0 };
         let mut split = None;
         let going_on = at.lanes & !V::Mask::from_bits(ended);
-        let others = going_on & V::splat(0.5).lt(kind);
+        let others = going_on & V::splat(0.5).lt(vertex.kind);
         if !others.any() {
             return (scattered, split);
         }
         let wo = at.frame.to_local(-packet.rays.ray.direction);
-        let is_mirror = others & kind.equal(V::splat(Kind::Mirror.number()));
+        let is_mirror = others & vertex.kind.equal(V::splat(Kind::Mirror.number()));
         scattered.wi = Vec3::select(is_mirror, reflect(wo), scattered.wi);
         scattered.is_delta = is_mirror;
-        let is_glass = others & kind.equal(V::splat(Kind::Dielectric.number()));
+        let is_glass = others & vertex.kind.equal(V::splat(Kind::Dielectric.number()));
         if is_glass.any() {
-            split = self.refract::<V, AIMS>(at, vertices, wo, albedo, numbers[0], is_glass, &mut scattered);
+            split = self.refract::<V, AIMS>(at, vertex, wo, numbers[0], is_glass, &mut scattered);
         }
-        let is_other = others & kind.equal(V::splat(Kind::Other.number()));
+        let is_other = others & vertex.kind.equal(V::splat(Kind::Other.number()));
         if is_other.any() {
             self.scatter_one_by_one(at, wo, numbers, is_other, &mut scattered);
         }
@@ -178,14 +186,14 @@ impl Lanes {
     fn refract<V: Float, const AIMS: bool>(
         &self,
         at: &Arrival<V>,
-        vertices: V::Bits,
+        vertex: &Vertex<V>,
         wo: Vec3<V>,
-        tint: Rgb<V>,
         number: V,
         lanes: V::Mask,
         scattered: &mut Scattered<V>,
     ) -> Option<Split<V>> {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        let tint = vertex.albedo;
         let [eta, inverse, r0, is_exact] = V::rows(&self.tables.interfaces, at.primitive);
         let crossed = V::select(at.inside, eta, inverse);
         let (refracted, cos2) = refract(wo, crossed);
@@ -198,7 +206,8 @@ impl Lanes {
             reflectance = V::select(is_exact, exact, reflectance);
         }
         let transmittance = one - reflectance;
-        let goes_both_ways = lanes & !is_total & V::less(vertices, V::Bits::splat(u64::from(self.course.splits) + 1));
+        let goes_both_ways =
+            lanes & !is_total & V::less(vertex.number, V::Bits::splat(u64::from(self.course.splits) + 1));
 
         let (chance, reflects, weight);
         if AIMS {
@@ -256,66 +265,58 @@ impl Lanes {
         }
         scattered.is_delta = scattered.is_delta | V::Mask::from_bits(deltas);
     }
+}
 
-    /// Sets out in the new directions.
-    #[inline(always)]
-    fn leave<V: Float>(
-        &self,
-        packet: &mut Packet<V>,
-        at: &Arrival<V>,
-        vertices: V::Bits,
-        scattered: &Scattered<V>,
-        split: Option<Split<V>>,
-        ended: &mut u32,
-    ) {
-        let mut direction = at.frame.to_world(scattered.wi);
-        if scattered.is_delta.any() {
-            direction = Vec3::select(scattered.is_delta, direction.normalized(), direction);
-        }
-        let mut splits = 0;
-        if let Some(split) = split {
-            splits = split.lanes & !*ended;
-            self.put_aside(packet, at, vertices, &split, splits);
-        }
-        packet.rays.own_root = own_root(at, scattered.wi, direction);
-        packet.rays.ray = Ray { origin: at.point, direction };
-        packet.rays.from = at.primitive;
-        packet.throughput = packet.throughput * scattered.weight;
-        packet.vertices = vertices;
-        packet.density = V::select(scattered.is_delta, V::splat(-1.0), scattered.density);
-        // Parts of a split are looked at when they have been traced.
-        let smallest = V::splat(f64::MIN_POSITIVE);
-        let Rgb { r, g, b } = packet.throughput;
-        let spent = r.lt(smallest) & g.lt(smallest) & b.lt(smallest);
-        *ended |= (at.lanes & spent).bits() & !splits;
+/// Sets out in the new directions.
+#[inline(always)]
+fn leave<V: Float>(
+    packet: &mut Packet<V>,
+    at: &Arrival<V>,
+    vertices: V::Bits,
+    scattered: &Scattered<V>,
+    split: Option<Split<V>>,
+    ended: &mut u32,
+) {
+    let mut direction = at.frame.to_world(scattered.wi);
+    if scattered.is_delta.any() {
+        direction = Vec3::select(scattered.is_delta, direction.normalized(), direction);
     }
+    let mut splits = 0;
+    if let Some(split) = split {
+        splits = split.lanes & !*ended;
+        put_aside(packet, at, vertices, &split, splits);
+    }
+    packet.rays.own_root = own_root(at, scattered.wi, direction);
+    packet.rays.ray = Ray { origin: at.point, direction };
+    packet.rays.from = at.primitive;
+    packet.throughput = packet.throughput * scattered.weight;
+    packet.vertices = vertices;
+    packet.density = V::select(scattered.is_delta, V::splat(-1.0), scattered.density);
+    // Parts of a split are looked at when they have been traced.
+    let smallest = V::splat(f64::MIN_POSITIVE);
+    let Rgb { r, g, b } = packet.throughput;
+    let spent = r.lt(smallest) & g.lt(smallest) & b.lt(smallest);
+    *ended |= (at.lanes & spent).bits() & !splits;
+}
 
-    /// The refracted parts of paths that split.
-    #[inline(never)]
-    fn put_aside<V: Float>(
-        &self,
-        packet: &mut Packet<V>,
-        at: &Arrival<V>,
-        vertices: V::Bits,
-        split: &Split<V>,
-        lanes: u32,
-    ) {
-        let direction = at.frame.to_world(split.wi).normalized();
-        let own_root = own_root(at, split.wi, direction);
-        let throughput = packet.throughput * split.weight;
-        for lane in LanesOf(lanes) {
-            let vertices = V::word(&vertices, lane);
-            let part = Part {
-                origin: vector(&at.point, lane),
-                direction: vector(&direction, lane),
-                from: at.primitive.lane(lane),
-                own_root: own_root.lane(lane),
-                throughput: colour(&throughput, lane),
-                vertices,
-                branch: V::word(&packet.branch, lane) | 1 << (vertices - 1),
-            };
-            packet.push(lane, part);
-        }
+/// The refracted parts of paths that split.
+#[inline(never)]
+fn put_aside<V: Float>(packet: &mut Packet<V>, at: &Arrival<V>, vertices: V::Bits, split: &Split<V>, lanes: u32) {
+    let direction = at.frame.to_world(split.wi).normalized();
+    let own_root = own_root(at, split.wi, direction);
+    let throughput = packet.throughput * split.weight;
+    for lane in LanesOf(lanes) {
+        let vertices = V::word(&vertices, lane);
+        let part = Part {
+            origin: vector(&at.point, lane),
+            direction: vector(&direction, lane),
+            from: at.primitive.lane(lane),
+            own_root: own_root.lane(lane),
+            throughput: colour(&throughput, lane),
+            vertices,
+            branch: V::word(&packet.branch, lane) | 1 << (vertices - 1),
+        };
+        packet.push(lane, part);
     }
 }
 

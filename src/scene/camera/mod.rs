@@ -117,6 +117,13 @@ impl Camera {
     }
 }
 
+/// Column and row of the subpixel that a sample belongs to; not looked at where pixels have none.
+#[inline(always)]
+fn subpixel(sample: u32) -> [f64; 2] {
+    let number = sample % SUBPIXELS;
+    [number % 2, number / 2].map(f64::from)
+}
+
 impl View {
     /// Where rays start, nine of them: through the corners of the image, the middles of its edges and its own, from the middle of the lens.
     pub fn origins(&self) -> [Vec3; 9] {
@@ -141,7 +148,7 @@ impl View {
         film: [f64; 2],
         lens: impl FnOnce() -> [f64; 2],
     ) -> Ray {
-        let towards = self.towards([x, y].map(f64::from), self.subpixel(sample), film);
+        let towards = self.towards([x, y].map(f64::from), subpixel(sample), film);
         if X::EFFECTS.cover(LENS)
             && let Some(Lens { radius, focus }) = self.camera.lens
         {
@@ -151,14 +158,7 @@ impl View {
             let direction = (towards * focus - offset).normalized();
             return Ray { origin: self.camera.position + offset + direction * self.camera.advance, direction };
         }
-        self.from_pinhole(towards)
-    }
-
-    /// Column and row of the subpixel that a sample belongs to; not looked at where pixels have none.
-    #[inline(always)]
-    fn subpixel(&self, sample: u32) -> [f64; 2] {
-        let subpixel = sample % SUBPIXELS;
-        [subpixel % 2, subpixel / 2].map(f64::from)
+        self.pinhole_ray(towards)
     }
 
     /// The direction, of any length, through a place in pixel (`x`, `y`).
@@ -178,7 +178,7 @@ impl View {
     }
 
     #[inline(always)]
-    fn from_pinhole<T: Real>(&self, towards: Vec3<T>) -> Ray<T> {
+    fn pinhole_ray<T: Real>(&self, towards: Vec3<T>) -> Ray<T> {
         let direction = towards.normalized();
         let start = direction * T::splat(self.camera.advance);
         Ray { origin: Vec3::splat(self.camera.position) + start, direction }
@@ -191,6 +191,6 @@ impl View {
         let upper = two.le(subpixel);
         let column = T::select(upper, subpixel - two, subpixel);
         let row = T::select(upper, one, T::splat(0.0));
-        self.from_pinhole(self.towards(pixel, [column, row], film))
+        self.pinhole_ray(self.towards(pixel, [column, row], film))
     }
 }
