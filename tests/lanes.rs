@@ -51,7 +51,7 @@ fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
 
 #[test]
 fn every_scene_has_the_scalar_kernels_bits() {
-    let watchdog = Watchdog::new(Duration::from_secs(300));
+    let watchdog = Watchdog::new(Duration::from_mins(5));
     let (mut compared, mut scenes) = (0, 0);
     for (name, _) in SCENES {
         watchdog.now(*name);
@@ -77,7 +77,7 @@ fn every_scene_has_the_scalar_kernels_bits() {
 /// Of any shape: a pixel alone, a sample alone, more samples than may be out at once, a row, samples from the middle, and none.
 #[test]
 fn pieces_of_any_shape_have_the_scalar_kernels_bits() {
-    let watchdog = Watchdog::new(Duration::from_secs(120));
+    let watchdog = Watchdog::new(Duration::from_mins(2));
     let scene = Arc::new(load("cornell").unwrap());
     let piece = |x0, y0, x1, y1, samples| Piece { bounds: Bounds { x0, y0, x1, y1 }, samples };
     let pieces = [
@@ -98,7 +98,7 @@ fn pieces_of_any_shape_have_the_scalar_kernels_bits() {
 /// Limits and rules: cut at every depth, ended by chance in every way.
 #[test]
 fn options_have_the_scalar_kernels_bits() {
-    let watchdog = Watchdog::new(Duration::from_secs(120));
+    let watchdog = Watchdog::new(Duration::from_mins(2));
     let scene = Arc::new(load("cornell").unwrap());
     let pieces = [Piece { bounds: Bounds { x0: 0, y0: 0, x1: 32, y1: 24 }, samples: 0..4 }];
     for estimator in ["smallpt", "bsdf", "nee", "mis"] {
