@@ -37,14 +37,6 @@ fn enter<W: Work>(work: W) -> W::Output {
     work.run::<Two<F64x4>>()
 }
 
-/// An intrinsic. No value of the types of this file is made outside of `enter`, which only processors that have them come to.
-macro_rules! op {
-    ($call:expr) => {
-        // SAFETY: reached through `enter` alone, as above; loads and stores go to arrays of the register's size.
-        unsafe { $call }
-    };
-}
-
 #[derive(Clone, Copy)]
 pub(super) struct F64x4(__m256d);
 
@@ -53,18 +45,6 @@ pub(super) struct U64x4(__m256i);
 
 #[derive(Clone, Copy)]
 pub(super) struct Mask4(__m256d);
-
-macro_rules! operator {
-    ($Type:ident: $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $Trait for $Type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(op!($intrinsic(self.0, other.0)))
-            }
-        }
-    )*};
-}
 
 operator!(F64x4: Add add _mm256_add_pd, Sub sub _mm256_sub_pd, Mul mul _mm256_mul_pd, Div div _mm256_div_pd);
 operator!(U64x4: BitAnd bitand _mm256_and_si256, BitOr bitor _mm256_or_si256, BitXor bitxor _mm256_xor_si256);
@@ -189,7 +169,6 @@ impl HalfMask for Mask4 {
 }
 
 impl Float for F64x4 {
-    type One = f64;
     type Bits = U64x4;
     const LANES: usize = 4;
 

@@ -39,14 +39,6 @@ fn enter<W: Work>(work: W) -> W::Output {
     work.run::<Two<F64x8>>()
 }
 
-/// An intrinsic. No value of the types of this file is made outside of `enter`, which only processors that have them come to.
-macro_rules! op {
-    ($call:expr) => {
-        // SAFETY: reached through `enter` alone, as above; loads and stores go to arrays of the register's size.
-        unsafe { $call }
-    };
-}
-
 #[derive(Clone, Copy)]
 pub(super) struct F64x8(__m512d);
 
@@ -55,18 +47,6 @@ pub(super) struct U64x8(__m512i);
 
 #[derive(Clone, Copy)]
 pub(super) struct Mask8(__mmask8);
-
-macro_rules! operator {
-    ($Type:ident: $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $Trait for $Type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(op!($intrinsic(self.0, other.0)))
-            }
-        }
-    )*};
-}
 
 operator!(F64x8: Add add _mm512_add_pd, Sub sub _mm512_sub_pd, Mul mul _mm512_mul_pd, Div div _mm512_div_pd);
 operator!(U64x8: BitAnd bitand _mm512_and_si512, BitOr bitor _mm512_or_si512, BitXor bitxor _mm512_xor_si512);
@@ -200,7 +180,6 @@ impl HalfMask for Mask8 {
 }
 
 impl Float for F64x8 {
-    type One = f64;
     type Bits = U64x8;
     const LANES: usize = 8;
 

@@ -6,6 +6,30 @@
 //!
 //! To add an instruction set: write its file with types that implement [`Float`] and [`Bits`], and a line in `levels!` below.
 
+/// An intrinsic of a level that not every processor has. No value of such a level's types is made outside of its `enter`, which only
+/// processors that have its instructions come to.
+#[cfg(target_arch = "x86_64")]
+macro_rules! op {
+    ($call:expr) => {
+        // SAFETY: reached through `enter` alone, as above; loads and stores go to arrays of the register's size.
+        unsafe { $call }
+    };
+}
+
+/// Operators of a register that are one intrinsic each.
+#[cfg(target_arch = "x86_64")]
+macro_rules! operator {
+    ($Type:ident: $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
+        impl $Trait for $Type {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self(op!($intrinsic(self.0, other.0)))
+            }
+        }
+    )*};
+}
+
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -33,8 +57,6 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
 
 /// Numbers in lanes, at most [`MOST_LANES`] of them.
 pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
-    /// The number in one lane.
-    type One: Copy + Into<f64>;
     /// As many words of 64 bits.
     type Bits: Bits;
     /// How many there are.
@@ -114,7 +136,7 @@ pub trait Work {
     type Output;
     /// Does it, with numbers of double precision in lanes. Everything that it calls must be `#[inline(always)]`, or it is compiled without the
     /// instructions of the level.
-    fn run<V: Float<One = f64>>(self) -> Self::Output;
+    fn run<V: Float>(self) -> Self::Output;
 }
 
 /// One line of the table of levels.

@@ -151,7 +151,6 @@ impl Mask for Plain<bool> {
 }
 
 impl Float for Plain<f64> {
-    type One = f64;
     type Bits = Plain<u64>;
     const LANES: usize = LANES;
 

@@ -46,7 +46,7 @@ impl Work for Operations {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Float<One = f64>>(self) {
+    fn run<V: Float>(self) {
         for shift in 0..16 {
             let (a, b) = (numbers(0), numbers(shift));
             let (v, w) = (V::load(&a), V::load(&b));
@@ -112,7 +112,7 @@ impl Work for Operations {
 
 /// What puts numbers into lanes and takes them out.
 #[inline(always)]
-fn lanes_move<V: Float<One = f64>>() {
+fn lanes_move<V: Float>() {
     let from: [f64; MOST_LANES] = std::array::from_fn(|k| k as f64 + 0.5);
     let mut to = [0.0; MOST_LANES];
     V::load(&from).store(&mut to);

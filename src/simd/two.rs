@@ -120,7 +120,6 @@ pub(super) trait HalfMask: Mask {
 }
 
 impl<V: Float<Mask: HalfMask>> Float for Two<V> {
-    type One = V::One;
     type Bits = Two<V::Bits>;
     const LANES: usize = 2 * V::LANES;
 

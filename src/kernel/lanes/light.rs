@@ -105,7 +105,7 @@ impl Lanes {
         let Some(targets) = &self.targets else { return };
         let going_on = at.lanes & !V::Mask::from_bits(ended);
         let place = self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::Light);
-        let choice = if self.chooses {
+        let choice = if targets.are_several() {
             self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::LightChoice)[0]
         } else {
             V::splat(0.0)
@@ -152,7 +152,7 @@ impl Lanes {
         let mut scattered = vertex.albedo * V::splat(FRAC_1_PI) * cos;
         let mut density = cos * V::splat(FRAC_1_PI);
         let mut scatters = lanes & vertex.kind.equal(zero) & zero.lt(wo.z * wi.z);
-        if self.tables.has[Kind::Other as usize] {
+        if self.tables.has_others {
             let others = lanes & vertex.kind.equal(V::splat(Kind::Other.number()));
             for lane in LanesOf(others.bits()) {
                 let owner = self.scene.owners[at.primitive.lane(lane) as usize];

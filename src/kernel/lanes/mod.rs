@@ -35,8 +35,6 @@ pub(super) struct Lanes {
     sampler: Sampler,
     tables: Tables,
     targets: Option<Targets>,
-    /// Whether a number is needed to choose among them.
-    chooses: bool,
     level: &'static simd::Entry,
     /// Whether every sphere is tested, because there are few and nothing else.
     scans: bool,
@@ -45,11 +43,9 @@ pub(super) struct Lanes {
 impl Lanes {
     pub(super) fn new(scene: Arc<Scene>, spec: &Spec, InLanes { level, course, sampler }: InLanes) -> Self {
         let tables = Tables::of(&scene);
-        let targets = scene.lights.as_ref().map(Targets::of);
         Self {
             view: scene.camera.view(spec.width, spec.height),
-            chooses: targets.as_ref().is_some_and(Targets::are_several),
-            targets,
+            targets: scene.lights.as_ref().map(Targets::of),
             scans: tables.is_round && scene.hierarchy.is_none(),
             scene,
             width: spec.width,
@@ -107,7 +103,7 @@ impl Work for Render<'_> {
     type Output = Counts;
 
     #[inline(always)]
-    fn run<V: Float<One = f64>>(self) -> Counts {
+    fn run<V: Float>(self) -> Counts {
         if self.kernel.course.aims.is_some() {
             self.kernel.follow::<V, true>(self.piece, self.out)
         } else {

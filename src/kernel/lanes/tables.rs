@@ -41,8 +41,8 @@ pub(super) struct Tables {
     pub(super) materials: Table,
     /// Of dielectrics: index of refraction and its inverse, Schlick's reflectance at normal incidence, 1 for the exact formula.
     pub(super) interfaces: Table,
-    /// Which kinds there are besides diffuse.
-    pub(super) has: [bool; 4],
+    /// Whether any surface is of [`Kind::Other`].
+    pub(super) has_others: bool,
     /// Whether everything is a sphere.
     pub(super) is_round: bool,
 }
@@ -77,14 +77,13 @@ impl Tables {
             }
             _ => [1.0, 1.0, 0.0, 0.0],
         });
-        let has = [Kind::Diffuse, Kind::Mirror, Kind::Dielectric, Kind::Other]
-            .map(|kind| scene.objects.iter().any(|object| Kind::of(&object.material) == kind));
+        let has_others = scene.objects.iter().any(|object| Kind::of(&object.material) == Kind::Other);
         Self {
             surfaces,
             emissions: Table::new(emissions.collect()),
             materials: Table::new(materials.collect()),
             interfaces,
-            has,
+            has_others,
             is_round: first_flat as usize == scene.owners.len(),
         }
     }
