@@ -5,10 +5,11 @@
 mod watchdog;
 
 use pathmark::estimator::ESTIMATORS;
-use pathmark::film::{Bounds, Piece, TileBuffer};
+use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
 use pathmark::kernel::{Clamp, Counts, Kernel, Spec, build, choose};
 use pathmark::scene::{SCENES, Scene, load};
 use pathmark::simd::{Entry, LEVELS};
+use statrs::distribution::{ContinuousCDF, Normal};
 use std::sync::Arc;
 use std::time::Duration;
 use watchdog::Watchdog;
@@ -72,6 +73,72 @@ fn every_scene_has_the_scalar_kernels_bits() {
         scenes += usize::from(compared > before);
     }
     assert!(scenes >= 24 && compared >= 8 * 24, "{compared} comparisons of {scenes} scenes");
+}
+
+/// Single precision gives the same bits on every instruction set, and no sample that is none. It has the random numbers of double precision, to fewer
+/// digits, so most paths are nearly the same, and what is left of the difference of both images is its own standard error: no scene is darker or
+/// lighter by more than single precision rounds (z-test of the paired difference, two-sided, family-wise 1e-3).
+#[test]
+fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
+    let watchdog = Watchdog::new(Duration::from_mins(5));
+    let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..64 };
+    let mut scores = Vec::new();
+    for (name, _) in SCENES {
+        watchdog.now(*name);
+        let scene = Arc::new(load(name).unwrap());
+        for (estimator, sampler) in [("smallpt", "independent"), ("mis", "sobol"), ("nee", "independent")] {
+            let (estimator, sampler) = (estimator.to_string(), sampler.to_string());
+            let double = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
+            if !is_for_lanes(&scene, &double) {
+                continue;
+            }
+            let single = Spec { precision: "f32".into(), ..double.clone() };
+            let what = format!("{name}, {}", single.estimator);
+            let on = |level: &Entry, piece: &Piece| {
+                let spec = Spec { simd: Some(level.name.into()), ..single.clone() };
+                assert_eq!(choose(&scene, &spec).unwrap().precision().name(), "f32");
+                render(&*build(&scene, &spec).unwrap(), piece)
+            };
+            let few = Piece { samples: 0..4, ..piece.clone() };
+            let expected = on(levels().next().unwrap(), &few);
+            for level in levels() {
+                assert!(on(level, &few) == expected, "{what}: {}", level.name);
+            }
+            let (found, counts) = on(levels().next().unwrap(), &piece);
+            assert_eq!(counts.invalid, 0, "{what}");
+            let (expected, in_double) = render(&*build(&scene, &double).unwrap(), &piece);
+            assert!(counts.escaped == 0 || in_double.escaped > 0, "{what}: {} rays escaped", counts.escaped);
+            scores.push((difference(&found, &expected), what));
+        }
+    }
+    assert!(scores.len() > 60, "{} comparisons", scores.len());
+    let largest = Normal::standard().inverse_cdf(1.0 - 1e-3 / scores.len() as f64 / 2.0);
+    for (Difference { mean, error, of }, what) in scores {
+        assert!(mean.abs() < largest * error + ROUNDING * of, "{what}: {mean} of {of}, standard error {error}");
+    }
+}
+
+/// What the roundings along a path may change of its radiance, relatively.
+const ROUNDING: f64 = 1e-5;
+
+/// The mean difference of two images' pixels.
+struct Difference {
+    mean: f64,
+    /// Its standard error.
+    error: f64,
+    /// The mean pixel.
+    of: f64,
+}
+
+fn difference(found: &TileBuffer, expected: &TileBuffer) -> Difference {
+    let sum = |pixel: &PixelSum| pixel.sum.iter().sum::<f64>();
+    let pairs = found.rows().flatten().zip(expected.rows().flatten());
+    let differences: Vec<f64> = pairs.map(|(found, expected)| sum(found) - sum(expected)).collect();
+    let n = differences.len() as f64;
+    let mean = differences.iter().sum::<f64>() / n;
+    let square = differences.iter().map(|difference| (difference - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let of = expected.rows().flatten().map(sum).sum::<f64>() / n;
+    Difference { mean, error: (square / n).sqrt(), of }
 }
 
 /// Of any shape: a pixel alone, a sample alone, more samples than may be out at once, a row, samples from the middle, and none.
@@ -142,9 +209,20 @@ fn unknown_levels_are_refused() {
     for (field, spec) in [
         ("simd", Spec { simd: Some("mmx".into()), ..Spec::default() }),
         ("kernel", Spec { kernel: "spectral".into(), ..Spec::default() }),
+        ("precision", Spec { precision: "f16".into(), ..Spec::default() }),
     ] {
         let Err(error) = choose(&load("cornell").unwrap(), &spec) else { panic!("{field} is taken") };
         let text = error.to_string();
         assert!(text.contains(field) && text.contains("there is none of that name"), "{text}");
     }
+}
+
+#[test]
+fn the_scalar_kernel_has_one_precision() {
+    let spec = Spec { kernel: "scalar".into(), precision: "f32".into(), ..Spec::default() };
+    let Err(error) = choose(&load("cornell").unwrap(), &spec) else { panic!("it is taken") };
+    assert!(error.to_string().contains("precision") && error.to_string().contains("f64"), "{error}");
+    // Where lanes cannot render, the record says which precision did.
+    let choice = choose(&load("cornell-fog").unwrap(), &Spec { precision: "f32".into(), ..Spec::default() }).unwrap();
+    assert_eq!((choice.kernel(), choice.precision().name(), choice.fallback()), ("scalar", "f64", "fog"));
 }

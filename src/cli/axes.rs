@@ -27,6 +27,9 @@ pub(super) struct What {
     /// Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]
     #[arg(long, value_name = "LEVEL")]
     pub(super) simd: Option<String>,
+    /// Floating-point format: f64, or f32, which lanes alone have and which gives other bits
+    #[arg(long, value_name = "FORMAT", default_value = "f64")]
+    pub(super) precision: String,
     /// Effect profile [default: the smallest that covers the scene]
     #[arg(long, value_name = "PROFILE")]
     pub(super) effects: Option<String>,
@@ -109,6 +112,7 @@ impl What {
             sampler: self.sampler.clone(),
             kernel: self.kernel.clone(),
             simd: self.simd.clone(),
+            precision: self.precision.clone(),
             effects: self.effects.clone(),
             accelerator: self.accelerator.clone(),
             max_depth: self.max_depth,

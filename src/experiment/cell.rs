@@ -93,6 +93,7 @@ impl Cell {
             ("output", settings.output.clone()),
             ("kernel", spec.kernel.clone()),
             ("simd", spec.simd.clone().unwrap_or_default()),
+            ("precision", spec.precision.clone()),
             ("effects", spec.effects.clone().unwrap_or_default()),
             ("accelerator", spec.accelerator.clone().unwrap_or_default()),
             ("max-depth", spec.max_depth.map(|depth| depth.to_string()).unwrap_or_default()),
@@ -122,5 +123,7 @@ fn image_word(scene: &Scene, spec: &Spec, spp: u32) -> String {
     let depth = spec.max_depth.map(|depth| format!("/depth{depth}")).unwrap_or_default();
     let roulette = spec.roulette.as_ref().map(|rule| format!("/{rule}")).unwrap_or_default();
     let clamp = spec.clamp.map(|what| format!("/{}-clamp", what.name())).unwrap_or_default();
-    format!("{what}/{}x{}/{spp}spp/seed{}{depth}{roulette}{clamp}", spec.width, spec.height, spec.seed)
+    let precision = Some(&spec.precision).filter(|format| **format != Spec::default().precision);
+    let precision = precision.map(|format| format!("/{format}")).unwrap_or_default();
+    format!("{what}/{}x{}/{spp}spp/seed{}{depth}{roulette}{clamp}{precision}", spec.width, spec.height, spec.seed)
 }

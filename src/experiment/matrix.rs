@@ -34,6 +34,9 @@ pub(super) struct Matrix {
     /// Instruction sets of lanes.
     #[serde(default = "fitting")]
     pub(super) simd: Vec<String>,
+    /// Floating-point formats; they give other images.
+    #[serde(default = "double")]
+    pub(super) precision: Vec<String>,
     #[serde(default = "fitting")]
     pub(super) effects: Vec<String>,
     #[serde(default = "fitting")]
@@ -53,6 +56,10 @@ pub(super) struct Matrix {
     pub(super) curve: bool,
     /// What is clamped to 1.
     pub(super) clamp: Option<Clamp>,
+}
+
+fn double() -> Vec<String> {
+    vec![Spec::default().precision]
 }
 
 fn independent() -> Vec<String> {
@@ -173,6 +180,7 @@ impl Definition {
             ("output", matrix.output.is_empty()),
             ("kernel", matrix.kernel.is_empty()),
             ("simd", matrix.simd.is_empty()),
+            ("precision", matrix.precision.is_empty()),
             ("effects", matrix.effects.is_empty()),
             ("accelerator", matrix.accelerator.is_empty()),
             ("spp", spps.is_empty()),
@@ -208,16 +216,19 @@ impl Definition {
                             ..Spec::default()
                         };
                         let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };
-                        let kernels = matrix.kernel.iter().flat_map(|k| matrix.simd.iter().map(move |s| (k, s)));
+                        let kernels = matrix.kernel.iter().flat_map(|k| {
+                            matrix.simd.iter().flat_map(move |s| matrix.precision.iter().map(move |p| (k, s, p)))
+                        });
                         let rules = matrix.effects.iter().flat_map(|e| {
                             matrix.accelerator.iter().flat_map(move |a| matrix.roulette.iter().map(move |r| (e, a, r)))
                         });
-                        for ((kernel, simd), (effects, accelerator, roulette)) in
+                        for ((kernel, simd, precision), (effects, accelerator, roulette)) in
                             kernels.flat_map(|kernel| rules.clone().map(move |rules| (kernel, rules)))
                         {
                             let mut image = image.clone();
                             image.spec.kernel.clone_from(kernel);
                             image.spec.simd = unless_fitting(simd);
+                            image.spec.precision.clone_from(precision);
                             image.spec.roulette = unless_fitting(roulette);
                             image.spec.effects = unless_fitting(effects);
                             image.spec.accelerator = unless_fitting(accelerator);

@@ -3,6 +3,7 @@
 use super::Film;
 use super::sum_file::SumFile;
 use crate::error::Result;
+use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -34,11 +35,18 @@ pub struct FilmKey {
     /// How chance ends paths, if not by the estimator's own rule.
     #[serde(default)]
     pub roulette: Option<String>,
+    /// Floating-point format of the paths; older files have but one.
+    #[serde(default = "double")]
+    pub precision: String,
     /// Whether tiles have as many samples as their noise calls for; `spp` is their mean then.
     #[serde(default)]
     pub adaptive: bool,
     /// Revision of the arithmetic: films of another one are rendered anew.
     pub revision: u32,
+}
+
+fn double() -> String {
+    Precision::F64.name().to_string()
 }
 
 /// Writes the film, whole or not at all.

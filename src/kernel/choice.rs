@@ -8,7 +8,7 @@ use crate::scene::{
     ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES, ProfileEntry,
     Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
-use crate::simd::{Entry as Level, LEVELS, best};
+use crate::simd::{Entry as Level, LEVELS, Precision, best};
 
 /// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
 const AT_RUN_TIME: &str = "run-time";
@@ -26,6 +26,7 @@ pub struct Choice {
 #[derive(Clone, Copy)]
 pub(super) struct InLanes {
     pub(super) level: &'static Level,
+    pub(super) precision: Precision,
     pub(super) course: Course,
     pub(super) sampler: LaneSampler,
 }
@@ -39,6 +40,11 @@ impl Choice {
     /// Instruction set of its lanes; empty if it has none.
     pub fn simd(&self) -> &'static str {
         self.lanes.map_or("", |lanes| lanes.level.name)
+    }
+
+    /// Floating-point format of what it computes with.
+    pub fn precision(&self) -> Precision {
+        self.lanes.map_or(Precision::F64, |lanes| lanes.precision)
     }
 
     /// Why it is not the kernel that was asked for; empty if it is.
@@ -164,15 +170,29 @@ fn lanes_for(scene: &Scene, spec: &Spec) -> Result<std::result::Result<InLanes, 
             None => return Err(unknown("simd", name, available().map(|level| level.name)).into()),
         },
     };
+    let precision = precision(spec)?;
     if spec.kernel == SCALAR {
         return Ok(Err(SCALAR));
     }
     Ok(Err(match (obstacle(scene, spec), course(spec), LaneSampler::find(&spec.sampler)) {
-        (None, Some(course), Some(sampler)) => return Ok(Ok(InLanes { level, course, sampler })),
+        (None, Some(course), Some(sampler)) => return Ok(Ok(InLanes { level, precision, course, sampler })),
         (Some(reason), ..) => reason,
         (None, None, _) => "estimator",
         (None, Some(_), None) => "sampler",
     }))
+}
+
+/// The format that the spec names; the scalar kernel has but one.
+fn precision(spec: &Spec) -> Result<Precision> {
+    let name = &spec.precision;
+    let Some(precision) = Precision::ALL.into_iter().find(|precision| precision.name() == name) else {
+        return Err(unknown("precision", name, Precision::ALL.into_iter().map(Precision::name)).into());
+    };
+    if spec.kernel == SCALAR && precision != Precision::F64 {
+        let problem = "is nothing for the scalar kernel";
+        return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
+    }
+    Ok(precision)
 }
 
 /// How the estimator follows paths, if it does.

@@ -2,6 +2,7 @@
 
 use super::LANES;
 use crate::estimator::{self, Options, Roulette};
+use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// What of the light is clamped to 1.
@@ -42,6 +43,8 @@ pub struct Spec {
     /// Instruction set of lanes by name; the fastest of this processor if `None`.
     #[serde(default)]
     pub simd: Option<String>,
+    /// Floating-point format by name.
+    pub precision: String,
     /// Effect profile by name; the smallest that covers the scene if `None`.
     pub effects: Option<String>,
     /// Accelerator by name; the fitting one for so many primitives if `None`.
@@ -65,6 +68,7 @@ impl Default for Spec {
             sampler: "independent".to_string(),
             kernel: LANES.to_string(),
             simd: None,
+            precision: Precision::F64.name().to_string(),
             effects: None,
             accelerator: None,
             max_depth: None,

@@ -63,3 +63,10 @@ pub fn unit(bits: u64) -> f64 {
     const STEP: f64 = 1.0 / 9_007_199_254_740_992.0;
     (bits >> 11) as f64 * STEP
 }
+
+/// The top 24 bits as a multiple of 2^-24 in [0, 1): exact, and never 1.
+#[inline(always)]
+pub fn single_unit(bits: u64) -> f32 {
+    const STEP: f32 = 1.0 / 16_777_216.0;
+    (bits >> 40) as f32 * STEP
+}

@@ -12,12 +12,12 @@ mod sphere;
 mod trig;
 mod vector;
 
-pub use bits::{Bits, unit};
+pub use bits::{Bits, single_unit, unit};
 pub use frame::Frame;
 pub use optics::{fresnel_dielectric, fresnel_schlick, reflect, refract};
 pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;
-pub use sphere::{first_root, other_root, roots};
+pub use sphere::{Curved, curved_normal, first_root, first_root_curved, other_root, roots};
 pub use trig::sin_cos_turns;
 pub use vector::{Vec3, dot};

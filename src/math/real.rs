@@ -12,6 +12,13 @@ pub trait Real:
     /// The answer of a comparison, one per lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
+    /// Binary digits of the significand: 53 in double precision, 24 in single.
+    const SIGNIFICAND: u32;
+    /// Whether that is more than single precision has.
+    const IS_DOUBLE: bool = Self::SIGNIFICAND > f32::MANTISSA_DIGITS;
+    /// The smallest positive number that has all of them.
+    const SMALLEST: f64;
+
     /// The same constant in every lane.
     fn splat(value: f64) -> Self;
     /// The correctly rounded square root; NaN below zero.
@@ -35,6 +42,8 @@ macro_rules! float {
     ($Float:ident) => {
         impl Real for $Float {
             type Mask = bool;
+            const SIGNIFICAND: u32 = $Float::MANTISSA_DIGITS;
+            const SMALLEST: f64 = $Float::MIN_POSITIVE as f64;
 
             #[inline(always)]
             fn splat(value: f64) -> Self {

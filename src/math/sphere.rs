@@ -47,3 +47,46 @@ pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T {
 pub fn other_root<T: Real>(f: Vec3<T>, d: Vec3<T>) -> T {
     T::splat(2.0) * dot(f, d).abs()
 }
+
+/// A sphere by its curvature: where k |x|² + 2 n·x + c = 0, k being the inverse of the radius, n = -k centre and c = k (|centre|² - r²). Nothing
+/// of the size of the radius ever cancels, so a wall that is a sphere of radius 1e5 does not shake in single precision as long as the scene is
+/// near the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Curved<T = f64> {
+    /// -k times the centre.
+    pub normal: Vec3<T>,
+    /// k, the inverse of the radius.
+    pub curvature: T,
+    /// k (|centre|² - r²).
+    pub offset: T,
+}
+
+impl Curved {
+    /// The sphere with that centre and radius.
+    pub fn of(center: Vec3, radius: f64) -> Self {
+        let curvature = 1.0 / radius;
+        let distance = dot(center, center).sqrt();
+        Self { normal: center * -curvature, curvature, offset: (distance - radius) * ((distance + radius) * curvature) }
+    }
+}
+
+/// The outward normal at a point of a [`Curved`] sphere by its normal and curvature; of length 1 up to rounding. The plane's own where the curvature
+/// is 0.
+#[inline(always)]
+pub fn curved_normal<T: Real>(normal: Vec3<T>, curvature: T, point: Vec3<T>) -> Vec3<T> {
+    normal + point * curvature
+}
+
+/// [`first_root`] of a [`Curved`] sphere, for a direction of length 1. `square` is |o|² of the ray's origin o, `along` o·d.
+#[inline(always)]
+pub fn first_root_curved<T: Real>(sphere: &Curved<T>, o: Vec3<T>, d: Vec3<T>, square: T, along: T) -> T {
+    let Curved { normal, curvature: k, offset } = *sphere;
+    let b = k * along + dot(normal, d);
+    let height = dot(normal, o);
+    let c = k * square + (height + height) + offset;
+    let q = b + (b * b - k * c).sqrt().copysign(b);
+    let zero = T::splat(0.0);
+    // From inside and away from the surface nearby: the far side, -q/k; in every other case that hits it is -c/q.
+    let far = q.lt(zero) & c.le(zero);
+    -(T::select(far, q, c) / T::select(far, k, q))
+}

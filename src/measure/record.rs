@@ -44,7 +44,7 @@ pub struct Record {
     pub kernel: String,
     /// Why it was not the one that was asked for; empty if it was.
     pub kernel_fallback: String,
-    /// Floating-point format of the kernel.
+    /// Floating-point format of the kernel that rendered.
     pub precision: String,
     /// Instruction set of its lanes; empty if it had none.
     pub simd: String,
@@ -198,7 +198,7 @@ fn described(settings: &Settings) -> Record {
         estimator: spec.estimator.clone(),
         sampler: spec.sampler.clone(),
         kernel: spec.kernel.clone(),
-        precision: "f64".to_string(),
+        precision: spec.precision.clone(),
         max_depth: spec.depth(),
         roulette: spec.roulette().unwrap_or_default(),
         clamp: spec.clamp.map(Clamp::name).unwrap_or_default().to_string(),
@@ -261,6 +261,7 @@ impl Record {
         record.kernel = setup.choice().kernel().to_string();
         record.kernel_fallback = setup.choice().fallback().to_string();
         record.simd = setup.choice().simd().to_string();
+        record.precision = setup.choice().precision().name().to_string();
         record.effects = setup.effects().to_string();
         record.accelerator = setup.accelerator().to_string();
         record.build_s = Some(outcome.build_s);

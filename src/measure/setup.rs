@@ -180,6 +180,7 @@ impl Setup {
             height: spec.height,
             max_depth: spec.max_depth,
             roulette: spec.roulette.clone(),
+            precision: self.choice.precision().name().to_string(),
             adaptive: false,
             revision: kernel::REVISION,
         }

@@ -2,7 +2,7 @@
 
 use super::{Purpose, SampleKey, independent, mix, sobol};
 use crate::math::Bits;
-use crate::simd::Float;
+use crate::simd::{Float, Words};
 
 /// A sampler that lanes can ask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,8 +77,8 @@ impl InLanes {
                     // Nobody but the camera asks for it.
                     Purpose::Film => words.joined[0],
                     Purpose::Bsdf | Purpose::Light => {
-                        let is_first = V::same(bounce.up::<16>() | branch, V::Bits::splat(1 << 16));
-                        V::choose(is_first, words.joined[1], sobol::own_place(key, words.sample))
+                        let is_first = (bounce.up::<16>() | branch).equal(V::Bits::splat(1 << 16));
+                        V::Bits::choose(is_first, words.joined[1], sobol::own_place(key, words.sample))
                     }
                     _ => sobol::own_place(key, words.sample),
                 };

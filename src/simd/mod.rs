@@ -1,10 +1,10 @@
 //! Numbers side by side in the registers of a processor: the same formulas as for one number, over more of them at once.
 //!
-//! One instruction set a file; this file is their table. What the processor has is found out at run time, so the program needs no build flags
+//! One instruction set a folder or file; this file is their table. What the processor has is found out at run time, so the program needs no build flags
 //! and runs anywhere. Every level gives the same bits, lane by lane: each operation is one that IEEE 754 rounds exactly, none is fused, and
 //! there are no estimates.
 //!
-//! To add an instruction set: write its file with types that implement [`Float`] and [`Bits`], and a line in `levels!` below.
+//! To add an instruction set: write its file with types that implement [`Float`] and [`Words`], and a line in `levels!` below.
 
 /// An intrinsic of a level that not every processor has. No value of such a level's types is made outside of its `enter`, which only
 /// processors that have its instructions come to.
@@ -35,12 +35,14 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod plain;
+mod table;
 #[cfg(test)]
 mod tests;
 mod two;
 
 use crate::math::{Bits, Real};
 use std::ops::{BitAnd, BitOr, Not};
+pub use table::Table;
 
 /// The answers of a comparison, one bit a lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
@@ -55,46 +57,54 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
     }
 }
 
+/// As many words of 64 bits as a mask has lanes.
+pub trait Words<M>: Bits {
+    /// From at least as many words as there are lanes.
+    fn load(from: &[u64]) -> Self;
+    /// To at least as many words as there are lanes.
+    fn store(self, to: &mut [u64]);
+    /// `self`, but where the mask holds the next of the words, in order; there must be as many as there are lanes.
+    #[must_use]
+    fn fill(self, mask: M, from: &[u64]) -> Self;
+    /// The word in a lane.
+    fn word(&self, lane: usize) -> u64;
+    /// Puts a word into a lane.
+    fn set_word(&mut self, lane: usize, word: u64);
+    /// `yes` where the mask holds, `no` elsewhere.
+    #[must_use]
+    fn choose(mask: M, yes: Self, no: Self) -> Self;
+    /// Whether words below 2^63 are less than others.
+    fn less(self, other: Self) -> M;
+    /// Whether words are equal.
+    fn equal(self, other: Self) -> M;
+}
+
 /// Numbers in lanes, at most [`MOST_LANES`] of them.
 pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// As many words of 64 bits.
-    type Bits: Bits;
+    type Bits: Words<Self::Mask>;
+    /// One of the numbers.
+    type One: Copy + Default + Into<f64> + Send + Sync;
     /// How many there are.
     const LANES: usize;
 
-    /// From at least as many numbers as there are lanes, rounded if need be.
-    fn load(from: &[f64]) -> Self;
+    /// From at least as many numbers as there are lanes.
+    fn load(from: &[Self::One]) -> Self;
     /// To at least as many numbers as there are lanes.
-    fn store(self, to: &mut [f64]);
+    fn store(self, to: &mut [Self::One]);
     /// `self`, but where the mask holds the next of the numbers, in order; there must be as many as there are lanes.
     #[must_use]
-    fn fill(self, mask: Self::Mask, from: &[f64]) -> Self;
-    /// Likewise, of words.
-    fn fill_words(bits: Self::Bits, mask: Self::Mask, from: &[u64]) -> Self::Bits;
-    /// To at least as many words as there are lanes.
-    fn store_words(bits: Self::Bits, to: &mut [u64]);
-    /// From at least as many words as there are lanes.
-    fn load_words(from: &[u64]) -> Self::Bits;
+    fn fill(self, mask: Self::Mask, from: &[Self::One]) -> Self;
     /// The number in a lane.
     fn lane(&self, lane: usize) -> f64;
     /// Puts a number, rounded if need be, into a lane.
     fn set_lane(&mut self, lane: usize, value: f64);
-    /// The word in a lane.
-    fn word(bits: &Self::Bits, lane: usize) -> u64;
-    /// Puts a word into a lane.
-    fn set_word(bits: &mut Self::Bits, lane: usize, word: u64);
     /// `self == other`; false if either is NaN.
     fn equal(self, other: Self) -> Self::Mask;
     /// Words below 2^53 as numbers, rounded if need be.
     fn number(bits: Self::Bits) -> Self;
-    /// The leading bits of a word as a number in [0, 1), as many as a number has: exact, and never 1.
+    /// The leading bits of a word as a number in [0, 1), as many as a number has digits: exact, and never 1.
     fn unit(bits: Self::Bits) -> Self;
-    /// `yes` where the mask holds, `no` elsewhere.
-    fn choose(mask: Self::Mask, yes: Self::Bits, no: Self::Bits) -> Self::Bits;
-    /// Whether words below 2^63 are less than others.
-    fn less(a: Self::Bits, b: Self::Bits) -> Self::Mask;
-    /// Whether words are equal.
-    fn same(a: Self::Bits, b: Self::Bits) -> Self::Mask;
     /// Rows of a table by their numbers, turned so that lane k of result j is `table[rows[k]][j]`. Numbers must be whole and in the table.
     fn rows(table: &Table, rows: Self) -> [Self; 4];
 }
@@ -102,41 +112,35 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
 /// The most lanes that any level has: masks are words of 32 bits.
 pub const MOST_LANES: usize = 32;
 
-/// Rows of four numbers that lanes look up, each its own.
-pub struct Table {
-    rows: Vec<[f64; 4]>,
-    /// The columns of a table of at most 16 rows, padded with zeros: they fit registers.
-    columns: Option<[[f64; 16]; 4]>,
-}
-
-impl Table {
-    /// A table; there must be a row.
-    pub fn new(rows: Vec<[f64; 4]>) -> Self {
-        assert!(!rows.is_empty(), "a table needs a row");
-        let columns = (rows.len() <= 16).then(|| {
-            [0, 1, 2, 3].map(|j| {
-                let mut column = [0.0; 16];
-                column.iter_mut().zip(&rows).for_each(|(entry, row)| *entry = row[j]);
-                column
-            })
-        });
-        Self { rows, columns }
-    }
-
-    #[inline(always)]
-    fn row(&self, number: f64) -> &[f64; 4] {
-        // What is in a lane without a ray may be no row at all.
-        self.rows.get(number as usize).unwrap_or(&self.rows[0])
-    }
-}
-
 /// What runs on a level: a function that is compiled once for each.
 pub trait Work {
     /// What it returns.
     type Output;
-    /// Does it, with numbers of double precision in lanes. Everything that it calls must be `#[inline(always)]`, or it is compiled without the
+    /// Does it. Everything that it calls must be `#[inline(always)]`, or it is compiled without the
     /// instructions of the level.
     fn run<V: Float>(self) -> Self::Output;
+}
+
+/// The floating-point format of numbers in lanes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Double: 53 digits.
+    F64,
+    /// Single: 24 digits.
+    F32,
+}
+
+impl Precision {
+    /// All of them, the default first.
+    pub const ALL: [Self; 2] = [Self::F64, Self::F32];
+
+    /// Its name on the command line, in CSV and TOML.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::F32 => "f32",
+        }
+    }
 }
 
 /// One line of the table of levels.
@@ -163,9 +167,9 @@ macro_rules! levels {
             &[$($(#[$attribute])* Entry { name: $name, about: $about, is_available: $module::is_available }),*];
 
         /// Does some work on the level of that name; `None` if there is none or this processor does not have it.
-        pub fn on_level<W: Work>(name: &str, work: W) -> Option<W::Output> {
+        pub fn on_level<W: Work>(name: &str, precision: Precision, work: W) -> Option<W::Output> {
             match name {
-                $($(#[$attribute])* $name => $module::run(work),)*
+                $($(#[$attribute])* $name => $module::run(precision, work),)*
                 _ => None,
             }
         }

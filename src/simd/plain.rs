@@ -1,7 +1,7 @@
 //! Small arrays, which compilers turn into what every processor of its kind has: SSE2 or NEON.
 
-use super::{Float, Mask, Table, Work};
-use crate::math::{Bits, Real};
+use super::{Float, Mask, Precision, Table, Words, Work};
+use crate::math::{Bits, Real, single_unit, unit};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 const LANES: usize = 4;
@@ -12,8 +12,11 @@ pub(super) fn is_available() -> bool {
 }
 
 /// Does the work.
-pub(super) fn run<W: Work>(work: W) -> Option<W::Output> {
-    Some(work.run::<Plain<f64>>())
+pub(super) fn run<W: Work>(precision: Precision, work: W) -> Option<W::Output> {
+    Some(match precision {
+        Precision::F64 => work.run::<Plain<f64>>(),
+        Precision::F32 => work.run::<Plain<f32>>(),
+    })
 }
 
 /// Four of something.
@@ -76,6 +79,8 @@ impl<T: Copy + Not<Output = T>> Not for Plain<T> {
 
 impl<T: Real<Mask = bool>> Real for Plain<T> {
     type Mask = Plain<bool>;
+    const SIGNIFICAND: u32 = T::SIGNIFICAND;
+    const SMALLEST: f64 = T::SMALLEST;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -150,20 +155,10 @@ impl Mask for Plain<bool> {
     }
 }
 
-impl Float for Plain<f64> {
-    type Bits = Plain<u64>;
-    const LANES: usize = LANES;
-
+impl<T: Copy> Plain<T> {
+    /// The next of some values in each lane that a mask holds.
     #[inline(always)]
-    fn load(from: &[f64]) -> Self {
-        each!(k => from[k])
-    }
-    #[inline(always)]
-    fn store(self, to: &mut [f64]) {
-        to[..LANES].copy_from_slice(&self.0);
-    }
-    #[inline(always)]
-    fn fill(mut self, mask: Plain<bool>, from: &[f64]) -> Self {
+    fn filled(mut self, mask: Plain<bool>, from: &[T]) -> Self {
         let mut next = 0;
         for (lane, wanted) in self.0.iter_mut().zip(mask.0) {
             if wanted {
@@ -173,73 +168,96 @@ impl Float for Plain<f64> {
         }
         self
     }
+}
+
+impl Words<Plain<bool>> for Plain<u64> {
     #[inline(always)]
-    fn fill_words(mut bits: Plain<u64>, mask: Plain<bool>, from: &[u64]) -> Plain<u64> {
-        let mut next = 0;
-        for (lane, wanted) in bits.0.iter_mut().zip(mask.0) {
-            if wanted {
-                *lane = from[next];
-                next += 1;
-            }
-        }
-        bits
-    }
-    #[inline(always)]
-    fn store_words(bits: Plain<u64>, to: &mut [u64]) {
-        to[..LANES].copy_from_slice(&bits.0);
-    }
-    #[inline(always)]
-    fn load_words(from: &[u64]) -> Plain<u64> {
+    fn load(from: &[u64]) -> Self {
         each!(k => from[k])
     }
     #[inline(always)]
-    fn lane(&self, lane: usize) -> f64 {
+    fn store(self, to: &mut [u64]) {
+        to[..LANES].copy_from_slice(&self.0);
+    }
+    #[inline(always)]
+    fn fill(self, mask: Plain<bool>, from: &[u64]) -> Self {
+        self.filled(mask, from)
+    }
+    #[inline(always)]
+    fn word(&self, lane: usize) -> u64 {
         self.0[lane]
     }
     #[inline(always)]
-    fn set_lane(&mut self, lane: usize, value: f64) {
-        self.0[lane] = value;
+    fn set_word(&mut self, lane: usize, word: u64) {
+        self.0[lane] = word;
     }
     #[inline(always)]
-    fn word(bits: &Plain<u64>, lane: usize) -> u64 {
-        bits.0[lane]
+    fn choose(mask: Plain<bool>, yes: Self, no: Self) -> Self {
+        each!(k => if mask.0[k] { yes.0[k] } else { no.0[k] })
     }
     #[inline(always)]
-    fn set_word(bits: &mut Plain<u64>, lane: usize, word: u64) {
-        bits.0[lane] = word;
+    fn less(self, other: Self) -> Plain<bool> {
+        each!(k => self.0[k] < other.0[k])
     }
     #[inline(always)]
     fn equal(self, other: Self) -> Plain<bool> {
         each!(k => self.0[k] == other.0[k])
     }
-    #[inline(always)]
-    fn number(bits: Plain<u64>) -> Self {
-        each!(k => bits.0[k] as f64)
-    }
-    #[inline(always)]
-    fn unit(bits: Plain<u64>) -> Self {
-        each!(k => crate::math::unit(bits.0[k]))
-    }
-    #[inline(always)]
-    fn choose(mask: Plain<bool>, yes: Plain<u64>, no: Plain<u64>) -> Plain<u64> {
-        each!(k => if mask.0[k] { yes.0[k] } else { no.0[k] })
-    }
-    #[inline(always)]
-    fn less(a: Plain<u64>, b: Plain<u64>) -> Plain<bool> {
-        each!(k => a.0[k] < b.0[k])
-    }
-    #[inline(always)]
-    fn same(a: Plain<u64>, b: Plain<u64>) -> Plain<bool> {
-        each!(k => a.0[k] == b.0[k])
-    }
-    #[inline(always)]
-    fn rows(table: &Table, rows: Self) -> [Self; 4] {
-        let [a, b, c, d] = [table.row(rows.0[0]), table.row(rows.0[1]), table.row(rows.0[2]), table.row(rows.0[3])];
-        [
-            Self([a[0], b[0], c[0], d[0]]),
-            Self([a[1], b[1], c[1], d[1]]),
-            Self([a[2], b[2], c[2], d[2]]),
-            Self([a[3], b[3], c[3], d[3]]),
-        ]
-    }
 }
+
+macro_rules! float {
+    ($Float:ident, $row:ident, $unit:expr) => {
+        impl Float for Plain<$Float> {
+            type Bits = Plain<u64>;
+            type One = $Float;
+            const LANES: usize = LANES;
+
+            #[inline(always)]
+            fn load(from: &[$Float]) -> Self {
+                each!(k => from[k])
+            }
+            #[inline(always)]
+            fn store(self, to: &mut [$Float]) {
+                to[..LANES].copy_from_slice(&self.0);
+            }
+            #[inline(always)]
+            fn fill(self, mask: Plain<bool>, from: &[$Float]) -> Self {
+                self.filled(mask, from)
+            }
+            #[inline(always)]
+            fn lane(&self, lane: usize) -> f64 {
+                self.0[lane].into()
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, lane: usize, value: f64) {
+                self.0[lane] = value as $Float;
+            }
+            #[inline(always)]
+            fn equal(self, other: Self) -> Plain<bool> {
+                each!(k => self.0[k] == other.0[k])
+            }
+            #[inline(always)]
+            fn number(bits: Plain<u64>) -> Self {
+                each!(k => bits.0[k] as $Float)
+            }
+            #[inline(always)]
+            fn unit(bits: Plain<u64>) -> Self {
+                each!(k => $unit(bits.0[k]))
+            }
+            #[inline(always)]
+            fn rows(table: &Table, rows: Self) -> [Self; 4] {
+                let [a, b, c, d] =
+                    [table.$row(rows.0[0]), table.$row(rows.0[1]), table.$row(rows.0[2]), table.$row(rows.0[3])];
+                [
+                    Self([a[0], b[0], c[0], d[0]]),
+                    Self([a[1], b[1], c[1], d[1]]),
+                    Self([a[2], b[2], c[2], d[2]]),
+                    Self([a[3], b[3], c[3], d[3]]),
+                ]
+            }
+        }
+    };
+}
+
+float!(f64, row, unit);
+float!(f32, single_row, single_unit);

@@ -1,6 +1,6 @@
 //! Two vectors as one: each operation is done on one and then on the other, so that the second's work hides the first's latency.
 
-use super::{Float, Mask, Table};
+use super::{Float, Mask, Table, Words};
 use crate::math::{Bits, Real};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -40,6 +40,8 @@ impl<V: Not<Output = V>> Not for Two<V> {
 
 impl<V: Real> Real for Two<V> {
     type Mask = Two<V::Mask>;
+    const SIGNIFICAND: u32 = V::SIGNIFICAND;
+    const SMALLEST: f64 = V::SMALLEST;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
@@ -119,41 +121,89 @@ pub(super) trait HalfMask: Mask {
     const LANES: u32;
 }
 
+/// A mask for the lanes of two registers of words.
+pub(super) trait PairMask: Mask {
+    /// The mask of one of them.
+    type Half: HalfMask;
+    fn halves(self) -> Two<Self::Half>;
+    fn of_halves(halves: Two<Self::Half>) -> Self;
+}
+
+impl<M: HalfMask> PairMask for Two<M> {
+    type Half = M;
+    #[inline(always)]
+    fn halves(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn of_halves(halves: Self) -> Self {
+        halves
+    }
+}
+
+impl<M: PairMask, B: Words<M::Half>> Words<M> for Two<B> {
+    #[inline(always)]
+    fn load(from: &[u64]) -> Self {
+        let (lower, upper) = from.split_at(M::Half::LANES as usize);
+        Self(B::load(lower), B::load(upper))
+    }
+    #[inline(always)]
+    fn store(self, to: &mut [u64]) {
+        let (lower, upper) = to.split_at_mut(M::Half::LANES as usize);
+        self.0.store(lower);
+        self.1.store(upper);
+    }
+    #[inline(always)]
+    fn fill(self, mask: M, from: &[u64]) -> Self {
+        let Two(lower, upper) = mask.halves();
+        let rest = &from[lower.bits().count_ones() as usize..];
+        Self(self.0.fill(lower, from), self.1.fill(upper, rest))
+    }
+    #[inline(always)]
+    fn word(&self, lane: usize) -> u64 {
+        let lanes = M::Half::LANES as usize;
+        if lane < lanes { self.0.word(lane) } else { self.1.word(lane - lanes) }
+    }
+    #[inline(always)]
+    fn set_word(&mut self, lane: usize, word: u64) {
+        let lanes = M::Half::LANES as usize;
+        if lane < lanes { self.0.set_word(lane, word) } else { self.1.set_word(lane - lanes, word) }
+    }
+    #[inline(always)]
+    fn choose(mask: M, yes: Self, no: Self) -> Self {
+        let Two(lower, upper) = mask.halves();
+        Self(B::choose(lower, yes.0, no.0), B::choose(upper, yes.1, no.1))
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> M {
+        M::of_halves(Two(self.0.less(other.0), self.1.less(other.1)))
+    }
+    #[inline(always)]
+    fn equal(self, other: Self) -> M {
+        M::of_halves(Two(self.0.equal(other.0), self.1.equal(other.1)))
+    }
+}
+
 impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     type Bits = Two<V::Bits>;
+    type One = V::One;
     const LANES: usize = 2 * V::LANES;
 
     #[inline(always)]
-    fn load(from: &[f64]) -> Self {
+    fn load(from: &[V::One]) -> Self {
         let (lower, upper) = from.split_at(V::LANES);
         Self(V::load(lower), V::load(upper))
     }
     #[inline(always)]
-    fn store(self, to: &mut [f64]) {
+    fn store(self, to: &mut [V::One]) {
         let (lower, upper) = to.split_at_mut(V::LANES);
         self.0.store(lower);
         self.1.store(upper);
     }
     #[inline(always)]
-    fn fill(self, mask: Self::Mask, from: &[f64]) -> Self {
+    fn fill(self, mask: Self::Mask, from: &[V::One]) -> Self {
         let upper = &from[mask.0.bits().count_ones() as usize..];
         Self(self.0.fill(mask.0, from), self.1.fill(mask.1, upper))
-    }
-    #[inline(always)]
-    fn fill_words(bits: Self::Bits, mask: Self::Mask, from: &[u64]) -> Self::Bits {
-        let upper = &from[mask.0.bits().count_ones() as usize..];
-        Two(V::fill_words(bits.0, mask.0, from), V::fill_words(bits.1, mask.1, upper))
-    }
-    #[inline(always)]
-    fn store_words(bits: Self::Bits, to: &mut [u64]) {
-        let (lower, upper) = to.split_at_mut(V::LANES);
-        V::store_words(bits.0, lower);
-        V::store_words(bits.1, upper);
-    }
-    #[inline(always)]
-    fn load_words(from: &[u64]) -> Self::Bits {
-        let (lower, upper) = from.split_at(V::LANES);
-        Two(V::load_words(lower), V::load_words(upper))
     }
     #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
@@ -162,18 +212,6 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     #[inline(always)]
     fn set_lane(&mut self, lane: usize, value: f64) {
         if lane < V::LANES { self.0.set_lane(lane, value) } else { self.1.set_lane(lane - V::LANES, value) }
-    }
-    #[inline(always)]
-    fn word(bits: &Self::Bits, lane: usize) -> u64 {
-        if lane < V::LANES { V::word(&bits.0, lane) } else { V::word(&bits.1, lane - V::LANES) }
-    }
-    #[inline(always)]
-    fn set_word(bits: &mut Self::Bits, lane: usize, word: u64) {
-        if lane < V::LANES {
-            V::set_word(&mut bits.0, lane, word);
-        } else {
-            V::set_word(&mut bits.1, lane - V::LANES, word);
-        }
     }
     #[inline(always)]
     fn equal(self, other: Self) -> Self::Mask {
@@ -186,18 +224,6 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     #[inline(always)]
     fn unit(bits: Self::Bits) -> Self {
         Self(V::unit(bits.0), V::unit(bits.1))
-    }
-    #[inline(always)]
-    fn choose(mask: Self::Mask, yes: Self::Bits, no: Self::Bits) -> Self::Bits {
-        Two(V::choose(mask.0, yes.0, no.0), V::choose(mask.1, yes.1, no.1))
-    }
-    #[inline(always)]
-    fn less(a: Self::Bits, b: Self::Bits) -> Self::Mask {
-        Two(V::less(a.0, b.0), V::less(a.1, b.1))
-    }
-    #[inline(always)]
-    fn same(a: Self::Bits, b: Self::Bits) -> Self::Mask {
-        Two(V::same(a.0, b.0), V::same(a.1, b.1))
     }
     #[inline(always)]
     fn rows(table: &Table, rows: Self) -> [Self; 4] {

@@ -5,6 +5,7 @@
 mod light;
 mod nearest;
 mod packet;
+mod singles;
 mod supply;
 mod tables;
 mod vertex;
@@ -17,9 +18,10 @@ use crate::film::{Piece, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
-use crate::simd::{self, Float, MOST_LANES, Work, on_level};
+use crate::simd::{self, Float, MOST_LANES, Precision, Work, on_level};
 use light::Targets;
 use packet::{LanesOf, Packet};
+use singles::Singles;
 use std::sync::Arc;
 use supply::Supply;
 use tables::Tables;
@@ -36,17 +38,22 @@ pub(super) struct Lanes {
     tables: Tables,
     targets: Option<Targets>,
     level: &'static simd::Entry,
+    precision: Precision,
+    /// The spheres as single precision has them.
+    singles: Singles,
     /// Whether every sphere is tested, because there are few and nothing else.
     scans: bool,
 }
 
 impl Lanes {
-    pub(super) fn new(scene: Arc<Scene>, spec: &Spec, InLanes { level, course, sampler }: InLanes) -> Self {
-        let tables = Tables::of(&scene);
+    pub(super) fn new(scene: Arc<Scene>, spec: &Spec, InLanes { level, precision, course, sampler }: InLanes) -> Self {
+        let tables = Tables::of(&scene, precision);
         Self {
             view: scene.camera.view(spec.width, spec.height),
             targets: scene.lights.as_ref().map(Targets::of),
             scans: tables.is_round && scene.hierarchy.is_none(),
+            singles: Singles::of(&scene),
+            precision,
             scene,
             width: spec.width,
             seed: spec.seed,
@@ -60,7 +67,7 @@ impl Lanes {
     /// Gives back the samples whose paths have ended; paths that have another part go on with that.
     #[inline(always)]
     fn retire<V: Float>(&self, packet: &mut Packet<V>, ended: u32, window: &mut Window<'_>, counts: &mut Counts) {
-        let [mut r, mut g, mut b] = [[0.0; MOST_LANES]; 3];
+        let [mut r, mut g, mut b] = [[V::One::default(); MOST_LANES]; 3];
         packet.collected.r.store(&mut r);
         packet.collected.g.store(&mut g);
         packet.collected.b.store(&mut b);
@@ -69,7 +76,11 @@ impl Lanes {
                 continue;
             }
             packet.alive &= !(1 << lane);
-            window.give_back(packet.slots[lane], Rgb { r: r[lane], g: g[lane], b: b[lane] }, counts);
+            window.give_back(
+                packet.slots[lane],
+                Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() },
+                counts,
+            );
         }
     }
 
@@ -78,7 +89,7 @@ impl Lanes {
         let mut counts = Counts::default();
         let mut window = Window::over(piece, out);
         let mut packet = Packet::<V>::new();
-        let mut supply = Supply::new();
+        let mut supply = Supply::<V>::new();
         loop {
             self.refill(&mut packet, &mut supply, &mut window);
             if packet.alive == 0 {
@@ -116,6 +127,6 @@ impl Kernel for Lanes {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
         let work = Render { kernel: self, piece, out };
         // The level has been found on this processor when the kernel was made.
-        on_level(self.level.name, work).unwrap_or_default()
+        on_level(self.level.name, self.precision, work).unwrap_or_default()
     }
 }

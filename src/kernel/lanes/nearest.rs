@@ -12,7 +12,13 @@ impl Lanes {
     /// is not looked at. Ties go to the lowest number, as with one path at a time.
     #[inline(always)]
     pub(super) fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> (V, V) {
-        if self.scans { self.scan(rays) } else { self.one_by_one(rays, wanted, counts) }
+        if !self.scans {
+            self.one_by_one(rays, wanted, counts)
+        } else if V::IS_DOUBLE {
+            self.scan(rays)
+        } else {
+            self.singles.scan(rays)
+        }
     }
 
     /// Tests every sphere.

@@ -2,7 +2,7 @@
 
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::PathWords;
-use crate::simd::{Float, MOST_LANES, Mask};
+use crate::simd::{Float, MOST_LANES, Mask, Words};
 
 /// Two splits leave at most three unfinished parts.
 const LARGEST_STACK: usize = 3;
@@ -104,8 +104,8 @@ impl<V: Float> Packet<V> {
         self.throughput.r.set_lane(lane, part.throughput.r);
         self.throughput.g.set_lane(lane, part.throughput.g);
         self.throughput.b.set_lane(lane, part.throughput.b);
-        V::set_word(&mut self.vertices, lane, part.vertices);
-        V::set_word(&mut self.branch, lane, part.branch);
+        self.vertices.set_word(lane, part.vertices);
+        self.branch.set_word(lane, part.branch);
         true
     }
 }

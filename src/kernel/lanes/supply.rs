@@ -6,35 +6,33 @@ use super::window::Window;
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::{PathWords, Purpose, SampleKey};
 use crate::scene::SUBPIXELS;
-use crate::simd::{Float, MOST_LANES, Mask};
+use crate::simd::{Float, MOST_LANES, Mask, Words};
 
 /// Rays that can wait, twice: what is read begins at any of them and is as long as all.
 const SIZE: usize = 2 * MOST_LANES;
 
 /// The rays that wait.
-pub(super) struct Supply {
+pub(super) struct Supply<V: Float> {
     /// Origins and directions.
-    rays: [[f64; SIZE]; 6],
+    rays: [[V::One; SIZE]; 6],
     /// What the numbers of their samples have in common.
     words: [[u64; SIZE]; 4],
     slots: [u16; SIZE],
-    /// Columns and rows, pixels, samples and their places of those that are being made.
-    pixels: [[f64; MOST_LANES]; 2],
-    keys: [[u64; MOST_LANES]; 4],
+    /// Of those that are being made: columns, rows, pixels, samples, and their two places.
+    keys: [[u64; MOST_LANES]; 6],
     /// The next one.
     first: usize,
     /// How many there are.
     count: usize,
 }
 
-impl Supply {
+impl<V: Float> Supply<V> {
     pub(super) fn new() -> Self {
         Self {
-            rays: [[0.0; SIZE]; 6],
+            rays: [[V::One::default(); SIZE]; 6],
             words: [[0; SIZE]; 4],
             slots: [0; SIZE],
-            pixels: [[0.0; MOST_LANES]; 2],
-            keys: [[0; MOST_LANES]; 4],
+            keys: [[0; MOST_LANES]; 6],
             first: 0,
             count: 0,
         }
@@ -44,7 +42,7 @@ impl Supply {
 impl Lanes {
     /// Gives free lanes their next samples.
     #[inline(always)]
-    pub(super) fn refill<V: Float>(&self, packet: &mut Packet<V>, supply: &mut Supply, window: &mut Window<'_>) {
+    pub(super) fn refill<V: Float>(&self, packet: &mut Packet<V>, supply: &mut Supply<V>, window: &mut Window<'_>) {
         let mut free = !packet.alive & (u32::MAX >> (MOST_LANES - V::LANES));
         while free != 0 {
             if supply.count == 0 {
@@ -59,28 +57,28 @@ impl Lanes {
 
     /// Makes as many rays as there are lanes, or samples left.
     #[inline(always)]
-    fn produce<V: Float>(&self, supply: &mut Supply, window: &mut Window<'_>) {
+    fn produce<V: Float>(&self, supply: &mut Supply<V>, window: &mut Window<'_>) {
         supply.first = 0;
         while supply.count < V::LANES {
             let Some((place, slot)) = window.hand_out() else { break };
             let k = supply.count;
             let key = SampleKey { seed: self.seed, pixel: place.y * self.width + place.x, sample: place.sample };
             let [first, second] = self.sampler.joined(key);
-            for (words, word) in supply.keys.iter_mut().zip([key.pixel.into(), key.sample.into(), first, second]) {
+            let all = [place.x.into(), place.y.into(), key.pixel.into(), key.sample.into(), first, second];
+            for (words, word) in supply.keys.iter_mut().zip(all) {
                 words[k] = word;
             }
-            (supply.pixels[0][k], supply.pixels[1][k]) = (f64::from(place.x), f64::from(place.y));
             supply.slots[k] = slot;
             supply.count += 1;
         }
         let none = V::Bits::splat(0);
-        let [pixels, samples, film, first] = &supply.keys;
-        let samples = V::load_words(samples);
-        let joined = [V::load_words(film), V::load_words(first)];
-        let words = self.sampler.words(self.seed, V::load_words(pixels), samples, joined);
+        let [columns, rows, pixels, samples, film, first] = &supply.keys;
+        let samples = V::Bits::load(samples);
+        let joined = [V::Bits::load(film), V::Bits::load(first)];
+        let words = self.sampler.words(self.seed, V::Bits::load(pixels), samples, joined);
         let film = self.sampler.pair::<V>(&words, none, none, Purpose::Film);
         let subpixel = V::number(samples & V::Bits::splat(u64::from(SUBPIXELS - 1)));
-        let pixel = [V::load(&supply.pixels[0]), V::load(&supply.pixels[1])];
+        let pixel = [V::number(V::Bits::load(columns)), V::number(V::Bits::load(rows))];
         let Ray { origin, direction } = self.view.rays(pixel, subpixel, film);
         origin.x.store(&mut supply.rays[0]);
         origin.y.store(&mut supply.rays[1]);
@@ -88,15 +86,15 @@ impl Lanes {
         direction.x.store(&mut supply.rays[3]);
         direction.y.store(&mut supply.rays[4]);
         direction.z.store(&mut supply.rays[5]);
-        V::store_words(words.path, &mut supply.words[0]);
-        V::store_words(words.sample, &mut supply.words[1]);
-        V::store_words(words.joined[0], &mut supply.words[2]);
-        V::store_words(words.joined[1], &mut supply.words[3]);
+        words.path.store(&mut supply.words[0]);
+        words.sample.store(&mut supply.words[1]);
+        words.joined[0].store(&mut supply.words[2]);
+        words.joined[1].store(&mut supply.words[3]);
     }
 
     /// Puts rays that wait into free lanes, the first into the lowest. The lanes that got one.
     #[inline(always)]
-    fn take<V: Float>(&self, packet: &mut Packet<V>, supply: &mut Supply, free: u32) -> u32 {
+    fn take<V: Float>(&self, packet: &mut Packet<V>, supply: &mut Supply<V>, free: u32) -> u32 {
         let mut taken = free;
         while taken.count_ones() as usize > supply.count {
             taken &= !(1 << (u32::BITS - 1 - taken.leading_zeros()));
@@ -119,11 +117,11 @@ impl Lanes {
         };
         let PathWords { path, sample, joined } = packet.words;
         let words = &supply.words;
-        packet.words.path = V::fill_words(path, mask, &words[0][first..]);
+        packet.words.path = path.fill(mask, &words[0][first..]);
         if self.sampler.is_spread() {
-            packet.words.sample = V::fill_words(sample, mask, &words[1][first..]);
-            packet.words.joined[0] = V::fill_words(joined[0], mask, &words[2][first..]);
-            packet.words.joined[1] = V::fill_words(joined[1], mask, &words[3][first..]);
+            packet.words.sample = sample.fill(mask, &words[1][first..]);
+            packet.words.joined[0] = joined[0].fill(mask, &words[2][first..]);
+            packet.words.joined[1] = joined[1].fill(mask, &words[3][first..]);
         }
         for (lane, slot) in LanesOf(taken).zip(&supply.slots[first..]) {
             packet.slots[lane] = *slot;
@@ -133,9 +131,9 @@ impl Lanes {
         packet.throughput = Rgb::select(mask, Rgb::splat(Rgb::WHITE), packet.throughput);
         packet.collected = Rgb::select(mask, Rgb::splat(Rgb::BLACK), packet.collected);
         let none = V::Bits::splat(0);
-        packet.vertices = V::choose(mask, none, packet.vertices);
+        packet.vertices = V::Bits::choose(mask, none, packet.vertices);
         if self.course.splits > 0 {
-            packet.branch = V::choose(mask, none, packet.branch);
+            packet.branch = V::Bits::choose(mask, none, packet.branch);
         }
         if self.course.aims.is_some() {
             packet.density = V::select(mask, V::splat(-1.0), packet.density);

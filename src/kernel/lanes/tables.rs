@@ -1,9 +1,9 @@
 //! What lanes look up of the primitives they meet: rows of four numbers, one a primitive.
 
 use crate::material::{Fresnel, Material};
-use crate::math::{Rgb, Vec3};
+use crate::math::{Curved, Rgb, Vec3};
 use crate::scene::{AllEffects, Scene};
-use crate::simd::Table;
+use crate::simd::{Precision, Table};
 
 /// Surfaces by how lanes shade them, as a number in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +33,7 @@ impl Kind {
 
 /// The tables of a scene.
 pub(super) struct Tables {
-    /// The centre of a sphere or the normal of what is flat, and 1 for spheres.
+    /// The centre of a sphere and 1, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of what is flat.
     pub(super) surfaces: Table,
     /// The radiance, and 1 for what gives off any.
     pub(super) emissions: Table,
@@ -48,10 +48,19 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    pub(super) fn of(scene: &Scene) -> Self {
+    pub(super) fn of(scene: &Scene, precision: Precision) -> Self {
         let primitives = &scene.primitives;
         let flat = |normal: Vec3| [normal.x, normal.y, normal.z, 0.0];
-        let round = primitives.spheres.iter().map(|sphere| [sphere.center.x, sphere.center.y, sphere.center.z, 1.0]);
+        let round = primitives.spheres.iter().map(|sphere| {
+            let (Vec3 { x, y, z }, number) = match precision {
+                Precision::F64 => (sphere.center, 1.0),
+                Precision::F32 => {
+                    let curved = Curved::of(sphere.center, sphere.radius);
+                    (curved.normal, curved.curvature)
+                }
+            };
+            [x, y, z, number]
+        });
         let first_flat = primitives.spheres.len() as u32;
         let nowhere = Vec3::new(0.0, 0.0, 0.0);
         let flats = (first_flat..scene.owners.len() as u32)

@@ -6,11 +6,11 @@ use super::tables::Kind;
 use crate::kernel::Counts;
 use crate::material::Density;
 use crate::math::{
-    Bits, Frame, Ray, Rgb, Vec3, dot, fresnel_dielectric, fresnel_schlick, other_root, reflect, refract,
+    Bits, Frame, Ray, Rgb, Vec3, curved_normal, dot, fresnel_dielectric, fresnel_schlick, other_root, reflect, refract,
 };
 use crate::sampling::{Purpose, cosine_hemisphere};
 use crate::scene::AllEffects;
-use crate::simd::{Float, Mask};
+use crate::simd::{Float, Mask, Words};
 
 /// Where rays arrived.
 #[derive(Clone, Copy)]
@@ -20,8 +20,8 @@ pub(super) struct Arrival<V: Float> {
     pub(super) t: V,
     pub(super) primitive: V,
     pub(super) point: Vec3<V>,
-    /// The centre of a sphere, the normal of what is flat.
-    pub(super) anchor: Vec3<V>,
+    /// The point seen from the centre of a sphere; of no use where the surface is flat.
+    pub(super) from_center: Vec3<V>,
     pub(super) is_round: V::Mask,
     /// The outward normal.
     pub(super) normal: Vec3<V>,
@@ -91,7 +91,7 @@ impl Lanes {
             let found = packet.collected + packet.throughput * emission;
             packet.collected = Rgb::select(lit, found, packet.collected);
         }
-        let cut = (V::same(packet.vertices, V::Bits::splat(u64::from(self.course.max_depth))) & met).bits();
+        let cut = (packet.vertices.equal(V::Bits::splat(u64::from(self.course.max_depth))) & met).bits();
         counts.truncated += u64::from(cut.count_ones());
         ended |= cut;
         if let Some(at) = &early {
@@ -124,18 +124,25 @@ impl Lanes {
         let point = packet.rays.ray.at(t);
         let [x, y, z, round] = V::rows(&self.tables.surfaces, primitive);
         let anchor = Vec3::new(x, y, z);
-        let is_round = V::splat(0.5).lt(round);
-        let of_sphere = (point - anchor).normalized();
+        let is_round = V::splat(0.0).lt(round);
+        let (from_center, of_sphere);
+        if V::IS_DOUBLE {
+            from_center = point - anchor;
+            of_sphere = from_center.normalized();
+        } else {
+            of_sphere = curved_normal(anchor, round, point).normalized();
+            from_center = of_sphere * (V::splat(1.0) / round);
+        }
         let normal = if self.tables.is_round { of_sphere } else { Vec3::select(is_round, of_sphere, anchor) };
         let inside = V::splat(0.0).lt(dot(normal, packet.rays.ray.direction));
         let frame = Frame::around(Vec3::select(inside, -normal, normal));
-        Arrival { lanes, t, primitive, point, anchor, is_round, normal, inside, frame }
+        Arrival { lanes, t, primitive, point, from_center, is_round, normal, inside, frame }
     }
 
     /// The lanes that chance ends.
     #[inline(always)]
     fn roulette<V: Float>(&self, packet: &mut Packet<V>, lanes: V::Mask, vertex: &Vertex<V>) -> u32 {
-        let begun = lanes & V::less(V::Bits::splat(u64::from(self.course.roulette.after())), vertex.number);
+        let begun = lanes & V::Bits::splat(u64::from(self.course.roulette.after())).less(vertex.number);
         if !begun.any() {
             return 0;
         }
@@ -206,8 +213,7 @@ impl Lanes {
             reflectance = V::select(is_exact, exact, reflectance);
         }
         let transmittance = one - reflectance;
-        let goes_both_ways =
-            lanes & !is_total & V::less(vertex.number, V::Bits::splat(u64::from(self.course.splits) + 1));
+        let goes_both_ways = lanes & !is_total & vertex.number.less(V::Bits::splat(u64::from(self.course.splits) + 1));
 
         let (chance, reflects, weight);
         if AIMS {
@@ -293,7 +299,7 @@ fn leave<V: Float>(
     packet.vertices = vertices;
     packet.density = V::select(scattered.is_delta, V::splat(-1.0), scattered.density);
     // Parts of a split are looked at when they have been traced.
-    let smallest = V::splat(f64::MIN_POSITIVE);
+    let smallest = V::splat(V::SMALLEST);
     let Rgb { r, g, b } = packet.throughput;
     let spent = r.lt(smallest) & g.lt(smallest) & b.lt(smallest);
     *ended |= (at.lanes & spent).bits() & !splits;
@@ -306,7 +312,7 @@ fn put_aside<V: Float>(packet: &mut Packet<V>, at: &Arrival<V>, vertices: V::Bit
     let own_root = own_root(at, split.wi, direction);
     let throughput = packet.throughput * split.weight;
     for lane in LanesOf(lanes) {
-        let vertices = V::word(&vertices, lane);
+        let vertices = vertices.word(lane);
         let part = Part {
             origin: vector(&at.point, lane),
             direction: vector(&direction, lane),
@@ -314,7 +320,7 @@ fn put_aside<V: Float>(packet: &mut Packet<V>, at: &Arrival<V>, vertices: V::Bit
             own_root: own_root.lane(lane),
             throughput: colour(&throughput, lane),
             vertices,
-            branch: V::word(&packet.branch, lane) | 1 << (vertices - 1),
+            branch: packet.branch.word(lane) | 1 << (vertices - 1),
         };
         packet.push(lane, part);
     }
@@ -324,5 +330,5 @@ fn put_aside<V: Float>(packet: &mut Packet<V>, at: &Arrival<V>, vertices: V::Bit
 #[inline(always)]
 pub(super) fn own_root<V: Float>(at: &Arrival<V>, wi: Vec3<V>, direction: Vec3<V>) -> V {
     let to_inside = differ(wi.z.lt(V::splat(0.0)), at.inside);
-    V::select(at.is_round & to_inside, other_root(at.anchor - at.point, direction), V::splat(f64::NAN))
+    V::select(at.is_round & to_inside, other_root(at.from_center, direction), V::splat(f64::NAN))
 }

@@ -1,0 +1,41 @@
+//! Rows of numbers that lanes look up, each its own.
+
+/// Rows of four.
+pub struct Table {
+    pub(super) rows: Vec<[f64; 4]>,
+    pub(super) singles: Vec<[f32; 4]>,
+    /// The columns of a table of at most 16 rows, padded with zeros: they fit two registers of 512 bits.
+    pub(super) columns: Option<[[f64; 16]; 4]>,
+    /// Those of a table of at most 32 rows.
+    pub(super) single_columns: Option<[[f32; 32]; 4]>,
+}
+
+fn columns<T: Copy + Default, const N: usize>(rows: &[[T; 4]]) -> Option<[[T; N]; 4]> {
+    (rows.len() <= N).then(|| {
+        [0, 1, 2, 3].map(|j| {
+            let mut column = [T::default(); N];
+            column.iter_mut().zip(rows).for_each(|(entry, row)| *entry = row[j]);
+            column
+        })
+    })
+}
+
+impl Table {
+    /// A table; there must be a row.
+    pub fn new(rows: Vec<[f64; 4]>) -> Self {
+        assert!(!rows.is_empty(), "a table needs a row");
+        let singles: Vec<[f32; 4]> = rows.iter().map(|row| row.map(|number| number as f32)).collect();
+        Self { columns: columns(&rows), single_columns: columns(&singles), rows, singles }
+    }
+
+    #[inline(always)]
+    pub(super) fn row(&self, number: f64) -> &[f64; 4] {
+        // What is in a lane without a ray may be no row at all.
+        self.rows.get(number as usize).unwrap_or(&self.rows[0])
+    }
+
+    #[inline(always)]
+    pub(super) fn single_row(&self, number: f32) -> &[f32; 4] {
+        self.singles.get(number as usize).unwrap_or(&self.singles[0])
+    }
+}
