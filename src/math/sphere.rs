@@ -10,32 +10,32 @@
 
 use super::{Real, Vec3, dot};
 
-/// c and q, the root of larger magnitude times a, in which nothing cancels. q is NaN if the line misses.
+/// c and q, the root of larger magnitude times a, in which nothing cancels, for a squared radius. q is NaN if the line misses.
 #[inline(always)]
-fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
+fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r2: T) -> (T, T) {
     let b = -dot(f, d);
     let closest = f + d * (b / a);
-    let discriminant = r * r - dot(closest, closest);
+    let discriminant = r2 - dot(closest, closest);
     let q = b + (a * discriminant).sqrt().copysign(b);
-    (dot(f, f) - r * r, q)
+    (dot(f, f) - r2, q)
 }
 
 /// Both intersections of the whole line with the sphere, nearer first, in lengths of `d`; NaN if there are none.
 #[inline(always)]
 pub fn roots<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
-    let (c, q) = quadratic(f, d, a, r);
+    let (c, q) = quadratic(f, d, a, r * r);
     let (by_q, by_c) = (q / a, c / q);
     let forward = T::splat(0.0).lt(q);
     (T::select(forward, by_c, by_q), T::select(forward, by_q, by_c))
 }
 
-/// The first intersection at t > 0 of a ray with the sphere, in lengths of `d`; zero, negative or NaN if there is none.
+/// The first intersection at t > 0 of a ray with the sphere of that squared radius, in lengths of `d`; zero, negative or NaN if there is none.
 ///
 /// A ray that starts exactly on the sphere does not see the point it starts from. There is no branch, because most rays miss some of the
 /// spheres and hit others in no order that a processor could foresee.
 #[inline(always)]
-pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T {
-    let (c, q) = quadratic(f, d, a, r);
+pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r2: T) -> T {
+    let (c, q) = quadratic(f, d, a, r2);
     let zero = T::splat(0.0);
     // From inside (c <= 0) and forward (q > 0) the far root q/a is the first ahead; in every other case that hits it is c/q.
     T::select(zero.lt(q) & c.le(zero), q / a, c / q)
@@ -77,13 +77,18 @@ pub fn curved_normal<T: Real>(normal: Vec3<T>, curvature: T, point: Vec3<T>) -> 
     normal + point * curvature
 }
 
-/// [`first_root`] of a [`Curved`] sphere, for a direction of length 1. `square` is |o|² of the ray's origin o, `along` o·d.
+/// b and c of the quadratic k t² + 2 b t + c = 0 of a ray and a [`Curved`] sphere, for a direction of length 1. `square` is |o|² of the ray's origin o,
+/// `along` o·d.
 #[inline(always)]
-pub fn first_root_curved<T: Real>(sphere: &Curved<T>, o: Vec3<T>, d: Vec3<T>, square: T, along: T) -> T {
-    let Curved { normal, curvature: k, offset } = *sphere;
-    let b = k * along + dot(normal, d);
+pub fn curved_quadratic<T: Real>(sphere: &Curved<T>, o: Vec3<T>, d: Vec3<T>, square: T, along: T) -> (T, T) {
+    let Curved { normal, curvature, offset } = *sphere;
     let height = dot(normal, o);
-    let c = k * square + (height + height) + offset;
+    (curvature * along + dot(normal, d), curvature * square + (height + height) + offset)
+}
+
+/// [`first_root`] of a [`Curved`] sphere by its [`curved_quadratic`], whose leading coefficient is the curvature.
+#[inline(always)]
+pub fn first_root_curved<T: Real>(k: T, b: T, c: T) -> T {
     let q = b + (b * b - k * c).sqrt().copysign(b);
     let zero = T::splat(0.0);
     // From inside and away from the surface nearby: the far side, -q/k; in every other case that hits it is -c/q.

@@ -18,8 +18,9 @@ use crate::film::{Piece, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
-use crate::simd::{self, Float, MOST_LANES, Precision, Work, on_level};
+use crate::simd::{self, Float, MOST_LANES, Precision, Words, Work, on_level};
 use light::Targets;
+use nearest::Ball;
 use packet::{LanesOf, Packet};
 use singles::Singles;
 use std::sync::Arc;
@@ -39,6 +40,7 @@ pub(super) struct Lanes {
     targets: Option<Targets>,
     level: &'static simd::Entry,
     precision: Precision,
+    balls: Vec<Ball>,
     /// The spheres as single precision has them.
     singles: Singles,
     /// Whether every sphere is tested, because there are few and nothing else.
@@ -52,6 +54,7 @@ impl Lanes {
             view: scene.camera.view(spec.width, spec.height),
             targets: scene.lights.as_ref().map(Targets::of),
             scans: tables.is_round && scene.hierarchy.is_none(),
+            balls: Ball::all_of(&scene),
             singles: Singles::of(&scene),
             precision,
             scene,
@@ -71,17 +74,16 @@ impl Lanes {
         packet.collected.r.store(&mut r);
         packet.collected.g.store(&mut g);
         packet.collected.b.store(&mut b);
+        let mut slots = [0; MOST_LANES];
+        packet.slots.store(&mut slots);
         for lane in LanesOf(ended) {
             if self.course.splits > 0 && packet.pop(lane) {
                 continue;
             }
             packet.alive &= !(1 << lane);
-            window.give_back(
-                packet.slots[lane],
-                Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() },
-                counts,
-            );
+            window.give_back(slots[lane], Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() });
         }
+        window.settle(counts);
     }
 
     #[inline(always)]
@@ -103,30 +105,31 @@ impl Lanes {
     }
 }
 
-/// A piece to render.
-struct Render<'a> {
+/// A piece to render, by paths that aim at light or by paths that do not.
+struct Render<'a, const AIMS: bool> {
     kernel: &'a Lanes,
     piece: &'a Piece,
     out: &'a mut TileBuffer,
 }
 
-impl Work for Render<'_> {
+impl<const AIMS: bool> Work for Render<'_, AIMS> {
     type Output = Counts;
 
     #[inline(always)]
     fn run<V: Float>(self) -> Counts {
-        if self.kernel.course.aims.is_some() {
-            self.kernel.follow::<V, true>(self.piece, self.out)
-        } else {
-            self.kernel.follow::<V, false>(self.piece, self.out)
-        }
+        self.kernel.follow::<V, AIMS>(self.piece, self.out)
     }
 }
 
 impl Kernel for Lanes {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        let work = Render { kernel: self, piece, out };
+        let (level, precision) = (self.level.name, self.precision);
+        let counts = if self.course.aims.is_some() {
+            on_level(level, precision, Render::<true> { kernel: self, piece, out })
+        } else {
+            on_level(level, precision, Render::<false> { kernel: self, piece, out })
+        };
         // The level has been found on this processor when the kernel was made.
-        on_level(self.level.name, self.precision, work).unwrap_or_default()
+        counts.unwrap_or_default()
     }
 }

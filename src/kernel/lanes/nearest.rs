@@ -4,7 +4,7 @@ use super::Lanes;
 use super::packet::{LanesOf, Rays, vector};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3, first_root};
-use crate::scene::{Standpoint, Tests};
+use crate::scene::{Scene, Sphere, Standpoint, Tests};
 use crate::simd::Float;
 
 impl Lanes {
@@ -24,20 +24,13 @@ impl Lanes {
     /// Tests every sphere.
     #[inline(always)]
     fn scan<V: Float>(&self, rays: &Rays<V>) -> (V, V) {
-        let zero = V::splat(0.0);
-        let (mut nearest, mut primitive) = (V::splat(f64::INFINITY), V::splat(-1.0));
-        let mut number = 0.0;
-        for sphere in &self.scene.primitives.spheres {
-            let index = V::splat(number);
-            let offset = rays.ray.origin - Vec3::splat(sphere.center);
-            let root = first_root(offset, rays.ray.direction, V::splat(1.0), V::splat(sphere.radius));
-            let distance = V::select(rays.from.equal(index), rays.own_root, root);
-            let is_nearer = zero.lt(distance) & distance.lt(nearest);
-            nearest = V::select(is_nearer, distance, nearest);
-            primitive = V::select(is_nearer, index, primitive);
-            number += 1.0;
+        let mut found = Found::nothing();
+        for Ball { center, square, number } in &self.balls {
+            let offset = rays.ray.origin - Vec3::splat(*center);
+            let root = first_root(offset, rays.ray.direction, V::splat(1.0), V::splat(*square));
+            found.take(rays, V::splat(*number), root);
         }
-        (nearest, primitive)
+        found.best()
     }
 
     /// Asks the scene for each ray.
@@ -60,5 +53,55 @@ impl Lanes {
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
         (nearest, primitive)
+    }
+}
+
+/// What the rays met so far.
+pub(super) struct Found<V: Float> {
+    nearest: V,
+    primitive: V,
+}
+
+impl<V: Float> Found<V> {
+    #[inline(always)]
+    pub(super) fn nothing() -> Self {
+        Self { nearest: V::splat(f64::INFINITY), primitive: V::splat(-1.0) }
+    }
+
+    /// A root of a primitive; that of the one on which a ray starts is known.
+    #[inline(always)]
+    pub(super) fn take(&mut self, rays: &Rays<V>, number: V, root: V) {
+        let distance = V::select(rays.from.equal(number), rays.own_root, root);
+        let is_nearer = V::splat(0.0).lt(distance) & distance.lt(self.nearest);
+        self.nearest = V::select(is_nearer, distance, self.nearest);
+        self.primitive = V::select(is_nearer, number, self.primitive);
+    }
+
+    /// Distance and number of the primitive.
+    #[inline(always)]
+    pub(super) fn best(&self) -> (V, V) {
+        (self.nearest, self.primitive)
+    }
+}
+
+/// What the search needs of a sphere.
+pub(super) struct Ball {
+    center: Vec3,
+    /// The squared radius.
+    square: f64,
+    /// The number of its primitive.
+    number: f64,
+}
+
+impl Ball {
+    pub(super) fn all_of(scene: &Scene) -> Vec<Self> {
+        let numbered = scene.primitives.spheres.iter().zip(0_u32..);
+        numbered
+            .map(|(Sphere { center, radius }, number)| Self {
+                center: *center,
+                square: radius * radius,
+                number: number.into(),
+            })
+            .collect()
     }
 }

@@ -3,15 +3,16 @@
 //! A centre 1e5 away leaves a coordinate of the scene seven hundredths of its unit. What [`Curved`] has instead is of the scene's own size. For
 //! spheres that are small next to their distance from the origin it would be worse: k |x|² is that distance times the ratio of both.
 
+use super::nearest::Found;
 use super::packet::Rays;
-use crate::math::{Curved, Vec3, dot, first_root, first_root_curved};
+use crate::math::{Curved, Vec3, curved_quadratic, dot, first_root, first_root_curved};
 use crate::scene::Scene;
 use crate::simd::Float;
 
 /// The spheres of a scene, each with the number of its primitive.
 pub(super) struct Singles {
     curved: Vec<(f32, Curved<f32>)>,
-    /// Centres and radii.
+    /// Centres and squared radii.
     centred: Vec<(f32, Vec3<f32>, f32)>,
 }
 
@@ -19,6 +20,7 @@ fn single(v: Vec3) -> Vec3<f32> {
     Vec3 { x: v.x as f32, y: v.y as f32, z: v.z as f32 }
 }
 
+#[inline(always)]
 fn splat<V: Float>(v: Vec3<f32>) -> Vec3<V> {
     Vec3 { x: V::splat(v.x.into()), y: V::splat(v.y.into()), z: V::splat(v.z.into()) }
 }
@@ -34,7 +36,7 @@ impl Singles {
         for (number, sphere) in spheres.iter().enumerate() {
             let number = number as f32;
             if sphere.radius < size {
-                centred.push((number, single(sphere.center), sphere.radius as f32));
+                centred.push((number, single(sphere.center), (sphere.radius * sphere.radius) as f32));
             } else {
                 let Curved { normal, curvature, offset } = Curved::of(sphere.center, sphere.radius);
                 let sphere = Curved { normal: single(normal), curvature: curvature as f32, offset: offset as f32 };
@@ -50,29 +52,25 @@ impl Singles {
     pub(super) fn scan<V: Float>(&self, rays: &Rays<V>) -> (V, V) {
         let (origin, direction) = (rays.ray.origin, rays.ray.direction);
         let (square, along) = (dot(origin, origin), dot(origin, direction));
-        let mut found = (V::splat(f64::INFINITY), V::splat(-1.0));
+        let mut found = Found::nothing();
         for (number, sphere) in &self.curved {
-            let sphere = Curved {
-                normal: splat::<V>(sphere.normal),
-                curvature: V::splat(sphere.curvature.into()),
-                offset: V::splat(sphere.offset.into()),
-            };
-            found = nearer(rays, found, *number, first_root_curved(&sphere, origin, direction, square, along));
+            let (b, c) = curved_quadratic(&in_lanes(sphere), origin, direction, square, along);
+            found.take(rays, V::splat((*number).into()), first_root_curved(V::splat(sphere.curvature.into()), b, c));
         }
-        for (number, center, radius) in &self.centred {
+        for (number, center, square) in &self.centred {
             let offset = origin - splat::<V>(*center);
-            let root = first_root(offset, direction, V::splat(1.0), V::splat(f64::from(*radius)));
-            found = nearer(rays, found, *number, root);
+            let root = first_root(offset, direction, V::splat(1.0), V::splat(f64::from(*square)));
+            found.take(rays, V::splat((*number).into()), root);
         }
-        found
+        found.best()
     }
 }
 
-/// The nearer one of what was found and of another root.
 #[inline(always)]
-fn nearer<V: Float>(rays: &Rays<V>, (nearest, primitive): (V, V), number: f32, root: V) -> (V, V) {
-    let number = V::splat(number.into());
-    let distance = V::select(rays.from.equal(number), rays.own_root, root);
-    let is_nearer = V::splat(0.0).lt(distance) & distance.lt(nearest);
-    (V::select(is_nearer, distance, nearest), V::select(is_nearer, number, primitive))
+fn in_lanes<V: Float>(sphere: &Curved<f32>) -> Curved<V> {
+    Curved {
+        normal: splat::<V>(sphere.normal),
+        curvature: V::splat(sphere.curvature.into()),
+        offset: V::splat(sphere.offset.into()),
+    }
 }

@@ -1,8 +1,8 @@
 //! Camera rays made ahead, a whole packet of them at a time, so that lanes which end one by one can be given their next one by one.
 
 use super::Lanes;
-use super::packet::{LanesOf, Packet};
-use super::window::Window;
+use super::packet::Packet;
+use super::window::{Handed, Window};
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::{PathWords, Purpose, SampleKey};
 use crate::scene::SUBPIXELS;
@@ -17,7 +17,7 @@ pub(super) struct Supply<V: Float> {
     rays: [[V::One; SIZE]; 6],
     /// What the numbers of their samples have in common.
     words: [[u64; SIZE]; 4],
-    slots: [u16; SIZE],
+    slots: [u64; SIZE],
     /// Of those that are being made: columns, rows, pixels, samples, and their two places.
     keys: [[u64; MOST_LANES]; 6],
     /// The next one.
@@ -60,16 +60,18 @@ impl Lanes {
     fn produce<V: Float>(&self, supply: &mut Supply<V>, window: &mut Window<'_>) {
         supply.first = 0;
         while supply.count < V::LANES {
-            let Some((place, slot)) = window.hand_out() else { break };
-            let k = supply.count;
-            let key = SampleKey { seed: self.seed, pixel: place.y * self.width + place.x, sample: place.sample };
-            let [first, second] = self.sampler.joined(key);
-            let all = [place.x.into(), place.y.into(), key.pixel.into(), key.sample.into(), first, second];
-            for (words, word) in supply.keys.iter_mut().zip(all) {
-                words[k] = word;
+            let Some(Handed { first, slot, count }) = window.hand_out(V::LANES - supply.count) else { break };
+            let pixel = first.y * self.width + first.x;
+            for k in 0..count {
+                let (at, sample) = (supply.count + k, first.sample + k as u32);
+                let places = self.sampler.joined(SampleKey { seed: self.seed, pixel, sample });
+                let all = [first.x.into(), first.y.into(), pixel.into(), sample.into(), places[0], places[1]];
+                for (words, word) in supply.keys.iter_mut().zip(all) {
+                    words[at] = word;
+                }
+                supply.slots[at] = slot + k as u64;
             }
-            supply.slots[k] = slot;
-            supply.count += 1;
+            supply.count += count;
         }
         let none = V::Bits::splat(0);
         let [columns, rows, pixels, samples, film, first] = &supply.keys;
@@ -123,9 +125,7 @@ impl Lanes {
             packet.words.joined[0] = joined[0].fill(mask, &words[2][first..]);
             packet.words.joined[1] = joined[1].fill(mask, &words[3][first..]);
         }
-        for (lane, slot) in LanesOf(taken).zip(&supply.slots[first..]) {
-            packet.slots[lane] = *slot;
-        }
+        packet.slots = packet.slots.fill(mask, &supply.slots[first..]);
         // What is on nothing has no use for `own_root`.
         packet.rays.from = V::select(mask, V::splat(-1.0), packet.rays.from);
         packet.throughput = Rgb::select(mask, Rgb::splat(Rgb::WHITE), packet.throughput);

@@ -16,6 +16,14 @@ pub(super) struct Place {
     pub(super) sample: u32,
 }
 
+/// Samples of a pixel that were handed out.
+pub(super) struct Handed {
+    pub(super) first: Place,
+    /// By what the first is given back; the next ones by the next numbers.
+    pub(super) slot: u64,
+    pub(super) count: usize,
+}
+
 /// The window over a piece.
 pub(super) struct Window<'a> {
     bounds: Bounds,
@@ -27,15 +35,17 @@ pub(super) struct Window<'a> {
     /// Where the next sample to be taken back is.
     first: Place,
     taken: u64,
-    is_done: [bool; SIZE],
+    /// A bit for each slot that was given back.
+    done: [u64; SIZE / 64],
     radiances: [Rgb; SIZE],
     sum: SampleSum,
 }
 
 impl Place {
+    /// Goes on by no more samples than the pixel has left.
     #[inline(always)]
-    fn advance(&mut self, bounds: &Bounds, samples: &std::ops::Range<u32>) {
-        self.sample += 1;
+    fn advance(&mut self, count: u32, bounds: &Bounds, samples: &std::ops::Range<u32>) {
+        self.sample += count;
         if self.sample == samples.end {
             self.sample = samples.start;
             self.x += 1;
@@ -66,37 +76,51 @@ impl<'a> Window<'a> {
             handed: 0,
             first,
             taken: 0,
-            is_done: [false; SIZE],
+            done: [0; SIZE / 64],
             radiances: [Rgb::BLACK; SIZE],
             sum: SampleSum::default(),
         }
     }
 
-    /// The next sample, and the slot to give it back by; `None` if there is none, or none until others have been given back.
+    /// The next samples, at most so many, which are all of one pixel; `None` if there are none, or none until others have been given back.
     #[inline(always)]
-    pub(super) fn hand_out(&mut self) -> Option<(Place, u16)> {
-        if self.next.y >= self.bounds.y1 || self.handed - self.taken == SIZE as u64 {
+    pub(super) fn hand_out(&mut self, most: usize) -> Option<Handed> {
+        let room = SIZE as u64 - (self.handed - self.taken);
+        if self.next.y >= self.bounds.y1 || room == 0 {
             return None;
         }
-        let (place, slot) = (self.next, (self.handed % SIZE as u64) as u16);
-        self.next.advance(&self.bounds, &self.samples);
-        self.handed += 1;
-        Some((place, slot))
+        let (first, slot) = (self.next, self.handed);
+        let left = self.samples.end - first.sample;
+        let count = (most as u64).min(room).min(left.into());
+        self.next.advance(count as u32, &self.bounds, &self.samples);
+        self.handed += count;
+        Some(Handed { first, slot, count: count as usize })
     }
 
-    /// Gives a sample back.
+    /// Gives a sample back; [`Window::settle`] adds it.
     #[inline(always)]
-    pub(super) fn give_back(&mut self, slot: u16, radiance: Rgb, counts: &mut Counts) {
-        self.radiances[usize::from(slot)] = radiance;
-        self.is_done[usize::from(slot)] = true;
+    pub(super) fn give_back(&mut self, slot: u64, radiance: Rgb) {
+        let slot = slot as usize % SIZE;
+        self.radiances[slot] = radiance;
+        self.done[slot / 64] |= 1 << (slot % 64);
+    }
+
+    /// Adds what was given back, as far as nothing before it is still out.
+    #[inline(always)]
+    pub(super) fn settle(&mut self, counts: &mut Counts) {
         loop {
             let slot = (self.taken % SIZE as u64) as usize;
-            if !self.is_done[slot] {
+            let word = &mut self.done[slot / 64];
+            let ready = (!(*word >> (slot % 64))).trailing_zeros().min(64 - (slot % 64) as u32);
+            if ready == 0 {
                 return;
             }
-            self.is_done[slot] = false;
-            self.taken += 1;
-            self.add(self.radiances[slot], counts);
+            // As many ones as are ready, from the slot on.
+            *word &= !((u64::MAX >> (64 - ready)) << (slot % 64));
+            self.taken += u64::from(ready);
+            for k in slot..slot + ready as usize {
+                self.add(self.radiances[k], counts);
+            }
         }
     }
 
@@ -112,6 +136,6 @@ impl<'a> Window<'a> {
             self.out.row_mut(self.first.y)[column] = self.sum.total();
             self.sum.clear();
         }
-        self.first.advance(&self.bounds, &self.samples);
+        self.first.advance(1, &self.bounds, &self.samples);
     }
 }

@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::two::{HalfMask, PairMask, Two};
-use super::{Mask, Precision, Words, Work};
+use super::{Float, Mask, Precision, Words, Work};
 use crate::math::Bits;
 use double::F64x4;
 use single::F32x8;
@@ -32,16 +32,18 @@ pub(super) fn is_available() -> bool {
 
 /// Does the work; `None` if this processor cannot.
 pub(super) fn run<W: Work>(precision: Precision, work: W) -> Option<W::Output> {
-    // SAFETY: the feature has been found a line above.
-    is_available().then(|| unsafe { enter(precision, work) })
+    // SAFETY: the features have been found in the line.
+    is_available().then(|| unsafe {
+        match precision {
+            Precision::F64 => enter::<Two<F64x4>, W>(work),
+            Precision::F32 => enter::<Two<F32x8>, W>(work),
+        }
+    })
 }
 
 #[target_feature(enable = "avx2")]
-fn enter<W: Work>(precision: Precision, work: W) -> W::Output {
-    match precision {
-        Precision::F64 => work.run::<Two<F64x4>>(),
-        Precision::F32 => work.run::<Two<F32x8>>(),
-    }
+fn enter<V: Float, W: Work>(work: W) -> W::Output {
+    work.run::<V>()
 }
 
 #[derive(Clone, Copy)]
