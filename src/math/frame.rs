@@ -23,8 +23,8 @@ impl<T: Real> Frame<T> {
         let a = -one / (sign + n.z);
         let b = n.x * n.y * a;
         Self {
-            s: Vec3::new(one + sign * n.x * n.x * a, sign * b, -(sign * n.x)),
-            t: Vec3::new(b, sign + n.y * n.y * a, -n.y),
+            s: Vec3::new((sign * n.x * n.x).times_plus(a, one), sign * b, -(sign * n.x)),
+            t: Vec3::new(b, (n.y * n.y).times_plus(a, sign), -n.y),
             n,
         }
     }
@@ -38,6 +38,6 @@ impl<T: Real> Frame<T> {
     /// Local to world.
     #[inline(always)]
     pub fn to_world(&self, v: Vec3<T>) -> Vec3<T> {
-        self.s * v.x + self.t * v.y + self.n * v.z
+        self.n.times_plus(v.z, self.t.times_plus(v.y, self.s * v.x))
     }
 }

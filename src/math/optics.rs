@@ -13,7 +13,7 @@ pub fn reflect<T: Real>(wo: Vec3<T>) -> Vec3<T> {
 #[inline(always)]
 pub fn refract<T: Real>(wo: Vec3<T>, eta: T) -> (Vec3<T>, T) {
     let one = T::splat(1.0);
-    let cos2 = one - eta * eta * (one - wo.z * wo.z);
+    let cos2 = (-(eta * eta)).times_plus(one - wo.z * wo.z, one);
     (Vec3::new(-(wo.x * eta), -(wo.y * eta), -cos2.sqrt()), cos2)
 }
 

@@ -15,6 +15,6 @@ impl<T: Real> Ray<T> {
     /// The point at distance `t`, in lengths of the direction.
     #[inline(always)]
     pub fn at(&self, t: T) -> Vec3<T> {
-        self.origin + self.direction * t
+        self.direction.times_plus(t, self.origin)
     }
 }

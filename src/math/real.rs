@@ -1,7 +1,7 @@
 //! The number trait that leaf formulas are written over: `f64`, `f32` to see what it costs, and SIMD lanes of the same formulas.
 //!
 //! A formula over [`Real`] may not branch on a value; it computes both sides and selects. Each operation is one that IEEE 754 rounds
-//! exactly (no reciprocal estimate, no fused multiply-add), so every implementation gives the same bits per lane.
+//! exactly (no reciprocal estimate), so every implementation of a precision gives the same bits per lane.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
@@ -27,6 +27,10 @@ pub trait Real:
     /// The magnitude.
     #[must_use]
     fn abs(self) -> Self;
+    /// `self * factor + addend`: in double precision rounded after each, because the instructions that processors share have nothing else; in single
+    /// precision rounded once, on every processor.
+    #[must_use]
+    fn times_plus(self, factor: Self, addend: Self) -> Self;
     /// The magnitude of `self` with the sign of `sign`, zeros included.
     #[must_use]
     fn copysign(self, sign: Self) -> Self;
@@ -39,7 +43,7 @@ pub trait Real:
 }
 
 macro_rules! float {
-    ($Float:ident) => {
+    ($Float:ident, |$a:ident, $b:ident, $c:ident| $times_plus:expr) => {
         impl Real for $Float {
             type Mask = bool;
             const SIGNIFICAND: u32 = $Float::MANTISSA_DIGITS;
@@ -56,6 +60,11 @@ macro_rules! float {
             #[inline(always)]
             fn abs(self) -> Self {
                 $Float::abs(self)
+            }
+            #[inline(always)]
+            fn times_plus(self, $b: Self, $c: Self) -> Self {
+                let $a = self;
+                $times_plus
             }
             #[inline(always)]
             fn copysign(self, sign: Self) -> Self {
@@ -77,5 +86,5 @@ macro_rules! float {
     };
 }
 
-float!(f64);
-float!(f32);
+float!(f64, |a, b, c| a * b + c);
+float!(f32, |a, b, c| a.mul_add(b, c));

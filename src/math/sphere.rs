@@ -14,7 +14,7 @@ use super::{Real, Vec3, dot};
 #[inline(always)]
 fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r2: T) -> (T, T) {
     let b = -dot(f, d);
-    let closest = f + d * (b / a);
+    let closest = d.times_plus(b / a, f);
     let discriminant = r2 - dot(closest, closest);
     let q = b + (a * discriminant).sqrt().copysign(b);
     (dot(f, f) - r2, q)
@@ -74,7 +74,7 @@ impl Curved {
 /// is 0.
 #[inline(always)]
 pub fn curved_normal<T: Real>(normal: Vec3<T>, curvature: T, point: Vec3<T>) -> Vec3<T> {
-    normal + point * curvature
+    point.times_plus(curvature, normal)
 }
 
 /// b and c of the quadratic k t² + 2 b t + c = 0 of a ray and a [`Curved`] sphere, for a direction of length 1. `square` is |o|² of the ray's origin o,
@@ -82,14 +82,15 @@ pub fn curved_normal<T: Real>(normal: Vec3<T>, curvature: T, point: Vec3<T>) -> 
 #[inline(always)]
 pub fn curved_quadratic<T: Real>(sphere: &Curved<T>, o: Vec3<T>, d: Vec3<T>, square: T, along: T) -> (T, T) {
     let Curved { normal, curvature, offset } = *sphere;
-    let height = dot(normal, o);
-    (curvature * along + dot(normal, d), curvature * square + (height + height) + offset)
+    let twice = T::splat(2.0);
+    let c = twice.times_plus(dot(normal, o), curvature.times_plus(square, offset));
+    (curvature.times_plus(along, dot(normal, d)), c)
 }
 
 /// [`first_root`] of a [`Curved`] sphere by its [`curved_quadratic`], whose leading coefficient is the curvature.
 #[inline(always)]
 pub fn first_root_curved<T: Real>(k: T, b: T, c: T) -> T {
-    let q = b + (b * b - k * c).sqrt().copysign(b);
+    let q = b + b.times_plus(b, -(k * c)).sqrt().copysign(b);
     let zero = T::splat(0.0);
     // From inside and away from the surface nearby: the far side, -q/k; in every other case that hits it is -c/q.
     let far = q.lt(zero) & c.le(zero);

@@ -29,17 +29,22 @@ const COS: [f64; 9] = [
 ];
 
 #[inline(always)]
+fn linear<T: Real>(c: &[f64; 9], k: usize, x: T) -> T {
+    T::splat(c[k + 1]).times_plus(x, T::splat(c[k]))
+}
+
+#[inline(always)]
 fn polynomial<T: Real>(c: &[f64; 9], x: T) -> T {
     // Estrin's grouping: a third of Horner's dependency chain, and as fixed an order.
     let x2 = x * x;
     let x4 = x2 * x2;
-    let low = (T::splat(c[0]) + T::splat(c[1]) * x) + (T::splat(c[2]) + T::splat(c[3]) * x) * x2;
+    let low = linear(c, 2, x).times_plus(x2, linear(c, 0, x));
     if !T::IS_DOUBLE {
         // The first term left out is below 3e-8.
-        return low + T::splat(c[4]) * x4;
+        return T::splat(c[4]).times_plus(x4, low);
     }
-    let high = (T::splat(c[4]) + T::splat(c[5]) * x) + (T::splat(c[6]) + T::splat(c[7]) * x) * x2;
-    low + (high + T::splat(c[8]) * x4) * x4
+    let high = linear(c, 6, x).times_plus(x2, linear(c, 4, x));
+    T::splat(c[8]).times_plus(x4, high).times_plus(x4, low)
 }
 
 /// Whether a whole number is `k`.
@@ -57,7 +62,7 @@ pub fn sin_cos_turns<T: Real>(u: T) -> (T, T) {
     // sets lack.
     let shift = T::splat(1.5 * (1_u64 << (T::SIGNIFICAND - 1)) as f64);
     let quarter = (u * T::splat(4.0) + shift) - shift;
-    let x = (u - quarter * T::splat(0.25)) * T::splat(std::f64::consts::TAU);
+    let x = quarter.times_plus(T::splat(-0.25), u) * T::splat(std::f64::consts::TAU);
     let x2 = x * x;
     let s = x * polynomial(&SIN, x2);
     let c = polynomial(&COS, x2);

@@ -17,7 +17,7 @@ pub struct Vec3<T = f64> {
 /// The scalar product.
 #[inline(always)]
 pub fn dot<T: Real>(a: Vec3<T>, b: Vec3<T>) -> T {
-    a.x * b.x + a.y * b.y + a.z * b.z
+    a.z.times_plus(b.z, a.y.times_plus(b.y, a.x * b.x))
 }
 
 impl<T> Vec3<T> {
@@ -47,6 +47,17 @@ impl<T: Real> Vec3<T> {
     #[must_use]
     pub fn cross(self, b: Self) -> Self {
         Self::new(self.y * b.z - self.z * b.y, self.z * b.x - self.x * b.z, self.x * b.y - self.y * b.x)
+    }
+
+    /// `self * factor + addend`.
+    #[inline(always)]
+    #[must_use]
+    pub fn times_plus(self, factor: T, addend: Self) -> Self {
+        Self::new(
+            self.x.times_plus(factor, addend.x),
+            self.y.times_plus(factor, addend.y),
+            self.z.times_plus(factor, addend.z),
+        )
     }
 
     /// The direction of `self` with length 1; NaN for the zero vector.

@@ -1,8 +1,8 @@
 //! Numbers side by side in the registers of a processor: the same formulas as for one number, over more of them at once.
 //!
 //! One instruction set a folder or file; this file is their table. What the processor has is found out at run time, so the program needs no build flags
-//! and runs anywhere. Every level gives the same bits, lane by lane: each operation is one that IEEE 754 rounds exactly, none is fused, and
-//! there are no estimates.
+//! and runs anywhere. Every level gives the same bits, lane by lane: each operation is one that IEEE 754 rounds exactly, fused are those that
+//! [`Real::times_plus`] says, and there are no estimates.
 //!
 //! To add an instruction set: write its file with types that implement [`Float`] and [`Words`], and a line in `levels!` below.
 
@@ -180,7 +180,7 @@ levels! {
     #[cfg(target_arch = "x86_64")]
     "avx512", "AVX-512 (F, DQ, VL, BW): 512-bit registers, two at a time" => avx512;
     #[cfg(target_arch = "x86_64")]
-    "avx2", "AVX2: 256-bit registers, two at a time" => avx2;
+    "avx2", "AVX2 and FMA: 256-bit registers, two at a time" => avx2;
     "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
 }
 

@@ -95,6 +95,10 @@ impl<T: Real<Mask = bool>> Real for Plain<T> {
         each!(k => self.0[k].abs())
     }
     #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        each!(k => self.0[k].times_plus(factor.0[k], addend.0[k]))
+    }
+    #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
         each!(k => self.0[k].copysign(sign.0[k]))
     }

@@ -61,6 +61,11 @@ impl Work for Operations {
                     ("product", (v * w).lane(lane), rounded(x * y)),
                     ("quotient", (v / w).lane(lane), rounded(x / y)),
                     ("opposite", (-v).lane(lane), -x),
+                    (
+                        "product and sum",
+                        v.times_plus(w, v).lane(lane),
+                        if V::IS_DOUBLE { x * y + x } else { f64::from((x as f32).mul_add(y as f32, x as f32)) },
+                    ),
                     ("root", v.sqrt().lane(lane), rounded(x.sqrt())),
                     ("magnitude", v.abs().lane(lane), x.abs()),
                     ("sign", v.copysign(w).lane(lane), x.copysign(y)),

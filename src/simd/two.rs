@@ -56,6 +56,10 @@ impl<V: Real> Real for Two<V> {
         Self(self.0.abs(), self.1.abs())
     }
     #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        Self(self.0.times_plus(factor.0, addend.0), self.1.times_plus(factor.1, addend.1))
+    }
+    #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
         Self(self.0.copysign(sign.0), self.1.copysign(sign.1))
     }

@@ -42,6 +42,10 @@ impl Real for F64x4 {
         Self(op!(_mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0)))
     }
     #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+    #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
         let bit = op!(_mm256_and_pd(_mm256_set1_pd(-0.0), sign.0));
         Self(op!(_mm256_or_pd(self.abs().0, bit)))

@@ -27,7 +27,7 @@ use std::ops::{BitAnd, BitOr, BitXor, Not};
 
 /// Whether this processor has what is used here.
 pub(super) fn is_available() -> bool {
-    is_x86_feature_detected!("avx2")
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
 }
 
 /// Does the work; `None` if this processor cannot.
@@ -41,7 +41,7 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> Option<W::Output> {
     })
 }
 
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,fma")]
 fn enter<V: Float, W: Work>(work: W) -> W::Output {
     work.run::<V>()
 }

@@ -44,6 +44,10 @@ impl Real for F64x8 {
         Self(op!(_mm512_abs_pd(self.0)))
     }
     #[inline(always)]
+    fn times_plus(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
+    #[inline(always)]
     fn copysign(self, sign: Self) -> Self {
         // Bit by bit: the sign's where the first is set, else the magnitude's.
         let bits = op!(_mm512_ternarylogic_epi64::<0xCA>(
