@@ -1,8 +1,10 @@
-//! `cargo bench --bench intersection`: rays per second against one primitive or box, and against whole scenes by accelerator.
+//! `cargo bench --bench intersection`: rays per second against one primitive or box, against spheres in SIMD lanes by both of their forms, and
+//! against whole scenes by accelerator.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
-use pathmark::math::{Ray, Vec3};
+use pathmark::math::{Curved, Ray, Vec3, curved_quadratic, dot, first_root, first_root_curved};
 use pathmark::scene::{ACCELERATORS, AllEffects, Bounds, Plane, Primitive, Sphere, Tests, Triangle, load};
+use pathmark::simd::{Float, LEVELS, Precision, Work, on_level};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 use std::hint::black_box;
@@ -49,6 +51,75 @@ fn primitives(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// Spheres that rays in lanes are tested against, by centre and radius or by curvature.
+struct InEachLane<'a> {
+    rays: &'a [Ray],
+    spheres: u32,
+    is_curved: bool,
+}
+
+impl Work for InEachLane<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run<V: Float>(self) -> f64 {
+        let mut sum = V::splat(0.0);
+        for packet in self.rays.chunks_exact(V::LANES) {
+            let zero = Vec3::splat(Vec3::new(0.0, 0.0, 0.0));
+            let mut ray = Ray::<V> { origin: zero, direction: zero };
+            for (lane, Ray { origin, direction }) in packet.iter().enumerate() {
+                for (lanes, one) in [(&mut ray.origin, origin), (&mut ray.direction, direction)] {
+                    lanes.x.set_lane(lane, one.x);
+                    lanes.y.set_lane(lane, one.y);
+                    lanes.z.set_lane(lane, one.z);
+                }
+            }
+            let (square, along) = (dot(ray.origin, ray.origin), dot(ray.origin, ray.direction));
+            for sphere in 0..self.spheres {
+                let radius = 0.5 + 0.01 * f64::from(sphere);
+                let root = if self.is_curved {
+                    let Curved { normal, curvature, offset } = Curved::of(Vec3::new(0.1, 0.2, 0.3), radius);
+                    let sphere = Curved {
+                        normal: Vec3::splat(normal),
+                        curvature: V::splat(curvature),
+                        offset: V::splat(offset),
+                    };
+                    let (b, c) = curved_quadratic(&sphere, ray.origin, ray.direction, square, along);
+                    first_root_curved(sphere.curvature, b, c)
+                } else {
+                    let offset = ray.origin - Vec3::splat(Vec3::new(0.1, 0.2, 0.3));
+                    first_root(offset, ray.direction, V::splat(1.0), V::splat(radius * radius))
+                };
+                let is_met = V::splat(0.0).lt(root);
+                sum = sum + V::select(is_met, root, V::splat(0.0));
+            }
+        }
+        sum.lane(0)
+    }
+}
+
+fn lanes(criterion: &mut Criterion) {
+    const SPHERES: u32 = 64;
+    let rays = rays();
+    let mut group = criterion.benchmark_group("lanes");
+    group.throughput(Throughput::Elements(RAYS as u64 * u64::from(SPHERES)));
+    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
+    for level in LEVELS.iter().filter(|level| level.is_available()) {
+        for precision in Precision::ALL {
+            for (form, is_curved) in [("centre", false), ("curvature", true)] {
+                let name = format!("{form}-{}", precision.name());
+                group.bench_function(BenchmarkId::new(name, level.name), |bencher| {
+                    bencher.iter(|| {
+                        let work = InEachLane { rays: black_box(&rays), spheres: SPHERES, is_curved };
+                        black_box(on_level(level.name, precision, work))
+                    });
+                });
+            }
+        }
+    }
+    group.finish();
+}
+
 fn scenes(criterion: &mut Criterion) {
     let rays = rays();
     let mut group = criterion.benchmark_group("scene");
@@ -73,6 +144,7 @@ fn scenes(criterion: &mut Criterion) {
 fn main() {
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
     primitives(&mut criterion);
+    lanes(&mut criterion);
     scenes(&mut criterion);
     criterion.final_summary();
 }

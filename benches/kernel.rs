@@ -1,10 +1,11 @@
-//! `cargo bench --bench kernel`: samples per second of one thread, by estimator, kernel and instruction set.
+//! `cargo bench --bench kernel`: samples per second of one thread, by estimator, kernel, precision and instruction set, on cornell and, for one
+//! estimator, on other scenes.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Decomposition, TileBuffer};
 use pathmark::kernel::{KERNELS, Spec, build, choose};
-use pathmark::simd::LEVELS;
+use pathmark::simd::{LEVELS, Precision};
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,34 +14,40 @@ const SPP: u32 = 16;
 
 /// The kernels that there are here, by name, with their instruction sets.
 fn kernels() -> impl Iterator<Item = (String, Spec)> {
-    let levels = || LEVELS.iter().filter(|level| level.is_available());
     KERNELS.iter().flat_map(move |kernel| {
         let spec = Spec { width: 64, height: 48, kernel: kernel.name.to_string(), ..Spec::default() };
-        let of_level =
-            |name: &str| (format!("{}-{name}", kernel.name), Spec { simd: Some(name.into()), ..spec.clone() });
-        let alone = (kernel.name.to_string(), spec.clone());
-        if kernel.name == "scalar" { vec![alone] } else { levels().map(|level| of_level(level.name)).collect() }
+        if kernel.name == "scalar" {
+            return vec![(kernel.name.to_string(), spec)];
+        }
+        let levels = LEVELS.iter().filter(|level| level.is_available());
+        let formats = levels.flat_map(|level| Precision::ALL.map(|precision| (level.name, precision.name())));
+        formats
+            .map(|(level, precision)| {
+                let name = format!("{}-{precision}-{level}", kernel.name);
+                (name, Spec { simd: Some(level.into()), precision: precision.into(), ..spec.clone() })
+            })
+            .collect()
     })
 }
 
-fn kernel(criterion: &mut Criterion) {
-    let scene = Arc::new(pathmark::scene::load("cornell").expect("cornell is embedded"));
+fn kernel(criterion: &mut Criterion, scene: &str, estimators: &[&str]) {
+    let loaded = Arc::new(pathmark::scene::load(scene).expect("the scene is embedded"));
     let plan = Decomposition::parse("tiles:64x48").expect("tiles can be cut").plan(64, 48, &(0..SPP));
     let piece = &plan.pieces()[0];
-    let mut group = criterion.benchmark_group("kernel");
+    let mut group = criterion.benchmark_group(format!("kernel/{scene}"));
     group.sample_size(20).sampling_mode(SamplingMode::Flat);
     group.throughput(Throughput::Elements(piece.bounds.area() as u64 * u64::from(SPP)));
     group.warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(3));
-    for estimator in ESTIMATORS {
+    for estimator in estimators {
         for (name, spec) in kernels() {
-            let spec = Spec { estimator: estimator.name.to_string(), ..spec };
-            let choice = choose(&scene, &spec).expect("every listed name can be chosen");
+            let spec = Spec { estimator: (*estimator).to_string(), ..spec };
+            let choice = choose(&loaded, &spec).expect("every listed name can be chosen");
             if !choice.fallback().is_empty() {
                 continue;
             }
-            let built = build(&scene, &spec).expect("every listed estimator can be built");
+            let built = build(&loaded, &spec).expect("every listed estimator can be built");
             let mut tile = TileBuffer::new(piece.bounds);
-            group.bench_function(BenchmarkId::new(name, estimator.name), |bencher| {
+            group.bench_function(BenchmarkId::new(name, estimator), |bencher| {
                 bencher.iter(|| black_box(built.render(piece, &mut tile)));
             });
         }
@@ -50,6 +57,10 @@ fn kernel(criterion: &mut Criterion) {
 
 fn main() {
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
-    kernel(&mut criterion);
+    let all: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).collect();
+    kernel(&mut criterion, "cornell", &all);
+    for scene in ["sky", "wada", "imbalance", "cornell-mesh"] {
+        kernel(&mut criterion, scene, &["bsdf"]);
+    }
     criterion.final_summary();
 }

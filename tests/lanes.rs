@@ -136,7 +136,8 @@ fn difference(found: &TileBuffer, expected: &TileBuffer) -> Difference {
     let differences: Vec<f64> = pairs.map(|(found, expected)| sum(found) - sum(expected)).collect();
     let n = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / n;
-    let square = differences.iter().map(|difference| (difference - mean).powi(2)).sum::<f64>() / (n - 1.0);
+    let square =
+        differences.iter().map(|difference| (difference - mean) * (difference - mean)).sum::<f64>() / (n - 1.0);
     let of = expected.rows().flatten().map(sum).sum::<f64>() / n;
     Difference { mean, error: (square / n).sqrt(), of }
 }

@@ -7,6 +7,7 @@ use crate::kernel::{Clamp, Spec};
 use crate::measure::{LARGEST_SEED, Settings, Setup, available_threads};
 use crate::sampling::{SAMPLERS, is_deterministic};
 use crate::scene::{SCENES, load};
+use crate::simd::LEVELS;
 use crate::strategy::STRATEGIES;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
@@ -31,7 +32,7 @@ pub(super) struct Matrix {
     pub(super) output: Vec<String>,
     #[serde(default = "lanes")]
     pub(super) kernel: Vec<String>,
-    /// Instruction sets of lanes.
+    /// Instruction sets of lanes; `all` is every one that this processor has.
     #[serde(default = "fitting")]
     pub(super) simd: Vec<String>,
     /// Floating-point formats; they give other images.
@@ -193,6 +194,8 @@ impl Definition {
             let problem = "is an empty axis, so there is nothing to run";
             return Err(self.located(profile, InputError::new(axis, "[]", problem).allowed("at least one value")));
         }
+        let available = LEVELS.iter().filter(|level| level.is_available());
+        let levels = all_of(&matrix.simd, &available.map(|level| level.name));
         let depths: Vec<Option<u16>> = match matrix.max_depth.as_slice() {
             [] => vec![None],
             depths => depths.iter().copied().map(Some).collect(),
@@ -217,7 +220,7 @@ impl Definition {
                         };
                         let image = Settings { scene: self.scene_path(scene), spp, spec, ..Settings::default() };
                         let kernels = matrix.kernel.iter().flat_map(|k| {
-                            matrix.simd.iter().flat_map(move |s| matrix.precision.iter().map(move |p| (k, s, p)))
+                            levels.iter().flat_map(move |s| matrix.precision.iter().map(move |p| (k, s, p)))
                         });
                         let rules = matrix.effects.iter().flat_map(|e| {
                             matrix.accelerator.iter().flat_map(move |a| matrix.roulette.iter().map(move |r| (e, a, r)))

@@ -54,10 +54,9 @@ struct Block {
 impl Block {
     #[inline(always)]
     fn add(&mut self, Rgb { r, g, b }: Rgb) {
-        let value = [r, g, b, 0.0];
-        for channel in 0..4 {
-            self.sum[channel] += value[channel];
-            self.square[channel] += value[channel] * value[channel];
+        for ((sum, square), value) in self.sum.iter_mut().zip(&mut self.square).zip([r, g, b, 0.0]) {
+            *sum += value;
+            *square += value * value;
         }
         self.count += 1;
     }

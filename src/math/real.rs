@@ -87,4 +87,4 @@ macro_rules! float {
 }
 
 float!(f64, |a, b, c| a * b + c);
-float!(f32, |a, b, c| a.mul_add(b, c));
+float!(f32, |a, b, c| libm::fmaf(a, b, c));

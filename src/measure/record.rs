@@ -239,6 +239,15 @@ impl Record {
         Some(self.cpu_user_s? + self.cpu_system_s?)
     }
 
+    /// The kernel that rendered, in words: with the precision and the instruction set of its lanes, if it has any.
+    pub fn kernel_name(&self) -> String {
+        if self.simd.is_empty() {
+            self.kernel.clone()
+        } else {
+            format!("{}, {} {}", self.kernel, self.precision, self.simd)
+        }
+    }
+
     /// Adds a doubt.
     pub fn warn(&mut self, warning: &Warning) {
         let separator = if self.warnings.is_empty() { "" } else { ";" };

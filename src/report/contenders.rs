@@ -19,6 +19,10 @@ pub(super) struct Contender {
     pub(super) scene: String,
     /// Its estimator.
     pub(super) estimator: String,
+    /// Its kernel, in words.
+    pub(super) kernel: String,
+    /// Its workers.
+    pub(super) threads: usize,
     /// When and how chance ends its paths.
     pub(super) roulette: String,
     /// Its points, by samples per pixel.
@@ -75,8 +79,17 @@ impl Contender {
             });
         }
         let renderer = renderer(&seeds, law)?;
-        let (scene, estimator, roulette) = (first.scene.clone(), first.estimator.clone(), first.roulette.clone());
-        Some(Self { name, scene, estimator, roulette, points, renderer, seeds })
+        Some(Self {
+            name,
+            scene: first.scene.clone(),
+            estimator: first.estimator.clone(),
+            kernel: first.kernel_name(),
+            threads: first.threads,
+            roulette: first.roulette.clone(),
+            points,
+            renderer,
+            seeds,
+        })
     }
 
     /// The first half of the seeds, up to a quarter of the samples, predicts the rest. `None` below six seeds or two points in that quarter.
@@ -142,21 +155,28 @@ pub(super) fn missing(results: &Results) -> Option<Block> {
 /// The contenders of each scene, scenes by name and contenders in the order in which the estimators are listed. What cannot be priced, such as a single seed,
 /// is left out.
 pub(super) fn contenders(results: &Results) -> BTreeMap<String, Vec<Contender>> {
-    let parts: [fn(&Record) -> String; 6] = [
+    const KERNEL: usize = 6;
+    let parts: [fn(&Record) -> String; 7] = [
         |record| record.estimator.clone(),
         |record| record.sampler.clone(),
         |record| record.roulette.clone(),
         |record| record.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
         |record| if record.biased && record.max_depth.is_none() { "biased".to_string() } else { String::new() },
         |record| Schedule::of(record).label(),
+        Record::kernel_name,
     ];
     // Of another program there is nothing but its name.
     let is_own = |record: &Record| record.strategy != EXTERNAL;
     let rows = || results.records.iter().filter(|record| record.mse.is_some());
-    let differs: Vec<bool> = parts
+    let mut differs: Vec<bool> = parts
         .iter()
         .map(|part| rows().filter(|row| is_own(row)).map(part).collect::<BTreeSet<_>>().len() > 1)
         .collect();
+    // A sampler that lanes have no code for makes kernels differ that nobody compares.
+    let with_kernels: BTreeSet<_> =
+        rows().map(|row| (&row.estimator, &row.sampler, row.kernel_name(), row.threads)).collect();
+    let without: BTreeSet<_> = rows().map(|row| (&row.estimator, &row.sampler, row.threads)).collect();
+    differs[KERNEL] &= with_kernels.len() > without.len();
     let name = |record: &Record| {
         let shown = parts
             .iter()

@@ -64,7 +64,7 @@ impl Work for Operations {
                     (
                         "product and sum",
                         v.times_plus(w, v).lane(lane),
-                        if V::IS_DOUBLE { x * y + x } else { f64::from((x as f32).mul_add(y as f32, x as f32)) },
+                        if V::IS_DOUBLE { x * y + x } else { f64::from(libm::fmaf(x as f32, y as f32, x as f32)) },
                     ),
                     ("root", v.sqrt().lane(lane), rounded(x.sqrt())),
                     ("magnitude", v.abs().lane(lane), x.abs()),

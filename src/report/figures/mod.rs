@@ -56,6 +56,8 @@ figures! {
     gallery, "gallery", "what every scene looks like, and what it calls for";
     scene_accuracy, "scene-accuracy", "error, path length and price of accuracy by scene";
     effects, "effects", "what an effect costs: absent, compiled in but unused, used";
+    kernels, "kernels", "samples per second of lanes over those of the scalar kernel, by instruction set and precision";
+    precision, "precision", "time, error, light, escapes and invalid samples of single precision beside double";
     acceleration, "acceleration", "time per ray against primitives and gain against spp, by accelerator";
     schedules, "schedules", "time, load imbalance and context switches of each schedule";
 }
