@@ -22,6 +22,15 @@ pub struct PixelSum {
 }
 
 impl PixelSum {
+    #[inline(always)]
+    fn add(&mut self, radiance: Rgb) {
+        for (channel, value) in radiance.channels().into_iter().enumerate() {
+            self.sum[channel] += value;
+            self.square[channel] += value * value;
+        }
+        self.count += 1;
+    }
+
     /// The sum of two ranges of samples; `self` is the earlier one.
     #[inline(always)]
     #[must_use]
@@ -43,36 +52,10 @@ impl PixelSum {
     }
 }
 
-/// An unfinished block; four channels, of which the last is nothing, are one vector.
-#[derive(Debug, Clone, Default)]
-struct Block {
-    sum: [f64; 4],
-    square: [f64; 4],
-    count: u32,
-}
-
-impl Block {
-    #[inline(always)]
-    fn add(&mut self, Rgb { r, g, b }: Rgb) {
-        for ((sum, square), value) in self.sum.iter_mut().zip(&mut self.square).zip([r, g, b, 0.0]) {
-            *sum += value;
-            *square += value * value;
-        }
-        self.count += 1;
-    }
-
-    #[inline(always)]
-    fn total(&self) -> PixelSum {
-        let [r, g, b, _] = self.sum;
-        let [rr, gg, bb, _] = self.square;
-        PixelSum { sum: [r, g, b], square: [rr, gg, bb], count: self.count }
-    }
-}
-
 /// Adds up the samples of one pixel.
 #[derive(Debug, Clone, Default)]
 pub struct SampleSum {
-    block: Block,
+    block: PixelSum,
     blocks: u32,
     /// Entry k is a finished subtree of 2^k blocks if bit k of `blocks` is set.
     subtrees: [PixelSum; 32],
@@ -82,7 +65,7 @@ impl SampleSum {
     /// Forgets all samples. The subtrees may keep their old values: no bit of `blocks` points at them.
     #[inline(always)]
     pub fn clear(&mut self) {
-        self.block = Block::default();
+        self.block = PixelSum::default();
         self.blocks = 0;
     }
 
@@ -96,7 +79,7 @@ impl SampleSum {
     }
 
     fn carry(&mut self) {
-        let mut carried = std::mem::take(&mut self.block).total();
+        let mut carried = std::mem::take(&mut self.block);
         let mut level = 0;
         while self.blocks & (1 << level) != 0 {
             carried = self.subtrees[level].plus(&carried);
@@ -108,7 +91,7 @@ impl SampleSum {
 
     /// The sum of everything added: the unfinished block, then the subtrees from the smallest up.
     pub fn total(&self) -> PixelSum {
-        let mut total = self.block.total();
+        let mut total = self.block;
         for level in 0..32 {
             if self.blocks & (1 << level) != 0 {
                 total = self.subtrees[level].plus(&total);
