@@ -88,7 +88,7 @@ impl Work for InEachLane<'_> {
                     first_root_curved(sphere.curvature, b, c)
                 } else {
                     let offset = ray.origin - Vec3::splat(Vec3::new(0.1, 0.2, 0.3));
-                    first_root(offset, ray.direction, V::splat(1.0), V::splat(radius * radius))
+                    first_root(offset, ray.direction, V::splat(1.0), V::splat(radius))
                 };
                 let is_met = V::splat(0.0).lt(root);
                 sum = sum + V::select(is_met, root, V::splat(0.0));

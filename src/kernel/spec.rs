@@ -44,6 +44,7 @@ pub struct Spec {
     #[serde(default)]
     pub simd: Option<String>,
     /// Floating-point format by name.
+    #[serde(default = "double")]
     pub precision: String,
     /// Effect profile by name; the smallest that covers the scene if `None`.
     pub effects: Option<String>,
@@ -58,6 +59,11 @@ pub struct Spec {
     pub clamp: Option<Clamp>,
 }
 
+/// What was there before there was a choice.
+fn double() -> String {
+    Precision::F64.name().to_string()
+}
+
 impl Default for Spec {
     fn default() -> Self {
         Self {
@@ -68,7 +74,7 @@ impl Default for Spec {
             sampler: "independent".to_string(),
             kernel: LANES.to_string(),
             simd: None,
-            precision: Precision::F64.name().to_string(),
+            precision: double(),
             effects: None,
             accelerator: None,
             max_depth: None,

@@ -27,8 +27,8 @@ pub trait Real:
     /// The magnitude.
     #[must_use]
     fn abs(self) -> Self;
-    /// `self * factor + addend`: in double precision rounded after each, because the instructions that processors share have nothing else; in single
-    /// precision rounded once, on every processor.
+    /// `self * factor + addend`, rounded after each; in SIMD lanes of single precision once, on every processor. (Not all processors have an
+    /// instruction for that, and double precision must have the same bits by one number as by many.)
     #[must_use]
     fn times_plus(self, factor: Self, addend: Self) -> Self;
     /// The magnitude of `self` with the sign of `sign`, zeros included.
@@ -43,7 +43,7 @@ pub trait Real:
 }
 
 macro_rules! float {
-    ($Float:ident, |$a:ident, $b:ident, $c:ident| $times_plus:expr) => {
+    ($Float:ident) => {
         impl Real for $Float {
             type Mask = bool;
             const SIGNIFICAND: u32 = $Float::MANTISSA_DIGITS;
@@ -62,9 +62,8 @@ macro_rules! float {
                 $Float::abs(self)
             }
             #[inline(always)]
-            fn times_plus(self, $b: Self, $c: Self) -> Self {
-                let $a = self;
-                $times_plus
+            fn times_plus(self, factor: Self, addend: Self) -> Self {
+                self * factor + addend
             }
             #[inline(always)]
             fn copysign(self, sign: Self) -> Self {
@@ -86,5 +85,5 @@ macro_rules! float {
     };
 }
 
-float!(f64, |a, b, c| a * b + c);
-float!(f32, |a, b, c| libm::fmaf(a, b, c));
+float!(f64);
+float!(f32);

@@ -10,32 +10,32 @@
 
 use super::{Real, Vec3, dot};
 
-/// c and q, the root of larger magnitude times a, in which nothing cancels, for a squared radius. q is NaN if the line misses.
+/// c and q, the root of larger magnitude times a, in which nothing cancels. q is NaN if the line misses.
 #[inline(always)]
-fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r2: T) -> (T, T) {
+fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
     let b = -dot(f, d);
     let closest = d.times_plus(b / a, f);
-    let discriminant = r2 - dot(closest, closest);
+    let discriminant = r * r - dot(closest, closest);
     let q = b + (a * discriminant).sqrt().copysign(b);
-    (dot(f, f) - r2, q)
+    (dot(f, f) - r * r, q)
 }
 
 /// Both intersections of the whole line with the sphere, nearer first, in lengths of `d`; NaN if there are none.
 #[inline(always)]
 pub fn roots<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
-    let (c, q) = quadratic(f, d, a, r * r);
+    let (c, q) = quadratic(f, d, a, r);
     let (by_q, by_c) = (q / a, c / q);
     let forward = T::splat(0.0).lt(q);
     (T::select(forward, by_c, by_q), T::select(forward, by_q, by_c))
 }
 
-/// The first intersection at t > 0 of a ray with the sphere of that squared radius, in lengths of `d`; zero, negative or NaN if there is none.
+/// The first intersection at t > 0 of a ray with the sphere, in lengths of `d`; zero, negative or NaN if there is none.
 ///
 /// A ray that starts exactly on the sphere does not see the point it starts from. There is no branch, because most rays miss some of the
 /// spheres and hit others in no order that a processor could foresee.
 #[inline(always)]
-pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r2: T) -> T {
-    let (c, q) = quadratic(f, d, a, r2);
+pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T {
+    let (c, q) = quadratic(f, d, a, r);
     let zero = T::splat(0.0);
     // From inside (c <= 0) and forward (q > 0) the far root q/a is the first ahead; in every other case that hits it is c/q.
     T::select(zero.lt(q) & c.le(zero), q / a, c / q)
@@ -134,7 +134,7 @@ mod tests {
         ] {
             for (origin, direction) in rays() {
                 let f = origin - center;
-                let expected = first_root(f, direction, 1.0, radius * radius);
+                let expected = first_root(f, direction, 1.0, radius);
                 let found: f64 = curved_root(center, radius, origin, direction);
                 // Where the line is nearly tangent both have few digits.
                 let closest = f + direction * -dot(f, direction);

@@ -77,45 +77,6 @@ impl<T: Copy + Not<Output = T>> Not for Plain<T> {
     }
 }
 
-impl<T: Real<Mask = bool>> Real for Plain<T> {
-    type Mask = Plain<bool>;
-    const SIGNIFICAND: u32 = T::SIGNIFICAND;
-    const SMALLEST: f64 = T::SMALLEST;
-
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self([T::splat(value); LANES])
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        each!(k => self.0[k].sqrt())
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        each!(k => self.0[k].abs())
-    }
-    #[inline(always)]
-    fn times_plus(self, factor: Self, addend: Self) -> Self {
-        each!(k => self.0[k].times_plus(factor.0[k], addend.0[k]))
-    }
-    #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        each!(k => self.0[k].copysign(sign.0[k]))
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Plain<bool> {
-        each!(k => self.0[k].lt(other.0[k]))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Plain<bool> {
-        each!(k => self.0[k].le(other.0[k]))
-    }
-    #[inline(always)]
-    fn select(mask: Plain<bool>, yes: Self, no: Self) -> Self {
-        each!(k => if mask.0[k] { yes.0[k] } else { no.0[k] })
-    }
-}
-
 impl Bits for Plain<u64> {
     #[inline(always)]
     fn splat(word: u64) -> Self {
@@ -210,7 +171,46 @@ impl Words<Plain<bool>> for Plain<u64> {
 }
 
 macro_rules! float {
-    ($Float:ident, $row:ident, $unit:expr) => {
+    ($Float:ident, $row:ident, $unit:expr, $times_plus:expr) => {
+        impl Real for Plain<$Float> {
+            type Mask = Plain<bool>;
+            const SIGNIFICAND: u32 = $Float::SIGNIFICAND;
+            const SMALLEST: f64 = $Float::SMALLEST;
+
+            #[inline(always)]
+            fn splat(value: f64) -> Self {
+                Self([value as $Float; LANES])
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                each!(k => self.0[k].sqrt())
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                each!(k => self.0[k].abs())
+            }
+            #[inline(always)]
+            fn times_plus(self, factor: Self, addend: Self) -> Self {
+                each!(k => $times_plus(self.0[k], factor.0[k], addend.0[k]))
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                each!(k => self.0[k].copysign(sign.0[k]))
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> Plain<bool> {
+                each!(k => self.0[k] < other.0[k])
+            }
+            #[inline(always)]
+            fn le(self, other: Self) -> Plain<bool> {
+                each!(k => self.0[k] <= other.0[k])
+            }
+            #[inline(always)]
+            fn select(mask: Plain<bool>, yes: Self, no: Self) -> Self {
+                each!(k => if mask.0[k] { yes.0[k] } else { no.0[k] })
+            }
+        }
+
         impl Float for Plain<$Float> {
             type Bits = Plain<u64>;
             type One = $Float;
@@ -263,5 +263,10 @@ macro_rules! float {
     };
 }
 
-float!(f64, row, unit);
-float!(f32, single_row, single_unit);
+#[inline(always)]
+fn in_two_steps(a: f64, b: f64, c: f64) -> f64 {
+    a * b + c
+}
+
+float!(f64, row, unit, in_two_steps);
+float!(f32, single_row, single_unit, libm::fmaf);

@@ -53,7 +53,7 @@ impl Number for f32 {
 fn first<T: Number>(origin: Vec3, d: Vec3, center: [f64; 3]) -> f64 {
     let vector = |v: Vec3| Vec3::new(T::splat(v.x), T::splat(v.y), T::splat(v.z));
     let (origin, d) = (vector(origin), vector(d));
-    first_root(origin - vector(Vec3::from(center)), d, dot(d, d), T::splat(RADIUS) * T::splat(RADIUS)).back()
+    first_root(origin - vector(Vec3::from(center)), d, dot(d, d), T::splat(RADIUS)).back()
 }
 
 fn error<T: Number>() -> Measured {

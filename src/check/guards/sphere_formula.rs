@@ -14,7 +14,7 @@ pub(super) const GUARD: Guard = Guard {
     with: Variant {
         name: "closest approach, c/q",
         error: || error(|f, d, r| roots(f, d, 1.0, r)),
-        work: |count| work(count, |f, d, r| first_root(f, d, 1.0, r * r)),
+        work: |count| work(count, |f, d, r| first_root(f, d, 1.0, r)),
     },
     without: Variant {
         name: "smallpt's",

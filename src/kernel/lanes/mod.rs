@@ -20,7 +20,6 @@ use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
 use crate::simd::{self, Float, MOST_LANES, Precision, Words, Work, on_level};
 use light::Targets;
-use nearest::Ball;
 use packet::{LanesOf, Packet};
 use singles::Singles;
 use std::sync::Arc;
@@ -40,7 +39,6 @@ pub(super) struct Lanes {
     targets: Option<Targets>,
     level: &'static simd::Entry,
     precision: Precision,
-    balls: Vec<Ball>,
     /// The spheres as single precision has them.
     singles: Singles,
     /// Whether every sphere is tested, because there are few and nothing else.
@@ -54,7 +52,6 @@ impl Lanes {
             view: scene.camera.view(spec.width, spec.height),
             targets: scene.lights.as_ref().map(Targets::of),
             scans: tables.is_round && scene.hierarchy.is_none(),
-            balls: Ball::all_of(&scene),
             singles: Singles::of(&scene),
             precision,
             scene,

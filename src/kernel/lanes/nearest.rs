@@ -4,7 +4,7 @@ use super::Lanes;
 use super::packet::{LanesOf, Rays, vector};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3, first_root};
-use crate::scene::{Scene, Sphere, Standpoint, Tests};
+use crate::scene::{Standpoint, Tests};
 use crate::simd::Float;
 
 impl Lanes {
@@ -25,10 +25,10 @@ impl Lanes {
     #[inline(always)]
     fn scan<V: Float>(&self, rays: &Rays<V>) -> (V, V) {
         let mut found = Found::nothing();
-        for Ball { center, square, number } in &self.balls {
-            let offset = rays.ray.origin - Vec3::splat(*center);
-            let root = first_root(offset, rays.ray.direction, V::splat(1.0), V::splat(*square));
-            found.take(rays, V::splat(*number), root);
+        for (sphere, number) in self.scene.primitives.spheres.iter().zip(0_u32..) {
+            let offset = rays.ray.origin - Vec3::splat(sphere.center);
+            let root = first_root(offset, rays.ray.direction, V::splat(1.0), V::splat(sphere.radius));
+            found.take(rays, V::splat(number.into()), root);
         }
         found.best()
     }
@@ -81,27 +81,5 @@ impl<V: Float> Found<V> {
     #[inline(always)]
     pub(super) fn best(&self) -> (V, V) {
         (self.nearest, self.primitive)
-    }
-}
-
-/// What the search needs of a sphere.
-pub(super) struct Ball {
-    center: Vec3,
-    /// The squared radius.
-    square: f64,
-    /// The number of its primitive.
-    number: f64,
-}
-
-impl Ball {
-    pub(super) fn all_of(scene: &Scene) -> Vec<Self> {
-        let numbered = scene.primitives.spheres.iter().zip(0_u32..);
-        numbered
-            .map(|(Sphere { center, radius }, number)| Self {
-                center: *center,
-                square: radius * radius,
-                number: number.into(),
-            })
-            .collect()
     }
 }

@@ -12,7 +12,7 @@ use crate::simd::Float;
 /// The spheres of a scene, each with the number of its primitive.
 pub(super) struct Singles {
     curved: Vec<(f32, Curved<f32>)>,
-    /// Centres and squared radii.
+    /// Centres and radii.
     centred: Vec<(f32, Vec3<f32>, f32)>,
 }
 
@@ -36,7 +36,7 @@ impl Singles {
         for (number, sphere) in spheres.iter().enumerate() {
             let number = number as f32;
             if sphere.radius < size {
-                centred.push((number, single(sphere.center), (sphere.radius * sphere.radius) as f32));
+                centred.push((number, single(sphere.center), sphere.radius as f32));
             } else {
                 let Curved { normal, curvature, offset } = Curved::of(sphere.center, sphere.radius);
                 let sphere = Curved { normal: single(normal), curvature: curvature as f32, offset: offset as f32 };
@@ -57,9 +57,9 @@ impl Singles {
             let (b, c) = curved_quadratic(&in_lanes(sphere), origin, direction, square, along);
             found.take(rays, V::splat((*number).into()), first_root_curved(V::splat(sphere.curvature.into()), b, c));
         }
-        for (number, center, square) in &self.centred {
+        for (number, center, radius) in &self.centred {
             let offset = origin - splat::<V>(*center);
-            let root = first_root(offset, direction, V::splat(1.0), V::splat(f64::from(*square)));
+            let root = first_root(offset, direction, V::splat(1.0), V::splat(f64::from(*radius)));
             found.take(rays, V::splat((*number).into()), root);
         }
         found.best()

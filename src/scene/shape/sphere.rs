@@ -29,7 +29,7 @@ impl Primitive for Sphere {
 
     #[inline(always)]
     fn meet(&self, ray: &Ray, _prepared: &()) -> f64 {
-        first_root(ray.origin - self.center, ray.direction, 1.0, self.radius * self.radius)
+        first_root(ray.origin - self.center, ray.direction, 1.0, self.radius)
     }
 
     /// To the outside there is no other root.
