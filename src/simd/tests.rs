@@ -42,6 +42,10 @@ fn same(found: f64, expected: f64) -> bool {
     found.to_bits() == expected.to_bits() || (found.is_nan() && expected.is_nan())
 }
 
+fn times_plus<V: Float>(x: f64, y: f64, z: f64) -> f64 {
+    if V::IS_DOUBLE { x * y + z } else { f64::from(libm::fmaf(x as f32, y as f32, z as f32)) }
+}
+
 impl Work for Operations {
     type Output = ();
 
@@ -61,10 +65,12 @@ impl Work for Operations {
                     ("product", (v * w).lane(lane), rounded(x * y)),
                     ("quotient", (v / w).lane(lane), rounded(x / y)),
                     ("opposite", (-v).lane(lane), -x),
+                    ("product and sum", v.times_plus(w, v).lane(lane), times_plus::<V>(x, y, x)),
+                    // What the product was rounded by, if it is not rounded before the sum.
                     (
-                        "product and sum",
-                        v.times_plus(w, v).lane(lane),
-                        if V::IS_DOUBLE { x * y + x } else { f64::from(libm::fmaf(x as f32, y as f32, x as f32)) },
+                        "product less itself",
+                        v.times_plus(w, -(v * w)).lane(lane),
+                        times_plus::<V>(x, y, -rounded(x * y)),
                     ),
                     ("root", v.sqrt().lane(lane), rounded(x.sqrt())),
                     ("magnitude", v.abs().lane(lane), x.abs()),
