@@ -51,8 +51,9 @@ impl Work for Operations {
 
     #[inline(always)]
     fn run<V: Float>(self) {
-        for shift in 0..16 {
-            let (v, w) = (of::<V>(numbers(0)), of::<V>(numbers(shift)));
+        // Each number with each: few lanes hold few of them at a time.
+        for (first, second) in (0..16).flat_map(|first| (0..16).map(move |second| (first, second))) {
+            let (v, w) = (of::<V>(numbers(first)), of::<V>(numbers(second)));
             let mask = v.lt(w);
             for lane in 0..V::LANES {
                 let (x, y) = (v.lane(lane), w.lane(lane));
