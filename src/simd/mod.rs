@@ -30,6 +30,15 @@ macro_rules! operator {
     )*};
 }
 
+/// Half bytes with their bits in reverse order, in the upper half of a byte and in the lower, and the bytes of two words in reverse order:
+/// what turns words round on processors that shuffle bytes by a table.
+#[cfg(target_arch = "x86_64")]
+const REVERSED: [[i8; 16]; 3] = [
+    [0, -128, 64, -64, 32, -96, 96, -32, 16, -112, 80, -48, 48, -80, 112, -16],
+    [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15],
+    [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8],
+];
+
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]

@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::two::{HalfMask, PairMask, Two};
-use super::{Float, Mask, Precision, Words, Work};
+use super::{Float, Mask, Precision, REVERSED, Words, Work};
 use crate::math::Bits;
 use double::F64x4;
 use single::F32x8;
@@ -110,9 +110,7 @@ impl Bits for U64x4 {
     #[inline(always)]
     fn reversed(self) -> Self {
         // Half bytes by table, then bytes by shuffle.
-        let low = table(&[0, -128, 64, -64, 32, -96, 96, -32, 16, -112, 80, -48, 48, -80, 112, -16]);
-        let high = table(&[0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15]);
-        let swap = table(&[7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8]);
+        let [low, high, swap] = [table(&REVERSED[0]), table(&REVERSED[1]), table(&REVERSED[2])];
         let nibble = Self::splat(0x0F0F_0F0F_0F0F_0F0F);
         let (a, b) = ((self & nibble).0, (self.down::<4>() & nibble).0);
         let bytes = op!(_mm256_or_si256(_mm256_shuffle_epi8(low, a), _mm256_shuffle_epi8(high, b)));
