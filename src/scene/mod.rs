@@ -157,6 +157,13 @@ impl Scene {
         self.primitives.nearest::<AllEffects>(self.hierarchy.as_ref(), ray, from, f64::INFINITY, tests)
     }
 
+    /// How far from the origin things happen among spheres: where the camera is, or, if that is the origin, as far as the least of them reaches.
+    pub fn size(&self) -> f64 {
+        let length = |v: Vec3| dot(v, v).sqrt();
+        let reaches = self.primitives.spheres.iter().map(|sphere| length(sphere.center) + sphere.radius);
+        reaches.fold(f64::INFINITY, f64::min).max(length(self.camera.position))
+    }
+
     /// The object that a primitive belongs to.
     #[inline(always)]
     pub fn owner<X: EffectSet>(&self, primitive: u32) -> u32 {

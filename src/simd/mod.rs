@@ -110,6 +110,13 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     fn set_lane(&mut self, lane: usize, value: f64);
     /// `self == other`; false if either is NaN.
     fn equal(self, other: Self) -> Self::Mask;
+    /// `self * factor + addend`, rounded once or twice, as the processor does it faster: only for what is made sure of by other means, or
+    /// processors would differ.
+    #[must_use]
+    #[inline(always)]
+    fn about_times_plus(self, factor: Self, addend: Self) -> Self {
+        self.times_plus(factor, addend)
+    }
     /// Words below 2^53 as numbers, rounded if need be.
     fn number(bits: Self::Bits) -> Self;
     /// The leading bits of a word as a number in [0, 1), as many as a number has digits: exact, and never 1.

@@ -73,6 +73,8 @@ impl Work for Operations {
                         v.times_plus(w, -(v * w)).lane(lane),
                         times_plus::<V>(x, y, -rounded(x * y)),
                     ),
+                    // Once or twice: of this sum either way the same.
+                    ("doubled", v.about_times_plus(V::splat(2.0), v).lane(lane), rounded(2.0 * x + x)),
                     ("root", v.sqrt().lane(lane), rounded(x.sqrt())),
                     ("magnitude", v.abs().lane(lane), x.abs()),
                     ("sign", v.copysign(w).lane(lane), x.copysign(y)),

@@ -2,6 +2,7 @@
 //! next sample when it has ended. Sums are taken in the order of the samples (`window`), so in f64 an image is that of the scalar
 //! kernel, bit for bit, on every instruction set.
 
+mod filter;
 mod light;
 mod nearest;
 mod packet;
@@ -18,7 +19,8 @@ use crate::film::{Piece, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
-use crate::simd::{self, Float, MOST_LANES, Precision, Words, Work, on_level};
+use crate::simd::{self, Float, MOST_LANES, Precision, Work, on_level};
+use filter::Filter;
 use light::Targets;
 use packet::{LanesOf, Packet};
 use singles::Singles;
@@ -39,6 +41,8 @@ pub(super) struct Lanes {
     targets: Option<Targets>,
     level: &'static simd::Entry,
     precision: Precision,
+    /// The spheres for a quick look.
+    filter: Filter,
     /// The spheres as single precision has them.
     singles: Singles,
     /// Whether every sphere is tested, because there are few and nothing else.
@@ -52,6 +56,7 @@ impl Lanes {
             view: scene.camera.view(spec.width, spec.height),
             targets: scene.lights.as_ref().map(Targets::of),
             scans: tables.is_round && scene.hierarchy.is_none(),
+            filter: Filter::of(&scene),
             singles: Singles::of(&scene),
             precision,
             scene,
@@ -66,21 +71,18 @@ impl Lanes {
 
     /// Gives back the samples whose paths have ended; paths that have another part go on with that.
     #[inline(always)]
-    fn retire<V: Float>(&self, packet: &mut Packet<V>, ended: u32, window: &mut Window<'_>, counts: &mut Counts) {
+    fn retire<V: Float>(&self, packet: &mut Packet<V>, ended: u32, window: &mut Window<'_>) {
         let [mut r, mut g, mut b] = [[V::One::default(); MOST_LANES]; 3];
         packet.collected.r.store(&mut r);
         packet.collected.g.store(&mut g);
         packet.collected.b.store(&mut b);
-        let mut slots = [0; MOST_LANES];
-        packet.slots.store(&mut slots);
         for lane in LanesOf(ended) {
             if self.course.splits > 0 && packet.pop(lane) {
-                continue;
+                packet.alive |= 1 << lane;
+            } else {
+                window.give_back(packet.slots[lane], Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() });
             }
-            packet.alive &= !(1 << lane);
-            window.give_back(slots[lane], Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() });
         }
-        window.settle(counts);
     }
 
     #[inline(always)]
@@ -89,17 +91,28 @@ impl Lanes {
         let mut window = Window::over(piece, out);
         let mut packet = Packet::<V>::new();
         let mut supply = Supply::<V>::new();
+        // Lanes whose part of a path has ended, and that still hold it.
+        let mut ended = 0_u32;
         loop {
-            self.refill(&mut packet, &mut supply, &mut window);
-            if packet.alive == 0 {
-                return counts;
+            if ended.count_ones() >= held::<V>() || packet.alive == 0 {
+                self.retire(&mut packet, ended, &mut window);
+                ended = 0;
+                self.refill(&mut packet, &mut supply, &mut window, &mut counts);
+                if packet.alive == 0 {
+                    return counts;
+                }
             }
-            let ended = self.advance::<V, AIMS>(&mut packet, &mut counts) & packet.alive;
-            if ended != 0 {
-                self.retire(&mut packet, ended, &mut window, &mut counts);
-            }
+            let now = self.advance::<V, AIMS>(&mut packet, &mut counts) & packet.alive;
+            packet.alive &= !now;
+            ended |= now;
         }
     }
+}
+
+/// How many paths must have ended before their lanes are given others: doing that for two takes little more time than for one, and costs less than the
+/// lanes that stand idle if there are many.
+const fn held<V: Float>() -> u32 {
+    if V::LANES < 8 { 1 } else { 2 }
 }
 
 /// A piece to render, by paths that aim at light or by paths that do not.

@@ -52,7 +52,7 @@ pub(super) struct Packet<V: Float> {
     /// How likely the direction was, per steradian; -1 if light was not aimed at where the ray starts.
     pub(super) density: V,
     /// By what the sample is given back.
-    pub(super) slots: V::Bits,
+    pub(super) slots: [u64; MOST_LANES],
     waiting: [[Part; LARGEST_STACK]; MOST_LANES],
     depth: [u8; MOST_LANES],
 }
@@ -76,7 +76,7 @@ impl<V: Float> Packet<V> {
             branch: none,
             words: PathWords { path: none, sample: none, joined: [none; 2] },
             density: V::splat(-1.0),
-            slots: none,
+            slots: [0; MOST_LANES],
             waiting: [[NO_PART; LARGEST_STACK]; MOST_LANES],
             depth: [0; MOST_LANES],
         }

@@ -27,13 +27,9 @@ fn splat<V: Float>(v: Vec3<f32>) -> Vec3<V> {
 
 impl Singles {
     pub(super) fn of(scene: &Scene) -> Self {
-        let length = |v: Vec3| dot(v, v).sqrt();
-        let spheres = &scene.primitives.spheres;
-        // How far from the origin things happen: where the camera is, or, if that is the origin, as far as the least sphere reaches.
-        let reaches = spheres.iter().map(|sphere| length(sphere.center) + sphere.radius);
-        let size = reaches.fold(f64::INFINITY, f64::min).max(length(scene.camera.position));
+        let size = scene.size();
         let (mut curved, mut centred) = (Vec::new(), Vec::new());
-        for (number, sphere) in spheres.iter().enumerate() {
+        for (number, sphere) in scene.primitives.spheres.iter().enumerate() {
             let number = number as f32;
             if sphere.radius < size {
                 centred.push((number, single(sphere.center), sphere.radius as f32));
@@ -46,10 +42,10 @@ impl Singles {
         Self { curved, centred }
     }
 
-    /// Distance and number of the first sphere along each ray; the number is -1 where there is none. Ties go to those by curvature, then to the
+    /// The first sphere along each ray. Ties go to those by curvature, then to the
     /// lowest number.
     #[inline(always)]
-    pub(super) fn scan<V: Float>(&self, rays: &Rays<V>) -> (V, V) {
+    pub(super) fn scan<V: Float>(&self, rays: &Rays<V>) -> Found<V> {
         let (origin, direction) = (rays.ray.origin, rays.ray.direction);
         let (square, along) = (dot(origin, origin), dot(origin, direction));
         let mut found = Found::nothing();
@@ -62,7 +58,7 @@ impl Singles {
             let root = first_root(offset, direction, V::splat(1.0), V::splat(f64::from(*radius)));
             found.take(rays, V::splat((*number).into()), root);
         }
-        found.best()
+        found
     }
 }
 

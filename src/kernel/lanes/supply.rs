@@ -1,8 +1,9 @@
 //! Camera rays made ahead, a whole packet of them at a time, so that lanes which end one by one can be given their next one by one.
 
 use super::Lanes;
-use super::packet::Packet;
+use super::packet::{LanesOf, Packet};
 use super::window::{Handed, Window};
+use crate::kernel::Counts;
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::{PathWords, Purpose, SampleKey};
 use crate::scene::SUBPIXELS;
@@ -17,7 +18,8 @@ pub(super) struct Supply<V: Float> {
     rays: [[V::One; SIZE]; 6],
     /// What the numbers of their samples have in common.
     words: [[u64; SIZE]; 4],
-    slots: [u64; SIZE],
+    /// By what the sample of the next one is given back; those of the others follow.
+    slot: u64,
     /// Of those that are being made: columns, rows, pixels, samples, and their two places.
     keys: [[u64; MOST_LANES]; 6],
     /// The next one.
@@ -31,7 +33,7 @@ impl<V: Float> Supply<V> {
         Self {
             rays: [[V::One::default(); SIZE]; 6],
             words: [[0; SIZE]; 4],
-            slots: [0; SIZE],
+            slot: 0,
             keys: [[0; MOST_LANES]; 6],
             first: 0,
             count: 0,
@@ -42,10 +44,17 @@ impl<V: Float> Supply<V> {
 impl Lanes {
     /// Gives free lanes their next samples.
     #[inline(always)]
-    pub(super) fn refill<V: Float>(&self, packet: &mut Packet<V>, supply: &mut Supply<V>, window: &mut Window<'_>) {
+    pub(super) fn refill<V: Float>(
+        &self,
+        packet: &mut Packet<V>,
+        supply: &mut Supply<V>,
+        window: &mut Window<'_>,
+        counts: &mut Counts,
+    ) {
         let mut free = !packet.alive & (u32::MAX >> (MOST_LANES - V::LANES));
         while free != 0 {
             if supply.count == 0 {
+                window.settle(counts);
                 self.produce::<V>(supply, window);
                 if supply.count == 0 {
                     return;
@@ -60,7 +69,7 @@ impl Lanes {
     fn produce<V: Float>(&self, supply: &mut Supply<V>, window: &mut Window<'_>) {
         supply.first = 0;
         while supply.count < V::LANES {
-            let Some(Handed { first, slot, count }) = window.hand_out(V::LANES - supply.count) else { break };
+            let Some(Handed { first, count }) = window.hand_out(V::LANES - supply.count) else { break };
             let pixel = first.y * self.width + first.x;
             for k in 0..count {
                 let (at, sample) = (supply.count + k, first.sample + k as u32);
@@ -69,7 +78,6 @@ impl Lanes {
                 for (words, word) in supply.keys.iter_mut().zip(all) {
                     words[at] = word;
                 }
-                supply.slots[at] = slot + k as u64;
             }
             supply.count += count;
         }
@@ -125,7 +133,10 @@ impl Lanes {
             packet.words.joined[0] = joined[0].fill(mask, &words[2][first..]);
             packet.words.joined[1] = joined[1].fill(mask, &words[3][first..]);
         }
-        packet.slots = packet.slots.fill(mask, &supply.slots[first..]);
+        for lane in LanesOf(taken) {
+            packet.slots[lane] = supply.slot;
+            supply.slot += 1;
+        }
         // What is on nothing has no use for `own_root`.
         packet.rays.from = V::select(mask, V::splat(-1.0), packet.rays.from);
         packet.throughput = Rgb::select(mask, Rgb::splat(Rgb::WHITE), packet.throughput);

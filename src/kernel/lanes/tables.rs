@@ -33,7 +33,7 @@ impl Kind {
 
 /// The tables of a scene.
 pub(super) struct Tables {
-    /// The centre of a sphere and 1, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of what is flat.
+    /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of what is flat.
     pub(super) surfaces: Table,
     /// The radiance, and 1 for what gives off any.
     pub(super) emissions: Table,
@@ -53,7 +53,7 @@ impl Tables {
         let flat = |normal: Vec3| [normal.x, normal.y, normal.z, 0.0];
         let round = primitives.spheres.iter().map(|sphere| {
             let (Vec3 { x, y, z }, number) = match precision {
-                Precision::F64 => (sphere.center, 1.0),
+                Precision::F64 => (sphere.center, sphere.radius),
                 Precision::F32 => {
                     let curved = Curved::of(sphere.center, sphere.radius);
                     (curved.normal, curved.curvature)

@@ -63,6 +63,8 @@ impl Lanes {
     /// Traces each path to its next vertex and on from there. The lanes whose part of a path has ended.
     #[inline(always)]
     pub(super) fn advance<V: Float, const AIMS: bool>(&self, packet: &mut Packet<V>, counts: &mut Counts) -> u32 {
+        let number = packet.vertices.plus(V::Bits::splat(1));
+        let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
         let (t, primitive) = self.nearest(&packet.rays, packet.alive, counts);
         counts.rays += u64::from(packet.alive.count_ones());
         let alive = V::Mask::from_bits(packet.alive);
@@ -75,7 +77,6 @@ impl Lanes {
         if ended == packet.alive {
             return ended;
         }
-        let number = packet.vertices.plus(V::Bits::splat(1));
         let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);
         let vertex = Vertex { number, albedo: Rgb { r, g, b }, kind };
         // Where nothing is aimed at, the point is worked out after what needs none: so less waits in registers.
@@ -102,7 +103,6 @@ impl Lanes {
             Some(at) => at,
             None => self.arrive(packet, met, t, primitive),
         };
-        let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
         let (scattered, split) = self.scatter::<V, AIMS>(packet, &at, &vertex, numbers, ended);
         ended |= scattered.absorbed;
         leave(packet, &at, number, &scattered, split, &mut ended);

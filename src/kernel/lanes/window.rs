@@ -19,8 +19,6 @@ pub(super) struct Place {
 /// Samples of a pixel that were handed out.
 pub(super) struct Handed {
     pub(super) first: Place,
-    /// By what the first is given back; the next ones by the next numbers.
-    pub(super) slot: u64,
     pub(super) count: usize,
 }
 
@@ -89,12 +87,12 @@ impl<'a> Window<'a> {
         if self.next.y >= self.bounds.y1 || room == 0 {
             return None;
         }
-        let (first, slot) = (self.next, self.handed);
+        let first = self.next;
         let left = self.samples.end - first.sample;
         let count = (most as u64).min(room).min(left.into());
         self.next.advance(count as u32, &self.bounds, &self.samples);
         self.handed += count;
-        Some(Handed { first, slot, count: count as usize })
+        Some(Handed { first, count: count as usize })
     }
 
     /// Gives a sample back; [`Window::settle`] adds it.
