@@ -1,6 +1,6 @@
 //! Samplers in SIMD lanes: numbers for several samples at once, the same bits as [`Sampler::pair`](super::Sampler::pair) gives for each.
 
-use super::{Purpose, SampleKey, independent, mix, sobol};
+use super::{Purpose, SampleKey, hash, independent, mix, sobol};
 use crate::math::Bits;
 use crate::simd::{Float, Words};
 
@@ -9,6 +9,8 @@ use crate::simd::{Float, Words};
 pub enum InLanes {
     /// `independent`.
     Independent,
+    /// `hash`.
+    Hash,
     /// `sobol`.
     Sobol,
 }
@@ -29,6 +31,7 @@ impl InLanes {
     pub fn find(name: &str) -> Option<Self> {
         match name {
             "independent" => Some(Self::Independent),
+            "hash" => Some(Self::Hash),
             "sobol" => Some(Self::Sobol),
             _ => None,
         }
@@ -37,14 +40,14 @@ impl InLanes {
     /// Whether a number depends on more of its sample than [`PathWords::path`] tells.
     #[inline(always)]
     pub fn is_spread(self) -> bool {
-        self != Self::Independent
+        self == Self::Sobol
     }
 
     /// The places of a sample that the film and the first vertex share; 0 if there are none.
     #[inline(always)]
     pub fn joined(self, key: SampleKey) -> [u64; 2] {
         match self {
-            Self::Independent => [0; 2],
+            Self::Independent | Self::Hash => [0; 2],
             Self::Sobol => sobol::joined(sobol::pixel(key.seed, u64::from(key.pixel)), key.sample).map(u64::from),
         }
     }
@@ -53,7 +56,7 @@ impl InLanes {
     #[inline(always)]
     pub fn words<B: Bits>(self, seed: u64, pixel: B, sample: B, joined: [B; 2]) -> PathWords<B> {
         let path = match self {
-            Self::Independent => independent::path(seed, pixel.up::<32>() | sample),
+            Self::Independent | Self::Hash => independent::path(seed, pixel.up::<32>() | sample),
             Self::Sobol => sobol::pixel(seed, pixel),
         };
         PathWords { path, sample, joined }
@@ -72,6 +75,7 @@ impl InLanes {
         let key = mix(words.path ^ dimension);
         let [first, second] = match self {
             Self::Independent => independent::pcg32(key, dimension),
+            Self::Hash => hash::both(key),
             Self::Sobol => {
                 let place = match purpose {
                     // Nobody but the camera asks for it.

@@ -3,6 +3,7 @@
 //! So a sample is a pure function of (scene, seed, pixel, sample index), whoever renders it, and an effect that draws more numbers
 //! shifts nobody else's. `pathmark list samplers` prints the table; `--sampler independent` chooses.
 
+mod hash;
 mod independent;
 mod lanes;
 mod libc_rand;
@@ -14,6 +15,7 @@ mod stratified;
 mod warp;
 
 pub use crate::math::unit;
+pub use hash::Hash;
 pub use independent::{Independent, mix};
 pub use lanes::{InLanes, PathWords};
 pub use libc_rand::LibcRand;
@@ -164,6 +166,7 @@ macro_rules! samplers {
 samplers! {
     keyed {
         "independent", "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => Independent;
+        "hash", "uniform numbers from one 64-bit hash of the address: independent down to 2^-32, and faster" => Hash;
     }
     spread {
         "stratified", "4x4 jittered strata for each 16 samples, in an order of its own for each use" => Stratified;

@@ -117,6 +117,31 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     fn about_times_plus(self, factor: Self, addend: Self) -> Self {
         self.times_plus(factor, addend)
     }
+    /// The first of two distances along a ray, the nearer and the farther, that is not behind its start: not negative and not NaN. If both are, it
+    /// is one that no other is [`Float::sooner`] than.
+    #[must_use]
+    #[inline(always)]
+    fn ahead(near: Self, far: Self) -> Self {
+        let (zero, never) = (Self::splat(0.0), Self::splat(f64::INFINITY));
+        Self::select(zero.le(near), near, Self::select(zero.le(far), far, never))
+    }
+    /// The sooner of two distances ahead; infinity is sooner than none.
+    #[must_use]
+    #[inline(always)]
+    fn sooner(self, other: Self) -> Self {
+        Self::select(self.is_sooner(other), self, other)
+    }
+    /// The later of two distances ahead.
+    #[must_use]
+    #[inline(always)]
+    fn later(self, other: Self) -> Self {
+        Self::select(self.is_sooner(other), other, self)
+    }
+    /// Whether a distance ahead is less than another.
+    #[inline(always)]
+    fn is_sooner(self, other: Self) -> Self::Mask {
+        self.lt(other)
+    }
     /// Words below 2^53 as numbers, rounded if need be.
     fn number(bits: Self::Bits) -> Self;
     /// The leading bits of a word as a number in [0, 1), as many as a number has digits: exact, and never 1.

@@ -74,7 +74,7 @@ impl Work for Operations {
                         times_plus::<V>(x, y, -rounded(x * y)),
                     ),
                     // Once or twice: of this sum either way the same.
-                    ("doubled", v.about_times_plus(V::splat(2.0), v).lane(lane), rounded(2.0 * x + x)),
+                    ("tripled", v.about_times_plus(V::splat(2.0), v).lane(lane), rounded(3.0 * x)),
                     ("root", v.sqrt().lane(lane), rounded(x.sqrt())),
                     ("magnitude", v.abs().lane(lane), x.abs()),
                     ("sign", v.copysign(w).lane(lane), x.copysign(y)),
@@ -96,6 +96,7 @@ impl Work for Operations {
                 }
             }
         }
+        distances::<V>();
         for shift in 0..8 {
             let (a, b) = (words(0), words(shift));
             let (v, w) = (V::Bits::load(&a), V::Bits::load(&b));
@@ -125,6 +126,33 @@ impl Work for Operations {
             }
         }
         lanes_move::<V>();
+    }
+}
+
+/// The order of what is ahead on a ray.
+#[inline(always)]
+fn distances<V: Float>() {
+    let infinity = f64::INFINITY;
+    for (near, far) in (0..16).flat_map(|first| (0..16).map(move |second| (numbers(first), numbers(second)))) {
+        let (v, w) = (of::<V>(near), of::<V>(far));
+        let (one, two) = (V::ahead(v, w), V::ahead(w, w));
+        // What is none says nothing of itself, but that it is not sooner than infinity.
+        let found = [one, two, one.later(two), two.sooner(one)].map(|t| t.sooner(V::splat(infinity)));
+        let is_sooner = one.is_sooner(two.sooner(V::splat(infinity)));
+        for lane in 0..V::LANES {
+            let (x, y) = (v.lane(lane), w.lane(lane));
+            // The nearer comes first, and whether -0 is behind is left open.
+            let is_ahead = |t: f64| t.is_sign_positive() && !t.is_nan();
+            if x > y || x == 0.0 && x.is_sign_negative() || y == 0.0 && y.is_sign_negative() {
+                continue;
+            }
+            let second = if is_ahead(y) { y } else { infinity };
+            let first = if is_ahead(x) { x } else { second };
+            for (found, expected) in found.into_iter().zip([first, second, first.max(second), first.min(second)]) {
+                assert!(same(found.lane(lane), expected), "{x} and {y}: {}, not {expected}", found.lane(lane));
+            }
+            assert_eq!(is_sooner.bits() >> lane & 1 == 1, first < second, "{x} and {y}");
+        }
     }
 }
 

@@ -226,6 +226,22 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
         Self(self.0.about_times_plus(factor.0, addend.0), self.1.about_times_plus(factor.1, addend.1))
     }
     #[inline(always)]
+    fn ahead(near: Self, far: Self) -> Self {
+        Self(V::ahead(near.0, far.0), V::ahead(near.1, far.1))
+    }
+    #[inline(always)]
+    fn sooner(self, other: Self) -> Self {
+        Self(self.0.sooner(other.0), self.1.sooner(other.1))
+    }
+    #[inline(always)]
+    fn later(self, other: Self) -> Self {
+        Self(self.0.later(other.0), self.1.later(other.1))
+    }
+    #[inline(always)]
+    fn is_sooner(self, other: Self) -> Self::Mask {
+        Two(self.0.is_sooner(other.0), self.1.is_sooner(other.1))
+    }
+    #[inline(always)]
     fn number(bits: Self::Bits) -> Self {
         Self(V::number(bits.0), V::number(bits.1))
     }

@@ -64,7 +64,7 @@ impl Filter {
         let (square, along) = (dot(origin, origin), -dot(origin, direction));
         let less = V::splat(1.0 - 2.0 * SHARE) * square;
         let slack = V::splat(self.slack[0]) + V::splat(self.slack[1]) * square;
-        let behind = -slack;
+        let own_root = V::ahead(rays.own_root, rays.own_root);
         let twice = origin + origin;
         let (mut first, mut second, mut number) = (infinity, infinity, V::splat(-1.0));
         let mut grazes = zero.lt(zero);
@@ -74,21 +74,21 @@ impl Filter {
             let c = dot_and(twice, center, V::splat(sphere.constant) - less);
             let root = b.about_times_plus(b, c).sqrt();
             grazes = grazes | root.lt(V::splat(sphere.least));
-            let (near, far) = (b - root, b + root);
-            let t = V::select(behind.lt(near), near, far);
-            let t = V::select(rays.from.equal(this), rays.own_root, t);
-            let is_ahead = behind.lt(t);
-            let is_first = is_ahead & t.lt(first);
-            let later = V::select(is_ahead & t.lt(second), t, second);
-            second = V::select(is_first, first, later);
-            first = V::select(is_first, t, first);
+            // Later by the slack, so that what may be ahead is.
+            let later = b + slack;
+            let t = V::select(rays.from.equal(this), own_root, V::ahead(later - root, later + root));
+            let is_first = t.is_sooner(first);
+            second = second.sooner(first.later(t));
+            first = first.sooner(t);
             number = V::select(is_first, this, number);
         }
         let [x, y, z, radius] = V::rows(&tables.surfaces, number);
         let exact = first_root(origin - Vec3 { x, y, z }, direction, V::splat(1.0), radius);
         let exact = V::select(rays.from.equal(number), rays.own_root, exact);
         let is_none = number.lt(zero);
-        let is_sure = V::select(is_none, slack, exact + slack).lt(second) & (is_none | zero.lt(exact)) & !grazes;
+        // What is second is later by the slack, too.
+        let limit = slack + slack;
+        let is_sure = V::select(is_none, limit, exact + limit).lt(second) & (is_none | zero.lt(exact)) & !grazes;
         (Found { nearest: V::select(is_none, infinity, exact), primitive: number }, is_sure)
     }
 }
