@@ -104,6 +104,8 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// `self`, but where the mask holds the next of the numbers, in order; there must be as many as there are lanes.
     #[must_use]
     fn fill(self, mask: Self::Mask, from: &[Self::One]) -> Self;
+    /// A number, rounded if need be.
+    fn one(value: f64) -> Self::One;
     /// The number in a lane.
     fn lane(&self, lane: usize) -> f64;
     /// Puts a number, rounded if need be, into a lane.

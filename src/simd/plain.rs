@@ -229,6 +229,10 @@ macro_rules! float {
                 self.filled(mask, from)
             }
             #[inline(always)]
+            fn one(value: f64) -> $Float {
+                value as $Float
+            }
+            #[inline(always)]
             fn lane(&self, lane: usize) -> f64 {
                 self.0[lane].into()
             }

@@ -210,6 +210,10 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
         Self(self.0.fill(mask.0, from), self.1.fill(mask.1, upper))
     }
     #[inline(always)]
+    fn one(value: f64) -> V::One {
+        V::one(value)
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         if lane < V::LANES { self.0.lane(lane) } else { self.1.lane(lane - V::LANES) }
     }

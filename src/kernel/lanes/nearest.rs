@@ -1,11 +1,11 @@
 //! The first thing that each ray meets.
 
 use super::Lanes;
-use super::packet::{LanesOf, Rays, vector};
+use super::packet::{LanesOf, Rays};
 use crate::kernel::Counts;
-use crate::math::Ray;
-use crate::scene::{Standpoint, Tests};
-use crate::simd::{Float, Mask};
+use crate::math::{Ray, Vec3};
+use crate::scene::{Scene, Standpoint, Tests};
+use crate::simd::{Float, MOST_LANES, Mask};
 
 impl Lanes {
     /// Distance and number of the first primitive along each ray; the number is -1 where there is none. What is in lanes that are not `wanted`
@@ -27,18 +27,49 @@ impl Lanes {
     }
 
     /// Asks the scene for each ray.
-    #[inline(never)]
+    #[inline(always)]
     fn one_by_one<V: Float>(&self, rays: &Rays<V>, wanted: u32, found: &mut Found<V>, counts: &mut Counts) {
+        let Ray { origin, direction } = rays.ray;
+        let mut all = AllRays { numbers: [[V::One::default(); MOST_LANES]; 8] };
+        let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from, rays.own_root];
+        for (numbers, vector) in all.numbers.iter_mut().zip(vectors) {
+            vector.store(numbers);
+        }
+        let [mut nearest, mut primitive] = [[V::One::default(); MOST_LANES]; 2];
+        found.nearest.store(&mut nearest);
+        found.primitive.store(&mut primitive);
+        all.ask(&self.scene, wanted, [&mut nearest, &mut primitive], V::one, counts);
+        found.nearest = V::load(&nearest);
+        found.primitive = V::load(&primitive);
+    }
+}
+
+/// Rays out of their registers: origins, directions, what they start on and where they meet that again.
+struct AllRays<T> {
+    numbers: [[T; MOST_LANES]; 8],
+}
+
+impl<T: Copy + Into<f64>> AllRays<T> {
+    /// Finds what rays meet first: distances and primitives. It has no need of a level's instructions, and stays out of what does.
+    #[inline(never)]
+    fn ask(
+        &self,
+        scene: &Scene,
+        wanted: u32,
+        [nearest, primitive]: [&mut [T; MOST_LANES]; 2],
+        one: fn(f64) -> T,
+        counts: &mut Counts,
+    ) {
         let mut tests = Tests::default();
         for lane in LanesOf(wanted) {
-            let ray = Ray { origin: vector(&rays.ray.origin, lane), direction: vector(&rays.ray.direction, lane) };
-            let from = rays.from.lane(lane);
+            let [ox, oy, oz, dx, dy, dz, from, own_root] = self.numbers.each_ref().map(|numbers| numbers[lane].into());
+            let ray = Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(dx, dy, dz) };
             // Only what goes inside has another root; what is flat has none on either side.
-            let inside = !rays.own_root.lane(lane).is_nan();
+            let inside = !own_root.is_nan();
             let from = (from >= 0.0).then_some(Standpoint { primitive: from as u32, inside });
-            let nearest = self.scene.nearest(&ray, from, &mut tests);
-            found.nearest.set_lane(lane, nearest.t);
-            found.primitive.set_lane(lane, if nearest.primitive == u32::MAX { -1.0 } else { nearest.primitive.into() });
+            let found = scene.nearest(&ray, from, &mut tests);
+            nearest[lane] = one(found.t);
+            primitive[lane] = one(if found.primitive == u32::MAX { -1.0 } else { found.primitive.into() });
         }
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;

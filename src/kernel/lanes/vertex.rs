@@ -1,7 +1,7 @@
 //! What happens where paths arrive: the steps of [`crate::estimator::Path`], with a mask for each of its branches.
 
 use super::Lanes;
-use super::packet::{LanesOf, Packet, Part, colour, differ, set_vector, vector};
+use super::packet::{LanesOf, Packet, Part, colour, differ, vector};
 use super::tables::Kind;
 use crate::kernel::Counts;
 use crate::material::Density;
@@ -10,7 +10,7 @@ use crate::math::{
 };
 use crate::sampling::{Purpose, cosine_hemisphere};
 use crate::scene::AllEffects;
-use crate::simd::{Float, Mask, Words};
+use crate::simd::{Float, MOST_LANES, Mask, Words};
 
 /// Where rays arrived.
 #[derive(Clone, Copy)]
@@ -65,12 +65,16 @@ impl Lanes {
     pub(super) fn advance<V: Float, const AIMS: bool>(&self, packet: &mut Packet<V>, counts: &mut Counts) -> u32 {
         let number = packet.vertices.plus(V::Bits::splat(1));
         let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
-        let (t, primitive) = self.nearest(&packet.rays, packet.alive, counts);
+        let (mut t, mut primitive) = self.nearest(&packet.rays, packet.alive, counts);
         counts.rays += u64::from(packet.alive.count_ones());
         let alive = V::Mask::from_bits(packet.alive);
-        let met = alive & V::splat(0.0).le(primitive);
-        let escaped = packet.alive & !met.bits();
+        let mut met = alive & V::splat(0.0).le(primitive);
+        let mut escaped = packet.alive & !met.bits();
         if escaped != 0 {
+            if !V::IS_DOUBLE {
+                self.catch(packet, &mut escaped, &mut t, &mut primitive);
+                met = alive & !V::Mask::from_bits(escaped);
+            }
             self.escape(packet, escaped, counts);
         }
         let mut ended = escaped;
@@ -107,6 +111,23 @@ impl Lanes {
         ended |= scattered.absorbed;
         leave(packet, &at, number, &scattered, split, &mut ended);
         ended
+    }
+
+    /// Rays in single precision that slipped through where two surfaces meet: they are still at the second.
+    #[inline(always)]
+    fn catch<V: Float>(&self, packet: &Packet<V>, escaped: &mut u32, t: &mut V, primitive: &mut V) {
+        if self.scene.background.is_some() {
+            return;
+        }
+        let Ray { origin, direction } = &packet.rays.ray;
+        for lane in LanesOf(*escaped) {
+            let ray = Ray { origin: vector(origin, lane), direction: vector(direction, lane) };
+            if let Some(number) = self.singles.slipped_through(&self.scene, &ray, packet.rays.from.lane(lane)) {
+                *escaped &= !(1 << lane);
+                t.set_lane(lane, 0.0);
+                primitive.set_lane(lane, number);
+            }
+        }
     }
 
     /// Rays that meet nothing find the background.
@@ -249,26 +270,36 @@ impl Lanes {
         lanes: V::Mask,
         scattered: &mut Scattered<V>,
     ) {
-        let inside = at.inside.bits();
-        let mut deltas = 0;
+        let (inside, mut deltas) = (at.inside.bits(), 0);
+        let mut all = [[V::One::default(); MOST_LANES]; 13];
+        let Scattered { wi, weight, density, .. } = &scattered;
+        let vectors = [at.primitive, wo.x, wo.y, wo.z, numbers[0], numbers[1]];
+        let results = [wi.x, wi.y, wi.z, weight.r, weight.g, weight.b, *density];
+        for (all, vector) in all.iter_mut().zip(vectors.into_iter().chain(results)) {
+            vector.store(all);
+        }
         for lane in LanesOf(lanes.bits()) {
-            let owner = self.scene.owners[at.primitive.lane(lane) as usize];
+            let [primitive, x, y, z, first, second] = [0, 1, 2, 3, 4, 5].map(|k: usize| all[k][lane].into());
+            let owner = self.scene.owners[primitive as usize];
             let material = &self.scene.objects[owner as usize].material;
-            let numbers = [numbers[0].lane(lane), numbers[1].lane(lane)];
-            let Some(sample) = material.sample::<AllEffects>(vector(&wo, lane), inside >> lane & 1 == 1, numbers)
-            else {
+            let sample = material.sample::<AllEffects>(Vec3::new(x, y, z), inside >> lane & 1 == 1, [first, second]);
+            let Some(sample) = sample else {
                 scattered.absorbed |= 1 << lane;
                 continue;
             };
-            set_vector(&mut scattered.wi, lane, sample.wi);
-            scattered.weight.r.set_lane(lane, sample.weight.r);
-            scattered.weight.g.set_lane(lane, sample.weight.g);
-            scattered.weight.b.set_lane(lane, sample.weight.b);
+            let Vec3 { x, y, z } = sample.wi;
+            let Rgb { r, g, b } = sample.weight;
+            for (k, number) in (6..).zip([x, y, z, r, g, b]) {
+                all[k][lane] = V::one(number);
+            }
             match sample.density {
                 Density::Delta => deltas |= 1 << lane,
-                Density::PerSolidAngle(density) => scattered.density.set_lane(lane, density),
+                Density::PerSolidAngle(density) => all[12][lane] = V::one(density),
             }
         }
+        scattered.wi = Vec3 { x: V::load(&all[6]), y: V::load(&all[7]), z: V::load(&all[8]) };
+        scattered.weight = Rgb { r: V::load(&all[9]), g: V::load(&all[10]), b: V::load(&all[11]) };
+        scattered.density = V::load(&all[12]);
         scattered.is_delta = scattered.is_delta | V::Mask::from_bits(deltas);
     }
 }

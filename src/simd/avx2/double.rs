@@ -86,6 +86,10 @@ impl Float for F64x4 {
         Self::select(mask, Self(op!(_mm256_castsi256_pd(spread(mask, next)))), self)
     }
     #[inline(always)]
+    fn one(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         let mut all = [0.0; 4];
         op!(_mm256_storeu_pd(all.as_mut_ptr(), self.0));

@@ -89,6 +89,10 @@ impl Float for F32x8 {
         Self::select(mask, Self(next), self)
     }
     #[inline(always)]
+    fn one(value: f64) -> f32 {
+        value as f32
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         let mut all = [0.0; 8];
         self.store(&mut all);

@@ -91,6 +91,10 @@ impl Float for F64x8 {
         Self(op!(_mm512_mask_expand_pd(self.0, mask.0, Self::load(from).0)))
     }
     #[inline(always)]
+    fn one(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         let mut all = [0.0; 8];
         op!(_mm512_storeu_pd(all.as_mut_ptr(), self.0));

@@ -94,6 +94,10 @@ impl Float for F32x16 {
         Self(op!(_mm512_mask_expand_ps(self.0, mask.0, Self::load(from).0)))
     }
     #[inline(always)]
+    fn one(value: f64) -> f32 {
+        value as f32
+    }
+    #[inline(always)]
     fn lane(&self, lane: usize) -> f64 {
         let mut all = [0.0; 16];
         self.store(&mut all);

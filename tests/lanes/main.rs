@@ -1,8 +1,10 @@
 //! The kernel of SIMD lanes gives what the scalar kernel gives, sample by sample and bit for bit, on every instruction set that this processor
 //! has. The scalar kernel is the oracle here; that it is right is what the other tests are about.
 
-#[path = "support/watchdog.rs"]
+#[path = "../support/watchdog.rs"]
 mod watchdog;
+
+mod precision;
 
 use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
