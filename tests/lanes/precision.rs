@@ -76,7 +76,7 @@ fn score(single: &[(Vec<f64>, Counts)], double: &[(Vec<f64>, Counts)]) -> f64 {
             mean_of(images.iter().map(|(image, _)| image[pixel]).collect::<Vec<_>>().into_iter())
         };
         let ((m1, v1), (m2, v2)) = (of(single), of(double));
-        if v1 + v2 <= (ROUNDING * m2).powi(2) {
+        if (v1 + v2).sqrt() <= ROUNDING * m2.abs() {
             // All samples of it are the same but for rounding: a light, seen directly or in mirrors.
             assert!((m1 - m2).abs() <= 8.0 * ROUNDING * m2.abs(), "pixel {pixel}: {m1}, {m2}");
             continue;

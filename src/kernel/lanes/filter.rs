@@ -225,6 +225,7 @@ mod tests {
             for level in LEVELS.iter().filter(|level| level.is_available()) {
                 let sure =
                     [&walks, &edges].map(|rays| on_level(level.name, Precision::F64, Compare(&scene, rays)).unwrap());
+                println!("{name} {}: sure of {sure:?}, in walks and near edges", level.name);
                 assert!(sure[0] > 0.98 && sure[1] < sure[0], "{name} {}: sure of {sure:?}", level.name);
             }
         }
