@@ -18,6 +18,8 @@ pub use optics::{fresnel_dielectric, fresnel_schlick, reflect, refract};
 pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;
-pub use sphere::{Curved, curved_normal, curved_quadratic, first_root, first_root_curved, other_root, roots};
+pub use sphere::{
+    Curved, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, other_root, roots,
+};
 pub use trig::sin_cos_turns;
 pub use vector::{Vec3, dot};

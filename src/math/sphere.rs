@@ -97,6 +97,14 @@ pub fn first_root_curved<T: Real>(k: T, b: T, c: T) -> T {
     -(T::select(far, q, c) / T::select(far, k, q))
 }
 
+/// Likewise, the root at which a ray leaves the sphere for good, whether ahead or behind; NaN if the line misses.
+#[inline(always)]
+pub fn last_root_curved<T: Real>(k: T, b: T, c: T) -> T {
+    let q = b + b.times_plus(b, -(k * c)).sqrt().copysign(b);
+    let far = q.lt(T::splat(0.0));
+    -(T::select(far, q, c) / T::select(far, k, q))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -114,11 +122,15 @@ mod tests {
     }
 
     fn curved_root<T: Real>(center: Vec3, radius: f64, origin: Vec3, direction: Vec3) -> T {
+        curved_root_by(first_root_curved, center, radius, origin, direction)
+    }
+
+    fn curved_root_by<T: Real>(root: fn(T, T, T) -> T, center: Vec3, radius: f64, origin: Vec3, direction: Vec3) -> T {
         let Curved { normal, curvature, offset } = Curved::of(center, radius);
         let sphere = Curved { normal: Vec3::splat(normal), curvature: T::splat(curvature), offset: T::splat(offset) };
         let (o, d) = (Vec3::splat(origin), Vec3::splat(direction));
         let (b, c) = curved_quadratic(&sphere, o, d, dot(o, o), dot(o, d));
-        first_root_curved(sphere.curvature, b, c)
+        root(sphere.curvature, b, c)
     }
 
     /// By curvature a sphere is met where it is by centre and radius: in double precision from inside, from outside, near and far; in single
@@ -144,6 +156,9 @@ mod tests {
                 }
                 let is_met = expected > 0.0;
                 assert_eq!(found > 0.0, is_met, "{center:?} {origin:?} {direction:?}: {found}, {expected}");
+                let last: f64 = curved_root_by(last_root_curved, center, radius, origin, direction);
+                let (_, far) = roots(f, direction, 1.0, radius);
+                assert!((last - far).abs() < 1e-6 / cos, "{center:?} {origin:?} {direction:?}: {last}, {far}");
                 if is_met {
                     let bound = 1e-6 / cos;
                     assert!(

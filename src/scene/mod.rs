@@ -164,6 +164,11 @@ impl Scene {
         reaches.fold(f64::INFINITY, f64::min).max(length(self.camera.position))
     }
 
+    /// The opaque spheres that no path gets out of, because all camera rays start in them.
+    pub fn enclosing(&self, view: &View) -> Vec<u32> {
+        light::enclosing(self, &view.origins())
+    }
+
     /// The object that a primitive belongs to.
     #[inline(always)]
     pub fn owner<X: EffectSet>(&self, primitive: u32) -> u32 {

@@ -52,12 +52,13 @@ pub(super) struct Lanes {
 impl Lanes {
     pub(super) fn new(scene: Arc<Scene>, spec: &Spec, InLanes { level, precision, course, sampler }: InLanes) -> Self {
         let tables = Tables::of(&scene, precision);
+        let view = scene.camera.view(spec.width, spec.height);
         Self {
-            view: scene.camera.view(spec.width, spec.height),
             targets: scene.lights.as_ref().map(Targets::of),
             scans: tables.is_round && scene.hierarchy.is_none(),
             filter: Filter::of(&scene),
-            singles: Singles::of(&scene),
+            singles: Singles::of(&scene, &scene.enclosing(&view)),
+            view,
             precision,
             scene,
             width: spec.width,

@@ -91,7 +91,12 @@ impl<V: Float> Found<V> {
     /// A root of a primitive; that of the one on which a ray starts is known.
     #[inline(always)]
     pub(super) fn take(&mut self, rays: &Rays<V>, number: V, root: V) {
-        let distance = V::select(rays.from.equal(number), rays.own_root, root);
+        self.take_from_anywhere(number, V::select(rays.from.equal(number), rays.own_root, root));
+    }
+
+    /// A distance to a primitive, whether the ray starts on it or not.
+    #[inline(always)]
+    pub(super) fn take_from_anywhere(&mut self, number: V, distance: V) {
         let is_nearer = V::splat(0.0).lt(distance) & distance.lt(self.nearest);
         self.nearest = V::select(is_nearer, distance, self.nearest);
         self.primitive = V::select(is_nearer, number, self.primitive);

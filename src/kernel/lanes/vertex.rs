@@ -65,16 +65,12 @@ impl Lanes {
     pub(super) fn advance<V: Float, const AIMS: bool>(&self, packet: &mut Packet<V>, counts: &mut Counts) -> u32 {
         let number = packet.vertices.plus(V::Bits::splat(1));
         let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
-        let (mut t, mut primitive) = self.nearest(&packet.rays, packet.alive, counts);
+        let (t, primitive) = self.nearest(&packet.rays, packet.alive, counts);
         counts.rays += u64::from(packet.alive.count_ones());
         let alive = V::Mask::from_bits(packet.alive);
-        let mut met = alive & V::splat(0.0).le(primitive);
-        let mut escaped = packet.alive & !met.bits();
+        let met = alive & V::splat(0.0).le(primitive);
+        let escaped = packet.alive & !met.bits();
         if escaped != 0 {
-            if !V::IS_DOUBLE {
-                self.catch(packet, &mut escaped, &mut t, &mut primitive);
-                met = alive & !V::Mask::from_bits(escaped);
-            }
             self.escape(packet, escaped, counts);
         }
         let mut ended = escaped;
@@ -111,23 +107,6 @@ impl Lanes {
         ended |= scattered.absorbed;
         leave(packet, &at, number, &scattered, split, &mut ended);
         ended
-    }
-
-    /// Rays in single precision that slipped through where two surfaces meet: they are still at the second.
-    #[inline(always)]
-    fn catch<V: Float>(&self, packet: &Packet<V>, escaped: &mut u32, t: &mut V, primitive: &mut V) {
-        if self.scene.background.is_some() {
-            return;
-        }
-        let Ray { origin, direction } = &packet.rays.ray;
-        for lane in LanesOf(*escaped) {
-            let ray = Ray { origin: vector(origin, lane), direction: vector(direction, lane) };
-            if let Some(number) = self.singles.slipped_through(&self.scene, &ray, packet.rays.from.lane(lane)) {
-                *escaped &= !(1 << lane);
-                t.set_lane(lane, 0.0);
-                primitive.set_lane(lane, number);
-            }
-        }
     }
 
     /// Rays that meet nothing find the background.
