@@ -95,7 +95,8 @@ impl Lanes {
         // Lanes whose part of a path has ended, and that still hold it.
         let mut ended = 0_u32;
         loop {
-            if ended.count_ones() >= held::<V>() || packet.alive == 0 {
+            let idle = V::LANES as u32 - packet.alive.count_ones();
+            if ended != 0 && idle >= held::<V>() || packet.alive == 0 {
                 self.retire(&mut packet, ended, &mut window);
                 ended = 0;
                 self.refill(&mut packet, &mut supply, &mut window, &mut counts);
@@ -110,8 +111,8 @@ impl Lanes {
     }
 }
 
-/// How many paths must have ended before their lanes are given others: doing that for two takes little more time than for one, and costs less than the
-/// lanes that stand idle if there are many.
+/// How many lanes must be idle before they are given other paths: doing that for two takes little more time than for one, and costs more than the
+/// lanes that wait.
 const fn held<V: Float>() -> u32 {
     if V::LANES < 8 { 1 } else { 2 }
 }
