@@ -164,9 +164,20 @@ impl Scene {
         reaches.fold(f64::INFINITY, f64::min).max(length(self.camera.position))
     }
 
-    /// The opaque spheres that no path gets out of, because all camera rays start in them.
+    /// The opaque spheres that no path gets out of, because all camera rays start well inside of them; none if they start on a lens.
     pub fn enclosing(&self, view: &View) -> Vec<u32> {
-        light::enclosing(self, &view.origins())
+        let starts = view.starts();
+        // More than starts rise between those that are looked at.
+        let clear = 1e-4 * self.size();
+        let spheres = self.primitives.spheres.iter().zip(0_u32..).filter(|(sphere, number)| {
+            let material = &self.objects[self.owners[*number as usize] as usize].material;
+            let is_inside = |start: &Vec3| {
+                let offset = *start - sphere.center;
+                dot(offset, offset).sqrt() + clear < sphere.radius
+            };
+            !material.transmits() && starts.iter().all(is_inside)
+        });
+        if self.camera.lens.is_some() { Vec::new() } else { spheres.map(|(_, number)| number).collect() }
     }
 
     /// The object that a primitive belongs to.

@@ -107,6 +107,16 @@ mod tests {
         }
     }
 
+    /// Rays of the top row of a small image start above the ceiling and meet the light there; those of a larger one do not.
+    #[test]
+    fn what_rays_start_outside_of_encloses_nothing() {
+        let scene = load("cornell").unwrap();
+        let ceiling = scene.objects.iter().position(|object| object.name == "ceiling").unwrap() as u32;
+        let encloses =
+            |[width, height]: [u32; 2]| scene.enclosing(&scene.camera.view(width, height)).contains(&ceiling);
+        assert_eq!([[32, 24], [1024, 768]].map(encloses), [false, true]);
+    }
+
     /// Where the ground meets the sky, a point of the ground that is rounded to outside of the sky is at the sky for a ray that goes up and out,
     /// and so is one of the sky itself; a ray that goes back in finds the other side of the sky.
     #[test]

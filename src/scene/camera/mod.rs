@@ -134,6 +134,19 @@ impl View {
         })
     }
 
+    /// Where rays start, many of them: all over the image and as far beyond its edges as the filter reaches, a quarter of a pixel.
+    pub fn starts(&self) -> Vec<Vec3> {
+        const STEPS: u32 = 32;
+        let place = |k: u32, pixels: f64| (f64::from(k) / f64::from(STEPS) - 0.5) * (1.0 + 0.5 / pixels);
+        let places = (0..=STEPS).flat_map(|row| (0..=STEPS).map(move |column| (column, row)));
+        let starts = places.map(|(column, row)| {
+            let (across, upward) = (place(column, self.width), place(row, self.height));
+            let towards = self.right * across + self.up * upward + self.camera.direction;
+            self.camera.position + towards.normalized() * self.camera.advance
+        });
+        starts.collect()
+    }
+
     /// The ray of sample `sample` through pixel (`x`, `y`), row 0 at the top. `film` places it in the pixel and `lens` on the lens; the
     /// latter is asked only if there is one.
     ///

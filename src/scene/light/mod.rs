@@ -185,11 +185,6 @@ fn mean(radiance: Rgb) -> f64 {
     radiance.channels().iter().sum::<f64>() / 3.0
 }
 
-/// The opaque spheres that no path gets out of, if camera rays start at `origins`.
-pub(super) fn enclosing(scene: &Scene, origins: &[Vec3]) -> Vec<u32> {
-    Walls::of(scene, origins).enclosing()
-}
-
 #[cfg(test)]
 mod tests {
     use crate::scene::load;

@@ -102,15 +102,6 @@ impl Walls {
         Self(opaque.map(|(_, wall)| wall).collect())
     }
 
-    /// The spheres that all paths are inside of.
-    pub(super) fn enclosing(&self) -> Vec<u32> {
-        let enclosing = self.0.iter().filter_map(|wall| match wall {
-            Wall::Sphere { primitive, inside: true, .. } => Some(*primitive),
-            _ => None,
-        });
-        enclosing.collect()
-    }
-
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }
