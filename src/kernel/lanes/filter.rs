@@ -103,7 +103,7 @@ fn dot_and<V: Float>(a: Vec3<V>, b: Vec3<V>, number: V) -> V {
 mod tests {
     use super::*;
     use crate::math::{Ray, other_root, unit};
-    use crate::sampling::mix;
+    use crate::sampling::{mix, uniform_sphere};
     use crate::scene::{SCENES, Standpoint, Tests, load};
     use crate::simd::{LEVELS, MOST_LANES, Mask, Precision, Work, on_level};
 
@@ -119,10 +119,7 @@ mod tests {
         }
 
         fn direction(&mut self) -> Vec3 {
-            let (sin, cos) = crate::math::sin_cos_turns(self.unit());
-            let z = 2.0 * self.unit() - 1.0;
-            let r = (1.0 - z * z).sqrt();
-            Vec3::new(r * cos, r * sin, z)
+            uniform_sphere([self.unit(), self.unit()])
         }
     }
 

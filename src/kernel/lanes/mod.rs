@@ -41,12 +41,17 @@ pub(super) struct Lanes {
     targets: Option<Targets>,
     level: &'static simd::Entry,
     precision: Precision,
-    /// The spheres for a quick look.
-    filter: Filter,
-    /// The spheres as single precision has them.
-    singles: Singles,
-    /// Whether every sphere is tested, because there are few and nothing else.
-    scans: bool,
+    search: Search,
+}
+
+/// How the first thing on each ray is found.
+enum Search {
+    /// Every sphere is tested, because there are few and nothing else: quickly, and the first one exactly.
+    Filter(Filter),
+    /// Likewise, as single precision has them.
+    Singles(Singles),
+    /// The scene is asked for each ray.
+    OneByOne,
 }
 
 impl Lanes {
@@ -55,9 +60,11 @@ impl Lanes {
         let view = scene.camera.view(spec.width, spec.height);
         Self {
             targets: scene.lights.as_ref().map(Targets::of),
-            scans: tables.is_round && scene.hierarchy.is_none(),
-            filter: Filter::of(&scene),
-            singles: Singles::of(&scene, &scene.enclosing(&view)),
+            search: match precision {
+                _ if !tables.is_round || scene.hierarchy.is_some() => Search::OneByOne,
+                Precision::F64 => Search::Filter(Filter::of(&scene)),
+                Precision::F32 => Search::Singles(Singles::of(&scene, &scene.enclosing(&view))),
+            },
             view,
             precision,
             scene,

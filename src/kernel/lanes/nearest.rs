@@ -1,7 +1,7 @@
 //! The first thing that each ray meets.
 
-use super::Lanes;
 use super::packet::{LanesOf, Rays};
+use super::{Lanes, Search};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3};
 use crate::scene::{Scene, Standpoint, Tests};
@@ -12,13 +12,14 @@ impl Lanes {
     /// is not looked at. Ties go to the lowest number, as with one path at a time.
     #[inline(always)]
     pub(super) fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> (V, V) {
-        let (mut found, left) = if !self.scans {
-            (Found::nothing(), wanted)
-        } else if V::IS_DOUBLE {
-            let (found, is_sure) = self.filter.nearest(&self.tables, rays);
-            (found, wanted & !is_sure.bits())
-        } else {
-            (self.singles.scan(rays), 0)
+        // Compiled for one precision, this has one of the first two.
+        let (mut found, left) = match &self.search {
+            Search::Filter(filter) if V::IS_DOUBLE => {
+                let (found, is_sure) = filter.nearest(&self.tables, rays);
+                (found, wanted & !is_sure.bits())
+            }
+            Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
+            _ => (Found::nothing(), wanted),
         };
         if left != 0 {
             self.one_by_one(rays, left, &mut found, counts);
