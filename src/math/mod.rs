@@ -5,21 +5,25 @@
 mod bits;
 mod frame;
 mod optics;
+mod plane;
 mod ray;
 mod real;
 mod rgb;
 mod sphere;
+mod triangle;
 mod trig;
 mod vector;
 
 pub use bits::{Bits, single_unit, unit};
 pub use frame::Frame;
 pub use optics::{fresnel_dielectric, fresnel_schlick, reflect, refract};
+pub use plane::plane_root;
 pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;
 pub use sphere::{
     Curved, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, other_root, roots,
 };
+pub use triangle::{Shear, sheared, triangle_root};
 pub use trig::sin_cos_turns;
 pub use vector::{Vec3, dot};

@@ -51,7 +51,7 @@ mod two;
 
 use crate::math::{Bits, Real};
 use std::ops::{BitAnd, BitOr, Not};
-pub use table::Table;
+pub use table::{Number, Numbers, Table};
 
 /// The answers of a comparison, one bit a lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
@@ -93,7 +93,7 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// As many words of 64 bits.
     type Bits: Words<Self::Mask>;
     /// One of the numbers.
-    type One: Copy + Default + Into<f64> + Send + Sync;
+    type One: Number;
     /// How many there are.
     const LANES: usize;
 
@@ -112,6 +112,13 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     fn set_lane(&mut self, lane: usize, value: f64);
     /// `self == other`; false if either is NaN.
     fn equal(self, other: Self) -> Self::Mask;
+    /// The least of the numbers, none of which may be NaN.
+    #[inline(always)]
+    fn least(self) -> f64 {
+        let mut all = [Self::One::default(); MOST_LANES];
+        self.store(&mut all);
+        all[..Self::LANES].iter().fold(f64::INFINITY, |least, number| least.min((*number).into()))
+    }
     /// `self * factor + addend`, rounded once or twice, as the processor does it faster: only for what is made sure of by other means, or
     /// processors would differ.
     #[must_use]

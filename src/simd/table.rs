@@ -1,4 +1,6 @@
-//! Rows of numbers that lanes look up, each its own.
+//! Numbers that lanes look up, each its own row of a table, or load side by side.
+
+use super::Precision;
 
 /// Rows of four.
 pub struct Table {
@@ -37,5 +39,43 @@ impl Table {
     #[inline(always)]
     pub(super) fn single_row(&self, number: f32) -> &[f32; 4] {
         self.singles.get(number as usize).unwrap_or(&self.singles[0])
+    }
+}
+
+/// Numbers that stand side by side, in the format in which they will be loaded.
+pub struct Numbers {
+    doubles: Vec<f64>,
+    singles: Vec<f32>,
+}
+
+impl Numbers {
+    /// Numbers, rounded if need be.
+    pub fn new(numbers: Vec<f64>, precision: Precision) -> Self {
+        match precision {
+            Precision::F64 => Self { doubles: numbers, singles: Vec::new() },
+            Precision::F32 => {
+                Self { doubles: Vec::new(), singles: numbers.into_iter().map(|number| number as f32).collect() }
+            }
+        }
+    }
+}
+
+/// A number of either format.
+pub trait Number: Copy + Default + PartialOrd + Into<f64> + Send + Sync {
+    /// Those of that format; none if they are of another.
+    fn all(numbers: &Numbers) -> &[Self];
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn all(numbers: &Numbers) -> &[Self] {
+        &numbers.doubles
+    }
+}
+
+impl Number for f32 {
+    #[inline(always)]
+    fn all(numbers: &Numbers) -> &[Self] {
+        &numbers.singles
     }
 }

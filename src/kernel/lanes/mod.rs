@@ -10,6 +10,7 @@ mod singles;
 mod supply;
 mod tables;
 mod vertex;
+mod wide;
 mod window;
 
 use super::choice::InLanes;
@@ -27,6 +28,7 @@ use singles::Singles;
 use std::sync::Arc;
 use supply::Supply;
 use tables::Tables;
+use wide::Wide;
 use window::Window;
 
 /// The kernel.
@@ -50,8 +52,8 @@ enum Search {
     Filter(Filter),
     /// Likewise, as single precision has them.
     Singles(Singles),
-    /// The scene is asked for each ray.
-    OneByOne,
+    /// Any primitives: one ray at a time.
+    Wide(Box<Wide>),
 }
 
 impl Lanes {
@@ -61,7 +63,9 @@ impl Lanes {
         Self {
             targets: scene.lights.as_ref().map(Targets::of),
             search: match precision {
-                _ if !tables.is_round || scene.hierarchy.is_some() => Search::OneByOne,
+                _ if !tables.is_round || scene.hierarchy.is_some() => {
+                    Search::Wide(Box::new(Wide::of(&scene, level.name, precision, &scene.enclosing(&view))))
+                }
                 Precision::F64 => Search::Filter(Filter::of(&scene)),
                 Precision::F32 => Search::Singles(Singles::of(&scene, &scene.enclosing(&view))),
             },
@@ -97,7 +101,7 @@ impl Lanes {
     fn follow<V: Float, const AIMS: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
         let mut counts = Counts::default();
         let mut window = Window::over(piece, out);
-        let mut packet = Packet::<V>::new();
+        let mut packet = Packet::<V>::new(self.course.splits > 0);
         let mut supply = Supply::<V>::new();
         // Lanes whose part of a path has ended, and that still hold it.
         let mut ended = 0_u32;

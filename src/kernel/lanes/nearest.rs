@@ -12,13 +12,14 @@ impl Lanes {
     /// is not looked at. Ties go to the lowest number, as with one path at a time.
     #[inline(always)]
     pub(super) fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> (V, V) {
-        // Compiled for one precision, this has one of the first two.
         let (mut found, left) = match &self.search {
             Search::Filter(filter) if V::IS_DOUBLE => {
                 let (found, is_sure) = filter.nearest(&self.tables, rays);
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
+            Search::Wide(wide) => wide.nearest(rays, wanted, counts),
+            // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };
         if left != 0 {

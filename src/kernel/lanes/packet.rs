@@ -53,13 +53,14 @@ pub(super) struct Packet<V: Float> {
     pub(super) density: V,
     /// By what the sample is given back.
     pub(super) slots: [u64; MOST_LANES],
-    waiting: [[Part; LARGEST_STACK]; MOST_LANES],
+    /// None where no path splits: they take more room than everything else here.
+    waiting: Vec<[Part; LARGEST_STACK]>,
     depth: [u8; MOST_LANES],
 }
 
 impl<V: Float> Packet<V> {
     #[inline(always)]
-    pub(super) fn new() -> Self {
+    pub(super) fn new(splits: bool) -> Self {
         let zero = V::splat(0.0);
         let (vector, colour) = (Vec3::new(zero, zero, zero), Rgb { r: zero, g: zero, b: zero });
         let none = V::Bits::splat(0);
@@ -77,7 +78,7 @@ impl<V: Float> Packet<V> {
             words: PathWords { path: none, sample: none, joined: [none; 2] },
             density: V::splat(-1.0),
             slots: [0; MOST_LANES],
-            waiting: [[NO_PART; LARGEST_STACK]; MOST_LANES],
+            waiting: if splits { vec![[NO_PART; LARGEST_STACK]; V::LANES] } else { Vec::new() },
             depth: [0; MOST_LANES],
         }
     }

@@ -48,6 +48,18 @@ impl Singles {
         Self { enclosing, curved, centred }
     }
 
+    /// Those of them that are as large as the scene.
+    pub(super) fn large(scene: &Scene, enclosing_all: &[u32]) -> Self {
+        Self { centred: Vec::new(), ..Self::of(scene, enclosing_all) }
+    }
+
+    /// Whether the sphere with that number is among them.
+    pub(super) fn contains(&self, number: u32) -> bool {
+        let number = number as f32;
+        let curved = self.enclosing.iter().chain(&self.curved).map(|(number, _)| *number);
+        curved.chain(self.centred.iter().map(|(number, ..)| *number)).any(|own| own == number)
+    }
+
     /// The first sphere along each ray. Ties go to those that enclose all, those by curvature and those by centre, in this order, and then to the
     /// lowest number.
     #[inline(always)]

@@ -9,11 +9,13 @@
 
 mod bounds;
 mod build;
+mod gather;
 mod median;
 mod sah;
 mod traverse;
 
 pub use bounds::Bounds;
+pub use gather::{Child, Content};
 
 use bounds::Faces;
 

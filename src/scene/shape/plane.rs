@@ -6,7 +6,7 @@
 
 use super::{Bounds, Primitive};
 use crate::input::{direction, point};
-use crate::math::{Ray, Vec3, dot};
+use crate::math::{Ray, Vec3, plane_root};
 use serde::Deserialize;
 
 /// A plane.
@@ -26,11 +26,9 @@ impl Primitive for Plane {
 
     fn prepare(_ray: &Ray) -> Self::Prepared {}
 
-    /// Along the plane the quotient is infinite or NaN, and neither is a hit; there is no other angle at which it vanishes.
     #[inline(always)]
     fn meet(&self, ray: &Ray, _prepared: &()) -> f64 {
-        let t = dot(self.point - ray.origin, self.normal) / dot(ray.direction, self.normal);
-        if t < f64::INFINITY { t } else { f64::NAN }
+        plane_root(self.point - ray.origin, ray.direction, self.normal)
     }
 
     #[inline(always)]

@@ -3,15 +3,10 @@
 //! ```toml
 //! shape = { triangle = { corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] } }
 //! ```
-//!
-//! Watertight after Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared to where the ray
-//! is the z axis, and the signs of three edge functions decide. Two triangles that share an edge compute the same product with opposite
-//! signs, so no ray passes between them; a ray through the edge itself meets both. Their second look in double precision has no place
-//! here, where all is in double precision.
 
 use super::{Bounds, Primitive};
 use crate::input::{coordinate_limit, out_of_range};
-use crate::math::{Ray, Vec3, dot};
+use crate::math::{Ray, Shear, Vec3, dot, sheared, triangle_root};
 use serde::{Deserialize, Deserializer};
 
 /// A triangle, in scene units.
@@ -44,68 +39,26 @@ where
     }
 }
 
-/// The ray's own axes: z is the direction's longest component, and the shear takes the direction there.
-#[derive(Clone, Copy)]
-pub struct Sheared {
-    axes: [usize; 3],
-    shear: [f64; 3],
-}
-
-#[inline(always)]
-fn component(v: Vec3, axis: usize) -> f64 {
-    match axis {
-        0 => v.x,
-        1 => v.y,
-        _ => v.z,
-    }
-}
-
 impl Triangle {
     /// Whether its corners lie on a line, or so nearly that it has no normal.
     pub fn is_degenerate(&self) -> bool {
         let normal = self.normal(self.corners[0]);
         !(normal.x + normal.y + normal.z).is_finite()
     }
-
-    /// Corner `k` as the sheared ray sees it; the same bits in whichever triangle it is a corner.
-    #[inline(always)]
-    fn sheared(&self, k: usize, ray: &Ray, Sheared { axes: [x, y, z], shear: [sx, sy, sz] }: &Sheared) -> [f64; 3] {
-        let corner = self.corners[k] - ray.origin;
-        let depth = component(corner, *z);
-        [component(corner, *x) - sx * depth, component(corner, *y) - sy * depth, sz * depth]
-    }
 }
 
 impl Primitive for Triangle {
-    type Prepared = Sheared;
+    type Prepared = Shear;
 
     #[inline(always)]
-    fn prepare(ray: &Ray) -> Sheared {
-        let d = ray.direction;
-        let (x, y, z) = (d.x.abs(), d.y.abs(), d.z.abs());
-        let axes = if x > y && x > z {
-            [1, 2, 0]
-        } else if y > z {
-            [2, 0, 1]
-        } else {
-            [0, 1, 2]
-        };
-        let inverse = 1.0 / component(d, axes[2]);
-        let shear = [component(d, axes[0]) * inverse, component(d, axes[1]) * inverse, inverse];
-        Sheared { axes, shear }
+    fn prepare(ray: &Ray) -> Shear {
+        Shear::of(ray.direction)
     }
 
     #[inline(always)]
-    fn meet(&self, ray: &Ray, sheared: &Sheared) -> f64 {
-        let (a, b, c) = (self.sheared(0, ray, sheared), self.sheared(1, ray, sheared), self.sheared(2, ray, sheared));
-        let u = c[0] * b[1] - c[1] * b[0];
-        let v = a[0] * c[1] - a[1] * c[0];
-        let w = b[0] * a[1] - b[1] * a[0];
-        let outside = (u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0);
-        let determinant = u + v + w;
-        // Edge on, the determinant is zero and the quotient infinite or NaN.
-        let t = (u * a[2] + v * b[2] + w * c[2]) / determinant;
-        if outside || determinant == 0.0 { f64::NAN } else { t }
+    fn meet(&self, ray: &Ray, shear: &Shear) -> f64 {
+        let [a, b, c] = self.corners.map(|corner| sheared(shear.turned(corner - ray.origin), shear.by));
+        triangle_root(a, b, c)
     }
 
     #[inline(always)]

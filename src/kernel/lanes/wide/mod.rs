@@ -1,0 +1,163 @@
+//! One ray against as many boxes or primitives as there are lanes: for scenes with triangles, and for large ones. Rays of a packet go anywhere, so
+//! one that looks into a hierarchy by itself tests fewer boxes than all of them together (Wald, Benthin and Boulos, "Getting Rid of Packets", 2008).
+//!
+//! What it finds does not depend on how many lanes there are: boxes have a padding that covers what rounding can do, and among equally near primitives
+//! the lowest number wins. In double precision it is what the scalar search finds, to the bit.
+
+mod blocks;
+mod tree;
+
+use super::nearest::Found;
+use super::packet::{LanesOf, Rays};
+use super::singles::Singles;
+use crate::kernel::Counts;
+use crate::math::{Ray, Shear, Vec3, plane_root};
+use crate::scene::{Plane, Scene, Tests};
+use crate::simd::{Float, MOST_LANES, Mask, Precision, Work, on_level};
+use blocks::{Blocks, Leaf, Making};
+use tree::{AllSlabs, Tree, Waiting};
+
+/// The primitives of a scene.
+pub(in crate::kernel::lanes) struct Wide {
+    /// Spheres that single precision has by their curvature: all rays at a time.
+    large: Option<Singles>,
+    /// Likewise, with the numbers of their primitives.
+    planes: Vec<(f64, Plane)>,
+    blocks: Blocks,
+    search: Search,
+}
+
+/// How the blocks are searched.
+enum Search {
+    /// All of them, or none if there are none.
+    All(Leaf),
+    Tree(Tree),
+}
+
+/// How many lanes a level has.
+struct Width;
+
+impl Work for Width {
+    type Output = usize;
+
+    fn run<V: Float>(self) -> usize {
+        V::LANES
+    }
+}
+
+impl Wide {
+    pub(in crate::kernel::lanes) fn of(scene: &Scene, level: &str, precision: Precision, enclosing: &[u32]) -> Self {
+        // The level has been found on this processor when the kernel was chosen.
+        let width = on_level(level, precision, Width).unwrap_or(MOST_LANES);
+        let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
+        let mut making = Making::new(&scene.primitives, large.as_ref(), width);
+        let search = match &scene.hierarchy {
+            None => Search::All(making.add(0..scene.owners.len() as u32)),
+            Some(hierarchy) => Search::Tree(Tree::of(&hierarchy.gathered(width), width, precision, &mut making)),
+        };
+        let blocks = making.made(precision);
+        let first_plane = scene.primitives.spheres.len() as u32;
+        let planes = (first_plane..).map(f64::from).zip(scene.primitives.planes.iter().copied()).collect();
+        Self { large, planes, blocks, search }
+    }
+
+    /// The first thing along each of the `wanted` rays, and those whose search was given up because too much was left to look at.
+    #[inline(always)]
+    pub(in crate::kernel::lanes) fn nearest<V: Float>(
+        &self,
+        rays: &Rays<V>,
+        wanted: u32,
+        counts: &mut Counts,
+    ) -> (Found<V>, u32) {
+        let Ray { origin, direction } = rays.ray;
+        let mut found = match &self.large {
+            Some(large) => large.scan(rays),
+            None => Found::nothing(),
+        };
+        for (number, plane) in &self.planes {
+            let (point, normal) = (Vec3::splat(plane.point), Vec3::splat(plane.normal));
+            found.take(rays, V::splat(*number), plane_root(point - origin, direction, normal));
+        }
+        let slabs = AllSlabs::of(&rays.ray);
+        let mut rows = [[V::One::default(); MOST_LANES]; 10];
+        let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from, rays.own_root];
+        for (row, vector) in rows.iter_mut().zip(vectors.into_iter().chain([found.nearest, found.primitive])) {
+            vector.store(row);
+        }
+        let (mut left, mut tests) = (0, Tests::default());
+        let mut waiting = Waiting::new();
+        for lane in LanesOf(wanted) {
+            let [ox, oy, oz, dx, dy, dz, from, own_root, nearest, primitive] =
+                rows.each_ref().map(|row| row[lane].into());
+            let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
+            let shear = Shear::of(direction);
+            let ray = Single {
+                ray: Ray { origin: Vec3::splat(origin), direction: Vec3::splat(direction) },
+                from: V::splat(from),
+                own_root: V::splat(own_root),
+                turned: three(shear.turned(origin)),
+                shear: Shear { axes: shear.axes, by: three(shear.by) },
+            };
+            let mut best = Best { nearest: V::splat(nearest), primitive: V::splat(primitive), limit: nearest };
+            match &self.search {
+                Search::All(leaf) => self.blocks.test(leaf, &ray, &mut best),
+                Search::Tree(tree) => {
+                    if !tree.search(&self.blocks, &slabs.of_lane(lane), &ray, &mut best, &mut waiting, &mut tests) {
+                        left |= 1 << lane;
+                    }
+                }
+            }
+            rows[8][lane] = V::one(best.limit);
+            rows[9][lane] = V::one(best.first());
+        }
+        counts.box_tests += tests.boxes;
+        counts.primitive_tests += tests.primitives;
+        (Found { nearest: V::load(&rows[8]), primitive: V::load(&rows[9]) }, left)
+    }
+}
+
+#[inline(always)]
+fn three<V: Float>([x, y, z]: [f64; 3]) -> [V; 3] {
+    [V::splat(x), V::splat(y), V::splat(z)]
+}
+
+/// A ray that is the same in every lane.
+struct Single<V> {
+    ray: Ray<V>,
+    /// Number of the primitive that it starts on, and where it meets that again, as in [`Rays`].
+    from: V,
+    own_root: V,
+    /// The origin by the ray's own axes.
+    turned: [V; 3],
+    shear: Shear<V>,
+}
+
+/// What a ray met so far: in each lane something else.
+struct Best<V> {
+    nearest: V,
+    primitive: V,
+    /// The least distance of all lanes.
+    limit: f64,
+}
+
+impl<V: Float> Best<V> {
+    /// Distances to primitives; those of the one on which the ray starts are known.
+    #[inline(always)]
+    fn take(&mut self, ray: &Single<V>, number: V, root: V) {
+        let distance = V::select(ray.from.equal(number), ray.own_root, root);
+        let comes_first = distance.equal(self.nearest) & number.lt(self.primitive);
+        let wins = V::splat(0.0).lt(distance) & (distance.lt(self.nearest) | comes_first);
+        if wins.any() {
+            self.nearest = V::select(wins, distance, self.nearest);
+            self.primitive = V::select(wins, number, self.primitive);
+            self.limit = self.nearest.least();
+        }
+    }
+
+    /// The lowest number of the nearest.
+    #[inline(always)]
+    fn first(&self) -> f64 {
+        let is_nearest = self.nearest.equal(V::splat(self.limit));
+        V::select(is_nearest, self.primitive, V::splat(f64::INFINITY)).least()
+    }
+}

@@ -1,0 +1,71 @@
+//! Ray against triangle.
+//!
+//! Watertight after Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared to where the ray
+//! is the z axis, and the signs of three edge functions decide. Two triangles that share an edge compute the same product with opposite
+//! signs, so no ray passes between them; a ray through the edge itself meets both. Their second look in a higher precision has no place
+//! here: what is on an edge to the last digit counts as inside.
+
+use super::{Real, Vec3};
+
+/// The ray's own axes: z is the direction's longest component, and the shear takes the direction there.
+#[derive(Debug, Clone, Copy)]
+pub struct Shear<T = f64> {
+    /// Which of the coordinates become x, y and z.
+    pub axes: [usize; 3],
+    /// What x, y and z lose or become for each unit of z.
+    pub by: [T; 3],
+}
+
+#[inline(always)]
+fn component(v: Vec3, axis: usize) -> f64 {
+    match axis {
+        0 => v.x,
+        1 => v.y,
+        _ => v.z,
+    }
+}
+
+impl Shear {
+    /// The axes of rays in that direction.
+    #[inline(always)]
+    pub fn of(direction: Vec3) -> Self {
+        let (x, y, z) = (direction.x.abs(), direction.y.abs(), direction.z.abs());
+        let axes = if x > y && x > z {
+            [1, 2, 0]
+        } else if y > z {
+            [2, 0, 1]
+        } else {
+            [0, 1, 2]
+        };
+        let inverse = 1.0 / component(direction, axes[2]);
+        Self { axes, by: [component(direction, axes[0]) * inverse, component(direction, axes[1]) * inverse, inverse] }
+    }
+
+    /// A vector by the ray's axes.
+    #[inline(always)]
+    pub fn turned(&self, v: Vec3) -> [f64; 3] {
+        self.axes.map(|axis| component(v, axis))
+    }
+}
+
+/// A corner, seen from the ray's origin and by its axes, where the ray is the z axis; the same bits in whichever triangle it is a corner.
+#[inline(always)]
+pub fn sheared<T: Real>([x, y, z]: [T; 3], [sx, sy, sz]: [T; 3]) -> [T; 3] {
+    [x - sx * z, y - sy * z, sz * z]
+}
+
+/// Distance from the origin along the z axis to the triangle with these corners, seen from either side; NaN if it misses.
+#[inline(always)]
+pub fn triangle_root<T: Real>(a: [T; 3], b: [T; 3], c: [T; 3]) -> T {
+    let u = c[0] * b[1] - c[1] * b[0];
+    let v = a[0] * c[1] - a[1] * c[0];
+    let w = b[0] * a[1] - b[1] * a[0];
+    let zero = T::splat(0.0);
+    let front = zero.le(u) & zero.le(v) & zero.le(w);
+    let back = u.le(zero) & v.le(zero) & w.le(zero);
+    let determinant = u + v + w;
+    let t = (u * a[2] + v * b[2] + w * c[2]) / determinant;
+    // Edge on, the determinant is zero and the quotient infinite or NaN.
+    let has_area = determinant.lt(zero) | zero.lt(determinant);
+    T::select((front | back) & has_area, t, T::splat(f64::NAN))
+}
