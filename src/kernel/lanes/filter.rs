@@ -102,64 +102,9 @@ fn dot_and<V: Float>(a: Vec3<V>, b: Vec3<V>, number: V) -> V {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{Ray, other_root, unit};
-    use crate::sampling::{mix, uniform_sphere};
-    use crate::scene::{SCENES, Standpoint, Tests, load};
-    use crate::simd::{LEVELS, MOST_LANES, Mask, Precision, Work, on_level};
-
-    /// A ray, and what it starts on.
-    type Start = (Ray, Option<Standpoint>);
-
-    struct Random(u64);
-
-    impl Random {
-        fn unit(&mut self) -> f64 {
-            self.0 += 1;
-            unit(mix(self.0))
-        }
-
-        fn direction(&mut self) -> Vec3 {
-            uniform_sphere([self.unit(), self.unit()])
-        }
-    }
-
-    fn nearest(scene: &Scene, (ray, from): &Start) -> (f64, f64) {
-        let found = scene.nearest(ray, *from, &mut Tests::default());
-        (found.t, if found.primitive == u32::MAX { -1.0 } else { found.primitive.into() })
-    }
-
-    /// Rays of walks through the scene from the camera, and, where two of them meet different spheres, those between them down to the edge.
-    fn walks(scene: &Scene, count: usize) -> (Vec<Start>, Vec<Start>) {
-        let (mut walks, mut edges) = (Vec::new(), Vec::new());
-        let mut random = Random(1);
-        let mut start: Option<(Vec3, Standpoint)> = None;
-        while walks.len() < count {
-            let (origin, from) = start.map_or((scene.camera.position, None), |(point, from)| (point, Some(from)));
-            let rays = [random.direction(), random.direction()].map(|direction| {
-                let from = from.map(|from| {
-                    let f = origin - scene.primitives.spheres[from.primitive as usize].center;
-                    Standpoint { inside: dot(f, direction) < 0.0, ..from }
-                });
-                (Ray { origin, direction }, from)
-            });
-            let [(t, a), (_, b)] = [nearest(scene, &rays[0]), nearest(scene, &rays[1])];
-            walks.extend(rays);
-            let is_same_side = rays[0].1.is_none_or(|one| rays[1].1.is_some_and(|two| one.inside == two.inside));
-            if a != b && is_same_side && edges.len() < count {
-                let [mut one, mut two] = [rays[0].0.direction, rays[1].0.direction];
-                for _ in 0..60 {
-                    let ray = Ray { origin, direction: (one + two).normalized() };
-                    edges.push((ray, rays[0].1));
-                    let met = nearest(scene, &(ray, rays[0].1)).1;
-                    *(if met == a { &mut one } else { &mut two }) = ray.direction;
-                }
-            }
-            // Back to the camera now and then, and where nothing is met.
-            let is_lost = a < 0.0 || random.unit() < 0.1;
-            start = (!is_lost).then(|| (rays[0].0.at(t), Standpoint { primitive: a as u32, inside: false }));
-        }
-        (walks, edges)
-    }
+    use crate::kernel::lanes::walks::{Start, nearest, side_by_side, walks};
+    use crate::scene::{SCENES, load};
+    use crate::simd::{LEVELS, Mask, Precision, Work, on_level};
 
     /// Compares the filter with a test of all; which share of the rays it was sure of.
     struct Compare<'a>(&'a Scene, &'a [Start]);
@@ -173,30 +118,9 @@ mod tests {
             let (filter, tables) = (Filter::of(scene), Tables::of(scene, Precision::F64));
             let mut sure = 0;
             for starts in starts.chunks_exact(V::LANES) {
-                let (mut numbers, mut all) = ([[0.0; MOST_LANES]; 8], [(0.0, 0.0); MOST_LANES]);
-                for (lane, start) in starts.iter().enumerate() {
-                    let (Ray { origin, direction }, from) = *start;
-                    let number = from.map_or(-1.0, |from| from.primitive.into());
-                    let inside = from.filter(|from| from.inside).map_or(f64::NAN, |from| {
-                        other_root(origin - scene.primitives.spheres[from.primitive as usize].center, direction)
-                    });
-                    let Vec3 { x, y, z } = direction;
-                    for (to, value) in numbers.iter_mut().zip([origin.x, origin.y, origin.z, x, y, z, number, inside]) {
-                        to[lane] = value;
-                    }
-                    all[lane] = nearest(scene, start);
-                }
-                let mut vectors = [V::splat(0.0); 8];
-                for (vector, numbers) in vectors.iter_mut().zip(numbers) {
-                    for (lane, number) in numbers.into_iter().enumerate().take(V::LANES) {
-                        vector.set_lane(lane, number);
-                    }
-                }
-                let [ox, oy, oz, x, y, z, from, own_root] = vectors;
-                let ray = Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(x, y, z) };
-                let (found, is_sure) = filter.nearest(&tables, &Rays { ray, from, own_root });
+                let (found, is_sure) = filter.nearest(&tables, &side_by_side::<V>(scene, starts));
                 for lane in (0..V::LANES).filter(|lane| is_sure.bits() >> lane & 1 == 1) {
-                    let (t, primitive) = all[lane];
+                    let (t, primitive) = nearest(scene, &starts[lane]);
                     let found = (found.nearest.lane(lane), found.primitive.lane(lane));
                     assert_eq!((found.0.to_bits(), found.1), (t.to_bits(), primitive), "{:?}", starts[lane]);
                     sure += 1;

@@ -10,6 +10,8 @@ mod singles;
 mod supply;
 mod tables;
 mod vertex;
+#[cfg(test)]
+mod walks;
 mod wide;
 mod window;
 

@@ -98,7 +98,7 @@ mod tests {
             for accelerator in ["median", "sah"] {
                 let hierarchy = scene.accelerated(accelerator).unwrap().hierarchy.unwrap();
                 let nodes = hierarchy.gathered(width);
-                let mut found = Vec::new();
+                let mut found: Vec<u32> = Vec::new();
                 let mut waiting = vec![(0, None)];
                 while let Some((node, around)) = waiting.pop() {
                     assert!((1..=width).contains(&nodes[node].len()), "{name}: {} children", nodes[node].len());

@@ -161,3 +161,74 @@ impl<V: Float> Best<V> {
         V::select(is_nearest, self.primitive, V::splat(f64::INFINITY)).least()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::lanes::walks::{Start, nearest, side_by_side, walks};
+    use crate::scene::{SCENES, load};
+    use crate::simd::LEVELS;
+
+    /// Compares with the scalar search.
+    struct Compare<'a>(&'a Scene, &'a Wide, &'a [Start]);
+
+    impl Work for Compare<'_> {
+        type Output = ();
+
+        #[inline(always)]
+        fn run<V: Float>(self) {
+            let Self(scene, wide, starts) = self;
+            for starts in starts.chunks_exact(V::LANES) {
+                let wanted = u32::MAX >> (MOST_LANES - V::LANES);
+                let (found, left) = wide.nearest(&side_by_side::<V>(scene, starts), wanted, &mut Counts::default());
+                assert_eq!(left, 0, "given up");
+                for (lane, start) in starts.iter().enumerate() {
+                    let (t, primitive) = nearest(scene, start);
+                    let found = (found.nearest.lane(lane), found.primitive.lane(lane));
+                    assert_eq!((found.0.to_bits(), found.1), (t.to_bits(), primitive), "{}: {start:?}", scene.name);
+                }
+            }
+        }
+    }
+
+    /// The scene with everything in it twice, so that every hit is a tie.
+    fn twice(scene: &Scene) -> Scene {
+        let mut twice = scene.clone();
+        let primitives = &mut twice.primitives;
+        let (spheres, planes) = (primitives.spheres.len(), primitives.planes.len());
+        primitives.spheres.extend_from_within(..);
+        primitives.planes.extend_from_within(..);
+        primitives.triangles.extend_from_within(..);
+        let owners = |range: std::ops::Range<usize>| scene.owners[range].repeat(2);
+        let [first, second] = [spheres, spheres + planes];
+        twice.owners = [owners(0..first), owners(first..second), owners(second..scene.owners.len())].concat();
+        twice
+    }
+
+    /// In double precision it is the scalar search to the bit, for rays of walks and rays down to the edges between things, in a tree and without one,
+    /// where all are there once and where all are there twice.
+    #[test]
+    fn what_is_found_is_what_the_scalar_search_finds() {
+        let mut compared = 0;
+        for name in SCENES.iter().map(|(name, _)| *name).chain(["spheres:30000", "imbalance:40"]) {
+            let scene = load(name).unwrap();
+            for scene in
+                [scene.accelerated("sah").unwrap(), twice(&scene), twice(&scene).accelerated("median").unwrap(), scene]
+            {
+                // What is found without a tree takes long for many, and is no other.
+                if scene.hierarchy.is_none() && scene.owners.len() > 100 {
+                    continue;
+                }
+                let (walks, edges) = walks(&scene, 4000);
+                for level in LEVELS.iter().filter(|level| level.is_available()) {
+                    let wide = Wide::of(&scene, level.name, Precision::F64, &[]);
+                    for starts in [&walks, &edges] {
+                        on_level(level.name, Precision::F64, Compare(&scene, &wide, starts)).unwrap();
+                        compared += starts.len();
+                    }
+                }
+            }
+        }
+        assert!(compared > 1_000_000, "{compared} rays");
+    }
+}
