@@ -226,6 +226,10 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
         Two(self.0.equal(other.0), self.1.equal(other.1))
     }
     #[inline(always)]
+    fn least(self) -> f64 {
+        V::select(self.0.lt(self.1), self.0, self.1).least()
+    }
+    #[inline(always)]
     fn about_times_plus(self, factor: Self, addend: Self) -> Self {
         Self(self.0.about_times_plus(factor.0, addend.0), self.1.about_times_plus(factor.1, addend.1))
     }

@@ -92,6 +92,12 @@ fn column<V: Float>(blocks: &[V::One], block: u32, of: usize, place: usize) -> V
     V::load(&blocks[(block as usize * of + place) * V::LANES..])
 }
 
+/// The numbers of the primitives of a block.
+#[inline(always)]
+fn numbers<V: Float>(blocks: &[V::One], block: u32, of: usize) -> &[V::One] {
+    &blocks[(block as usize * of + of - 1) * V::LANES..]
+}
+
 /// Corners as the ray sees them, the first of whose coordinates is in that place.
 #[inline(always)]
 fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Single<V>) -> [V; 3] {
@@ -106,7 +112,7 @@ fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Single
 impl Blocks {
     /// Tests a ray against all primitives of a leaf.
     #[inline(always)]
-    pub(super) fn test<V: Float>(&self, leaf: &Leaf, ray: &Single<V>, best: &mut Best<V>) {
+    pub(super) fn test<V: Float>(&self, leaf: &Leaf, ray: &Single<V>, best: &mut Best) {
         let spheres = V::One::all(&self.spheres);
         for block in leaf.spheres[0]..leaf.spheres[1] {
             let x = column(spheres, block, OF_SPHERE, 0);
@@ -114,14 +120,14 @@ impl Blocks {
             let z = column(spheres, block, OF_SPHERE, 2);
             let radius = column(spheres, block, OF_SPHERE, 3);
             let root = first_root(ray.ray.origin - Vec3 { x, y, z }, ray.ray.direction, V::splat(1.0), radius);
-            best.take(ray, column(spheres, block, OF_SPHERE, 4), root);
+            best.take(ray, numbers::<V>(spheres, block, OF_SPHERE), root);
         }
         let triangles = V::One::all(&self.triangles);
         for block in leaf.triangles[0]..leaf.triangles[1] {
             let a = corner(triangles, block, 0, ray);
             let b = corner(triangles, block, 3, ray);
             let c = corner(triangles, block, 6, ray);
-            best.take(ray, column(triangles, block, OF_TRIANGLE, 9), triangle_root(a, b, c));
+            best.take(ray, numbers::<V>(triangles, block, OF_TRIANGLE), triangle_root(a, b, c));
         }
     }
 }

@@ -98,7 +98,7 @@ impl Wide {
                 turned: three(shear.turned(origin)),
                 shear: Shear { axes: shear.axes, by: three(shear.by) },
             };
-            let mut best = Best { nearest: V::splat(nearest), primitive: V::splat(primitive), limit: nearest };
+            let mut best = Best { nearest, primitive };
             match &self.search {
                 Search::All(leaf) => self.blocks.test(leaf, &ray, &mut best),
                 Search::Tree(tree) => {
@@ -107,8 +107,8 @@ impl Wide {
                     }
                 }
             }
-            rows[8][lane] = V::one(best.limit);
-            rows[9][lane] = V::one(best.first());
+            rows[8][lane] = V::one(best.nearest);
+            rows[9][lane] = V::one(best.primitive);
         }
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
@@ -132,33 +132,27 @@ struct Single<V> {
     shear: Shear<V>,
 }
 
-/// What a ray met so far: in each lane something else.
-struct Best<V> {
-    nearest: V,
-    primitive: V,
-    /// The least distance of all lanes.
-    limit: f64,
+/// What a ray met so far: a distance and a number, -1 for nothing.
+struct Best {
+    nearest: f64,
+    primitive: f64,
 }
 
-impl<V: Float> Best<V> {
-    /// Distances to primitives; those of the one on which the ray starts are known.
+impl Best {
+    /// Distances to the primitives with these numbers, in the order of the lanes; those of the one on which the ray starts are known.
     #[inline(always)]
-    fn take(&mut self, ray: &Single<V>, number: V, root: V) {
-        let distance = V::select(ray.from.equal(number), ray.own_root, root);
-        let comes_first = distance.equal(self.nearest) & number.lt(self.primitive);
-        let wins = V::splat(0.0).lt(distance) & (distance.lt(self.nearest) | comes_first);
-        if wins.any() {
-            self.nearest = V::select(wins, distance, self.nearest);
-            self.primitive = V::select(wins, number, self.primitive);
-            self.limit = self.nearest.least();
+    fn take<V: Float>(&mut self, ray: &Single<V>, numbers: &[V::One], root: V) {
+        let distance = V::select(ray.from.equal(V::load(numbers)), ray.own_root, root);
+        let ahead = V::splat(0.0).lt(distance) & distance.le(V::splat(self.nearest));
+        if ahead.any() {
+            let nearest = V::select(ahead, distance, V::splat(f64::INFINITY)).least();
+            for lane in LanesOf((ahead & distance.equal(V::splat(nearest))).bits()) {
+                let primitive = numbers[lane].into();
+                if nearest < self.nearest || primitive < self.primitive {
+                    *self = Self { nearest, primitive };
+                }
+            }
         }
-    }
-
-    /// The lowest number of the nearest.
-    #[inline(always)]
-    fn first(&self) -> f64 {
-        let is_nearest = self.nearest.equal(V::splat(self.limit));
-        V::select(is_nearest, self.primitive, V::splat(f64::INFINITY)).least()
     }
 }
 

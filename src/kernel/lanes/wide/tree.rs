@@ -57,7 +57,7 @@ impl Tree {
         blocks: &Blocks,
         slabs: &Slabs<V>,
         ray: &Single<V>,
-        best: &mut Best<V>,
+        best: &mut Best,
         waiting: &mut Waiting<V::One>,
         tests: &mut Tests,
     ) -> bool {
@@ -72,7 +72,7 @@ impl Tree {
             } else {
                 let node = child as usize;
                 tests.boxes += u64::from(self.counts[node]);
-                let (enter, met) = slabs.enter(&faces[node * 6 * V::LANES..], best.limit);
+                let (enter, met) = slabs.enter(&faces[node * 6 * V::LANES..], best.nearest);
                 let met = met.bits();
                 if waiting.count + met.count_ones() as usize > MOST_WAITING {
                     return false;
@@ -83,7 +83,7 @@ impl Tree {
                     waiting.push(self.children[node * V::LANES + lane], distances[lane]);
                 }
             }
-            next = waiting.pop(V::one(best.limit));
+            next = waiting.pop(V::one(best.nearest));
         }
         true
     }
