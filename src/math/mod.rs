@@ -22,7 +22,8 @@ pub use ray::Ray;
 pub use real::Real;
 pub use rgb::Rgb;
 pub use sphere::{
-    Curved, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, other_root, roots,
+    Curved, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, line_meets, other_root,
+    roots,
 };
 pub use triangle::{Shear, sheared, triangle_root};
 pub use trig::sin_cos_turns;

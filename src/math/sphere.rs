@@ -10,14 +10,26 @@
 
 use super::{Real, Vec3, dot};
 
+/// b, and the discriminant over a.
+#[inline(always)]
+fn discriminant<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
+    let b = -dot(f, d);
+    let closest = d.times_plus(b / a, f);
+    (b, r * r - dot(closest, closest))
+}
+
 /// c and q, the root of larger magnitude times a, in which nothing cancels. q is NaN if the line misses.
 #[inline(always)]
 fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
-    let b = -dot(f, d);
-    let closest = d.times_plus(b / a, f);
-    let discriminant = r * r - dot(closest, closest);
+    let (b, discriminant) = discriminant(f, d, a, r);
     let q = b + (a * discriminant).sqrt().copysign(b);
     (dot(f, f) - r * r, q)
+}
+
+/// Whether the whole line meets the sphere: where it does not, there are no roots.
+#[inline(always)]
+pub fn line_meets<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T::Mask {
+    T::splat(0.0).le(discriminant(f, d, a, r).1)
 }
 
 /// Both intersections of the whole line with the sphere, nearer first, in lengths of `d`; NaN if there are none.

@@ -112,6 +112,18 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     fn set_lane(&mut self, lane: usize, value: f64);
     /// `self == other`; false if either is NaN.
     fn equal(self, other: Self) -> Self::Mask;
+    /// The larger number; `other` if either is NaN.
+    #[must_use]
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self::select(other.lt(self), self, other)
+    }
+    /// The smaller number; `other` if either is NaN.
+    #[must_use]
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self::select(self.lt(other), self, other)
+    }
     /// The least of the numbers, none of which may be NaN.
     #[inline(always)]
     fn least(self) -> f64 {

@@ -226,8 +226,16 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
         Two(self.0.equal(other.0), self.1.equal(other.1))
     }
     #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(self.0.larger(other.0), self.1.larger(other.1))
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self(self.0.smaller(other.0), self.1.smaller(other.1))
+    }
+    #[inline(always)]
     fn least(self) -> f64 {
-        V::select(self.0.lt(self.1), self.0, self.1).least()
+        self.0.smaller(self.1).least()
     }
     #[inline(always)]
     fn about_times_plus(self, factor: Self, addend: Self) -> Self {

@@ -6,9 +6,9 @@ use crate::simd::{Float, Table};
 use std::arch::x86_64::{
     __m256d, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blend_epi32,
     _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_div_pd, _mm256_fmadd_pd,
-    _mm256_loadu_pd, _mm256_mul_pd, _mm256_or_pd, _mm256_or_si256, _mm256_permute2f128_pd, _mm256_set1_pd,
-    _mm256_sqrt_pd, _mm256_srli_epi64, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
-    _mm256_xor_pd,
+    _mm256_loadu_pd, _mm256_max_pd, _mm256_min_pd, _mm256_mul_pd, _mm256_or_pd, _mm256_or_si256,
+    _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_sqrt_pd, _mm256_srli_epi64, _mm256_storeu_pd, _mm256_sub_pd,
+    _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -105,6 +105,15 @@ impl Float for F64x4 {
     #[inline(always)]
     fn equal(self, other: Self) -> Mask4 {
         Mask4(op!(_mm256_cmp_pd::<_CMP_EQ_OQ>(self.0, other.0)))
+    }
+    // As the processor does it where one is NaN: the second.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(op!(_mm256_max_pd(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self(op!(_mm256_min_pd(self.0, other.0)))
     }
     #[inline(always)]
     fn about_times_plus(self, factor: Self, addend: Self) -> Self {

@@ -7,9 +7,9 @@ use crate::simd::{Float, Mask, Table};
 use std::arch::x86_64::{
     __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadu_ps, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
     _mm256_blendv_ps, _mm256_castps128_ps256, _mm256_cmp_ps, _mm256_cvtepi32_ps, _mm256_cvtpd_ps, _mm256_div_ps,
-    _mm256_fmadd_ps, _mm256_insertf128_ps, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_mul_ps, _mm256_or_ps,
-    _mm256_permutevar8x32_ps, _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_sub_ps,
-    _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
+    _mm256_fmadd_ps, _mm256_insertf128_ps, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_ps, _mm256_min_ps,
+    _mm256_mul_ps, _mm256_or_ps, _mm256_permutevar8x32_ps, _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sqrt_ps,
+    _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -108,6 +108,15 @@ impl Float for F32x8 {
     #[inline(always)]
     fn equal(self, other: Self) -> Mask8 {
         Mask8(op!(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0)))
+    }
+    // As the processor does it where one is NaN: the second.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(op!(_mm256_max_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self(op!(_mm256_min_ps(self.0, other.0)))
     }
     #[inline(always)]
     fn number(bits: Two<U64x4>) -> Self {

@@ -7,9 +7,10 @@ use std::arch::x86_64::{
     __m512d, __m512i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_loadu_pd, _mm512_abs_pd, _mm512_add_pd,
     _mm512_castpd_si512, _mm512_castpd256_pd512, _mm512_castsi512_pd, _mm512_cmp_pd_mask, _mm512_cmplt_epu64_mask,
     _mm512_cvtepu64_pd, _mm512_cvttpd_epi64, _mm512_div_pd, _mm512_fmadd_pd, _mm512_insertf64x4, _mm512_loadu_pd,
-    _mm512_mask_blend_pd, _mm512_mask_expand_pd, _mm512_mask_mov_pd, _mm512_max_epu64, _mm512_min_epu64, _mm512_mul_pd,
-    _mm512_permutex2var_pd, _mm512_reduce_min_pd, _mm512_set1_pd, _mm512_setr_epi64, _mm512_sqrt_pd, _mm512_storeu_pd,
-    _mm512_sub_pd, _mm512_ternarylogic_epi64, _mm512_unpackhi_pd, _mm512_unpacklo_pd, _mm512_xor_pd,
+    _mm512_mask_blend_pd, _mm512_mask_expand_pd, _mm512_mask_mov_pd, _mm512_max_epu64, _mm512_max_pd, _mm512_min_epu64,
+    _mm512_min_pd, _mm512_mul_pd, _mm512_permutex2var_pd, _mm512_reduce_min_pd, _mm512_set1_pd, _mm512_setr_epi64,
+    _mm512_sqrt_pd, _mm512_storeu_pd, _mm512_sub_pd, _mm512_ternarylogic_epi64, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
+    _mm512_xor_pd,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -107,6 +108,15 @@ impl Float for F64x8 {
     #[inline(always)]
     fn equal(self, other: Self) -> Mask8 {
         Mask8(op!(_mm512_cmp_pd_mask::<_CMP_EQ_OQ>(self.0, other.0)))
+    }
+    // As the processor does it where one is NaN: the second.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(op!(_mm512_max_pd(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self(op!(_mm512_min_pd(self.0, other.0)))
     }
     #[inline(always)]
     fn least(self) -> f64 {

@@ -9,9 +9,9 @@ use std::arch::x86_64::{
     _mm512_castpd_ps, _mm512_castpd256_pd512, _mm512_castps_si512, _mm512_castps128_ps512, _mm512_castsi256_si512,
     _mm512_castsi512_ps, _mm512_cmp_ps_mask, _mm512_cvtepi32_ps, _mm512_cvtepi64_epi32, _mm512_cvtpd_ps,
     _mm512_cvttps_epi32, _mm512_div_ps, _mm512_fmadd_ps, _mm512_insertf32x4, _mm512_insertf64x4, _mm512_inserti64x4,
-    _mm512_loadu_ps, _mm512_mask_blend_ps, _mm512_mask_expand_ps, _mm512_mask_mov_ps, _mm512_mul_ps,
-    _mm512_permutex2var_ps, _mm512_reduce_min_ps, _mm512_set1_ps, _mm512_shuffle_ps, _mm512_sqrt_ps, _mm512_storeu_ps,
-    _mm512_sub_ps, _mm512_ternarylogic_epi32, _mm512_unpackhi_ps, _mm512_unpacklo_ps, _mm512_xor_ps,
+    _mm512_loadu_ps, _mm512_mask_blend_ps, _mm512_mask_expand_ps, _mm512_mask_mov_ps, _mm512_max_ps, _mm512_min_ps,
+    _mm512_mul_ps, _mm512_permutex2var_ps, _mm512_reduce_min_ps, _mm512_set1_ps, _mm512_shuffle_ps, _mm512_sqrt_ps,
+    _mm512_storeu_ps, _mm512_sub_ps, _mm512_ternarylogic_epi32, _mm512_unpackhi_ps, _mm512_unpacklo_ps, _mm512_xor_ps,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -110,6 +110,15 @@ impl Float for F32x16 {
     #[inline(always)]
     fn equal(self, other: Self) -> Mask16 {
         Mask16(op!(_mm512_cmp_ps_mask::<_CMP_EQ_OQ>(self.0, other.0)))
+    }
+    // As the processor does it where one is NaN: the second.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(op!(_mm512_max_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn smaller(self, other: Self) -> Self {
+        Self(op!(_mm512_min_ps(self.0, other.0)))
     }
     #[inline(always)]
     fn least(self) -> f64 {

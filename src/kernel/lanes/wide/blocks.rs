@@ -2,9 +2,9 @@
 
 use super::{Best, Single};
 use crate::kernel::lanes::singles::Singles;
-use crate::math::{Vec3, first_root, sheared, triangle_root};
+use crate::math::{Vec3, first_root, line_meets, sheared, triangle_root};
 use crate::scene::Primitives;
-use crate::simd::{Float, Number, Numbers, Precision};
+use crate::simd::{Float, Mask, Number, Numbers, Precision};
 
 /// Numbers of a sphere: its centre, its radius and its number.
 const OF_SPHERE: usize = 5;
@@ -119,15 +119,23 @@ impl Blocks {
             let y = column(spheres, block, OF_SPHERE, 1);
             let z = column(spheres, block, OF_SPHERE, 2);
             let radius = column(spheres, block, OF_SPHERE, 3);
-            let root = first_root(ray.ray.origin - Vec3 { x, y, z }, ray.ray.direction, V::splat(1.0), radius);
-            best.take(ray, numbers::<V>(spheres, block, OF_SPHERE), root);
+            let (offset, direction) = (ray.ray.origin - Vec3 { x, y, z }, ray.ray.direction);
+            let numbers = numbers::<V>(spheres, block, OF_SPHERE);
+            let is_own = ray.from.equal(V::load(numbers));
+            // Square roots and divisions take longer than everything else, and many rays pass all spheres of a block.
+            if (is_own | line_meets(offset, direction, V::splat(1.0), radius)).any() {
+                let root = first_root(offset, direction, V::splat(1.0), radius);
+                best.take(numbers, V::select(is_own, ray.own_root, root));
+            }
         }
         let triangles = V::One::all(&self.triangles);
         for block in leaf.triangles[0]..leaf.triangles[1] {
             let a = corner(triangles, block, 0, ray);
             let b = corner(triangles, block, 3, ray);
             let c = corner(triangles, block, 6, ray);
-            best.take(ray, numbers::<V>(triangles, block, OF_TRIANGLE), triangle_root(a, b, c));
+            let numbers = numbers::<V>(triangles, block, OF_TRIANGLE);
+            let is_own = ray.from.equal(V::load(numbers));
+            best.take(numbers, V::select(is_own, V::splat(f64::NAN), triangle_root(a, b, c)));
         }
     }
 }

@@ -139,10 +139,9 @@ struct Best {
 }
 
 impl Best {
-    /// Distances to the primitives with these numbers, in the order of the lanes; those of the one on which the ray starts are known.
+    /// Distances to the primitives with these numbers, in the order of the lanes.
     #[inline(always)]
-    fn take<V: Float>(&mut self, ray: &Single<V>, numbers: &[V::One], root: V) {
-        let distance = V::select(ray.from.equal(V::load(numbers)), ray.own_root, root);
+    fn take<V: Float>(&mut self, numbers: &[V::One], distance: V) {
         let ahead = V::splat(0.0).lt(distance) & distance.le(V::splat(self.nearest));
         if ahead.any() {
             let nearest = V::select(ahead, distance, V::splat(f64::INFINITY)).least();

@@ -77,10 +77,14 @@ impl Tree {
                 if waiting.count + met.count_ones() as usize > MOST_WAITING {
                     return false;
                 }
-                let mut distances = [V::One::default(); MOST_LANES];
-                enter.store(&mut distances);
+                let children = &self.children[node * V::LANES..(node + 1) * V::LANES];
+                if met & (met.wrapping_sub(1)) == 0 && met != 0 {
+                    next = Some(children[met.trailing_zeros() as usize]);
+                    continue;
+                }
+                enter.store(&mut waiting.met);
                 for lane in LanesOf(met) {
-                    waiting.push(self.children[node * V::LANES + lane], distances[lane]);
+                    waiting.push(children[lane], waiting.met[lane]);
                 }
             }
             next = waiting.pop(V::one(best.nearest));
@@ -111,7 +115,7 @@ impl<T: Number> AllSlabs<T> {
     #[inline(always)]
     pub(super) fn of<V: Float<One = T>>(ray: &Ray<V>) -> Self {
         let Vec3 { x, y, z } = ray.origin;
-        let padding = V::splat(padding(V::SIGNIFICAND)) * larger(larger(x.abs(), y.abs()), z.abs());
+        let padding = V::splat(padding(V::SIGNIFICAND)) * x.abs().larger(y.abs()).larger(z.abs());
         let mut rows = [[T::default(); MOST_LANES]; 9];
         let axes = [(x, ray.direction.x), (y, ray.direction.y), (z, ray.direction.z)];
         for (axis, (origin, direction)) in axes.into_iter().enumerate() {
@@ -144,12 +148,6 @@ impl<T: Number> AllSlabs<T> {
     }
 }
 
-/// The larger number; the first if the second is NaN.
-#[inline(always)]
-fn larger<V: Float>(a: V, b: V) -> V {
-    V::select(a.lt(b), b, a)
-}
-
 /// One ray, made ready for boxes.
 pub(super) struct Slabs<V> {
     near: [V; 3],
@@ -172,8 +170,8 @@ impl<V: Float> Slabs<V> {
             let last = V::load(&faces[self.last[axis] * V::LANES..]);
             let first = (first - self.near[axis]) * self.inverse[axis];
             let last = (last - self.far[axis]) * self.inverse[axis];
-            enter = larger(enter, first);
-            leave = V::select(last.lt(leave), last, leave);
+            enter = first.larger(enter);
+            leave = last.smaller(leave);
         }
         (enter, enter.le(leave))
     }
@@ -187,12 +185,19 @@ pub(super) struct Waiting<T> {
     children: [u32; MOST_WAITING],
     distances: [T; MOST_WAITING],
     count: usize,
+    /// Where the ray enters the boxes of one node.
+    met: [T; MOST_LANES],
 }
 
 impl<T: Number> Waiting<T> {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self { children: [0; MOST_WAITING], distances: [T::default(); MOST_WAITING], count: 0 }
+        Self {
+            children: [0; MOST_WAITING],
+            distances: [T::default(); MOST_WAITING],
+            count: 0,
+            met: [T::default(); MOST_LANES],
+        }
     }
 
     /// Children of one node go behind those of others, which were farther away or are looked at later.
