@@ -6,7 +6,7 @@ use crate::estimator::{self, Course, ESTIMATORS, Estimator, EstimatorVisitor, Ro
 use crate::sampling::{InLanes as LaneSampler, SAMPLERS, is_deterministic};
 use crate::scene::{
     ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES, ProfileEntry,
-    Scene, SmallptEffects, Sphere, accelerator, effect_names,
+    Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
 use crate::simd::{Entry as Level, LEVELS, Precision, best};
 
@@ -93,8 +93,12 @@ fn profiles_for(sampler: &str) -> &'static [&'static str] {
 /// Checks every name of the spec and chooses what it leaves open.
 pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     let lanes = lanes_for(scene, spec)?;
-    let side_by_side = lanes.is_ok() && scene.primitives.effects() == Sphere::EFFECT;
-    let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len(), side_by_side) else {
+    let scan = match lanes {
+        Err(_) => Scan::OneByOne,
+        Ok(_) if scene.primitives.effects() == Sphere::EFFECT => Scan::SideBySide,
+        Ok(_) => Scan::Blocks,
+    };
+    let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len(), scan) else {
         let names = ACCELERATORS.iter().map(|entry| entry.name);
         return Err(unknown("accelerator", spec.accelerator.as_deref().unwrap_or_default(), names).into());
     };

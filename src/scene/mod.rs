@@ -18,9 +18,9 @@ pub use camera::{CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
 pub use feature::{ANGULAR_EMISSION, BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 pub use fog::Fog;
 pub use generator::GENERATORS;
-pub use hierarchy::{ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Tests, accelerator};
+pub use hierarchy::{ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Scan, Tests, accelerator};
 pub use library::{SCENES, load};
-pub use light::{Aim, Aims, Lights, SphereLights, Start, one_minus_cos};
+pub use light::{Aim, Aims, Lights, LightsInLanes, Met, Start, one_minus_cos};
 pub use point_light::PointLight;
 pub use profile::{
     AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects,
@@ -230,7 +230,7 @@ impl Scene {
 
     /// The same scene with the search structure of that name; `None` if it is to have none.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
-        let hierarchy = accelerator(Some(name), 0, false)?.build(&self.primitives.bounds())?;
+        let hierarchy = accelerator(Some(name), 0, Scan::OneByOne)?.build(&self.primitives.bounds())?;
         Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 }

@@ -6,7 +6,7 @@ use crate::check::{Case, Trials};
 use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Probe, camera_ray, with_estimator};
 use crate::math::{Ray, Rgb, dot};
 use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler, concentric_disk, mix, tent, unit};
-use crate::scene::{AllEffects, CAMERAS, Fog, SCENES, Scene, Standpoint, Tests, accelerator, load};
+use crate::scene::{AllEffects, CAMERAS, Fog, SCENES, Scan, Scene, Standpoint, Tests, accelerator, load};
 use std::collections::BTreeSet;
 
 pub(super) const CASES: &[Case] = &[
@@ -52,7 +52,8 @@ fn consumers(trials: &mut Trials) {
 fn scenes() -> impl Iterator<Item = Scene> {
     let name = |name: &'static str| if name == "spheres" { "spheres:100" } else { name };
     let fast = |scene: Scene| {
-        let fitting = accelerator(None, scene.owners.len(), false).and_then(|entry| scene.accelerated(entry.name));
+        let fitting =
+            accelerator(None, scene.owners.len(), Scan::OneByOne).and_then(|entry| scene.accelerated(entry.name));
         fitting.unwrap_or(scene)
     };
     SCENES.iter().map(move |(scene, _)| fast(load(name(scene)).expect("a shipped scene")))

@@ -4,7 +4,7 @@ use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
 use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, camera_ray, with_estimator};
 use crate::sampling::{Address, SampleKey, Sampler};
-use crate::scene::{AllEffects, SCENES, Scene, accelerator, load};
+use crate::scene::{AllEffects, SCENES, Scan, Scene, accelerator, load};
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};
 
@@ -83,7 +83,8 @@ fn once(trials: &mut Trials) {
         ESTIMATORS.iter().map(|_| ledgers.iter().map(|_| Found::default()).collect()).collect();
     for (scene, _) in SCENES {
         let scene = load(if *scene == "spheres" { "spheres:100" } else { scene }).expect("a shipped scene");
-        let fitting = accelerator(None, scene.owners.len(), false).and_then(|entry| scene.accelerated(entry.name));
+        let fitting =
+            accelerator(None, scene.owners.len(), Scan::OneByOne).and_then(|entry| scene.accelerated(entry.name));
         let scene = fitting.unwrap_or(scene);
         let lit = scene.lit(&scene.camera.view(16, 12));
         for (entry, all) in ESTIMATORS.iter().zip(&mut all) {

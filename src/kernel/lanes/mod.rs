@@ -21,10 +21,9 @@ use crate::estimator::Course;
 use crate::film::{Piece, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
-use crate::scene::{Scene, View};
+use crate::scene::{LightsInLanes, Scene, View};
 use crate::simd::{self, Float, MOST_LANES, Precision, Work, on_level};
 use filter::Filter;
-use light::Targets;
 use packet::{LanesOf, Packet};
 use singles::Singles;
 use std::sync::Arc;
@@ -42,7 +41,7 @@ pub(super) struct Lanes {
     course: Course,
     sampler: Sampler,
     tables: Tables,
-    targets: Option<Targets>,
+    targets: Option<Box<LightsInLanes>>,
     level: &'static simd::Entry,
     precision: Precision,
     search: Search,
@@ -63,7 +62,7 @@ impl Lanes {
         let tables = Tables::of(&scene, precision);
         let view = scene.camera.view(spec.width, spec.height);
         Self {
-            targets: scene.lights.as_ref().map(Targets::of),
+            targets: scene.lights.as_ref().and_then(LightsInLanes::of).map(Box::new),
             search: match precision {
                 _ if !tables.is_round || scene.hierarchy.is_some() => {
                     Search::Wide(Box::new(Wide::of(&scene, level.name, precision, &scene.enclosing(&view))))

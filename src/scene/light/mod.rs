@@ -14,7 +14,7 @@ use reach::{Part, Walls};
 use sphere::SphereTarget;
 use triangle::TriangleTarget;
 
-pub use lanes::{Aims, SphereLights, Start};
+pub use lanes::{Aims, LightsInLanes, Met, Start};
 pub use sphere::one_minus_cos;
 
 /// A direction towards a light.

@@ -2,16 +2,29 @@
 //! sides.
 
 use super::Target;
-use crate::math::{Ray, Vec3, dot};
+use crate::math::{Ray, Real, Vec3, dot};
 use crate::scene::{Hit, Primitive, Triangle};
 
 /// The triangle with what aiming at it needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TriangleTarget {
-    corner: Vec3,
-    edges: [Vec3; 2],
-    normal: Vec3,
+    pub(super) corner: Vec3,
+    pub(super) edges: [Vec3; 2],
+    pub(super) normal: Vec3,
     area: f64,
+}
+
+/// A point of the triangle with that corner and the edges from there.
+#[inline(always)]
+pub(super) fn point_of<T: Real>(corner: Vec3<T>, [e, f]: [Vec3<T>; 2], [u, v]: [T; 2]) -> Vec3<T> {
+    let root = u.sqrt();
+    corner + e * (root * (T::splat(1.0) - v)) + f * (root * v)
+}
+
+/// How likely a direction is that leads to a point of a flat light of that area and normal, whose distance has that square.
+#[inline(always)]
+pub(super) fn per_steradian<T: Real>(square: T, direction: Vec3<T>, normal: Vec3<T>, area: T) -> T {
+    square / (dot(direction, normal).abs() * area)
 }
 
 impl TriangleTarget {
@@ -23,28 +36,21 @@ impl TriangleTarget {
         let area = 0.5 * dot(cross, cross).sqrt();
         area.is_normal().then(|| Self { corner: a, edges, normal: triangle.normal(a), area })
     }
-
-    #[inline(always)]
-    fn per_steradian(&self, square: f64, direction: Vec3) -> f64 {
-        square / (dot(direction, self.normal).abs() * self.area)
-    }
 }
 
 impl Target for TriangleTarget {
     #[inline(always)]
-    fn aim(&self, point: Vec3, own: Option<bool>, [u, v]: [f64; 2]) -> Option<(Vec3, f64)> {
-        let root = u.sqrt();
-        let [e, f] = self.edges;
-        let towards = self.corner + e * (root * (1.0 - v)) + f * (root * v) - point;
+    fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)> {
+        let towards = point_of(self.corner, self.edges, u) - point;
         let square = dot(towards, towards);
         let direction = towards * (1.0 / square.sqrt());
         // Nothing flat is seen from itself.
-        (own.is_none() && square > 0.0).then(|| (direction, self.per_steradian(square, direction)))
+        (own.is_none() && square > 0.0).then(|| (direction, per_steradian(square, direction, self.normal, self.area)))
     }
 
     #[inline(always)]
     fn density(&self, ray: &Ray, _own: Option<bool>, hit: &Hit) -> f64 {
-        self.per_steradian(hit.t * hit.t, ray.direction)
+        per_steradian(hit.t * hit.t, ray.direction, self.normal, self.area)
     }
 
     fn area(&self) -> f64 {

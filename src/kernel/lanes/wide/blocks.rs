@@ -17,6 +17,7 @@ const NO_NUMBER: f64 = -2.0;
 pub(super) struct Blocks {
     spheres: Numbers,
     triangles: Numbers,
+    pub(super) has_triangles: bool,
 }
 
 /// Some of the blocks.
@@ -69,7 +70,12 @@ impl<'a> Making<'a> {
     }
 
     pub(super) fn made(self, precision: Precision) -> Blocks {
-        Blocks { spheres: Numbers::new(self.spheres, precision), triangles: Numbers::new(self.triangles, precision) }
+        let has_triangles = !self.triangles.is_empty();
+        Blocks {
+            has_triangles,
+            spheres: Numbers::new(self.spheres, precision),
+            triangles: Numbers::new(self.triangles, precision),
+        }
     }
 }
 

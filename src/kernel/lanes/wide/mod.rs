@@ -90,7 +90,9 @@ impl Wide {
             let [ox, oy, oz, dx, dy, dz, from, own_root, nearest, primitive] =
                 rows.each_ref().map(|row| row[lane].into());
             let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-            let shear = Shear::of(direction);
+            // A ray that is tested against no triangle has any axes.
+            let along = Vec3::new(0.0, 0.0, 1.0);
+            let shear = Shear::of(if self.blocks.has_triangles { direction } else { along });
             let ray = Single {
                 ray: Ray { origin: Vec3::splat(origin), direction: Vec3::splat(direction) },
                 from: V::splat(from),

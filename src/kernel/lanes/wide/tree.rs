@@ -74,13 +74,13 @@ impl Tree {
                 tests.boxes += u64::from(self.counts[node]);
                 let (enter, met) = slabs.enter(&faces[node * 6 * V::LANES..], best.nearest);
                 let met = met.bits();
-                if waiting.count + met.count_ones() as usize > MOST_WAITING {
-                    return false;
-                }
                 let children = &self.children[node * V::LANES..(node + 1) * V::LANES];
-                if met & (met.wrapping_sub(1)) == 0 && met != 0 {
+                if met != 0 && met & (met - 1) == 0 {
                     next = Some(children[met.trailing_zeros() as usize]);
                     continue;
+                }
+                if waiting.count + V::LANES > MOST_WAITING {
+                    return false;
                 }
                 enter.store(&mut waiting.met);
                 for lane in LanesOf(met) {

@@ -1,0 +1,175 @@
+//! Lights as targets, in SIMD lanes: the choices of [`Lights`] with a mask for each, and the same bits.
+
+mod sphere;
+mod triangle;
+
+use super::{AnyTarget, Lights, NO_LIGHT};
+use crate::math::{Ray, Vec3};
+use crate::simd::{Float, Table};
+use sphere::Spheres;
+use triangle::Triangles;
+
+/// The lights of a scene that has any.
+pub struct LightsInLanes {
+    spheres: Option<Spheres>,
+    triangles: Option<Triangles>,
+    /// Number of the primitive, how often it is chosen, the area of what is aimed at, 1 for triangles.
+    all: Table,
+    /// How often each light or one before it is chosen.
+    up_to: Vec<f64>,
+    /// The light of each primitive, or -1.
+    of_primitive: Table,
+}
+
+/// Directions towards lights.
+pub struct Aims<V: Float> {
+    /// Where there is one.
+    pub lanes: V::Mask,
+    /// The direction, of length 1.
+    pub direction: Vec3<V>,
+    /// The primitive that it is to arrive at.
+    pub primitive: V,
+    /// How likely the light and the direction were, per steradian.
+    pub density: V,
+}
+
+/// Where a ray or an aim starts: the number of the primitive that it is on, and whether on its inside.
+#[derive(Clone, Copy)]
+pub struct Start<V: Float> {
+    /// The point.
+    pub point: Vec3<V>,
+    /// The primitive, -1 if none.
+    pub primitive: V,
+    /// The side.
+    pub inside: V::Mask,
+}
+
+/// Where rays arrive.
+#[derive(Clone, Copy)]
+pub struct Met<V> {
+    /// The primitive.
+    pub primitive: V,
+    /// How far away.
+    pub t: V,
+    /// Its outward normal there.
+    pub normal: Vec3<V>,
+}
+
+/// A light for each lane.
+struct Chosen<V: Float> {
+    /// Its number.
+    light: V,
+    primitive: V,
+    chance: V,
+    area: V,
+    is_triangle: V::Mask,
+}
+
+/// Directions, where there are any, and their densities per steradian.
+struct Directions<V: Float> {
+    lanes: V::Mask,
+    direction: Vec3<V>,
+    density: V,
+}
+
+impl<V: Float> Directions<V> {
+    #[inline(always)]
+    fn select(mask: V::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            lanes: (mask & yes.lanes) | (!mask & no.lanes),
+            direction: Vec3::select(mask, yes.direction, no.direction),
+            density: V::select(mask, yes.density, no.density),
+        }
+    }
+}
+
+impl LightsInLanes {
+    /// The lights in tables; `None` if there are none.
+    pub fn of(lights: &Lights) -> Option<Self> {
+        if lights.lights.is_empty() {
+            return None;
+        }
+        let all = lights.lights.iter().map(|light| {
+            let is_triangle = matches!(light.target, AnyTarget::Triangle(_));
+            [f64::from(light.primitive), light.chance, light.target.area(), f64::from(u8::from(is_triangle))]
+        });
+        let number = |light: &u32| if *light == NO_LIGHT { -1.0 } else { f64::from(*light) };
+        let of_primitive = lights.of_primitive.iter().map(|light| [number(light), 0.0, 0.0, 0.0]).collect();
+        Some(Self {
+            spheres: Spheres::of(lights),
+            triangles: Triangles::of(lights),
+            all: Table::new(all.collect()),
+            up_to: lights.lights.iter().map(|light| light.up_to).collect(),
+            of_primitive: Table::new(of_primitive),
+        })
+    }
+
+    #[inline(always)]
+    fn chosen<V: Float>(&self, light: V) -> Chosen<V> {
+        let [primitive, chance, area, kind] = V::rows(&self.all, light);
+        Chosen { light, primitive, chance, area, is_triangle: V::splat(0.5).lt(kind) }
+    }
+
+    /// Whether a number is needed to choose one.
+    pub fn are_several(&self) -> bool {
+        self.up_to.len() > 1
+    }
+
+    /// The number of a light for each lane.
+    #[inline(always)]
+    fn choose<V: Float>(&self, number: V) -> V {
+        let mut light = V::splat(0.0);
+        if !self.are_several() {
+            return light;
+        }
+        let last = self.up_to.len() - 1;
+        let mut lane = 0;
+        while lane < V::LANES {
+            let number = number.lane(lane);
+            // The last sum may fall short of 1 by rounding.
+            let index = self.up_to.partition_point(|up_to| *up_to <= number).min(last);
+            light.set_lane(lane, index as f64);
+            lane += 1;
+        }
+        light
+    }
+
+    /// Directions towards lights. `choice` is looked at only where there are several.
+    #[inline(always)]
+    pub fn aim<V: Float>(&self, start: &Start<V>, choice: V, place: [V; 2]) -> Aims<V> {
+        let light = self.chosen::<V>(self.choose(choice));
+        let found = match (&self.spheres, &self.triangles) {
+            (Some(spheres), None) => spheres.aim(&light, start, place),
+            (None, Some(triangles)) => triangles.aim(&light, start, place),
+            (Some(spheres), Some(triangles)) => Directions::select(
+                light.is_triangle,
+                triangles.aim(&light, start, place),
+                spheres.aim(&light, start, place),
+            ),
+            (None, None) => unreachable!("a light is a sphere or a triangle"),
+        };
+        let density = light.chance * found.density;
+        let lanes = found.lanes & V::splat(0.0).lt(density) & density.lt(V::splat(f64::INFINITY));
+        Aims { lanes, direction: found.direction, primitive: light.primitive, density }
+    }
+
+    /// How likely [`LightsInLanes::aim`] was to choose the directions of rays; 0 where nothing is aimed at.
+    #[inline(always)]
+    pub fn density<V: Float>(&self, start: &Start<V>, ray: &Ray<V>, met: &Met<V>) -> V {
+        let zero = V::splat(0.0);
+        let [light, ..] = V::rows(&self.of_primitive, met.primitive);
+        let is_target = zero.le(light);
+        let light = self.chosen::<V>(light);
+        let density = match (&self.spheres, &self.triangles) {
+            (Some(spheres), None) => spheres.density(&light, start, ray, met),
+            (None, Some(triangles)) => triangles.density(&light, ray, met),
+            (Some(spheres), Some(triangles)) => V::select(
+                light.is_triangle,
+                triangles.density(&light, ray, met),
+                spheres.density(&light, start, ray, met),
+            ),
+            (None, None) => unreachable!("a light is a sphere or a triangle"),
+        };
+        V::select(is_target, light.chance * density, zero)
+    }
+}
