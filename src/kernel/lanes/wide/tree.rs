@@ -75,7 +75,7 @@ impl Tree {
                 let (enter, met) = slabs.enter(&faces[node * 6 * V::LANES..], best.nearest);
                 let met = met.bits();
                 let children = &self.children[node * V::LANES..(node + 1) * V::LANES];
-                if met != 0 && met & (met - 1) == 0 {
+                if met.is_power_of_two() {
                     next = Some(children[met.trailing_zeros() as usize]);
                     continue;
                 }

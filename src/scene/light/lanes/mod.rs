@@ -66,6 +66,7 @@ struct Chosen<V: Float> {
 }
 
 /// Directions, where there are any, and their densities per steradian.
+#[derive(Clone, Copy)]
 struct Directions<V: Float> {
     lanes: V::Mask,
     direction: Vec3<V>,

@@ -5,6 +5,7 @@ use super::super::{AnyTarget, Lights};
 use super::{Chosen, Directions, Met, Start};
 use crate::math::{Ray, Vec3, dot};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, uniform_sphere};
+use crate::scene::Sphere;
 use crate::simd::{Float, Mask, Table};
 use std::f64::consts::PI;
 
@@ -36,21 +37,15 @@ struct Way<V: Float> {
 impl Spheres {
     /// Those among the lights, in tables with a row for each light; `None` if there are none.
     pub(super) fn of(lights: &Lights) -> Option<Self> {
-        let mut rows = [Vec::new(), Vec::new()];
-        let mut is_there = false;
-        for light in &lights.lights {
-            let AnyTarget::Sphere(target) = &light.target else {
-                rows.iter_mut().for_each(|rows| rows.push([0.0; 4]));
-                continue;
-            };
-            is_there = true;
-            let (sphere, cap) = target.parts();
+        let rows = lights.lights.iter().map(|light| {
+            let AnyTarget::Sphere(target) = &light.target else { return None };
+            let (Sphere { center, radius }, cap) = target.parts();
             let (axis, height) = cap.map_or((Vec3::new(0.0, 0.0, 1.0), f64::INFINITY), |cap| (cap.axis, cap.height));
-            rows[0].push([sphere.center.x, sphere.center.y, sphere.center.z, sphere.radius]);
-            rows[1].push([axis.x, axis.y, axis.z, height]);
-        }
-        let [spheres, caps] = rows.map(Table::new);
-        is_there.then_some(Self { spheres, caps })
+            Some([[center.x, center.y, center.z, radius], [axis.x, axis.y, axis.z, height]])
+        });
+        let rows: Vec<_> = rows.collect();
+        let table = |k: usize| Table::new(rows.iter().map(|row| row.map_or([0.0; 4], |row| row[k])).collect());
+        rows.iter().any(Option::is_some).then(|| Self { spheres: table(0), caps: table(1) })
     }
 
     #[inline(always)]
