@@ -24,6 +24,7 @@ struct Work {
     scene: String,
     estimator: String,
     sampler: String,
+    roulette: String,
     threads: usize,
 }
 
@@ -33,6 +34,7 @@ impl Work {
             scene: record.scene.clone(),
             estimator: record.estimator.clone(),
             sampler: record.sampler.clone(),
+            roulette: record.roulette.clone(),
             threads: record.threads,
         }
     }
