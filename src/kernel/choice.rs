@@ -3,10 +3,11 @@
 use super::{Clamp, KERNELS, LANES, SCALAR, Spec};
 use crate::error::{InputError, Result};
 use crate::estimator::{self, Course, ESTIMATORS, Estimator, EstimatorVisitor, Roulette, with_estimator};
+use crate::material::Diffuse;
 use crate::sampling::{InLanes as LaneSampler, SAMPLERS, is_deterministic};
 use crate::scene::{
-    ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES, ProfileEntry,
-    Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
+    ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES,
+    ProfileEntry, Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
 use crate::simd::{Entry as Level, LEVELS, Precision, best};
 
@@ -29,6 +30,8 @@ pub(super) struct InLanes {
     pub(super) precision: Precision,
     pub(super) course: Course,
     pub(super) sampler: LaneSampler,
+    /// Whether every surface is diffuse, so that no other is called for.
+    pub(super) is_matt: bool,
 }
 
 impl Choice {
@@ -57,9 +60,13 @@ impl Choice {
         self.profile.name
     }
 
-    /// The effects that the kernel was compiled for: a profile's name, or that it asks at run time.
+    /// The effects that the kernel was compiled for: a profile's name (of lanes, whose primitives are no part of it), or that it asks at run time.
     pub fn effects(&self) -> &'static str {
-        if self.lanes.is_ok() { AT_RUN_TIME } else { self.profile.name }
+        match self.lanes {
+            Ok(lanes) if lanes.is_matt => DiffuseOnly::NAME,
+            Ok(_) => AT_RUN_TIME,
+            Err(_) => self.profile.name,
+        }
     }
 
     /// Name of the accelerator.
@@ -179,7 +186,10 @@ fn lanes_for(scene: &Scene, spec: &Spec) -> Result<std::result::Result<InLanes, 
         return Ok(Err(SCALAR));
     }
     Ok(Err(match (obstacle(scene, spec), course(spec), LaneSampler::find(&spec.sampler)) {
-        (None, Some(course), Some(sampler)) => return Ok(Ok(InLanes { level, precision, course, sampler })),
+        (None, Some(course), Some(sampler)) => {
+            let is_matt = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
+            return Ok(Ok(InLanes { level, precision, course, sampler, is_matt }));
+        }
         (Some(reason), ..) => reason,
         (None, None, _) => "estimator",
         (None, Some(_), None) => "sampler",

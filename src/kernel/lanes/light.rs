@@ -48,7 +48,7 @@ impl Lanes {
 
     /// Adds the light that vertices aim at.
     #[inline(always)]
-    pub(super) fn aim<V: Float>(
+    pub(super) fn aim<V: Float, const MATT: bool>(
         &self,
         packet: &mut Packet<V>,
         at: &Arrival<V>,
@@ -67,7 +67,7 @@ impl Lanes {
         let start = Start { point: at.point, primitive: at.primitive, inside: at.inside };
         let aims = targets.aim(&start, choice, place);
         let wi = at.frame.to_local(aims.direction);
-        let lit = self.scattered(packet, at, vertex, wi, going_on & aims.lanes);
+        let lit = self.scattered::<V, MATT>(packet, at, vertex, wi, going_on & aims.lanes);
         if !lit.lanes.any() {
             return;
         }
@@ -87,7 +87,7 @@ impl Lanes {
 
     /// What surfaces make of light from the local direction `wi`.
     #[inline(always)]
-    fn scattered<V: Float>(
+    fn scattered<V: Float, const MATT: bool>(
         &self,
         packet: &Packet<V>,
         at: &Arrival<V>,
@@ -100,8 +100,11 @@ impl Lanes {
         let cos = wi.z.abs();
         let mut scattered = vertex.albedo * V::splat(FRAC_1_PI) * cos;
         let mut density = cos * V::splat(FRAC_1_PI);
-        let mut scatters = lanes & vertex.kind.equal(zero) & zero.lt(wo.z * wi.z);
-        if self.tables.has_others {
+        let mut scatters = lanes & zero.lt(wo.z * wi.z);
+        if !MATT {
+            scatters = scatters & vertex.kind.equal(zero);
+        }
+        if !MATT && self.tables.has_others {
             let others = lanes & vertex.kind.equal(V::splat(Kind::Other.number()));
             for lane in LanesOf(others.bits()) {
                 let owner = self.scene.owners[at.primitive.lane(lane) as usize];

@@ -44,6 +44,7 @@ pub(super) struct Lanes {
     targets: Option<Box<LightsInLanes>>,
     level: &'static simd::Entry,
     precision: Precision,
+    is_matt: bool,
     search: Search,
 }
 
@@ -58,7 +59,11 @@ enum Search {
 }
 
 impl Lanes {
-    pub(super) fn new(scene: Arc<Scene>, spec: &Spec, InLanes { level, precision, course, sampler }: InLanes) -> Self {
+    pub(super) fn new(
+        scene: Arc<Scene>,
+        spec: &Spec,
+        InLanes { level, precision, course, sampler, is_matt }: InLanes,
+    ) -> Self {
         let tables = Tables::of(&scene, precision);
         let view = scene.camera.view(spec.width, spec.height);
         Self {
@@ -79,18 +84,19 @@ impl Lanes {
             sampler,
             tables,
             level,
+            is_matt,
         }
     }
 
     /// Gives back the samples whose paths have ended; paths that have another part go on with that.
     #[inline(always)]
-    fn retire<V: Float>(&self, packet: &mut Packet<V>, ended: u32, window: &mut Window<'_>) {
+    fn retire<V: Float, const MATT: bool>(&self, packet: &mut Packet<V>, ended: u32, window: &mut Window<'_>) {
         let [mut r, mut g, mut b] = [[V::One::default(); MOST_LANES]; 3];
         packet.collected.r.store(&mut r);
         packet.collected.g.store(&mut g);
         packet.collected.b.store(&mut b);
         for lane in LanesOf(ended) {
-            if self.course.splits > 0 && packet.pop(lane) {
+            if !MATT && self.course.splits > 0 && packet.pop(lane) {
                 packet.alive |= 1 << lane;
             } else {
                 window.give_back(packet.slots[lane], Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() });
@@ -99,7 +105,7 @@ impl Lanes {
     }
 
     #[inline(always)]
-    fn follow<V: Float, const AIMS: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+    fn follow<V: Float, const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
         let mut counts = Counts::default();
         let mut window = Window::over(piece, out);
         let mut packet = Packet::<V>::new(self.course.splits > 0);
@@ -109,14 +115,14 @@ impl Lanes {
         loop {
             let idle = V::LANES as u32 - packet.alive.count_ones();
             if ended != 0 && idle >= held::<V>() || packet.alive == 0 {
-                self.retire(&mut packet, ended, &mut window);
+                self.retire::<V, MATT>(&mut packet, ended, &mut window);
                 ended = 0;
                 self.refill(&mut packet, &mut supply, &mut window, &mut counts);
                 if packet.alive == 0 {
                     return counts;
                 }
             }
-            let now = self.advance::<V, AIMS>(&mut packet, &mut counts) & packet.alive;
+            let now = self.advance::<V, AIMS, MATT>(&mut packet, &mut counts) & packet.alive;
             packet.alive &= !now;
             ended |= now;
         }
@@ -129,31 +135,37 @@ const fn held<V: Float>() -> u32 {
     if V::LANES < 8 { 1 } else { 2 }
 }
 
-/// A piece to render, by paths that aim at light or by paths that do not.
-struct Render<'a, const AIMS: bool> {
+/// A piece to render: by paths that aim at light or by paths that do not, in a scene in which every surface is matt or in any.
+struct Render<'a, const AIMS: bool, const MATT: bool> {
     kernel: &'a Lanes,
     piece: &'a Piece,
     out: &'a mut TileBuffer,
 }
 
-impl<const AIMS: bool> Work for Render<'_, AIMS> {
+impl<const AIMS: bool, const MATT: bool> Work for Render<'_, AIMS, MATT> {
     type Output = Counts;
 
     #[inline(always)]
     fn run<V: Float>(self) -> Counts {
-        self.kernel.follow::<V, AIMS>(self.piece, self.out)
+        self.kernel.follow::<V, AIMS, MATT>(self.piece, self.out)
+    }
+}
+
+impl Lanes {
+    fn render_by<const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+        let work = Render::<AIMS, MATT> { kernel: self, piece, out };
+        // The level has been found on this processor when the kernel was made.
+        on_level(self.level.name, self.precision, work).unwrap_or_default()
     }
 }
 
 impl Kernel for Lanes {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        let (level, precision) = (self.level.name, self.precision);
-        let counts = if self.course.aims.is_some() {
-            on_level(level, precision, Render::<true> { kernel: self, piece, out })
-        } else {
-            on_level(level, precision, Render::<false> { kernel: self, piece, out })
-        };
-        // The level has been found on this processor when the kernel was made.
-        counts.unwrap_or_default()
+        match (self.course.aims.is_some(), self.is_matt) {
+            (true, true) => self.render_by::<true, true>(piece, out),
+            (true, false) => self.render_by::<true, false>(piece, out),
+            (false, true) => self.render_by::<false, true>(piece, out),
+            (false, false) => self.render_by::<false, false>(piece, out),
+        }
     }
 }

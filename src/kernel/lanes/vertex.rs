@@ -62,7 +62,11 @@ struct Split<V: Float> {
 impl Lanes {
     /// Traces each path to its next vertex and on from there. The lanes whose part of a path has ended.
     #[inline(always)]
-    pub(super) fn advance<V: Float, const AIMS: bool>(&self, packet: &mut Packet<V>, counts: &mut Counts) -> u32 {
+    pub(super) fn advance<V: Float, const AIMS: bool, const MATT: bool>(
+        &self,
+        packet: &mut Packet<V>,
+        counts: &mut Counts,
+    ) -> u32 {
         let number = packet.vertices.plus(V::Bits::splat(1));
         let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
         let (t, primitive) = self.nearest(&packet.rays, packet.alive, counts);
@@ -96,16 +100,16 @@ impl Lanes {
         counts.truncated += u64::from(cut.count_ones());
         ended |= cut;
         if let Some(at) = &early {
-            self.aim(packet, at, &vertex, ended, counts);
+            self.aim::<V, MATT>(packet, at, &vertex, ended, counts);
         }
         ended |= self.roulette(packet, met, &vertex);
         let at = match early {
             Some(at) => at,
             None => self.arrive(packet, met, t, primitive),
         };
-        let (scattered, split) = self.scatter::<V, AIMS>(packet, &at, &vertex, numbers, ended);
+        let (scattered, split) = self.scatter::<V, AIMS, MATT>(packet, &at, &vertex, numbers, ended);
         ended |= scattered.absorbed;
-        leave(packet, &at, number, &scattered, split, &mut ended);
+        leave::<V, MATT>(packet, &at, number, &scattered, split, &mut ended);
         ended
     }
 
@@ -155,7 +159,7 @@ impl Lanes {
 
     /// The directions in which paths go on.
     #[inline(always)]
-    fn scatter<V: Float, const AIMS: bool>(
+    fn scatter<V: Float, const AIMS: bool, const MATT: bool>(
         &self,
         packet: &Packet<V>,
         at: &Arrival<V>,
@@ -168,6 +172,9 @@ impl Lanes {
         let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
         let mut scattered = Scattered { wi, weight: vertex.albedo, is_delta: none, density, absorbed: 0 };
         let mut split = None;
+        if MATT {
+            return (scattered, split);
+        }
         let going_on = at.lanes & !V::Mask::from_bits(ended);
         let others = going_on & V::splat(0.5).lt(vertex.kind);
         if !others.any() {
@@ -285,7 +292,7 @@ impl Lanes {
 
 /// Sets out in the new directions.
 #[inline(always)]
-fn leave<V: Float>(
+fn leave<V: Float, const MATT: bool>(
     packet: &mut Packet<V>,
     at: &Arrival<V>,
     vertices: V::Bits,
@@ -294,7 +301,7 @@ fn leave<V: Float>(
     ended: &mut u32,
 ) {
     let mut direction = at.frame.to_world(scattered.wi);
-    if scattered.is_delta.any() {
+    if !MATT && scattered.is_delta.any() {
         direction = Vec3::select(scattered.is_delta, direction.normalized(), direction);
     }
     let mut splits = 0;
