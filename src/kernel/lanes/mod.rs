@@ -162,8 +162,7 @@ impl Lanes {
 impl Kernel for Lanes {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
         match (self.course.aims.is_some(), self.is_matt) {
-            (true, true) => self.render_by::<true, true>(piece, out),
-            (true, false) => self.render_by::<true, false>(piece, out),
+            (true, _) => self.render_by::<true, false>(piece, out),
             (false, true) => self.render_by::<false, true>(piece, out),
             (false, false) => self.render_by::<false, false>(piece, out),
         }

@@ -9,8 +9,8 @@ use crate::math::{
     Bits, Frame, Ray, Rgb, Vec3, curved_normal, dot, fresnel_dielectric, fresnel_schlick, other_root, reflect, refract,
 };
 use crate::sampling::{Purpose, cosine_hemisphere};
-use crate::scene::AllEffects;
-use crate::simd::{Float, MOST_LANES, Mask, Words};
+use crate::scene::{AllEffects, Scene};
+use crate::simd::{Float, MOST_LANES, Mask, Number, Words};
 
 /// Where rays arrived.
 #[derive(Clone, Copy)]
@@ -256,37 +256,54 @@ impl Lanes {
         lanes: V::Mask,
         scattered: &mut Scattered<V>,
     ) {
-        let (inside, mut deltas) = (at.inside.bits(), 0);
-        let mut all = [[V::One::default(); MOST_LANES]; 13];
+        let mut all = AllScattered { numbers: [[V::One::default(); MOST_LANES]; 13], deltas: 0, absorbed: 0 };
         let Scattered { wi, weight, density, .. } = &scattered;
         let vectors = [at.primitive, wo.x, wo.y, wo.z, numbers[0], numbers[1]];
         let results = [wi.x, wi.y, wi.z, weight.r, weight.g, weight.b, *density];
-        for (all, vector) in all.iter_mut().zip(vectors.into_iter().chain(results)) {
-            vector.store(all);
+        for (numbers, vector) in all.numbers.iter_mut().zip(vectors.into_iter().chain(results)) {
+            vector.store(numbers);
         }
-        for lane in LanesOf(lanes.bits()) {
-            let [primitive, x, y, z, first, second] = [0, 1, 2, 3, 4, 5].map(|k: usize| all[k][lane].into());
-            let owner = self.scene.owners[primitive as usize];
-            let material = &self.scene.objects[owner as usize].material;
+        all.scatter(&self.scene, lanes.bits(), at.inside.bits(), V::one);
+        let [.., x, y, z, r, g, b, density] = &all.numbers;
+        scattered.wi = Vec3 { x: V::load(x), y: V::load(y), z: V::load(z) };
+        scattered.weight = Rgb { r: V::load(r), g: V::load(g), b: V::load(b) };
+        scattered.density = V::load(density);
+        scattered.is_delta = scattered.is_delta | V::Mask::from_bits(all.deltas);
+        scattered.absorbed |= all.absorbed;
+    }
+}
+
+/// What happens at surfaces out of their registers: primitives, local directions to where the path comes from and two random numbers; then what is
+/// found: directions, weights and densities.
+struct AllScattered<T> {
+    numbers: [[T; MOST_LANES]; 13],
+    deltas: u32,
+    absorbed: u32,
+}
+
+impl<T: Number> AllScattered<T> {
+    /// Finds it for some lanes. It has no need of a level's instructions, and stays out of what does.
+    #[inline(never)]
+    fn scatter(&mut self, scene: &Scene, lanes: u32, inside: u32, one: fn(f64) -> T) {
+        for lane in LanesOf(lanes) {
+            let [primitive, x, y, z, first, second] = [0, 1, 2, 3, 4, 5].map(|k: usize| self.numbers[k][lane].into());
+            let owner = scene.owners[primitive as usize];
+            let material = &scene.objects[owner as usize].material;
             let sample = material.sample::<AllEffects>(Vec3::new(x, y, z), inside >> lane & 1 == 1, [first, second]);
             let Some(sample) = sample else {
-                scattered.absorbed |= 1 << lane;
+                self.absorbed |= 1 << lane;
                 continue;
             };
             let Vec3 { x, y, z } = sample.wi;
             let Rgb { r, g, b } = sample.weight;
             for (k, number) in (6..).zip([x, y, z, r, g, b]) {
-                all[k][lane] = V::one(number);
+                self.numbers[k][lane] = one(number);
             }
             match sample.density {
-                Density::Delta => deltas |= 1 << lane,
-                Density::PerSolidAngle(density) => all[12][lane] = V::one(density),
+                Density::Delta => self.deltas |= 1 << lane,
+                Density::PerSolidAngle(density) => self.numbers[12][lane] = one(density),
             }
         }
-        scattered.wi = Vec3 { x: V::load(&all[6]), y: V::load(&all[7]), z: V::load(&all[8]) };
-        scattered.weight = Rgb { r: V::load(&all[9]), g: V::load(&all[10]), b: V::load(&all[11]) };
-        scattered.density = V::load(&all[12]);
-        scattered.is_delta = scattered.is_delta | V::Mask::from_bits(deltas);
     }
 }
 
