@@ -44,7 +44,8 @@ impl Shear {
     /// A vector by the ray's axes.
     #[inline(always)]
     pub fn turned(&self, v: Vec3) -> [f64; 3] {
-        self.axes.map(|axis| component(v, axis))
+        let [x, y, z] = self.axes;
+        [component(v, x), component(v, y), component(v, z)]
     }
 }
 

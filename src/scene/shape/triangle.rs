@@ -57,8 +57,13 @@ impl Primitive for Triangle {
 
     #[inline(always)]
     fn meet(&self, ray: &Ray, shear: &Shear) -> f64 {
-        let [a, b, c] = self.corners.map(|corner| sheared(shear.turned(corner - ray.origin), shear.by));
-        triangle_root(a, b, c)
+        // Written out: by `map` over an array it takes three times as long.
+        let [a, b, c] = self.corners;
+        triangle_root(
+            sheared(shear.turned(a - ray.origin), shear.by),
+            sheared(shear.turned(b - ray.origin), shear.by),
+            sheared(shear.turned(c - ray.origin), shear.by),
+        )
     }
 
     #[inline(always)]
