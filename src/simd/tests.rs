@@ -55,6 +55,10 @@ impl Work for Operations {
         for (first, second) in (0..16).flat_map(|first| (0..16).map(move |second| (first, second))) {
             let (v, w) = (of::<V>(numbers(first)), of::<V>(numbers(second)));
             let mask = v.lt(w);
+            // Of two zeros either may be the least.
+            let all = V::select(v.equal(v), v, V::splat(1.0));
+            let least = (0..V::LANES).map(|lane| all.lane(lane)).fold(f64::INFINITY, f64::min);
+            assert!(all.least() == least, "the least is {}, not {least}", all.least());
             for lane in 0..V::LANES {
                 let (x, y) = (v.lane(lane), w.lane(lane));
                 // An operation in double precision whose result is rounded once more is that of single precision: it has more than twice the
@@ -79,6 +83,8 @@ impl Work for Operations {
                     ("magnitude", v.abs().lane(lane), x.abs()),
                     ("sign", v.copysign(w).lane(lane), x.copysign(y)),
                     ("choice", V::select(mask, v, w).lane(lane), if x < y { x } else { y }),
+                    ("larger", v.larger(w).lane(lane), if x > y { x } else { y }),
+                    ("smaller", v.smaller(w).lane(lane), if x < y { x } else { y }),
                 ];
                 for (what, found, expected) in numbers {
                     assert!(same(found, expected), "{what} of {x} and {y}: {found}, not {expected}");
