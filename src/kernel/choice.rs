@@ -9,7 +9,7 @@ use crate::scene::{
     ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES,
     ProfileEntry, Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
-use crate::simd::{Entry as Level, LEVELS, Precision, best};
+use crate::simd::{Entry as Level, LEVELS, Precision, best, lanes_of};
 
 /// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
 const AT_RUN_TIME: &str = "run-time";
@@ -103,7 +103,7 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     let scan = match lanes {
         Err(_) => Scan::OneByOne,
         Ok(_) if scene.primitives.effects() == Sphere::EFFECT => Scan::SideBySide,
-        Ok(_) => Scan::Blocks,
+        Ok(chosen) => Scan::Blocks(lanes_of(chosen.level, chosen.precision)),
     };
     let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len(), scan) else {
         let names = ACCELERATORS.iter().map(|entry| entry.name);

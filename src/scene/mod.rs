@@ -18,7 +18,9 @@ pub use camera::{CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
 pub use feature::{ANGULAR_EMISSION, BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 pub use fog::Fog;
 pub use generator::GENERATORS;
-pub use hierarchy::{ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Scan, Tests, accelerator};
+pub use hierarchy::{
+    ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Scan, Tests, accelerator, padding,
+};
 pub use library::{SCENES, load};
 pub use light::{Aim, Aims, Lights, LightsInLanes, Met, Start, one_minus_cos};
 pub use point_light::PointLight;

@@ -246,6 +246,21 @@ levels! {
     "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
 }
 
+struct LanesOf;
+
+impl Work for LanesOf {
+    type Output = usize;
+
+    fn run<V: Float>(self) -> usize {
+        V::LANES
+    }
+}
+
+/// How many numbers a level has side by side; 1 if this processor does not have it.
+pub fn lanes_of(level: &Entry, precision: Precision) -> usize {
+    on_level(level.name, precision, LanesOf).unwrap_or(1)
+}
+
 /// The fastest level of this processor.
 pub fn best() -> &'static Entry {
     LEVELS.iter().find(|level| level.is_available()).unwrap_or(&LEVELS[LEVELS.len() - 1])

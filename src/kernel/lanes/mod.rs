@@ -70,7 +70,7 @@ impl Lanes {
             targets: scene.lights.as_ref().and_then(LightsInLanes::of).map(Box::new),
             search: match precision {
                 _ if !tables.is_round || scene.hierarchy.is_some() => {
-                    Search::Wide(Box::new(Wide::of(&scene, level.name, precision, &scene.enclosing(&view))))
+                    Search::Wide(Box::new(Wide::of(&scene, level, precision, &scene.enclosing(&view))))
                 }
                 Precision::F64 => Search::Filter(Filter::of(&scene)),
                 Precision::F32 => Search::Singles(Singles::of(&scene, &scene.enclosing(&view))),

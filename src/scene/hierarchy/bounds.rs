@@ -42,11 +42,11 @@ impl Bounds {
         0.5 * self.low[axis] + 0.5 * self.high[axis]
     }
 
-    /// The box with its share of the padding on every side: as far as rounding can move it or a primitive in it.
+    /// The box with its share of the [`padding`] on every side: as far as rounding to so many digits can move it or a primitive in it.
     #[must_use]
-    pub(super) fn padded(&self) -> Self {
+    pub fn padded(&self, digits: u32) -> Self {
         let largest = self.low.iter().chain(&self.high).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let padding = PADDING * largest;
+        let padding = padding(digits) * largest;
         Self { low: self.low.map(|x| x - padding), high: self.high.map(|x| x + padding) }
     }
 
@@ -57,7 +57,7 @@ impl Bounds {
     /// Whether a ray meets the box, which is closed, or passes it by no more than 2^-47 times the largest coordinate of the box plus the
     /// largest of the ray's origin.
     pub fn meets(&self, ray: &Ray) -> bool {
-        Slabs::new(ray).enter(&self.padded().faces(), f64::INFINITY).is_some()
+        Slabs::new(ray).enter(&self.padded(f64::MANTISSA_DIGITS).faces(), f64::INFINITY).is_some()
     }
 
     /// Half of its surface; 0 if it is empty.
@@ -67,9 +67,11 @@ impl Bounds {
     }
 }
 
-/// How far outside a box a ray may pass and still be let in, for each unit of the largest coordinate of the box and of the ray's origin.
-/// It covers what rounding can do to the box test and to the tests of the primitives in it: at most some 30 units in the last place.
-const PADDING: f64 = 1.0 / (1u64 << 47) as f64;
+/// How far outside a box a ray may pass and still be let in, for each unit of the largest coordinate of the box and of the ray's origin, with numbers
+/// of so many digits. It covers what rounding can do to the box test and to the tests of the primitives in it: at most some 30 units in the last place.
+pub const fn padding(digits: u32) -> f64 {
+    64.0 / (1_u64 << digits) as f64
+}
 
 /// The smallest and the largest coordinates of a box: an array, so that a direction's sign can choose without a branch.
 pub(super) type Faces = [[f64; 3]; 2];
@@ -91,7 +93,7 @@ impl Slabs {
     pub(super) fn new(ray: &Ray) -> Self {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
-        let padding = PADDING * origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
+        let padding = padding(f64::MANTISSA_DIGITS) * origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
         let backward = direction.map(|d| d < 0.0);
         let (mut near, mut far) = (origin, origin);
         for axis in 0..3 {

@@ -13,7 +13,7 @@ use super::singles::Singles;
 use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
 use crate::scene::{Plane, Scene, Tests};
-use crate::simd::{Float, MOST_LANES, Mask, Precision, Work, on_level};
+use crate::simd::{Entry, Float, MOST_LANES, Mask, Precision, lanes_of};
 use blocks::{Blocks, Leaf, Making};
 use tree::{AllSlabs, Tree, Waiting};
 
@@ -34,21 +34,9 @@ enum Search {
     Tree(Tree),
 }
 
-/// How many lanes a level has.
-struct Width;
-
-impl Work for Width {
-    type Output = usize;
-
-    fn run<V: Float>(self) -> usize {
-        V::LANES
-    }
-}
-
 impl Wide {
-    pub(in crate::kernel::lanes) fn of(scene: &Scene, level: &str, precision: Precision, enclosing: &[u32]) -> Self {
-        // The level has been found on this processor when the kernel was chosen.
-        let width = on_level(level, precision, Width).unwrap_or(MOST_LANES);
+    pub(in crate::kernel::lanes) fn of(scene: &Scene, level: &Entry, precision: Precision, enclosing: &[u32]) -> Self {
+        let width = lanes_of(level, precision);
         let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
         let mut making = Making::new(&scene.primitives, large.as_ref(), width);
         let search = match &scene.hierarchy {
@@ -161,8 +149,11 @@ impl Best {
 mod tests {
     use super::*;
     use crate::kernel::lanes::walks::{Start, nearest, side_by_side, walks};
+    use crate::math::{Frame, line_meets};
+    use crate::sampling::uniform_sphere;
+    use crate::scene::Standpoint;
     use crate::scene::{SCENES, load};
-    use crate::simd::LEVELS;
+    use crate::simd::{LEVELS, Work, on_level};
 
     /// Compares with the scalar search.
     struct Compare<'a>(&'a Scene, &'a Wide, &'a [Start]);
@@ -216,7 +207,7 @@ mod tests {
                 }
                 let (walks, edges) = walks(&scene, 4000);
                 for level in LEVELS.iter().filter(|level| level.is_available()) {
-                    let wide = Wide::of(&scene, level.name, Precision::F64, &[]);
+                    let wide = Wide::of(&scene, level, Precision::F64, &[]);
                     for starts in [&walks, &edges] {
                         on_level(level.name, Precision::F64, Compare(&scene, &wide, starts)).unwrap();
                         compared += starts.len();
@@ -225,5 +216,33 @@ mod tests {
             }
         }
         assert!(compared > 1_000_000, "{compared} rays");
+    }
+
+    /// Rays that leave spheres inwards, so flat that their lines pass them for all that rounding says.
+    fn grazing(scene: &Scene) -> Vec<Start> {
+        let of_sphere = |(number, sphere): (u32, &crate::scene::Sphere)| {
+            let k = f64::from(number);
+            let normal = uniform_sphere([(0.618 * k).fract(), (0.414 * k).fract()]);
+            let direction = Frame::around(normal).to_world(Vec3::new(1.0, 0.0, -1e-9)).normalized();
+            let origin = sphere.center + normal * sphere.radius;
+            (Ray { origin, direction }, Some(Standpoint { primitive: number, inside: true }))
+        };
+        (0..).zip(&scene.primitives.spheres).map(of_sphere).collect()
+    }
+
+    /// Where a ray leaves a sphere inwards it meets it again, whether its line does or not.
+    #[test]
+    fn what_leaves_inwards_meets_its_own_sphere() {
+        let scene = load("spheres:2048").unwrap().accelerated("sah").unwrap();
+        let starts = grazing(&scene);
+        let line_passes = |(ray, from): &&Start| {
+            let sphere = &scene.primitives.spheres[from.unwrap().primitive as usize];
+            !line_meets(ray.origin - sphere.center, ray.direction, 1.0, sphere.radius)
+        };
+        assert!(starts.iter().filter(line_passes).count() > 500);
+        for level in LEVELS.iter().filter(|level| level.is_available()) {
+            let wide = Wide::of(&scene, level, Precision::F64, &[]);
+            on_level(level.name, Precision::F64, Compare(&scene, &wide, &starts)).unwrap();
+        }
     }
 }

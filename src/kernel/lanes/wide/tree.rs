@@ -4,7 +4,7 @@ use super::blocks::{Blocks, Leaf, Making};
 use super::{Best, Single};
 use crate::kernel::lanes::packet::LanesOf;
 use crate::math::{Ray, Vec3};
-use crate::scene::{Bounds, Child, Content, Tests};
+use crate::scene::{Bounds, Child, Content, Tests, padding};
 use crate::simd::{Float, MOST_LANES, Mask, Number, Numbers, Precision};
 
 /// The tree; its root is the first node.
@@ -20,17 +20,18 @@ pub(super) struct Tree {
 
 const IS_LEAF: u32 = 1 << 31;
 
-/// How far outside a box a ray may pass and still be let in, for each unit of the largest coordinate: 64 units in the last place, as in the scalar
-/// search.
-fn padding(digits: u32) -> f64 {
-    64.0 / (1_u64 << digits) as f64
-}
-
 impl Tree {
     pub(super) fn of(nodes: &[Vec<Child>], width: usize, precision: Precision, making: &mut Making<'_>) -> Self {
         let (mut faces, mut children, mut leaves) = (Vec::new(), Vec::new(), Vec::new());
         for node in nodes {
-            let bounds: Vec<Bounds> = node.iter().map(|child| with_padding(&child.bounds, precision)).collect();
+            let bounds: Vec<Bounds> = node
+                .iter()
+                .map(|child| match precision {
+                    // It has been padded for the scalar search.
+                    Precision::F64 => child.bounds,
+                    Precision::F32 => child.bounds.padded(f32::MANTISSA_DIGITS),
+                })
+                .collect();
             for k in 0..6 {
                 // What has its sides exchanged is met by no ray.
                 let face = |bounds: &Bounds| if k < 3 { bounds.low[k] } else { bounds.high[k - 3] };
@@ -90,18 +91,6 @@ impl Tree {
             next = waiting.pop(V::one(best.nearest));
         }
         true
-    }
-}
-
-fn with_padding(bounds: &Bounds, precision: Precision) -> Bounds {
-    match precision {
-        // It has been padded for the scalar search.
-        Precision::F64 => *bounds,
-        Precision::F32 => {
-            let largest = bounds.low.iter().chain(&bounds.high).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-            let padding = padding(f32::MANTISSA_DIGITS) * largest;
-            Bounds { low: bounds.low.map(|x| x - padding), high: bounds.high.map(|x| x + padding) }
-        }
     }
 }
 
@@ -200,7 +189,7 @@ impl<T: Number> Waiting<T> {
         }
     }
 
-    /// Children of one node go behind those of others, which were farther away or are looked at later.
+    /// In its place among all that wait, so that the nearest box of all is opened next.
     #[inline(always)]
     fn push(&mut self, child: u32, distance: T) {
         let mut place = self.count;
