@@ -9,7 +9,7 @@ use crate::scene::{
     ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES,
     ProfileEntry, Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
-use crate::simd::{Entry as Level, LEVELS, Precision, best, lanes_of};
+use crate::simd::{Entry as Level, LEVELS, Precision, best, widths_of};
 
 /// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
 const AT_RUN_TIME: &str = "run-time";
@@ -102,8 +102,11 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     let lanes = lanes_for(scene, spec)?;
     let scan = match lanes {
         Err(_) => Scan::OneByOne,
-        Ok(_) if scene.primitives.effects() == Sphere::EFFECT => Scan::SideBySide,
-        Ok(chosen) => Scan::Blocks(lanes_of(chosen.level, chosen.precision)),
+        Ok(chosen) => {
+            let [lanes, singles] = widths_of(chosen.level, chosen.precision);
+            let are_spheres = scene.primitives.effects() == Sphere::EFFECT;
+            if are_spheres { Scan::SideBySide(singles) } else { Scan::Blocks(lanes) }
+        }
     };
     let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len(), scan) else {
         let names = ACCELERATORS.iter().map(|entry| entry.name);
@@ -155,11 +158,18 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     Ok(Choice { profile, accelerator, lanes })
 }
 
+/// As many primitives as single precision has whole numbers for are more than lanes tell apart.
+const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
+
 /// What of a scene or of its settings lanes have no code for.
 fn obstacle(scene: &Scene, spec: &Spec) -> Option<&'static str> {
     let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
     let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
-    let asked = [(spec.effects.is_some(), "effects"), (spec.clamp.is_some(), "clamp")];
+    let asked = [
+        (spec.effects.is_some(), "effects"),
+        (spec.clamp.is_some(), "clamp"),
+        (scene.owners.len() >= MOST_IN_LANES, "primitives"),
+    ];
     of_scene.or_else(|| asked.into_iter().find(|(is_asked, _)| *is_asked).map(|(_, name)| name))
 }
 

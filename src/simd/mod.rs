@@ -94,6 +94,8 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     type Bits: Words<Self::Mask>;
     /// One of the numbers.
     type One: Number;
+    /// What one register of the same instruction set holds in single precision.
+    type Single: Float<One = f32>;
     /// How many there are.
     const LANES: usize;
 
@@ -246,19 +248,19 @@ levels! {
     "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
 }
 
-struct LanesOf;
+struct Widths;
 
-impl Work for LanesOf {
-    type Output = usize;
+impl Work for Widths {
+    type Output = [usize; 2];
 
-    fn run<V: Float>(self) -> usize {
-        V::LANES
+    fn run<V: Float>(self) -> [usize; 2] {
+        [V::LANES, V::Single::LANES]
     }
 }
 
-/// How many numbers a level has side by side; 1 if this processor does not have it.
-pub fn lanes_of(level: &Entry, precision: Precision) -> usize {
-    on_level(level.name, precision, LanesOf).unwrap_or(1)
+/// How many numbers a level has side by side, and how many in a register of single precision; 1 if this processor does not have it.
+pub fn widths_of(level: &Entry, precision: Precision) -> [usize; 2] {
+    on_level(level.name, precision, Widths).unwrap_or([1; 2])
 }
 
 /// The fastest level of this processor.

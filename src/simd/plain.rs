@@ -214,6 +214,7 @@ macro_rules! float {
         impl Float for Plain<$Float> {
             type Bits = Plain<u64>;
             type One = $Float;
+            type Single = Plain<f32>;
             const LANES: usize = LANES;
 
             #[inline(always)]
@@ -243,6 +244,10 @@ macro_rules! float {
             #[inline(always)]
             fn equal(self, other: Self) -> Plain<bool> {
                 each!(k => self.0[k] == other.0[k])
+            }
+            #[inline(always)]
+            fn about_times_plus(self, factor: Self, addend: Self) -> Self {
+                self * factor + addend
             }
             #[inline(always)]
             fn number(bits: Plain<u64>) -> Self {

@@ -191,6 +191,7 @@ impl<M: PairMask, B: Words<M::Half>> Words<M> for Two<B> {
 impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     type Bits = Two<V::Bits>;
     type One = V::One;
+    type Single = V::Single;
     const LANES: usize = 2 * V::LANES;
 
     #[inline(always)]

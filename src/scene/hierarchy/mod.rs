@@ -82,20 +82,21 @@ accelerators! {
 /// 12 and more gain, also `furnace` with 12 triangles and 2 spheres and `vista` with spheres in spheres; those with up to 9 lose.
 const WORTH_A_HIERARCHY: usize = 12;
 
-/// Likewise, where lanes test spheres side by side: `spheres:100` is 1.2 to 1.5 times as fast without one, `spheres:1000` 2.3 times as fast with.
-const WORTH_A_HIERARCHY_IN_LANES: usize = 128;
+/// Likewise, where lanes test spheres side by side, in registers of single precision: with registers of 16 `spheres:100` is 1.2 times as fast without
+/// one and `spheres:200` with, with registers of 8 `spheres:50` as fast and `spheres:100` 1.4 times as fast with.
+const REGISTERS_WORTH_A_HIERARCHY: usize = 8;
 
-/// Likewise, in blocks of as many primitives as there are lanes, where lanes test a ray against a block at a time: three blocks of 16 in all are 1.1
-/// times as fast as a hierarchy of them, ten blocks of 4 half as fast.
-const BLOCKS_WORTH_A_HIERARCHY: usize = 4;
+/// Likewise, in blocks of as many primitives as there are lanes, where lanes test a ray against a block at a time: a block of 14 triangles and
+/// spheres is 1.3 times as fast without one, three blocks of 38 triangles 1.06 times with.
+const BLOCKS_WORTH_A_HIERARCHY: usize = 2;
 
 /// How primitives are tested where there is no hierarchy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scan {
     /// One after the other.
     OneByOne,
-    /// Each against the rays of many lanes.
-    SideBySide,
+    /// Each against the rays of many lanes, whose registers hold so many numbers of single precision.
+    SideBySide(usize),
     /// So many at a time against one ray.
     Blocks(usize),
 }
@@ -116,7 +117,7 @@ impl Entry {
 pub fn accelerator(name: Option<&str>, primitives: usize, scan: Scan) -> Option<&'static Entry> {
     let worth = match scan {
         Scan::OneByOne => WORTH_A_HIERARCHY,
-        Scan::SideBySide => WORTH_A_HIERARCHY_IN_LANES,
+        Scan::SideBySide(width) => REGISTERS_WORTH_A_HIERARCHY * width,
         Scan::Blocks(lanes) => BLOCKS_WORTH_A_HIERARCHY * lanes,
     };
     let fitting = if primitives < worth { "none" } else { "sah" };

@@ -1,5 +1,6 @@
 //! Double precision: four numbers in a register.
 
+use super::single::F32x8;
 use super::{Mask4, U64x4, spread};
 use crate::math::{Bits, Real};
 use crate::simd::{Float, Table};
@@ -68,6 +69,7 @@ impl Real for F64x4 {
 impl Float for F64x4 {
     type Bits = U64x4;
     type One = f64;
+    type Single = F32x8;
     const LANES: usize = 4;
 
     #[inline(always)]

@@ -70,6 +70,7 @@ impl Real for F32x8 {
 impl Float for F32x8 {
     type Bits = Two<U64x4>;
     type One = f32;
+    type Single = Self;
     const LANES: usize = 8;
 
     #[inline(always)]

@@ -1,5 +1,6 @@
 //! Double precision: eight numbers in a register.
 
+use super::single::F32x16;
 use super::{Mask8, U64x8};
 use crate::math::{Bits, Real};
 use crate::simd::{Float, Table};
@@ -75,6 +76,7 @@ impl Real for F64x8 {
 impl Float for F64x8 {
     type Bits = U64x8;
     type One = f64;
+    type Single = F32x16;
     const LANES: usize = 8;
 
     #[inline(always)]

@@ -77,6 +77,7 @@ impl Real for F32x16 {
 impl Float for F32x16 {
     type Bits = Two<U64x8>;
     type One = f32;
+    type Single = Self;
     const LANES: usize = 16;
 
     #[inline(always)]

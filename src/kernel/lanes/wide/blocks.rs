@@ -1,23 +1,31 @@
-//! Primitives of a kind side by side, as many as there are lanes.
+//! Primitives of a kind side by side: as many spheres as a register has numbers in single precision, as many triangles as there are lanes.
 
-use super::{Best, Single};
+use super::coarse::Scale;
+use super::{Best, Single, Turned};
+use crate::kernel::lanes::packet::LanesOf;
 use crate::kernel::lanes::singles::Singles;
-use crate::math::{Vec3, first_root, line_meets, sheared, triangle_root};
-use crate::scene::Primitives;
+use crate::math::{Real, Vec3, first_root, sheared, triangle_root};
+use crate::scene::{Bounds, Primitives};
 use crate::simd::{Float, Mask, Number, Numbers, Precision};
 
-/// Numbers of a sphere: its centre, its radius and its number.
+/// Numbers of a sphere: its centre, a radius and its number.
 const OF_SPHERE: usize = 5;
 /// Numbers of a triangle: its three corners and its number.
 const OF_TRIANGLE: usize = 10;
 /// The number of a place without a primitive; others are not below -1.
 const NO_NUMBER: f64 = -2.0;
+/// What stands where a block has no more spheres: so far away that hardly a ray comes near, and none meets it.
+const NO_SPHERE: ([f64; 4], [f64; 4]) = ([1e30, 1e30, 1e30, 0.0], [f64::NAN; 4]);
 
 /// Blocks: of each the first number of all its primitives, then the second, and so on.
 pub(super) struct Blocks {
-    spheres: Numbers,
+    /// As [`super::coarse`] has them.
+    spheres: Vec<f32>,
+    /// The same in the same order: centres and radii as they are.
+    exact: Vec<[f64; 4]>,
     triangles: Numbers,
     pub(super) has_triangles: bool,
+    pub(super) scale: Scale,
 }
 
 /// Some of the blocks.
@@ -33,16 +41,26 @@ pub(super) struct Leaf {
 /// Blocks that are being made.
 pub(super) struct Making<'a> {
     primitives: &'a Primitives,
+    bounds: &'a [Option<Bounds>],
+    scale: Scale,
     /// Spheres that are tested elsewhere.
     large: Option<&'a Singles>,
-    width: usize,
-    spheres: Vec<f64>,
+    /// Spheres in a block, and triangles in one.
+    widths: [usize; 2],
+    spheres: Vec<f32>,
+    exact: Vec<[f64; 4]>,
     triangles: Vec<f64>,
 }
 
 impl<'a> Making<'a> {
-    pub(super) fn new(primitives: &'a Primitives, large: Option<&'a Singles>, width: usize) -> Self {
-        Self { primitives, large, width, spheres: Vec::new(), triangles: Vec::new() }
+    pub(super) fn new(
+        primitives: &'a Primitives,
+        bounds: &'a [Option<Bounds>],
+        scale: Scale,
+        large: Option<&'a Singles>,
+        widths: [usize; 2],
+    ) -> Self {
+        Self { primitives, bounds, scale, large, widths, spheres: Vec::new(), exact: Vec::new(), triangles: Vec::new() }
     }
 
     /// Puts the primitives with these numbers into blocks of their own, but for planes and for what is tested elsewhere.
@@ -52,10 +70,9 @@ impl<'a> Making<'a> {
         let (mut spheres, mut triangles) = (Vec::new(), Vec::new());
         for number in numbers {
             let index = number as usize;
-            if let Some(sphere) = self.primitives.spheres.get(index) {
+            if index < first_flat {
                 if !self.large.is_some_and(|large| large.contains(number)) {
-                    let Vec3 { x, y, z } = sphere.center;
-                    spheres.push([x, y, z, sphere.radius, number.into()]);
+                    spheres.push(number);
                 }
             } else if let Some(index) = index.checked_sub(first_triangle) {
                 let [a, b, c] = self.primitives.triangles[index].corners;
@@ -64,32 +81,63 @@ impl<'a> Making<'a> {
         }
         Leaf {
             primitives: (spheres.len() + triangles.len()) as u32,
-            spheres: append(&mut self.spheres, &spheres, self.width),
-            triangles: append(&mut self.triangles, &triangles, self.width),
+            spheres: self.add_spheres(&spheres),
+            triangles: self.add_triangles(&triangles),
         }
+    }
+
+    /// Appends spheres in blocks, the last of which is filled up. The first block, and the one behind the last.
+    fn add_spheres(&mut self, numbers: &[u32]) -> [u32; 2] {
+        let width = self.widths[0];
+        let first = self.exact.len() / width;
+        for block in numbers.chunks(width) {
+            let mut columns = [const { Vec::new() }; OF_SPHERE];
+            for lane in 0..width {
+                let number = block.get(lane);
+                let (outline, exact) = number.map_or(NO_SPHERE, |number| self.sphere(*number));
+                self.exact.push(exact);
+                let number = number.map_or(NO_NUMBER, |number| f64::from(*number));
+                let [x, y, z, radius] = outline;
+                for (column, value) in columns.iter_mut().zip([x, y, z, radius, number]) {
+                    column.push(value as f32);
+                }
+            }
+            self.spheres.extend(columns.into_iter().flatten());
+        }
+        [first as u32, (self.exact.len() / width) as u32]
+    }
+
+    /// A sphere as single precision has it, and as it is.
+    fn sphere(&self, number: u32) -> ([f64; 4], [f64; 4]) {
+        let sphere = &self.primitives.spheres[number as usize];
+        let Vec3 { x, y, z } = sphere.center;
+        let bounds = self.bounds[number as usize].unwrap_or(Bounds::EMPTY);
+        (self.scale.sphere(&bounds, sphere.center, sphere.radius), [x, y, z, sphere.radius])
+    }
+
+    /// Likewise, triangles.
+    fn add_triangles(&mut self, triangles: &[[f64; OF_TRIANGLE]]) -> [u32; 2] {
+        let width = self.widths[1];
+        let count = |blocks: &[f64]| (blocks.len() / (OF_TRIANGLE * width)) as u32;
+        let first = count(&self.triangles);
+        for block in triangles.chunks(width) {
+            for k in 0..OF_TRIANGLE {
+                let nothing = if k == OF_TRIANGLE - 1 { NO_NUMBER } else { f64::NAN };
+                self.triangles.extend((0..width).map(|lane| block.get(lane).map_or(nothing, |numbers| numbers[k])));
+            }
+        }
+        [first, count(&self.triangles)]
     }
 
     pub(super) fn made(self, precision: Precision) -> Blocks {
-        let has_triangles = !self.triangles.is_empty();
         Blocks {
-            has_triangles,
-            spheres: Numbers::new(self.spheres, precision),
+            has_triangles: !self.triangles.is_empty(),
+            spheres: self.spheres,
+            exact: self.exact,
             triangles: Numbers::new(self.triangles, precision),
+            scale: self.scale,
         }
     }
-}
-
-/// Appends primitives in blocks, the last of which is filled up with what no ray meets. The first block, and the one behind the last.
-fn append<const N: usize>(blocks: &mut Vec<f64>, primitives: &[[f64; N]], width: usize) -> [u32; 2] {
-    let count = |blocks: &[f64]| (blocks.len() / (N * width)) as u32;
-    let first = count(blocks);
-    for block in primitives.chunks(width) {
-        for k in 0..N {
-            let nothing = if k == N - 1 { NO_NUMBER } else { f64::NAN };
-            blocks.extend((0..width).map(|lane| block.get(lane).map_or(nothing, |primitive| primitive[k])));
-        }
-    }
-    [first, count(blocks)]
 }
 
 /// The numbers of a block that its primitives have in one place.
@@ -106,9 +154,9 @@ fn numbers<V: Float>(blocks: &[V::One], block: u32, of: usize) -> &[V::One] {
 
 /// Corners as the ray sees them, the first of whose coordinates is in that place.
 #[inline(always)]
-fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Single<V>) -> [V; 3] {
+fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Turned<V>) -> [V; 3] {
     let [x, y, z] = ray.shear.axes;
-    let [ox, oy, oz] = ray.turned;
+    let [ox, oy, oz] = ray.origin;
     let x = column::<V>(triangles, block, OF_TRIANGLE, first + x) - ox;
     let y = column::<V>(triangles, block, OF_TRIANGLE, first + y) - oy;
     let z = column::<V>(triangles, block, OF_TRIANGLE, first + z) - oz;
@@ -119,28 +167,26 @@ impl Blocks {
     /// Tests a ray against all primitives of a leaf.
     #[inline(always)]
     pub(super) fn test<V: Float>(&self, leaf: &Leaf, ray: &Single<V>, best: &mut Best) {
-        let spheres = V::One::all(&self.spheres);
-        for block in leaf.spheres[0]..leaf.spheres[1] {
-            let x = column(spheres, block, OF_SPHERE, 0);
-            let y = column(spheres, block, OF_SPHERE, 1);
-            let z = column(spheres, block, OF_SPHERE, 2);
-            let radius = column(spheres, block, OF_SPHERE, 3);
-            let (offset, direction) = (ray.ray.origin - Vec3 { x, y, z }, ray.ray.direction);
-            let numbers = numbers::<V>(spheres, block, OF_SPHERE);
-            let is_own = ray.from.equal(V::load(numbers));
-            // Square roots and divisions take longer than everything else, and many rays pass all spheres of a block.
-            if (is_own | line_meets(offset, direction, V::splat(1.0), radius)).any() {
-                let root = first_root(offset, direction, V::splat(1.0), radius);
-                best.take(numbers, V::select(is_own, ray.own_root, root));
+        let lanes = V::Single::LANES;
+        for block in leaf.spheres[0] as usize..leaf.spheres[1] as usize {
+            let spheres = &self.spheres[block * OF_SPHERE * lanes..(block + 1) * OF_SPHERE * lanes];
+            let numbers = &spheres[(OF_SPHERE - 1) * lanes..];
+            let is_own = V::Single::splat(ray.from).equal(V::Single::load(numbers));
+            // Of a block most rays come near one sphere or none.
+            for lane in LanesOf((!(ray.coarse.passes(spheres) | is_own)).bits()) {
+                let [x, y, z, radius] = self.exact[block * lanes + lane];
+                let root = first_root(ray.origin - Vec3::new(x, y, z), ray.direction, 1.0, radius);
+                best.take_one(V::one(root).into(), numbers[lane].into());
             }
         }
+        let Some(turned) = &ray.turned else { return };
         let triangles = V::One::all(&self.triangles);
         for block in leaf.triangles[0]..leaf.triangles[1] {
-            let a = corner(triangles, block, 0, ray);
-            let b = corner(triangles, block, 3, ray);
-            let c = corner(triangles, block, 6, ray);
+            let a = corner(triangles, block, 0, turned);
+            let b = corner(triangles, block, 3, turned);
+            let c = corner(triangles, block, 6, turned);
             let numbers = numbers::<V>(triangles, block, OF_TRIANGLE);
-            let is_own = ray.from.equal(V::load(numbers));
+            let is_own = V::splat(ray.from).equal(V::load(numbers));
             best.take(numbers, V::select(is_own, V::splat(f64::NAN), triangle_root(a, b, c)));
         }
     }

@@ -5,6 +5,7 @@
 //! the lowest number wins. In double precision it is what the scalar search finds, to the bit.
 
 mod blocks;
+mod coarse;
 mod tree;
 
 use super::nearest::Found;
@@ -12,10 +13,11 @@ use super::packet::{LanesOf, Rays};
 use super::singles::Singles;
 use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
-use crate::scene::{Plane, Scene, Tests};
-use crate::simd::{Entry, Float, MOST_LANES, Mask, Precision, lanes_of};
+use crate::scene::{Bounds, Plane, Scene, Tests};
+use crate::simd::{Entry, Float, MOST_LANES, Mask, Precision, widths_of};
 use blocks::{Blocks, Leaf, Making};
-use tree::{AllSlabs, Tree, Waiting};
+use coarse::{AllCoarse, Coarse, Scale};
+use tree::{Tree, Waiting};
 
 /// The primitives of a scene.
 pub(in crate::kernel::lanes) struct Wide {
@@ -36,12 +38,14 @@ enum Search {
 
 impl Wide {
     pub(in crate::kernel::lanes) fn of(scene: &Scene, level: &Entry, precision: Precision, enclosing: &[u32]) -> Self {
-        let width = lanes_of(level, precision);
+        let [lanes, width] = widths_of(level, precision);
         let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
-        let mut making = Making::new(&scene.primitives, large.as_ref(), width);
+        let bounds = scene.primitives.bounds();
+        let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
+        let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, lanes]);
         let search = match &scene.hierarchy {
             None => Search::All(making.add(0..scene.owners.len() as u32)),
-            Some(hierarchy) => Search::Tree(Tree::of(&hierarchy.gathered(width), width, precision, &mut making)),
+            Some(hierarchy) => Search::Tree(Tree::of(&hierarchy.gathered(width), width, scale, &mut making)),
         };
         let blocks = making.made(precision);
         let first_plane = scene.primitives.spheres.len() as u32;
@@ -62,64 +66,72 @@ impl Wide {
             Some(large) => large.scan(rays),
             None => Found::nothing(),
         };
+        // What a ray starts on is not tested: where it will be met again is known. A ray that starts on nothing has any `own_root`.
+        let nowhere = V::splat(f64::NAN);
+        found.take_from_anywhere(rays.from, V::select(V::splat(0.0).le(rays.from), rays.own_root, nowhere));
         for (number, plane) in &self.planes {
             let (point, normal) = (Vec3::splat(plane.point), Vec3::splat(plane.normal));
             found.take(rays, V::splat(*number), plane_root(point - origin, direction, normal));
         }
-        let slabs = AllSlabs::of(&rays.ray);
-        let mut rows = [[V::One::default(); MOST_LANES]; 10];
-        let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from, rays.own_root];
+        let all = AllCoarse::of(&rays.ray, self.blocks.scale);
+        let mut rows = [[V::One::default(); MOST_LANES]; 9];
+        let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
         for (row, vector) in rows.iter_mut().zip(vectors.into_iter().chain([found.nearest, found.primitive])) {
             vector.store(row);
         }
         let (mut left, mut tests) = (0, Tests::default());
         let mut waiting = Waiting::new();
         for lane in LanesOf(wanted) {
-            let [ox, oy, oz, dx, dy, dz, from, own_root, nearest, primitive] =
-                rows.each_ref().map(|row| row[lane].into());
+            let [ox, oy, oz, dx, dy, dz, from, nearest, primitive] = rows.each_ref().map(|row| row[lane].into());
             let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-            // A ray that is tested against no triangle has any axes.
-            let along = Vec3::new(0.0, 0.0, 1.0);
-            let shear = Shear::of(if self.blocks.has_triangles { direction } else { along });
-            let ray = Single {
-                ray: Ray { origin: Vec3::splat(origin), direction: Vec3::splat(direction) },
-                from: V::splat(from),
-                own_root: V::splat(own_root),
-                turned: three(shear.turned(origin)),
-                shear: Shear { axes: shear.axes, by: three(shear.by) },
-            };
+            let turned = if self.blocks.has_triangles { Some(Turned::<V>::of(origin, direction)) } else { None };
+            let ray = Single { origin, direction, from, coarse: all.of_lane::<V::Single>(lane), turned };
             let mut best = Best { nearest, primitive };
             match &self.search {
                 Search::All(leaf) => self.blocks.test(leaf, &ray, &mut best),
                 Search::Tree(tree) => {
-                    if !tree.search(&self.blocks, &slabs.of_lane(lane), &ray, &mut best, &mut waiting, &mut tests) {
+                    if !tree.search(&self.blocks, &ray, &mut best, &mut waiting, &mut tests) {
                         left |= 1 << lane;
                     }
                 }
             }
-            rows[8][lane] = V::one(best.nearest);
-            rows[9][lane] = V::one(best.primitive);
+            rows[7][lane] = V::one(best.nearest);
+            rows[8][lane] = V::one(best.primitive);
         }
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
-        (Found { nearest: V::load(&rows[8]), primitive: V::load(&rows[9]) }, left)
+        (Found { nearest: V::load(&rows[7]), primitive: V::load(&rows[8]) }, left)
+    }
+}
+
+/// One ray.
+struct Single<V: Float> {
+    origin: Vec3,
+    direction: Vec3,
+    /// Number of the primitive that it starts on, as in [`Rays`].
+    from: f64,
+    coarse: Coarse<V::Single>,
+    /// `None` in a scene without triangles.
+    turned: Option<Turned<V>>,
+}
+
+/// A ray by its own axes, the same in every lane.
+struct Turned<V> {
+    origin: [V; 3],
+    shear: Shear<V>,
+}
+
+impl<V: Float> Turned<V> {
+    #[inline(always)]
+    fn of(origin: Vec3, direction: Vec3) -> Self {
+        let shear = Shear::of(direction);
+        Self { origin: three(shear.turned(origin)), shear: Shear { axes: shear.axes, by: three(shear.by) } }
     }
 }
 
 #[inline(always)]
 fn three<V: Float>([x, y, z]: [f64; 3]) -> [V; 3] {
     [V::splat(x), V::splat(y), V::splat(z)]
-}
-
-/// A ray that is the same in every lane.
-struct Single<V> {
-    ray: Ray<V>,
-    /// Number of the primitive that it starts on, and where it meets that again, as in [`Rays`].
-    from: V,
-    own_root: V,
-    /// The origin by the ray's own axes.
-    turned: [V; 3],
-    shear: Shear<V>,
 }
 
 /// What a ray met so far: a distance and a number, -1 for nothing.
@@ -129,6 +141,15 @@ struct Best {
 }
 
 impl Best {
+    /// A distance to the primitive with this number.
+    #[inline(always)]
+    fn take_one(&mut self, distance: f64, primitive: f64) {
+        let is_lower = distance == self.nearest && primitive < self.primitive;
+        if distance > 0.0 && (distance < self.nearest || is_lower) {
+            *self = Self { nearest: distance, primitive };
+        }
+    }
+
     /// Distances to the primitives with these numbers, in the order of the lanes.
     #[inline(always)]
     fn take<V: Float>(&mut self, numbers: &[V::One], distance: V) {
@@ -216,6 +237,23 @@ mod tests {
             }
         }
         assert!(compared > 1_000_000, "{compared} rays");
+    }
+
+    /// Scenes so large and so small that single precision has no numbers for them.
+    #[test]
+    fn size_does_not_matter() {
+        for name in ["spheres:300", "cornell-mesh", "imbalance:40"] {
+            for exponent in [-300, -140, -40, 40, 140, 300] {
+                let scene = load(name).unwrap().scaled(libm::exp2(f64::from(exponent))).accelerated("sah").unwrap();
+                let (walks, edges) = walks(&scene, 1000);
+                for level in LEVELS.iter().filter(|level| level.is_available()) {
+                    let wide = Wide::of(&scene, level, Precision::F64, &[]);
+                    for starts in [&walks, &edges] {
+                        on_level(level.name, Precision::F64, Compare(&scene, &wide, starts)).unwrap();
+                    }
+                }
+            }
+        }
     }
 
     /// Rays that leave spheres inwards, so flat that their lines pass them for all that rounding says.

@@ -1,0 +1,258 @@
+//! Rays in single precision, for tests that may let in too much but never too little: against boxes, and whether a ray's line comes near a sphere.
+//! Twice as many fit a register as in double precision, and what they let in is tested exactly.
+//!
+//! Lengths are divided by the scene's size, a power of two, so that nothing is ever out of range. Below, u = 2^-24, and |o| and |b| are the largest
+//! coordinates of the ray's origin and of a box. Rounding a face, the origin, a direction's inverse, their products and the distance to what has been
+//! found moves a face by less than 10 u (|o| + |b|). Rounding the terms of a ray's closest approach to a sphere's centre moves it by less than
+//! 23 u (|o| + |b|), and the comparison of both squares counts for 6 u of the radius, which is no longer than |b|. Boxes, radii and rays have a
+//! [`padding`] of 64 u |b| and 64 u |o|.
+
+use crate::math::{Ray, Vec3};
+use crate::scene::{Bounds, padding};
+use crate::simd::{Float, MOST_LANES};
+
+/// The smallest coordinate that a box is taken to have: squares of what it is padded by must not underflow.
+const SMALLEST: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// The inverse of the size of a scene: a power of two that takes its largest coordinate to about 1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale(pub(super) f64);
+
+impl Scale {
+    pub(super) fn of(bounds: &Bounds) -> Self {
+        // Nothing at all has an infinite box, and any exponent.
+        let (_, exponent) = libm::frexp(largest(bounds));
+        Self(libm::ldexp(1.0, -exponent.clamp(-1000, 1000)))
+    }
+
+    fn padding(bounds: &Bounds) -> f64 {
+        padding(f32::MANTISSA_DIGITS) * largest(bounds).max(SMALLEST)
+    }
+
+    /// A box to test rays against.
+    pub(super) fn padded(self, bounds: &Bounds) -> Bounds {
+        let bounds = self.scaled(bounds);
+        let padding = Self::padding(&bounds);
+        Bounds { low: bounds.low.map(|x| x - padding), high: bounds.high.map(|x| x + padding) }
+    }
+
+    /// The centre of a sphere with this box, and a radius to test rays against.
+    pub(super) fn sphere(self, bounds: &Bounds, center: Vec3, radius: f64) -> [f64; 4] {
+        let padding = Self::padding(&self.scaled(bounds));
+        let Vec3 { x, y, z } = center * self.0;
+        [x, y, z, radius * self.0 + padding]
+    }
+
+    fn scaled(self, bounds: &Bounds) -> Bounds {
+        Bounds { low: bounds.low.map(|x| x * self.0), high: bounds.high.map(|x| x * self.0) }
+    }
+}
+
+fn largest(bounds: &Bounds) -> f64 {
+    bounds.low.iter().chain(&bounds.high).fold(0.0, |largest, x| largest.max(x.abs()))
+}
+
+/// Rays of many lanes.
+pub(super) struct AllCoarse {
+    rows: [[f32; MOST_LANES]; ROWS],
+}
+
+/// Numbers of a ray: its direction, one over that, where distances to near and to far faces are taken from, its origin, and its padding.
+const ROWS: usize = 16;
+
+impl AllCoarse {
+    #[inline(always)]
+    pub(super) fn of<V: Float>(ray: &Ray<V>, scale: Scale) -> Self {
+        let scale = V::splat(scale.0);
+        let (x, y, z) = (ray.origin.x * scale, ray.origin.y * scale, ray.origin.z * scale);
+        let padding = V::splat(padding(f32::MANTISSA_DIGITS)) * x.abs().larger(y.abs()).larger(z.abs());
+        let mut all = Self { rows: [[0.0; MOST_LANES]; ROWS] };
+        let axes = [(x, ray.direction.x), (y, ray.direction.y), (z, ray.direction.z)];
+        for (axis, (origin, direction)) in axes.into_iter().enumerate() {
+            let outwards = V::select(direction.lt(V::splat(0.0)), -padding, padding);
+            // Adding zero turns minus zero into zero, or the near and far faces would change places.
+            let inverse = V::splat(1.0) / (direction + V::splat(0.0));
+            all.put(axis, direction);
+            all.put(3 + axis, inverse);
+            all.put(6 + axis, -((origin + outwards) * inverse));
+            all.put(9 + axis, -((origin - outwards) * inverse));
+            all.put(12 + axis, origin);
+        }
+        all.put(15, padding);
+        all
+    }
+
+    #[inline(always)]
+    fn put<V: Float>(&mut self, row: usize, values: V) {
+        let mut numbers = [V::One::default(); MOST_LANES];
+        values.store(&mut numbers);
+        for (to, number) in self.rows[row].iter_mut().zip(numbers).take(V::LANES) {
+            let number: f64 = number.into();
+            *to = number as f32;
+        }
+    }
+
+    #[inline(always)]
+    fn three<W: Float<One = f32>>(&self, first: usize, lane: usize) -> [W; 3] {
+        let [x, y, z] = [self.rows[first][lane], self.rows[first + 1][lane], self.rows[first + 2][lane]];
+        [W::splat(x.into()), W::splat(y.into()), W::splat(z.into())]
+    }
+
+    /// One of the rays, the same in every lane.
+    #[inline(always)]
+    pub(super) fn of_lane<W: Float<One = f32>>(&self, lane: usize) -> Coarse<W> {
+        let backward = [
+            usize::from(self.rows[3][lane] < 0.0),
+            usize::from(self.rows[4][lane] < 0.0),
+            usize::from(self.rows[5][lane] < 0.0),
+        ];
+        Coarse {
+            direction: self.three(0, lane),
+            inverse: self.three(3, lane),
+            near: self.three(6, lane),
+            far: self.three(9, lane),
+            origin: self.three(12, lane),
+            padding: W::splat(self.rows[15][lane].into()),
+            first: [3 * backward[0], 1 + 3 * backward[1], 2 + 3 * backward[2]],
+            last: [3 - 3 * backward[0], 4 - 3 * backward[1], 5 - 3 * backward[2]],
+        }
+    }
+}
+
+/// One ray.
+pub(super) struct Coarse<W> {
+    direction: [W; 3],
+    inverse: [W; 3],
+    near: [W; 3],
+    far: [W; 3],
+    origin: [W; 3],
+    padding: W,
+    /// Which of the six faces of a box it meets first and last along each axis.
+    first: [usize; 3],
+    last: [usize; 3],
+}
+
+impl<W: Float<One = f32>> Coarse<W> {
+    /// Where the ray enters each of the boxes with these faces, and whether it does so not beyond `limit`.
+    ///
+    /// A ray along a face gives NaN for that axis, and the comparisons then keep what the other axes say: it is let in.
+    #[inline(always)]
+    pub(super) fn enter(&self, faces: &[f32], limit: f64) -> (W, W::Mask) {
+        let (mut enter, mut leave) = (W::splat(0.0), W::splat(limit));
+        for axis in 0..3 {
+            let first = W::load(&faces[self.first[axis] * W::LANES..]);
+            let last = W::load(&faces[self.last[axis] * W::LANES..]);
+            enter = first.about_times_plus(self.inverse[axis], self.near[axis]).larger(enter);
+            leave = last.about_times_plus(self.inverse[axis], self.far[axis]).smaller(leave);
+        }
+        (enter, enter.le(leave))
+    }
+
+    /// Whether the ray's line passes all of the spheres with these centres and radii, one row of numbers after the other; `false` for a sphere where NaN
+    /// came up.
+    #[inline(always)]
+    pub(super) fn passes(&self, spheres: &[f32]) -> W::Mask {
+        let [dx, dy, dz] = self.direction;
+        let x = self.origin[0] - W::load(spheres);
+        let y = self.origin[1] - W::load(&spheres[W::LANES..]);
+        let z = self.origin[2] - W::load(&spheres[2 * W::LANES..]);
+        let radius = W::load(&spheres[3 * W::LANES..]) + self.padding;
+        let back = -x.about_times_plus(dx, y.about_times_plus(dy, z * dz));
+        let (x, y, z) = (dx.about_times_plus(back, x), dy.about_times_plus(back, y), dz.about_times_plus(back, z));
+        (radius * radius).lt(x.about_times_plus(x, y.about_times_plus(y, z * z)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::{dot, line_meets, unit};
+    use crate::sampling::{mix, uniform_sphere};
+    use crate::simd::{LEVELS, Mask, Precision, Work, on_level};
+
+    /// A ray, a sphere that its line meets, and how far along it a point of the sphere's box is.
+    struct Meeting {
+        ray: Ray,
+        center: Vec3,
+        radius: f64,
+        distance: f64,
+    }
+
+    /// Rays at spheres of all sizes from near and far, most of them along edges: of spheres seen from the ray's origin, and of boxes.
+    fn meetings() -> Vec<Meeting> {
+        let mut count = 0;
+        let mut random = || {
+            count += 1;
+            unit(mix(count))
+        };
+        let mut all = Vec::new();
+        while all.len() < 40_000 {
+            let [size, away] = [random(), random()].map(|x| libm::exp2(20.0 * x - 10.0));
+            let radius = size.min(1.0);
+            let center = uniform_sphere([random(), random()]) * random();
+            let origin = center + uniform_sphere([random(), random()]) * (radius + away);
+            let corner = [0, 1, 2].map(|_| if random() < 0.5 { -radius } else { radius });
+            let (from, side) = (center - origin, uniform_sphere([random(), random()]));
+            let across = side.cross(from).normalized();
+            for target in [center + across * radius, center + Vec3::new(corner[0], corner[1], corner[2]), center] {
+                let direction = (target - origin).normalized();
+                let distance = dot(target - origin, direction);
+                all.push(Meeting { ray: Ray { origin, direction }, center, radius, distance });
+            }
+        }
+        all
+    }
+
+    /// Counts the rays that pass their box and their sphere.
+    struct Try<'a>(&'a [Meeting], f64);
+
+    impl Work for Try<'_> {
+        type Output = usize;
+
+        #[inline(always)]
+        fn run<V: Float>(self) -> usize {
+            let Self(meetings, factor) = self;
+            let mut wrong = 0;
+            for Meeting { ray, center, radius, distance } in meetings {
+                let (ray, center) = (Ray { origin: ray.origin * factor, ..*ray }, *center * factor);
+                let (radius, distance) = (radius * factor, distance * factor);
+                let bounds = Bounds {
+                    low: [center.x - radius, center.y - radius, center.z - radius],
+                    high: [center.x + radius, center.y + radius, center.z + radius],
+                };
+                // A scene has the origin in it.
+                let scale = Scale::of(&bounds.and(&Bounds { low: [-factor; 3], high: [factor; 3] }));
+                let all = AllCoarse::of(
+                    &Ray::<V> { origin: Vec3::splat(ray.origin), direction: Vec3::splat(ray.direction) },
+                    scale,
+                );
+                let coarse = all.of_lane::<V::Single>(V::LANES - 1);
+                let padded = scale.padded(&bounds);
+                let rows = |numbers: &[f64]| -> Vec<f32> {
+                    numbers.iter().flat_map(|number| vec![*number as f32; V::Single::LANES]).collect()
+                };
+                let (_, met) = coarse.enter(&rows(&[padded.low, padded.high].concat()), distance * scale.0);
+                wrong += usize::from(!met.any());
+                let sphere = scale.sphere(&bounds, center, radius);
+                let meets = line_meets(ray.origin - center, ray.direction, 1.0, radius);
+                wrong += usize::from(meets && coarse.passes(&rows(&sphere)).any());
+            }
+            wrong
+        }
+    }
+
+    #[test]
+    fn what_is_met_is_let_in() {
+        let meetings = meetings();
+        for level in LEVELS.iter().filter(|level| level.is_available()) {
+            for factor in [1.0, 1e-60, 1e60] {
+                assert_eq!(
+                    on_level(level.name, Precision::F64, Try(&meetings, factor)),
+                    Some(0),
+                    "{} {factor}",
+                    level.name
+                );
+            }
+        }
+    }
+}
