@@ -189,8 +189,10 @@ mod tests {
         while all.len() < 40_000 {
             let [size, away] = [random(), random()].map(|x| libm::exp2(20.0 * x - 10.0));
             let radius = size.min(1.0);
-            let center = uniform_sphere([random(), random()]) * random();
-            let origin = center + uniform_sphere([random(), random()]) * (radius + away);
+            // Where one of both is near the origin of the scene, the other's padding has to do for it.
+            let one = uniform_sphere([random(), random()]) * libm::exp2(-20.0 * random());
+            let other = one + uniform_sphere([random(), random()]) * (radius + away);
+            let (center, origin) = if all.len() % 2 == 0 { (one, other) } else { (other, one) };
             let corner = [0, 1, 2].map(|_| if random() < 0.5 { -radius } else { radius });
             let (from, side) = (center - origin, uniform_sphere([random(), random()]));
             let across = side.cross(from).normalized();
