@@ -42,11 +42,11 @@ impl Bounds {
         0.5 * self.low[axis] + 0.5 * self.high[axis]
     }
 
-    /// The box with its share of the [`padding`] on every side: as far as rounding to so many digits can move it or a primitive in it.
+    /// The box with its share of the [`padding`] on every side: as far as rounding can move it or a primitive in it.
     #[must_use]
-    pub fn padded(&self, digits: u32) -> Self {
+    pub(super) fn padded(&self) -> Self {
         let largest = self.low.iter().chain(&self.high).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let padding = padding(digits) * largest;
+        let padding = padding(f64::MANTISSA_DIGITS) * largest;
         Self { low: self.low.map(|x| x - padding), high: self.high.map(|x| x + padding) }
     }
 
@@ -57,7 +57,7 @@ impl Bounds {
     /// Whether a ray meets the box, which is closed, or passes it by no more than 2^-47 times the largest coordinate of the box plus the
     /// largest of the ray's origin.
     pub fn meets(&self, ray: &Ray) -> bool {
-        Slabs::new(ray).enter(&self.padded(f64::MANTISSA_DIGITS).faces(), f64::INFINITY).is_some()
+        Slabs::new(ray).enter(&self.padded().faces(), f64::INFINITY).is_some()
     }
 
     /// Half of its surface; 0 if it is empty.

@@ -19,7 +19,7 @@ struct Task {
 /// The tree over the primitives that have a box; `None` if none has.
 pub(super) fn build(boxes: &[Option<Bounds>], mut rule: impl Split) -> Option<Hierarchy> {
     let bounds: Vec<Bounds> =
-        boxes.iter().map(|bounds| bounds.map_or(Bounds::EMPTY, |bounds| bounds.padded(f64::MANTISSA_DIGITS))).collect();
+        boxes.iter().map(|bounds| bounds.map_or(Bounds::EMPTY, |bounds| bounds.padded())).collect();
     let bounded: Vec<u32> =
         (0u32..).zip(boxes).filter(|(_, bounds)| bounds.is_some()).map(|(index, _)| index).collect();
     if bounded.is_empty() {

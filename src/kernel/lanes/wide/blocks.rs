@@ -140,16 +140,10 @@ impl<'a> Making<'a> {
     }
 }
 
-/// The numbers of a block that its primitives have in one place.
+/// What the triangles of a block have in one place, and what other blocks have behind it.
 #[inline(always)]
-fn column<V: Float>(blocks: &[V::One], block: u32, of: usize, place: usize) -> V {
-    V::load(&blocks[(block as usize * of + place) * V::LANES..])
-}
-
-/// The numbers of the primitives of a block.
-#[inline(always)]
-fn numbers<V: Float>(blocks: &[V::One], block: u32, of: usize) -> &[V::One] {
-    &blocks[(block as usize * of + of - 1) * V::LANES..]
+fn column<V: Float>(triangles: &[V::One], block: u32, place: usize) -> &[V::One] {
+    &triangles[(block as usize * OF_TRIANGLE + place) * V::LANES..]
 }
 
 /// Corners as the ray sees them, the first of whose coordinates is in that place.
@@ -157,9 +151,9 @@ fn numbers<V: Float>(blocks: &[V::One], block: u32, of: usize) -> &[V::One] {
 fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Turned<V>) -> [V; 3] {
     let [x, y, z] = ray.shear.axes;
     let [ox, oy, oz] = ray.origin;
-    let x = column::<V>(triangles, block, OF_TRIANGLE, first + x) - ox;
-    let y = column::<V>(triangles, block, OF_TRIANGLE, first + y) - oy;
-    let z = column::<V>(triangles, block, OF_TRIANGLE, first + z) - oz;
+    let x = V::load(column::<V>(triangles, block, first + x)) - ox;
+    let y = V::load(column::<V>(triangles, block, first + y)) - oy;
+    let z = V::load(column::<V>(triangles, block, first + z)) - oz;
     sheared([x, y, z], ray.shear.by)
 }
 
@@ -185,7 +179,7 @@ impl Blocks {
             let a = corner(triangles, block, 0, turned);
             let b = corner(triangles, block, 3, turned);
             let c = corner(triangles, block, 6, turned);
-            let numbers = numbers::<V>(triangles, block, OF_TRIANGLE);
+            let numbers = column::<V>(triangles, block, OF_TRIANGLE - 1);
             let is_own = V::splat(ray.from).equal(V::load(numbers));
             best.take(numbers, V::select(is_own, V::splat(f64::NAN), triangle_root(a, b, c)));
         }

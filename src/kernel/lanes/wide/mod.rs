@@ -1,8 +1,8 @@
-//! One ray against as many boxes or primitives as there are lanes: for scenes with triangles, and for large ones. Rays of a packet go anywhere, so
-//! one that looks into a hierarchy by itself tests fewer boxes than all of them together (Wald, Benthin and Boulos, "Getting Rid of Packets", 2008).
+//! One ray against many boxes or primitives at a time: for scenes with triangles, and for large ones. Rays of a packet go anywhere, so one that looks
+//! into a hierarchy by itself tests fewer boxes than all of them together (Wald, Benthin and Boulos, "Getting Rid of Packets", 2008).
 //!
-//! What it finds does not depend on how many lanes there are: boxes have a padding that covers what rounding can do, and among equally near primitives
-//! the lowest number wins. In double precision it is what the scalar search finds, to the bit.
+//! What it finds does not depend on how many are tested at a time: what is tested in single precision first has a padding that covers all rounding,
+//! and among equally near primitives the lowest number wins. In double precision it is what the scalar search finds, to the bit.
 
 mod blocks;
 mod coarse;
