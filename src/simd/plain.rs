@@ -259,8 +259,12 @@ macro_rules! float {
             }
             #[inline(always)]
             fn rows(table: &Table, rows: Self) -> [Self; 4] {
-                let [a, b, c, d] =
-                    [table.$row(rows.0[0]), table.$row(rows.0[1]), table.$row(rows.0[2]), table.$row(rows.0[3])];
+                let [a, b, c, d] = [
+                    table.$row(rows.0[0] as i32),
+                    table.$row(rows.0[1] as i32),
+                    table.$row(rows.0[2] as i32),
+                    table.$row(rows.0[3] as i32),
+                ];
                 [
                     Self([a[0], b[0], c[0], d[0]]),
                     Self([a[1], b[1], c[1], d[1]]),

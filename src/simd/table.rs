@@ -30,14 +30,14 @@ impl Table {
         Self { columns: columns(&rows), single_columns: columns(&singles), rows, singles }
     }
 
+    /// The row of that number; the first if there is none, since what is in a lane without a ray may be anything.
     #[inline(always)]
-    pub(super) fn row(&self, number: f64) -> &[f64; 4] {
-        // What is in a lane without a ray may be no row at all.
+    pub(super) fn row(&self, number: i32) -> &[f64; 4] {
         self.rows.get(number as usize).unwrap_or(&self.rows[0])
     }
 
     #[inline(always)]
-    pub(super) fn single_row(&self, number: f32) -> &[f32; 4] {
+    pub(super) fn single_row(&self, number: i32) -> &[f32; 4] {
         self.singles.get(number as usize).unwrap_or(&self.singles[0])
     }
 }

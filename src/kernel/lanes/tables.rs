@@ -31,13 +31,16 @@ impl Kind {
     }
 }
 
+/// What the number of a [`Kind`] is raised by where the surface gives off light.
+pub(super) const GIVES_OFF: f64 = 8.0;
+
 /// The tables of a scene.
 pub(super) struct Tables {
     /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of what is flat.
     pub(super) surfaces: Table,
-    /// The radiance, and 1 for what gives off any.
+    /// The radiance.
     pub(super) emissions: Table,
-    /// The albedo, and the [`Kind`].
+    /// The albedo, and the [`Kind`], by [`GIVES_OFF`] more for what gives off light.
     pub(super) materials: Table,
     /// Of dielectrics: index of refraction and its inverse, Schlick's reflectance at normal incidence, 1 for the exact formula.
     pub(super) interfaces: Table,
@@ -70,14 +73,14 @@ impl Tables {
         let of_objects = |row: fn(&crate::scene::Object) -> [f64; 4]| {
             Table::new(scene.owners.iter().map(|owner| row(&scene.objects[*owner as usize])).collect())
         };
-        let with = |Rgb { r, g, b }: Rgb, number: f64| [r, g, b, number];
-        let emissions = scene.owners.iter().map(|owner| {
-            let emission = scene.objects[*owner as usize].emission;
-            with(emission, f64::from(u8::from(!emission.is_black())))
+        let emissions = of_objects(|object| {
+            let Rgb { r, g, b } = object.emission;
+            [r, g, b, 0.0]
         });
-        let materials = scene.owners.iter().map(|owner| {
-            let material = &scene.objects[*owner as usize].material;
-            with(material.albedo::<AllEffects>(), Kind::of(material).number())
+        let materials = of_objects(|object| {
+            let Rgb { r, g, b } = object.material.albedo::<AllEffects>();
+            let light = if object.emission.is_black() { 0.0 } else { GIVES_OFF };
+            [r, g, b, Kind::of(&object.material).number() + light]
         });
         let interfaces = of_objects(|object| match &object.material {
             Material::Dielectric(glass) => {
@@ -89,8 +92,8 @@ impl Tables {
         let has_others = scene.objects.iter().any(|object| Kind::of(&object.material) == Kind::Other);
         Self {
             surfaces,
-            emissions: Table::new(emissions.collect()),
-            materials: Table::new(materials.collect()),
+            emissions,
+            materials,
             interfaces,
             has_others,
             is_round: first_flat as usize == scene.owners.len(),

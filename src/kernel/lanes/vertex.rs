@@ -2,7 +2,7 @@
 
 use super::Lanes;
 use super::packet::{LanesOf, Packet, Part, colour, differ, vector};
-use super::tables::Kind;
+use super::tables::{GIVES_OFF, Kind};
 use crate::kernel::Counts;
 use crate::material::Density;
 use crate::math::{
@@ -82,12 +82,14 @@ impl Lanes {
             return ended;
         }
         let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);
-        let vertex = Vertex { number, albedo: Rgb { r, g, b }, kind };
+        let gives_off = V::splat(GIVES_OFF);
+        let is_lamp = gives_off.le(kind);
+        let vertex = Vertex { number, albedo: Rgb { r, g, b }, kind: V::select(is_lamp, kind - gives_off, kind) };
         // Where nothing is aimed at, the point is worked out after what needs none: so less waits in registers.
         let early = if AIMS { Some(self.arrive(packet, met, t, primitive)) } else { None };
-        let [r, g, b, gives_off] = V::rows(&self.tables.emissions, primitive);
-        let lit = met & V::splat(0.5).lt(gives_off);
+        let lit = met & is_lamp;
         if lit.any() {
+            let [r, g, b, _] = V::rows(&self.tables.emissions, primitive);
             let mut emission = Rgb { r, g, b };
             if let Some(at) = &early {
                 emission = emission * self.share_of_arrival(packet, at, lit);

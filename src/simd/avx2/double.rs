@@ -5,11 +5,11 @@ use super::{Mask4, U64x4, spread};
 use crate::math::{Bits, Real};
 use crate::simd::{Float, Table};
 use std::arch::x86_64::{
-    __m256d, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blend_epi32,
-    _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_div_pd, _mm256_fmadd_pd,
-    _mm256_loadu_pd, _mm256_max_pd, _mm256_min_pd, _mm256_mul_pd, _mm256_or_pd, _mm256_or_si256,
-    _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_sqrt_pd, _mm256_srli_epi64, _mm256_storeu_pd, _mm256_sub_pd,
-    _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd,
+    __m256d, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_storeu_si128, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd,
+    _mm256_blend_epi32, _mm256_blendv_pd, _mm256_castpd_si256, _mm256_castsi256_pd, _mm256_cmp_pd, _mm256_cvttpd_epi32,
+    _mm256_div_pd, _mm256_fmadd_pd, _mm256_loadu_pd, _mm256_max_pd, _mm256_min_pd, _mm256_mul_pd, _mm256_or_pd,
+    _mm256_or_si256, _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_sqrt_pd, _mm256_srli_epi64, _mm256_storeu_pd,
+    _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd, _mm256_xor_pd,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -122,6 +122,14 @@ impl Float for F64x4 {
         Self(op!(_mm256_fmadd_pd(self.0, factor.0, addend.0)))
     }
     #[inline(always)]
+    fn sooner(self, other: Self) -> Self {
+        Self(op!(_mm256_min_pd(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn later(self, other: Self) -> Self {
+        Self(op!(_mm256_max_pd(self.0, other.0)))
+    }
+    #[inline(always)]
     fn number(bits: U64x4) -> Self {
         // Halves as the lowest digits of 2^84 and of 2^52; what is then taken away was added by that.
         op!({
@@ -137,8 +145,8 @@ impl Float for F64x4 {
     }
     #[inline(always)]
     fn rows(table: &Table, rows: Self) -> [Self; 4] {
-        let mut numbers = [0.0; 4];
-        op!(_mm256_storeu_pd(numbers.as_mut_ptr(), rows.0));
+        let mut numbers = [0; 4];
+        op!(_mm_storeu_si128(numbers.as_mut_ptr().cast(), _mm256_cvttpd_epi32(rows.0)));
         op!({
             let a = _mm256_loadu_pd(table.row(numbers[0]).as_ptr());
             let b = _mm256_loadu_pd(table.row(numbers[1]).as_ptr());

@@ -6,10 +6,11 @@ use crate::simd::two::Two;
 use crate::simd::{Float, Mask, Table};
 use std::arch::x86_64::{
     __m256, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm_loadu_ps, _mm256_add_ps, _mm256_and_ps, _mm256_andnot_ps,
-    _mm256_blendv_ps, _mm256_castps128_ps256, _mm256_cmp_ps, _mm256_cvtepi32_ps, _mm256_cvtpd_ps, _mm256_div_ps,
-    _mm256_fmadd_ps, _mm256_insertf128_ps, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_ps, _mm256_min_ps,
-    _mm256_mul_ps, _mm256_or_ps, _mm256_permutevar8x32_ps, _mm256_set1_ps, _mm256_shuffle_ps, _mm256_sqrt_ps,
-    _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps, _mm256_unpacklo_ps, _mm256_xor_ps,
+    _mm256_blendv_ps, _mm256_castps128_ps256, _mm256_cmp_ps, _mm256_cvtepi32_ps, _mm256_cvtpd_ps, _mm256_cvttps_epi32,
+    _mm256_div_ps, _mm256_fmadd_ps, _mm256_insertf128_ps, _mm256_loadu_ps, _mm256_loadu_si256, _mm256_max_ps,
+    _mm256_min_ps, _mm256_mul_ps, _mm256_or_ps, _mm256_permutevar8x32_ps, _mm256_set1_ps, _mm256_shuffle_ps,
+    _mm256_sqrt_ps, _mm256_storeu_ps, _mm256_storeu_si256, _mm256_sub_ps, _mm256_unpackhi_ps, _mm256_unpacklo_ps,
+    _mm256_xor_ps,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -134,8 +135,8 @@ impl Float for F32x8 {
     }
     #[inline(always)]
     fn rows(table: &Table, rows: Self) -> [Self; 4] {
-        let mut n = [0.0; 8];
-        rows.store(&mut n);
+        let mut n = [0; 8];
+        op!(_mm256_storeu_si256(n.as_mut_ptr().cast(), _mm256_cvttps_epi32(rows.0)));
         let a = pair(table.single_row(n[0]), table.single_row(n[4]));
         let b = pair(table.single_row(n[1]), table.single_row(n[5]));
         let c = pair(table.single_row(n[2]), table.single_row(n[6]));

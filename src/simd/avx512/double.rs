@@ -5,13 +5,13 @@ use super::{Mask8, U64x8};
 use crate::math::{Bits, Real};
 use crate::simd::{Float, Table};
 use std::arch::x86_64::{
-    __m512d, __m512i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_loadu_pd, _mm512_abs_pd, _mm512_add_pd,
-    _mm512_castpd_si512, _mm512_castpd256_pd512, _mm512_castsi512_pd, _mm512_cmp_pd_mask, _mm512_cmplt_epu64_mask,
-    _mm512_cvtepu64_pd, _mm512_cvttpd_epi64, _mm512_div_pd, _mm512_fmadd_pd, _mm512_insertf64x4, _mm512_loadu_pd,
-    _mm512_mask_blend_pd, _mm512_mask_expand_pd, _mm512_mask_mov_pd, _mm512_max_epu64, _mm512_max_pd, _mm512_min_epu64,
-    _mm512_min_pd, _mm512_mul_pd, _mm512_permutex2var_pd, _mm512_reduce_min_pd, _mm512_set1_pd, _mm512_setr_epi64,
-    _mm512_sqrt_pd, _mm512_storeu_pd, _mm512_sub_pd, _mm512_ternarylogic_epi64, _mm512_unpackhi_pd, _mm512_unpacklo_pd,
-    _mm512_xor_pd,
+    __m512d, __m512i, _CMP_EQ_OQ, _CMP_LE_OQ, _CMP_LT_OQ, _mm256_loadu_pd, _mm256_storeu_si256, _mm512_abs_pd,
+    _mm512_add_pd, _mm512_castpd_si512, _mm512_castpd256_pd512, _mm512_castsi512_pd, _mm512_cmp_pd_mask,
+    _mm512_cmplt_epu64_mask, _mm512_cvtepu64_pd, _mm512_cvttpd_epi32, _mm512_cvttpd_epi64, _mm512_div_pd,
+    _mm512_fmadd_pd, _mm512_insertf64x4, _mm512_loadu_pd, _mm512_mask_blend_pd, _mm512_mask_expand_pd,
+    _mm512_mask_mov_pd, _mm512_max_epu64, _mm512_max_pd, _mm512_min_epu64, _mm512_min_pd, _mm512_mul_pd,
+    _mm512_permutex2var_pd, _mm512_reduce_min_pd, _mm512_set1_pd, _mm512_setr_epi64, _mm512_sqrt_pd, _mm512_storeu_pd,
+    _mm512_sub_pd, _mm512_ternarylogic_epi64, _mm512_unpackhi_pd, _mm512_unpacklo_pd, _mm512_xor_pd,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -162,8 +162,8 @@ impl Float for F64x8 {
             let [a, b, c, d] = columns;
             return [entries(a, index), entries(b, index), entries(c, index), entries(d, index)];
         }
-        let mut n = [0.0; 8];
-        rows.store(&mut n);
+        let mut n = [0; 8];
+        op!(_mm256_storeu_si256(n.as_mut_ptr().cast(), _mm512_cvttpd_epi32(rows.0)));
         let a = pair(table.row(n[0]), table.row(n[4]));
         let b = pair(table.row(n[1]), table.row(n[5]));
         let c = pair(table.row(n[2]), table.row(n[6]));

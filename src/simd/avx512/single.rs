@@ -11,7 +11,7 @@ use std::arch::x86_64::{
     _mm512_cvttps_epi32, _mm512_div_ps, _mm512_fmadd_ps, _mm512_insertf32x4, _mm512_insertf64x4, _mm512_inserti64x4,
     _mm512_loadu_ps, _mm512_mask_blend_ps, _mm512_mask_expand_ps, _mm512_mask_mov_ps, _mm512_max_ps, _mm512_min_ps,
     _mm512_mul_ps, _mm512_permutex2var_ps, _mm512_reduce_min_ps, _mm512_set1_ps, _mm512_shuffle_ps, _mm512_sqrt_ps,
-    _mm512_storeu_ps, _mm512_sub_ps, _mm512_ternarylogic_epi32, _mm512_unpackhi_ps, _mm512_unpacklo_ps, _mm512_xor_ps,
+    _mm512_storeu_ps, _mm512_storeu_si512, _mm512_sub_ps, _mm512_ternarylogic_epi32, _mm512_unpackhi_ps, _mm512_unpacklo_ps, _mm512_xor_ps,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -149,8 +149,8 @@ impl Float for F32x16 {
             let [a, b, c, d] = columns;
             return [entries(a, index), entries(b, index), entries(c, index), entries(d, index)];
         }
-        let mut n = [0.0; 16];
-        rows.store(&mut n);
+        let mut n = [0; 16];
+        op!(_mm512_storeu_si512(n.as_mut_ptr().cast(), _mm512_cvttps_epi32(rows.0)));
         let a = four(table, [n[0], n[4], n[8], n[12]]);
         let b = four(table, [n[1], n[5], n[9], n[13]]);
         let c = four(table, [n[2], n[6], n[10], n[14]]);
@@ -178,7 +178,7 @@ fn entries(column: &[f32; 32], index: __m512i) -> F32x16 {
 
 /// Four rows in one register.
 #[inline(always)]
-fn four(table: &Table, numbers: [f32; 4]) -> __m512 {
+fn four(table: &Table, numbers: [i32; 4]) -> __m512 {
     let [a, b, c, d] = [
         table.single_row(numbers[0]),
         table.single_row(numbers[1]),
