@@ -11,7 +11,8 @@ use std::arch::x86_64::{
     _mm512_cvttps_epi32, _mm512_div_ps, _mm512_fmadd_ps, _mm512_insertf32x4, _mm512_insertf64x4, _mm512_inserti64x4,
     _mm512_loadu_ps, _mm512_mask_blend_ps, _mm512_mask_expand_ps, _mm512_mask_mov_ps, _mm512_max_ps, _mm512_min_ps,
     _mm512_mul_ps, _mm512_permutex2var_ps, _mm512_reduce_min_ps, _mm512_set1_ps, _mm512_shuffle_ps, _mm512_sqrt_ps,
-    _mm512_storeu_ps, _mm512_storeu_si512, _mm512_sub_ps, _mm512_ternarylogic_epi32, _mm512_unpackhi_ps, _mm512_unpacklo_ps, _mm512_xor_ps,
+    _mm512_storeu_ps, _mm512_storeu_si512, _mm512_sub_ps, _mm512_ternarylogic_epi32, _mm512_unpackhi_ps,
+    _mm512_unpacklo_ps, _mm512_xor_ps,
 };
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
