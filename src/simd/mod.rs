@@ -47,6 +47,7 @@ mod plain;
 mod table;
 #[cfg(test)]
 mod tests;
+#[cfg(target_arch = "x86_64")]
 mod two;
 
 use crate::math::{Bits, Real};

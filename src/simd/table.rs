@@ -7,11 +7,14 @@ pub struct Table {
     pub(super) rows: Vec<[f64; 4]>,
     pub(super) singles: Vec<[f32; 4]>,
     /// The columns of a table of at most 16 rows, padded with zeros: they fit two registers of 512 bits.
+    #[cfg(target_arch = "x86_64")]
     pub(super) columns: Option<[[f64; 16]; 4]>,
     /// Those of a table of at most 32 rows.
+    #[cfg(target_arch = "x86_64")]
     pub(super) single_columns: Option<[[f32; 32]; 4]>,
 }
 
+#[cfg(target_arch = "x86_64")]
 fn columns<T: Copy + Default, const N: usize>(rows: &[[T; 4]]) -> Option<[[T; N]; 4]> {
     (rows.len() <= N).then(|| {
         [0, 1, 2, 3].map(|j| {
@@ -27,7 +30,14 @@ impl Table {
     pub fn new(rows: Vec<[f64; 4]>) -> Self {
         assert!(!rows.is_empty(), "a table needs a row");
         let singles: Vec<[f32; 4]> = rows.iter().map(|row| row.map(|number| number as f32)).collect();
-        Self { columns: columns(&rows), single_columns: columns(&singles), rows, singles }
+        Self {
+            #[cfg(target_arch = "x86_64")]
+            columns: columns(&rows),
+            #[cfg(target_arch = "x86_64")]
+            single_columns: columns(&singles),
+            rows,
+            singles,
+        }
     }
 
     /// The row of that number; the first if there is none, since what is in a lane without a ray may be anything.
