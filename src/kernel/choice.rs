@@ -165,12 +165,12 @@ const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
 fn obstacle(scene: &Scene, spec: &Spec) -> Option<&'static str> {
     let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
     let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
-    let asked = [
+    let others = [
         (spec.effects.is_some(), "effects"),
         (spec.clamp.is_some(), "clamp"),
         (scene.owners.len() >= MOST_IN_LANES, "primitives"),
     ];
-    of_scene.or_else(|| asked.into_iter().find(|(is_asked, _)| *is_asked).map(|(_, name)| name))
+    of_scene.or_else(|| others.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name))
 }
 
 /// The level on which lanes render a scene with these settings, or why they do not.

@@ -45,9 +45,18 @@ impl Bounds {
     /// The box with its share of the [`padding`] on every side: as far as rounding can move it or a primitive in it.
     #[must_use]
     pub(super) fn padded(&self) -> Self {
-        let largest = self.low.iter().chain(&self.high).fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let padding = padding(f64::MANTISSA_DIGITS) * largest;
-        Self { low: self.low.map(|x| x - padding), high: self.high.map(|x| x + padding) }
+        self.grown(padding(f64::MANTISSA_DIGITS) * self.largest())
+    }
+
+    /// The box with every side moved outwards.
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        Self { low: self.low.map(|x| x - by), high: self.high.map(|x| x + by) }
+    }
+
+    /// The largest of its coordinates, whatever their signs.
+    pub fn largest(&self) -> f64 {
+        self.low.iter().chain(&self.high).fold(0.0, |largest, x| largest.max(x.abs()))
     }
 
     pub(super) fn faces(&self) -> Faces {

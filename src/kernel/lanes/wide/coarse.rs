@@ -21,19 +21,18 @@ pub(super) struct Scale(pub(super) f64);
 impl Scale {
     pub(super) fn of(bounds: &Bounds) -> Self {
         // Nothing at all has an infinite box, and any exponent.
-        let (_, exponent) = libm::frexp(largest(bounds));
+        let (_, exponent) = libm::frexp(bounds.largest());
         Self(libm::ldexp(1.0, -exponent.clamp(-1000, 1000)))
     }
 
     fn padding(bounds: &Bounds) -> f64 {
-        padding(f32::MANTISSA_DIGITS) * largest(bounds).max(SMALLEST)
+        padding(f32::MANTISSA_DIGITS) * bounds.largest().max(SMALLEST)
     }
 
     /// A box to test rays against.
     pub(super) fn padded(self, bounds: &Bounds) -> Bounds {
         let bounds = self.scaled(bounds);
-        let padding = Self::padding(&bounds);
-        Bounds { low: bounds.low.map(|x| x - padding), high: bounds.high.map(|x| x + padding) }
+        bounds.grown(Self::padding(&bounds))
     }
 
     /// The centre of a sphere with this box, and a radius to test rays against.
@@ -46,10 +45,6 @@ impl Scale {
     fn scaled(self, bounds: &Bounds) -> Bounds {
         Bounds { low: bounds.low.map(|x| x * self.0), high: bounds.high.map(|x| x * self.0) }
     }
-}
-
-fn largest(bounds: &Bounds) -> f64 {
-    bounds.low.iter().chain(&bounds.high).fold(0.0, |largest, x| largest.max(x.abs()))
 }
 
 /// Rays of many lanes.
