@@ -1,0 +1,235 @@
+//! The kernel of SIMD lanes gives what the scalar kernel gives, sample by sample and bit for bit, on every instruction set that this processor
+//! has. The scalar kernel is the oracle here; that it is right is what the other tests are about.
+
+mod precision;
+
+use crate::watchdog::Watchdog;
+use pathmark::estimator::ESTIMATORS;
+use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
+use pathmark::kernel::{Clamp, Counts, Kernel, Spec, build, choose};
+use pathmark::scene::{SCENES, Scene, load};
+use pathmark::simd::{Entry, LEVELS};
+use statrs::distribution::{ContinuousCDF, Normal};
+use std::sync::Arc;
+use std::time::Duration;
+
+fn levels() -> impl Iterator<Item = &'static Entry> {
+    LEVELS.iter().filter(|level| level.is_available())
+}
+
+fn render(kernel: &dyn Kernel, piece: &Piece) -> (TileBuffer, Counts) {
+    let mut buffer = TileBuffer::new(piece.bounds);
+    let counts = kernel.render(piece, &mut buffer);
+    (buffer, counts)
+}
+
+/// How many boxes and primitives rays are tested against depends on how many lanes there are; nothing else does.
+fn without_tests(counts: Counts) -> Counts {
+    Counts { box_tests: 0, primitive_tests: 0, ..counts }
+}
+
+/// Insists that lanes on every level render a piece as the scalar kernel does, and that it is lanes that render.
+fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
+    // Lanes test more primitives before they look into a hierarchy; here both go by the same.
+    let accelerator = Some(choose(scene, spec).unwrap().accelerator().to_string());
+    let spec = &Spec { accelerator, ..spec.clone() };
+    let scalar = build(scene, &Spec { kernel: "scalar".into(), ..spec.clone() }).unwrap();
+    let expected: Vec<_> = pieces.iter().map(|piece| render(&*scalar, piece)).collect();
+    for level in levels() {
+        let spec = Spec { kernel: "lanes".into(), simd: Some(level.name.into()), ..spec.clone() };
+        let what = format!("{}, {}, {}, {}", scene.name, spec.estimator, spec.sampler, level.name);
+        let choice = choose(scene, &spec).unwrap();
+        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("lanes", level.name, ""), "{what}");
+        let lanes = build(scene, &spec).unwrap();
+        for (piece, (buffer, counts)) in pieces.iter().zip(&expected) {
+            let (sums, found) = render(&*lanes, piece);
+            assert_eq!(found.box_tests > 0, counts.box_tests > 0, "{what}: boxes of {piece:?}");
+            assert_eq!(without_tests(found), without_tests(*counts), "{what}: counts of {piece:?}");
+            assert!(sums == *buffer, "{what}: sums of {piece:?}");
+        }
+    }
+}
+
+/// Whether lanes render a scene at all; [`what_lanes_cannot_do_is_told`] says which they do not.
+fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
+    choose(scene, spec).unwrap().kernel() == "lanes"
+}
+
+#[test]
+fn every_scene_has_the_scalar_kernels_bits() {
+    let watchdog = Watchdog::new(Duration::from_mins(5));
+    let (mut compared, mut scenes) = (0, 0);
+    for (name, _) in SCENES {
+        watchdog.now(*name);
+        let scene = Arc::new(load(name).unwrap());
+        let before = compared;
+        for estimator in ESTIMATORS {
+            for sampler in ["independent", "hash", "sobol"] {
+                let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
+                let spec = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
+                if !is_for_lanes(&scene, &spec) {
+                    continue;
+                }
+                let bounds = Bounds { x0: 0, y0: 0, x1: 24, y1: 18 };
+                assert_same(&scene, &spec, &[Piece { bounds, samples: 0..8 }]);
+                compared += 1;
+            }
+        }
+        scenes += usize::from(compared > before);
+    }
+    assert!(scenes >= 24 && compared >= 8 * 24, "{compared} comparisons of {scenes} scenes");
+}
+
+/// Single precision gives the same bits on every instruction set, and no sample that is none. It has the random numbers of double precision, to fewer
+/// digits, so most paths are nearly the same, and what is left of the difference of both images is its own standard error: no scene is darker or
+/// lighter by more than single precision rounds (z-test of the paired difference, two-sided, family-wise 1e-3).
+#[test]
+fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
+    let watchdog = Watchdog::new(Duration::from_mins(5));
+    let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..64 };
+    let mut scores = Vec::new();
+    for (name, _) in SCENES {
+        watchdog.now(*name);
+        let scene = Arc::new(load(name).unwrap());
+        for (estimator, sampler) in [("smallpt", "independent"), ("mis", "sobol"), ("nee", "independent")] {
+            let (estimator, sampler) = (estimator.to_string(), sampler.to_string());
+            let double = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
+            if !is_for_lanes(&scene, &double) {
+                continue;
+            }
+            let single = Spec { precision: "f32".into(), ..double.clone() };
+            let what = format!("{name}, {}", single.estimator);
+            let on = |level: &Entry, piece: &Piece| {
+                let spec = Spec { simd: Some(level.name.into()), ..single.clone() };
+                assert_eq!(choose(&scene, &spec).unwrap().precision().name(), "f32");
+                let (sums, counts) = render(&*build(&scene, &spec).unwrap(), piece);
+                (sums, without_tests(counts))
+            };
+            let few = Piece { samples: 0..4, ..piece.clone() };
+            let expected = on(levels().next().unwrap(), &few);
+            for level in levels() {
+                assert!(on(level, &few) == expected, "{what}: {}", level.name);
+            }
+            let (found, counts) = on(levels().next().unwrap(), &piece);
+            assert_eq!(counts.invalid, 0, "{what}");
+            let (expected, in_double) = render(&*build(&scene, &double).unwrap(), &piece);
+            assert!(counts.escaped == 0 || in_double.escaped > 0, "{what}: {} rays escaped", counts.escaped);
+            scores.push((difference(&found, &expected), what));
+        }
+    }
+    assert!(scores.len() > 60, "{} comparisons", scores.len());
+    let largest = Normal::standard().inverse_cdf(1.0 - 1e-3 / scores.len() as f64 / 2.0);
+    for (Difference { mean, error, of }, what) in scores {
+        assert!(mean.abs() < largest * error + ROUNDING * of, "{what}: {mean} of {of}, standard error {error}");
+    }
+}
+
+/// What the roundings along a path may change of its radiance, relatively.
+const ROUNDING: f64 = 1e-5;
+
+/// The mean difference of two images' pixels.
+struct Difference {
+    mean: f64,
+    /// Its standard error.
+    error: f64,
+    /// The mean pixel.
+    of: f64,
+}
+
+fn difference(found: &TileBuffer, expected: &TileBuffer) -> Difference {
+    let sum = |pixel: &PixelSum| pixel.sum.iter().sum::<f64>();
+    let pairs = found.rows().flatten().zip(expected.rows().flatten());
+    let differences: Vec<f64> = pairs.map(|(found, expected)| sum(found) - sum(expected)).collect();
+    let n = differences.len() as f64;
+    let mean = differences.iter().sum::<f64>() / n;
+    let square =
+        differences.iter().map(|difference| (difference - mean) * (difference - mean)).sum::<f64>() / (n - 1.0);
+    let of = expected.rows().flatten().map(sum).sum::<f64>() / n;
+    Difference { mean, error: (square / n).sqrt(), of }
+}
+
+/// Of any shape: a pixel alone, a sample alone, more samples than may be out at once, a row, samples from the middle, and none.
+#[test]
+fn pieces_of_any_shape_have_the_scalar_kernels_bits() {
+    let watchdog = Watchdog::new(Duration::from_mins(2));
+    let scene = Arc::new(load("cornell").unwrap());
+    let piece = |x0, y0, x1, y1, samples| Piece { bounds: Bounds { x0, y0, x1, y1 }, samples };
+    let pieces = [
+        piece(5, 7, 6, 8, 0..1),
+        piece(20, 20, 21, 21, 0..1500),
+        piece(0, 11, 64, 12, 3..5),
+        piece(40, 30, 47, 41, 16..48),
+        piece(63, 47, 64, 48, 1000..1017),
+        piece(9, 9, 12, 10, 4..4),
+    ];
+    for estimator in ["smallpt", "mis"] {
+        watchdog.now(estimator);
+        let spec = Spec { width: 64, height: 48, seed: 5, estimator: estimator.into(), ..Spec::default() };
+        assert_same(&scene, &spec, &pieces);
+    }
+}
+
+/// Limits and rules: cut at every depth, ended by chance in every way.
+#[test]
+fn options_have_the_scalar_kernels_bits() {
+    let watchdog = Watchdog::new(Duration::from_mins(2));
+    let scene = Arc::new(load("cornell").unwrap());
+    let pieces = [Piece { bounds: Bounds { x0: 0, y0: 0, x1: 32, y1: 24 }, samples: 0..4 }];
+    for estimator in ["smallpt", "bsdf", "nee", "mis"] {
+        watchdog.now(estimator);
+        let spec = Spec { width: 32, height: 24, estimator: estimator.into(), ..Spec::default() };
+        for depth in [0, 1, 2, 3, 6, 40] {
+            assert_same(&scene, &Spec { max_depth: Some(depth), ..spec.clone() }, &pieces);
+        }
+        for roulette in ["albedo:0", "throughput:0", "throughput:3", "albedo:9"] {
+            assert_same(&scene, &Spec { roulette: Some(roulette.into()), ..spec.clone() }, &pieces);
+        }
+        for accelerator in ["none", "sah"] {
+            assert_same(&scene, &Spec { accelerator: Some(accelerator.into()), ..spec.clone() }, &pieces);
+        }
+    }
+}
+
+/// The scalar kernel does it instead, and says why.
+#[test]
+fn what_lanes_cannot_do_is_told() {
+    let spec = Spec::default;
+    for (scene, spec, reason) in [
+        ("cornell-fog", spec(), "fog"),
+        ("cornell-lens", spec(), "lens"),
+        ("report-c", spec(), "point-light"),
+        ("cornell", Spec { estimator: "whitted".into(), ..spec() }, "estimator"),
+        ("cornell", Spec { sampler: "stratified".into(), ..spec() }, "sampler"),
+        ("cornell", Spec { sampler: "locked".into(), ..spec() }, "sampler"),
+        ("cornell", Spec { effects: Some("smallpt".into()), ..spec() }, "effects"),
+        ("cornell", Spec { clamp: Some(Clamp::Subpixel), ..spec() }, "clamp"),
+    ] {
+        let choice = choose(&load(scene).unwrap(), &spec).unwrap();
+        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("scalar", "", reason), "{scene}");
+    }
+    let asked = choose(&load("cornell").unwrap(), &Spec { kernel: "scalar".into(), ..spec() }).unwrap();
+    assert_eq!((asked.kernel(), asked.fallback()), ("scalar", ""));
+}
+
+#[test]
+fn unknown_levels_are_refused() {
+    for (field, spec) in [
+        ("simd", Spec { simd: Some("mmx".into()), ..Spec::default() }),
+        ("kernel", Spec { kernel: "spectral".into(), ..Spec::default() }),
+        ("precision", Spec { precision: "f16".into(), ..Spec::default() }),
+    ] {
+        let Err(error) = choose(&load("cornell").unwrap(), &spec) else { panic!("{field} is taken") };
+        let text = error.to_string();
+        assert!(text.contains(field) && text.contains("there is none of that name"), "{text}");
+    }
+}
+
+#[test]
+fn the_scalar_kernel_has_one_precision() {
+    let spec = Spec { kernel: "scalar".into(), precision: "f32".into(), ..Spec::default() };
+    let Err(error) = choose(&load("cornell").unwrap(), &spec) else { panic!("it is taken") };
+    assert!(error.to_string().contains("precision") && error.to_string().contains("f64"), "{error}");
+    // Where lanes cannot render, the record says which precision did.
+    let choice = choose(&load("cornell-fog").unwrap(), &Spec { precision: "f32".into(), ..Spec::default() }).unwrap();
+    assert_eq!((choice.kernel(), choice.precision().name(), choice.fallback()), ("scalar", "f64", "fog"));
+}

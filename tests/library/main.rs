@@ -1,0 +1,28 @@
+//! What the library promises, without the program: one test program, because each one that links the library costs seconds to build.
+
+mod atomic_file;
+mod convergence;
+mod determinism;
+mod effects;
+mod energy;
+mod equilibrium;
+#[path = "../support/estimate.rs"]
+mod estimate;
+mod estimators;
+mod every_scene;
+mod hard_cases;
+mod image_io;
+mod lanes;
+mod layering;
+mod metric;
+mod peer;
+mod properties;
+mod rounds;
+mod samplers;
+mod scene_identity;
+#[path = "../support/scene_text.rs"]
+mod scene_text;
+mod schedule_invariance;
+mod slopes;
+#[path = "../support/watchdog.rs"]
+mod watchdog;

@@ -1,0 +1,119 @@
+//! Films cut into pieces, jobs handed out: everything once.
+
+use super::cases;
+use pathmark::film::{DECOMPOSITIONS, Decomposition, Plan, SAMPLE_BLOCK, sections};
+use pathmark::strategy::{Config, Discipline, STRATEGIES, block};
+use proptest::prelude::*;
+use std::num::NonZeroUsize;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Texts of every line of the table, with numbers of their own where a line has any.
+fn decomposition() -> impl Strategy<Value = String> {
+    let orders = prop::sample::select(&["", ":scanline", ":hilbert", ":spiral", ":cost"]);
+    let numbers = (1..90_u32, 1..40_u32, 1..40_u32, 0..4_u32, orders);
+    (0..DECOMPOSITIONS.len(), numbers).prop_map(|(line, (n, width, height, k, order))| {
+        match DECOMPOSITIONS[line].name {
+            name @ ("bands" | "grid") => format!("{name}:{n}"),
+            "tiles" => format!("tiles:{width}x{height}{order}"),
+            "samples" => format!("samples:{}:{width}x{height}", SAMPLE_BLOCK << k),
+            _ => DECOMPOSITIONS[line].example.to_string(),
+        }
+    })
+}
+
+/// What is wrong with a plan, if anything: each sample of each pixel must be in one piece.
+fn problem(plan: &Plan, width: u32, height: u32, samples: u32) -> Option<String> {
+    let mut covered = vec![Vec::new(); width as usize * height as usize];
+    for piece in plan.pieces() {
+        let bounds = piece.bounds;
+        if bounds.x1 > width || bounds.y1 > height || bounds.area() == 0 || piece.samples.is_empty() {
+            return Some(format!("{piece:?} is not in the film"));
+        }
+        for y in bounds.y0..bounds.y1 {
+            for x in bounds.x0..bounds.x1 {
+                covered[(y * width + x) as usize].push(piece.samples.clone());
+            }
+        }
+    }
+    for (pixel, ranges) in covered.iter_mut().enumerate() {
+        ranges.sort_by_key(|range| range.start);
+        let ends = [0].into_iter().chain(ranges.iter().map(|range| range.end));
+        let starts = ranges.iter().map(|range| range.start).chain([samples]);
+        if !ends.eq(starts) {
+            return Some(format!("pixel {pixel} has the samples {ranges:?} of {samples}"));
+        }
+    }
+    None
+}
+
+proptest! {
+    #![proptest_config(cases(400))]
+
+    #[test]
+    fn every_sample_of_every_pixel_is_in_one_piece(
+        text in decomposition(), width in 1..70_u32, height in 1..70_u32, samples in 1..200_u32, costs in any::<u64>(),
+    ) {
+        let decomposition = Decomposition::parse(&text).expect("a line of the table");
+        prop_assert_eq!(decomposition.name(), &text);
+        let plan = decomposition.plan(width, height, &(0..samples));
+        prop_assert_eq!(problem(&plan, width, height, samples), None, "{}", text);
+        // Whatever the pieces cost, the dearest come first and none is lost.
+        let cost = |k: usize| (costs.rotate_left(k as u32) % 7) as f64;
+        let costs: Vec<f64> = (0..plan.len()).map(cost).collect();
+        let sorted = plan.clone().longest_first(&costs);
+        prop_assert_eq!(problem(&sorted, width, height, samples), None, "{}", text);
+        let place = |piece| plan.pieces().iter().position(|other| other == piece).expect("a piece of the plan");
+        let order: Vec<usize> = sorted.pieces().iter().map(place).collect();
+        let right = |pair: &[usize]| costs[pair[0]] > costs[pair[1]] || (costs[pair[0]] == costs[pair[1]] && pair[0] < pair[1]);
+        prop_assert!(order.windows(2).all(right), "{order:?}");
+    }
+
+    #[test]
+    fn sections_follow_one_another(start in 0..1000_u32, length in 0..100_000_u32) {
+        let samples = start * SAMPLE_BLOCK..start * SAMPLE_BLOCK + length;
+        let found = sections(&samples);
+        let ends = [samples.start].into_iter().chain(found.iter().map(|section| section.end));
+        prop_assert!(ends.eq(found.iter().map(|section| section.start).chain([samples.end])), "{found:?}");
+        // A run of samples has two slopes of subtrees at most, up and down.
+        prop_assert!(found.len() <= 2 * 32);
+    }
+
+    /// What each strategy says that it will do with its jobs has each of them once.
+    #[test]
+    fn disciplines_hand_out_every_job_once(jobs in 0..3000_usize, workers in 1..70_usize) {
+        for entry in STRATEGIES {
+            match (entry.discipline)(None).expect("no parameter is a parameter") {
+                Discipline::Dealt(deal) => {
+                    let mut dealt: Vec<usize> = (0..workers).flat_map(|worker| deal(worker, workers, jobs)).collect();
+                    dealt.sort_unstable();
+                    prop_assert!(dealt.into_iter().eq(0..jobs), "{}", entry.name);
+                }
+                Discipline::Chunks(rule) => {
+                    let handed: Vec<usize> = rule.chunks(jobs, workers).flatten().collect();
+                    prop_assert!(handed.into_iter().eq(0..jobs), "{}", entry.name);
+                }
+                _ => {}
+            }
+        }
+        let blocks: Vec<usize> = (0..workers).flat_map(|worker| block(worker, workers, jobs)).collect();
+        prop_assert!(blocks.into_iter().eq(0..jobs));
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(40))]
+
+    /// F12: no job, one, fewer than threads, many.
+    #[test]
+    fn strategies_run_every_job_once(jobs in prop_oneof![0..4_usize, 0..40_usize, 0..700_usize], threads in 1..9_usize) {
+        for entry in STRATEGIES {
+            let threads = NonZeroUsize::new(threads).expect("at least one");
+            let mut strategy = (entry.new)(Config::new(threads)).expect("threads");
+            let runs: Arc<[AtomicU32]> = (0..jobs).map(|_| AtomicU32::new(0)).collect();
+            let counted = Arc::clone(&runs);
+            strategy.run(jobs, Arc::new(move |job| _ = counted[job].fetch_add(1, Ordering::Relaxed))).expect("no failure");
+            prop_assert!(runs.iter().all(|runs| runs.load(Ordering::Relaxed) == 1), "{}", entry.name);
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Renders that decide for themselves: where they stop, and where their samples go.
+
+use crate::scene_text::{Ball, load_scene};
+use pathmark::analysis::z_test::{critical_value, normal_quantile, z_score};
+use pathmark::film::Film;
+use pathmark::kernel::Spec;
+use pathmark::measure::{CONFIDENCE, Goal, Position, Rounds, Settings, Setup, Warning};
+use pathmark::scene::{Scene, load};
+use std::sync::Arc;
+
+const LEVEL: f64 = 1e-3;
+
+fn setup(scene: &Arc<Scene>, width: u32, height: u32, seed: u64, spp: u32) -> Setup {
+    let spec = Spec { width, height, seed, estimator: "bsdf".into(), ..Spec::default() };
+    let (strategy, decomposition) = ("serial".into(), "tiles:16x16".into());
+    let settings = Settings { spp, spec, strategy, decomposition, threads: 1, ..Settings::default() };
+    Setup::for_scene(Arc::clone(scene), settings).unwrap()
+}
+
+fn goal() -> Goal {
+    Goal { spp: None, target_error: None, time_limit_s: None, pause_s: None }
+}
+
+fn pursue(rounds: &mut Rounds, goal: Goal) -> Option<Warning> {
+    goal.check(rounds).unwrap();
+    goal.pursue(rounds, None, None, &mut |_, _| Ok(())).unwrap()
+}
+
+/// A closed diffuse sphere of albedo 1/2 and emission 1 around the camera (P07): the radiance is 2 everywhere. Five vertices are certain,
+/// the others follow roulette, so the variance of a sample is (1/2)^10 · (1/2) / (1/2)^2 = 1/512, with the channels all alike.
+fn furnace() -> Arc<Scene> {
+    let material = "{ diffuse = { albedo = [0.5, 0.5, 0.5] } }".to_string();
+    let ball = Ball { center: [0.0; 3], radius: 2.0, material, emission: [1.0; 3] };
+    Arc::new(load_scene([0.3, -0.2, 0.5], &[ball]).unwrap())
+}
+
+fn error_in_furnace(film: &Film) -> f64 {
+    let image = film.image();
+    let squares = image.pixels.as_flattened().iter().map(|value| (value - 2.0) * (value - 2.0));
+    (squares.sum::<f64>() / (3 * image.pixels.len()) as f64).sqrt()
+}
+
+/// The target is what 64 samples reach on average. With the margin it takes a few more, whatever the seed, and over 50 seeds the error itself
+/// is below the target about as often as said, and not far below.
+#[test]
+fn a_target_is_hit_as_often_as_said_and_not_by_much_more() {
+    const SEEDS: u64 = 50;
+    const ON_AVERAGE: f64 = 64.0;
+    let target = (1.0 / 512.0 / ON_AVERAGE).sqrt();
+    let scene = furnace();
+    let mut reached = Vec::new();
+    for seed in 1..=SEEDS {
+        let mut rounds = Rounds::new(setup(&scene, 32, 24, seed, 16)).unwrap();
+        assert_eq!(pursue(&mut rounds, Goal { target_error: Some(target), ..goal() }), None);
+        let film = rounds.film();
+        assert!(film.noise().unwrap().bound(normal_quantile(CONFIDENCE).unwrap()) <= target * target);
+        reached.push((error_in_furnace(&film) / target, rounds.spp()));
+    }
+    reached.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let misses = reached.iter().filter(|(error, _)| *error > 1.0).count();
+    println!("{misses} misses: {reached:?}");
+    // Of Binomial(50, 0.05), 9 and more have a probability below 1e-3. None is no fault (0.08).
+    assert!(misses < 9, "{reached:?}");
+    let median = reached[SEEDS as usize / 2].0;
+    assert!((0.93..0.98).contains(&median), "{median}");
+    // Twice the standard normal quantile times the scatter of 768 equal pixels is 17 %.
+    assert!(reached.iter().all(|(_, spp)| (ON_AVERAGE..1.17 * ON_AVERAGE).contains(&f64::from(*spp))), "{reached:?}");
+}
+
+/// What stopped at its goal is what that many samples at once give, and says if it came too late.
+#[test]
+fn a_goal_changes_no_bit() {
+    let scene = Arc::new(load("cornell").unwrap());
+    let goals = [
+        (Goal { target_error: Some(0.5), ..goal() }, None),
+        (Goal { time_limit_s: Some(1e-9), ..goal() }, None),
+        (Goal { time_limit_s: Some(0.02), pause_s: Some(1e-9), ..goal() }, None),
+        (Goal { target_error: Some(1e-3), time_limit_s: Some(0.01), ..goal() }, Some(Warning::TargetMissed)),
+        (Goal { spp: Some(53), pause_s: Some(1e-9), ..goal() }, None),
+        (Goal { target_error: Some(0.5), pause_s: Some(1e-9), ..goal() }, None),
+    ];
+    let mut reached = Vec::new();
+    for (goal, warning) in goals {
+        let mut rounds = Rounds::new(setup(&scene, 24, 16, 5, 16)).unwrap();
+        assert_eq!(pursue(&mut rounds, goal), warning, "{goal:?}");
+        let at_once = setup(&scene, 24, 16, 5, rounds.spp()).run(None).unwrap();
+        assert_eq!(rounds.film(), at_once.film, "{goal:?}");
+        assert_eq!(rounds.outcome().checksum, at_once.checksum);
+        reached.push(rounds.spp());
+    }
+    // Stops on the way do not move the end; a limit that nothing fits in leaves one round.
+    assert_eq!((reached[0], reached[1], reached[4]), (reached[5], 1, 53));
+}
+
+/// On the way to more samples than are asked for now, as a checkpoint may say: it stops where it is told to.
+#[test]
+fn an_earlier_look_does_not_lead_beyond_the_goal() {
+    let scene = Arc::new(load("cornell").unwrap());
+    for (look, expected) in [(64, 32), (20, 32), (0, 32)] {
+        let mut rounds = Rounds::new(setup(&scene, 8, 8, 1, 16)).unwrap();
+        let before = Some(Position { rendering_s: 1.0, look });
+        let mut stops = Vec::new();
+        let between = &mut |rounds: &Rounds, _| {
+            stops.push(rounds.spp());
+            Ok(())
+        };
+        Goal { spp: Some(32), ..goal() }.pursue(&mut rounds, before, None, between).unwrap();
+        assert_eq!((rounds.spp(), stops.contains(&20)), (expected, look == 20));
+    }
+}
+
+#[test]
+fn goals_that_say_nothing_are_refused() {
+    let scene = Arc::new(load("cornell").unwrap());
+    let refused = |goal: Goal, width| {
+        let rounds = Rounds::new(setup(&scene, width, 8, 1, 16)).unwrap();
+        assert!(goal.check(&rounds).is_err(), "{goal:?}");
+    };
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        refused(Goal { target_error: Some(value), ..goal() }, 8);
+        refused(Goal { time_limit_s: Some(value), ..goal() }, 8);
+    }
+    refused(Goal { target_error: Some(0.1), ..goal() }, 7);
+    // More samples than an image can have: found out at the first look, not after hours.
+    let mut rounds = Rounds::new(setup(&scene, 8, 8, 1, 16)).unwrap();
+    let error = Goal { target_error: Some(1e-6), ..goal() }.pursue(&mut rounds, None, None, &mut |_, _| Ok(()));
+    assert!(error.is_err_and(|error| error.to_string().contains("samples per pixel")));
+    assert_eq!(rounds.spp(), 16);
+}
+
+/// A pixel that is a cell of its own has many samples where the pilot was bright and few where it was dark. Over many seeds its mean is
+/// that of equally many everywhere: z-test on one pixel, two-sided, at 1e-3.
+#[test]
+fn adaptive_sampling_is_unbiased() {
+    const SEEDS: u64 = 3000;
+    // Seen from inside a closed ball, a lamp that paths find seldom.
+    let ball = |center, radius, albedo: &str, emission| Ball {
+        center,
+        radius,
+        material: format!("{{ diffuse = {{ albedo = [{albedo}, {albedo}, {albedo}] }} }}"),
+        emission,
+    };
+    let balls = [ball([0.0; 3], 2.0, "0.6", [0.0; 3]), ball([0.0, 1.0, 0.0], 0.4, "0.0", [10.0; 3])];
+    let scene = Arc::new(load_scene([0.3, -0.9, 0.5], &balls).unwrap());
+    let moments = |render: &dyn Fn(&Setup) -> Film, first: u64| {
+        let (mut sum, mut square) = (0.0, 0.0);
+        for seed in first..first + SEEDS {
+            let film = render(&setup(&scene, 17, 1, seed, 16));
+            let [r, g, b] = film.pixels()[16].mean();
+            let value = (r + g + b) / 3.0;
+            sum += value;
+            square += value * value;
+        }
+        let n = SEEDS as f64;
+        (sum / n, ((square / n - sum * sum / n / n) / (n - 1.0)).sqrt())
+    };
+    let adaptive = moments(&|setup| setup.run_adaptive(None).unwrap().film, 1);
+    let even = moments(&|setup| setup.run(None).unwrap().film, 1 + SEEDS);
+    let z = z_score(adaptive.0, adaptive.1, even.0, even.1).unwrap();
+    println!("adaptive {adaptive:?}, even {even:?}, z {z:.2}");
+    assert!(z.abs() < critical_value(LEVEL).unwrap(), "{adaptive:?} against {even:?}: z = {z}");
+}
+
+/// As many samples as asked for, to a step in one cell, more of them where the noise is, and less noise for it.
+#[test]
+fn adaptive_sampling_keeps_its_total_and_lowers_the_noise() {
+    let scene = Arc::new(load("cornell").unwrap());
+    let setup = setup(&scene, 64, 48, 3, 64);
+    let (even, adaptive) = (setup.run(None).unwrap(), setup.run_adaptive(None).unwrap());
+    let (asked, found) = (even.counts.paths, adaptive.counts.paths);
+    assert!(found <= asked && asked - found < 4 * 256, "{found} of {asked}");
+    assert!(adaptive.adaptive && !even.adaptive && adaptive.checksum != even.checksum);
+    let counts: Vec<u32> = adaptive.film.pixels().iter().map(|pixel| pixel.count).collect();
+    assert!(counts.iter().max() > counts.iter().min());
+    let gain = even.film.mean_variance() / adaptive.film.mean_variance();
+    println!("variance is {gain:.3} times lower");
+    assert!(gain > 1.0, "{gain}");
+    for spp in [8, 18] {
+        assert!(few(&scene, spp).run_adaptive(None).is_err());
+    }
+}
+
+fn few(scene: &Arc<Scene>, spp: u32) -> Setup {
+    setup(scene, 24, 16, 1, spp)
+}

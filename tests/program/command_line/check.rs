@@ -1,0 +1,26 @@
+//! Hard cases from the command line, and `--strict`.
+
+use super::{TINY, json, run, write_tiny};
+use crate::program::{finish, pathmark};
+
+/// Named cases come with all that was tried; a name that is none is refused with those that are.
+#[test]
+fn cases_can_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let shown = run(folder.path(), &["check", "P10"]).out;
+    assert!(shown.contains("P10  pass") && shown.contains("bsdf, NaN: counted: expected"), "{shown}");
+    let found = json(&run(folder.path(), &["check", "P10", "--json"]).out);
+    let case = &found["cases"][0];
+    assert!(case["id"] == "P10" && case["pass"] == true && case["trials"].as_array().is_some_and(|all| all.len() > 9));
+    let refused = finish(pathmark(folder.path(), &["check", "P10", "Z9"])).with_code(2);
+    assert!(refused.err.contains("case = Z9") && refused.err.contains("P10"), "{}", refused.err);
+}
+
+/// What no scene can cause, as far as its reader can tell, is no failure of a scene that has none (what is, is tested where it can be injected).
+#[test]
+fn strict_lets_good_images_pass() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["render", "cornell", "--size", "8x6", "--spp", "4", "--strict"]);
+    write_tiny(folder.path(), TINY);
+    run(folder.path(), &["run", "tiny.toml", "--strict"]);
+}

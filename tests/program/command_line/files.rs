@@ -1,0 +1,132 @@
+//! What one verb writes, another reads.
+
+use super::{json, names, record, run};
+use crate::experiment::{TINY, write_tiny};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// Rendered to the same bits, so what is left is the format's own rounding (and, in display formats, the clamp).
+#[test]
+fn every_format_is_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path(), "cornell", &["--seed", "3", "-o", "reference.pfm"]);
+    for format in names("formats") {
+        let image = format!("image.{format}");
+        record(folder.path(), "cornell", &["--seed", "3", "-o", &image]);
+        // A display image is compared with itself in another display format.
+        let display = ["png", "ppm", "bmp"].contains(&format.as_str());
+        if display {
+            record(folder.path(), "cornell", &["--seed", "3", "-o", "display.png"]);
+        }
+        let reference = if display { "display.png" } else { "reference.pfm" };
+        let metrics = json(&run(folder.path(), &["compare", &image, reference, "--json"]).out);
+        let rmse = metrics["rmse"].as_f64().unwrap();
+        // The shared exponent of .hdr leaves 8 bits to each channel of values up to 12.
+        let allowed = if format == "hdr" { 0.05 } else { 1e-6 };
+        assert!(rmse <= allowed, "{format}: {rmse}");
+    }
+}
+
+/// Automatic exposure is for looking: it scales display formats alone, and says nothing else than without it.
+#[test]
+fn automatic_exposure_changes_only_what_is_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = |image: &str, options: &[&str]| {
+        let options = [&["-o", image], options].concat();
+        let mut record = record(folder.path(), "report-c", &options);
+        let object = record.as_object_mut().unwrap();
+        // Times and the machine's moods.
+        object.retain(|name, _| !name.ends_with("_s") && !name.contains("switches") && name != "started_utc");
+        object.retain(|name, _| !["warnings", "workers_used", "peak_rss_bytes"].contains(&name.as_str()));
+        record
+    };
+    let bytes = |image: &str| fs::read(folder.path().join(image)).unwrap();
+    let linear = |image: &str| pathmark::image_io::read(&folder.path().join(image)).unwrap();
+    for format in names("formats") {
+        let (plain, exposed) = (format!("plain.{format}"), format!("exposed.{format}"));
+        assert_eq!(render(&plain, &[]), render(&exposed, &["--auto-exposure"]), "{format}");
+        let is_shown = ["png", "ppm", "bmp"].contains(&format.as_str());
+        assert_eq!(bytes(&plain) != bytes(&exposed), is_shown, "{format}");
+    }
+    // What is shown is the light over its largest channel, to the rounding of 8 bits.
+    let (light, shown) = (linear("plain.pfm"), linear("exposed.png"));
+    let largest = light.pixels.iter().flatten().copied().fold(0.0, f64::max);
+    assert!(!(0.9..=1.1).contains(&largest), "no power: the brightest channel is {largest}");
+    for (light, shown) in light.pixels.iter().flatten().zip(shown.pixels.iter().flatten()) {
+        let display = pathmark::image_io::tone_map::display;
+        assert!((display(light / largest) - display(*shown)).abs() <= 0.5001 / 255.0, "{light} is shown as {shown}");
+    }
+}
+
+#[test]
+fn a_reference_is_cached_and_a_heat_map_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let reference = ["reference", "cornell", "--size", "24x16", "--spp", "16", "--out", "films"];
+    let first = run(folder.path(), &reference).out;
+    let films: Vec<&str> = first.lines().take(2).collect();
+    let bytes: Vec<_> = films.iter().map(|film| fs::read(folder.path().join(film)).unwrap()).collect();
+    assert_ne!(bytes[0], bytes[1], "the halves are independent");
+    let second = run(folder.path(), &reference);
+    assert_eq!(second.out, first);
+    assert!(!second.err.contains("reference 1 of 2"), "rendered again: {}", second.err);
+
+    record(folder.path(), "cornell", &["--seed", "1", "-o", "a.pfm"]);
+    record(folder.path(), "cornell", &["--seed", "2", "-o", "b.exr"]);
+    let compared = run(folder.path(), &["compare", "a.pfm", "b.exr", "--heatmap", "map.png"]).out;
+    for metric in names("metrics") {
+        assert!(compared.lines().any(|line| line.starts_with(&metric)), "{metric} is not in {compared}");
+    }
+    assert_png(&folder.path().join("map.png"));
+    let same = json(&run(folder.path(), &["compare", "a.pfm", "a.pfm", "--json"]).out);
+    assert_eq!(same["rmse"], 0.0);
+}
+
+fn assert_png(path: &Path) {
+    let bytes = fs::read(path).unwrap();
+    assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.len() > 100, "{}", path.display());
+}
+
+/// As far as it goes without a parser: elements are closed in the order in which they were opened.
+fn assert_svg(path: &Path) {
+    let text = fs::read_to_string(path).unwrap();
+    let mut open = Vec::new();
+    for tag in text.split('<').skip(1) {
+        let (tag, _) = tag.split_once('>').unwrap_or_else(|| panic!("{}: no end of {tag:.40}", path.display()));
+        let name = tag.trim_start_matches('/').split([' ', '\n', '/']).next().unwrap();
+        match tag {
+            _ if tag.starts_with(['?', '!']) || tag.ends_with('/') => {}
+            _ if tag.starts_with('/') => assert_eq!(open.pop(), Some(name), "{}", path.display()),
+            _ => open.push(name),
+        }
+    }
+    assert!(open.is_empty() && text.contains("<svg") && !text.contains("NaN"), "{}: {open:?}", path.display());
+}
+
+#[test]
+fn a_run_leaves_rows_figures_and_a_page_that_report_draws_again() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    run(folder.path(), &["run", "tiny.toml", "--out", "out"]);
+    let out = folder.path().join("out");
+    let figures = out.join("tiny/figures");
+    let listed = |folder: &Path| {
+        let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names.collect::<BTreeSet<_>>()
+    };
+    let (first, page) = (listed(&figures), fs::read_to_string(out.join("report.html")).unwrap());
+    fs::remove_dir_all(&figures).unwrap();
+    fs::remove_file(out.join("report.html")).unwrap();
+    run(folder.path(), &["report", "out"]);
+    assert_eq!(listed(&figures), first);
+    assert_eq!(fs::read_to_string(out.join("report.html")).unwrap(), page, "the page follows from the rows alone");
+
+    let svgs: Vec<_> = first.iter().filter_map(|name| name.strip_suffix(".svg")).collect();
+    assert!(!svgs.is_empty(), "{first:?}");
+    for stem in svgs {
+        assert_svg(&figures.join(format!("{stem}.svg")));
+        assert_png(&figures.join(format!("{stem}.png")));
+    }
+    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("</html>") && page.contains("Does it run?"));
+    assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
+}

@@ -1,0 +1,59 @@
+//! The command line does what its help says: every name that `list` prints runs as it is, and what one verb writes another reads.
+
+mod check;
+mod files;
+mod names;
+mod rounds;
+mod scenes;
+mod schedules;
+
+use crate::experiment::{TINY, write_tiny};
+use crate::program::{Finished, finish, pathmark};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn run(folder: &Path, arguments: &[&str]) -> Finished {
+    finish(pathmark(folder, arguments)).with_code(0)
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
+}
+
+/// The names that `list KIND` prints.
+fn names(kind: &str) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = json(&run(folder.path(), &["list", kind, "--json"]).out);
+    let items = listed.as_array().unwrap_or_else(|| panic!("{kind} is no array"));
+    let text = |item: &Value, key: &str| item[key].as_str().filter(|text| !text.is_empty()).map(str::to_string);
+    let name = |item| text(item, "about").and(text(item, "name")).unwrap_or_else(|| panic!("{kind}: {item}"));
+    items.iter().map(name).collect()
+}
+
+/// The record of a tiny render with some options.
+fn record(folder: &Path, scene: &str, options: &[&str]) -> Value {
+    let base = ["render", scene, "--size", "24x16", "--spp", "4", "--json"];
+    let finished = run(folder, &[base.as_slice(), options].concat());
+    assert_eq!(finished.out.trim_end().lines().count(), 1, "one object on one line: {}", finished.out);
+    json(&finished.out)
+}
+
+#[test]
+fn quiet_is_quiet_and_talk_goes_to_stderr() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    let render = ["render", "cornell", "--size", "8x8", "--spp", "4"];
+    let sweep = ["run", "tiny.toml", "--out", "out"];
+    let reference = ["reference", "cornell", "--size", "8x8", "--spp", "4"];
+    for arguments in [render.as_slice(), &sweep, &reference] {
+        let finished = run(folder.path(), &[arguments, &["--quiet"]].concat());
+        assert_eq!(finished.err, "", "{arguments:?}");
+        assert_ne!(finished.out, "", "{arguments:?}");
+    }
+    // Without a name the image is called after its scene.
+    assert!(folder.path().join("cornell.png").is_file());
+    fs::remove_dir_all(folder.path().join("out")).unwrap();
+    let finished = run(folder.path(), &sweep);
+    assert!(finished.err.contains("tiny") && finished.out.lines().count() == 1, "{}{}", finished.err, finished.out);
+}

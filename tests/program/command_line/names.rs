@@ -1,0 +1,147 @@
+//! Every name that `list` prints runs as it is, and no schedule changes a bit.
+
+use super::{json, names, record, run};
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::fs;
+
+const KINDS: [&str; 18] = [
+    "scenes",
+    "strategies",
+    "decompositions",
+    "outputs",
+    "estimators",
+    "samplers",
+    "kernels",
+    "simd",
+    "effects",
+    "accelerators",
+    "cameras",
+    "shapes",
+    "generators",
+    "materials",
+    "features",
+    "metrics",
+    "formats",
+    "experiments",
+];
+
+/// Columns of `records.csv` that say what a row is of and what it measured.
+const COLUMNS: [&str; 39] = [
+    "schema",
+    "experiment",
+    "cell",
+    "scene",
+    "effects",
+    "width",
+    "height",
+    "spp",
+    "seed",
+    "estimator",
+    "sampler",
+    "kernel",
+    "precision",
+    "biased",
+    "decomposition",
+    "strategy",
+    "output",
+    "threads",
+    "repetition",
+    "order",
+    "jobs",
+    "workers_used",
+    "pilot_s",
+    "setup_s",
+    "makespan_s",
+    "merge_s",
+    "busy_sum_s",
+    "busy_max_s",
+    "gap_sum_s",
+    "tail_sum_s",
+    "foreign_cpu_s",
+    "paths",
+    "rays",
+    "invalid_samples",
+    "checksum",
+    "warnings",
+    "error",
+    "commit",
+    "started_utc",
+];
+
+#[test]
+fn every_kind_is_listed_with_name_and_about() {
+    for kind in KINDS {
+        let names = names(kind);
+        assert!(!names.is_empty(), "{kind}");
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{kind}: a name twice in {names:?}");
+    }
+    // And all of them at once.
+    let folder = tempfile::tempdir().unwrap();
+    let all = json(&run(folder.path(), &["list", "--json"]).out);
+    let kinds: BTreeSet<_> = all.as_array().unwrap().iter().filter_map(|item| item["kind"].as_str()).collect();
+    assert_eq!(kinds, BTreeSet::from(KINDS));
+    let text = run(folder.path(), &["list"]).out;
+    assert!(KINDS.iter().all(|kind| text.lines().any(|line| line == *kind)), "{text}");
+}
+
+#[test]
+fn every_listed_name_runs_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    for (kind, option) in [("estimators", "--estimator"), ("samplers", "--sampler"), ("kernels", "--kernel")] {
+        for name in names(kind) {
+            let column = option.trim_start_matches('-');
+            assert_eq!(record(folder.path(), "cornell", &[option, &name])[column], name.as_str());
+        }
+    }
+    for scene in names("scenes") {
+        assert_eq!(record(folder.path(), &scene, &[])["scene"], scene.as_str());
+    }
+}
+
+/// A profile runs where it covers the scene; a scene of one diffuse ball is covered by all.
+#[test]
+fn every_effect_profile_runs_and_gives_the_same_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let (camera, _) = include_str!("../../../experiments/scenes/cornell.toml").split_once("[[objects]]").unwrap();
+    let ball = "[[objects]]\nname = \"ball\"\nshape = { sphere = { center = [50.0, 40.0, 80.0], radius = 20.0 } }\n\
+                material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }\nemission = [1.0, 1.0, 1.0]\n";
+    fs::write(folder.path().join("ball.toml"), format!("{camera}{ball}")).unwrap();
+    let mut checksums = BTreeSet::new();
+    for effects in names("effects") {
+        let record = record(folder.path(), "ball.toml", &["--effects", &effects]);
+        assert_eq!(record["effects"], effects.as_str());
+        checksums.insert(record["checksum"].as_str().unwrap().to_string());
+    }
+    assert_eq!(checksums.len(), 1, "{checksums:?}");
+}
+
+#[test]
+fn every_schedule_gives_the_same_checksum() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut checksums = BTreeSet::new();
+    let mut check = |options: &[&str]| {
+        let record = record(folder.path(), "cornell", options);
+        checksums.insert(record["checksum"].as_str().filter(|text| text.len() == 16).unwrap().to_string());
+        let missing: Vec<_> = COLUMNS.iter().filter(|column| record.get(column).is_none()).collect();
+        assert!(missing.is_empty(), "{missing:?}");
+        assert_eq!(record["paths"], 24 * 16 * 4);
+        record
+    };
+    for strategy in names("strategies") {
+        for threads in ["1", "3"] {
+            let record = check(&["--strategy", &strategy, "--threads", threads]);
+            assert_eq!(record["strategy"], strategy.as_str());
+        }
+    }
+    for decomposition in names("decompositions") {
+        assert_eq!(check(&["--decomposition", &decomposition])["decomposition"], decomposition.as_str());
+    }
+    for output in names("outputs") {
+        assert_eq!(check(&["--output", &output])["output"], output.as_str());
+    }
+    let per_row = check(&["--strategy", "thread-per-row"]);
+    assert_eq!((&per_row["jobs"], &per_row["workers_used"]), (&Value::from(16), &Value::from(16)));
+    assert_eq!(per_row["decomposition"], "rows");
+    assert_eq!(checksums.len(), 1, "{checksums:?}");
+}

@@ -1,0 +1,193 @@
+//! Renders in rounds: what they say, what they leave on disk, and that they can be killed.
+
+use super::{json, run};
+use crate::program::{finish, pathmark};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+const SIZE: [&str; 4] = ["render", "cornell", "--size", "48x32"];
+
+fn render(folder: &Path, options: &[&str]) -> Value {
+    json(&run(folder, &[SIZE.as_slice(), &["--json"], options].concat()).out)
+}
+
+/// What is refused leaves the folder as it was.
+fn refused(folder: &Path, options: &[&str], said: &[&str]) {
+    let files = || {
+        let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        files.into_iter().map(|path| (fs::read(&path).ok(), path)).collect::<Vec<_>>()
+    };
+    let before = files();
+    let finished = finish(pathmark(folder, &[SIZE.as_slice(), options].concat())).with_code(2);
+    assert!(said.iter().all(|text| finished.err.contains(text)), "{said:?} is not in {}", finished.err);
+    assert!(finished.out.is_empty() && before == files(), "{options:?}");
+}
+
+/// Where it stops is recorded, and as many samples at once have the same checksum.
+#[test]
+fn goals_are_recorded_and_reproduced() {
+    let folder = tempfile::tempdir().unwrap();
+    for (options, column, value) in
+        [(["--target-error", "0.3"], "target_error", 0.3), (["--time-limit", "0.05"], "time_limit_s", 0.05)]
+    {
+        let found = render(folder.path(), &options);
+        assert_eq!(found[column], value);
+        assert!(found["rounds"].as_u64() >= Some(1), "{found}");
+        let again = render(folder.path(), &["--spp", &found["spp"].to_string()]);
+        assert_eq!((&again["checksum"], &again["estimated_rmse"]), (&found["checksum"], &found["estimated_rmse"]));
+        assert!(again[column].is_null() && again["rounds"] == 1, "{again}");
+        if column == "target_error" {
+            assert!(found["rounds"].as_u64() > Some(1), "{found}");
+            assert!((0.2..0.3).contains(&found["estimated_rmse"].as_f64().unwrap()), "{found}");
+        }
+    }
+    let adaptive = render(folder.path(), &["--spp", "64", "--adaptive"]);
+    assert_eq!((&adaptive["adaptive"], &adaptive["spp"]), (&true.into(), &64.into()));
+    assert_eq!(render(folder.path(), &["--spp", "64"])["adaptive"], false);
+}
+
+#[test]
+fn options_that_contradict_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    refused(folder.path(), &["--spp", "16", "--target-error", "0.3"], &["--spp", "--target-error"]);
+    refused(folder.path(), &["--adaptive", "--time-limit", "1"], &["--adaptive", "--time-limit"]);
+    refused(folder.path(), &["--adaptive", "--spp", "8"], &["spp", "8", "from 16"]);
+    refused(folder.path(), &["--target-error", "-1"], &["target-error"]);
+    refused(folder.path(), &["--target-error", "0"], &["target-error", "above 0"]);
+    refused(folder.path(), &["--time-limit", "NaN"], &["time-limit", "above 0"]);
+    refused(folder.path(), &["--target-error", "0.3", "--subpixel-clamp"], &["subpixel-clamp", "rounds"]);
+    refused(folder.path(), &["--checkpoint", "a.png", "-o", "a.png"], &["checkpoint", "a.png"]);
+    refused(folder.path(), &["--checkpoint", "c", "--sampler", "locked"], &["checkpoint", "locked"]);
+}
+
+/// Killed (SIGKILL) at growing delays until it gets through: the image of one that nobody disturbed.
+#[test]
+fn killed_at_any_instant_it_goes_on_to_the_same_image() {
+    let folder = tempfile::tempdir().unwrap();
+    for goal in [["--spp", "2200"], ["--target-error", "0.03"]] {
+        let expected = render(folder.path(), &goal);
+        let options = [SIZE.as_slice(), &goal, &["--checkpoint", "box.checkpoint", "-o", "box.pfm", "--json"]].concat();
+        let mut kills = 0;
+        loop {
+            let mut command = pathmark(folder.path(), &options);
+            command.stdout(Stdio::piped()).stderr(Stdio::null());
+            let mut child = command.spawn().unwrap();
+            std::thread::sleep(Duration::from_millis(5 + kills * 11 % 170 + kills));
+            let ended = child.try_wait().unwrap().is_some();
+            child.kill().unwrap();
+            let output = child.wait_with_output().unwrap();
+            if ended {
+                assert!(output.status.success(), "after {kills} kills: {:?}", output.status);
+                let found = json(&String::from_utf8(output.stdout).unwrap());
+                assert_eq!((&found["checksum"], &found["spp"]), (&expected["checksum"], &expected["spp"]));
+                break;
+            }
+            kills += 1;
+        }
+        println!("{kills} kills on the way to {goal:?}");
+        assert!(kills >= 5, "only {kills} kills");
+        // Nothing is left to do, and no temporary file is left over but those of killed processes.
+        let again = json(&run(folder.path(), &options).out);
+        assert_eq!((&again["checksum"], &again["rounds"]), (&expected["checksum"], &0.into()));
+        fs::remove_file(folder.path().join("box.checkpoint")).unwrap();
+    }
+}
+
+/// A checkpoint goes on to more samples, and to nothing else.
+#[test]
+fn a_checkpoint_is_of_one_render() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = |options: &[&'static str]| [&["--checkpoint", "c"], options].concat();
+    render(folder.path(), &with(&["--spp", "20"]));
+    let longer = render(folder.path(), &with(&["--spp", "52"]));
+    assert_eq!(longer["checksum"], render(folder.path(), &["--spp", "52"])["checksum"]);
+    assert!(longer["warnings"].as_str().unwrap().contains("resumed(at 20 spp)"), "{longer}");
+    // Who renders does not matter.
+    let other =
+        render(folder.path(), &with(&["--spp", "80", "--strategy", "serial", "--decomposition", "samples:16:8x8"]));
+    assert_eq!(other["checksum"], render(folder.path(), &["--spp", "80"])["checksum"]);
+
+    refused(folder.path(), &with(&["--spp", "76"]), &["spp", "76", "80"]);
+    for (options, said) in [
+        (["--size", "48x32", "--seed", "2"], "seed"),
+        (["--size", "32x48", "--seed", "1"], "height"),
+        (["--size", "48x32", "--estimator", "bsdf"], "estimator"),
+        (["--size", "48x32", "--max-depth", "9"], "max_depth"),
+    ] {
+        let arguments = [&["render", "cornell", "--checkpoint", "c", "--spp", "120"], options.as_slice()].concat();
+        let before = fs::read(folder.path().join("c")).unwrap();
+        let finished = finish(pathmark(folder.path(), &arguments)).with_code(2);
+        assert!(finished.err.contains("another render") && finished.err.contains(said), "{}", finished.err);
+        assert!(fs::read(folder.path().join("c")).unwrap() == before);
+    }
+    let scene = ["render", "wada", "--size", "48x32", "--checkpoint", "c", "--spp", "120"];
+    assert!(finish(pathmark(folder.path(), &scene)).with_code(2).err.contains("scene"));
+}
+
+/// A checkpoint that has lost or gained a byte, or is no checkpoint, is refused and kept.
+#[test]
+fn a_damaged_checkpoint_is_refused_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--checkpoint", "c", "--spp", "40"];
+    render(folder.path(), &options);
+    let path = folder.path().join("c");
+    let whole = fs::read(&path).unwrap();
+    let lengths = (0..whole.len()).step_by(whole.len() / 40).chain([1, 21, 22, 23, whole.len() - 1]);
+    let mut damaged: Vec<Vec<u8>> = lengths.map(|length| whole[..length].to_vec()).collect();
+    damaged.push([&whole, b"x".as_slice()].concat());
+    damaged.push(b"not a checkpoint, but somebody's only copy of something".to_vec());
+    for at in (0..whole.len()).step_by(whole.len() / 10) {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 1;
+        damaged.push(flipped);
+    }
+    for bytes in damaged {
+        fs::write(&path, &bytes).unwrap();
+        refused(folder.path(), &options, &["checkpoint", "c"]);
+    }
+    fs::write(&path, &whole).unwrap();
+    assert_eq!(render(folder.path(), &options)["rounds"], 0);
+    fs::remove_file(&path).unwrap();
+    fs::create_dir(&path).unwrap();
+    refused(folder.path(), &options, &["directory"]);
+}
+
+/// `--until` doubles both halves; a longer reference goes on from a shorter one, with the bits of one that did not.
+#[test]
+fn a_reference_is_refined_and_extended() {
+    let folder = tempfile::tempdir().unwrap();
+    let reference = |options: &[&str]| {
+        let finished = run(folder.path(), &[&["reference", "cornell", "--size", "24x16"], options].concat());
+        let films: Vec<String> = finished.out.lines().take(2).map(str::to_string).collect();
+        let (by_variance, by_difference) = finished.out.trim_end().rsplit_once(" by variance, ").unwrap();
+        let number = |text: &str| text.split(' ').next_back().unwrap().parse::<f64>().unwrap();
+        let errors = [number(by_variance), number(by_difference.trim_end_matches(" by difference"))];
+        (films, errors, finished.err)
+    };
+    let bytes = |film: &String| fs::read(folder.path().join(film)).unwrap();
+    let (coarse, errors, _) = reference(&["--until", "0.2"]);
+    assert!(errors.iter().all(|error| (0.05..=0.2).contains(error)), "{errors:?}");
+    // The two accounts agree: of 384 pixels the difference is known to some percent.
+    assert!((0.8..1.25).contains(&(errors[0] / errors[1])), "{errors:?}");
+    let (fine, errors, said) = reference(&["--until", "0.1"]);
+    assert!(errors.iter().all(|error| (0.025..=0.1).contains(error)) && fine != coarse, "{errors:?}");
+    assert!(!said.contains("at 16 spp"), "it goes on from what is there: {said}");
+    // Films on the way are gone, those of the first call are not.
+    assert_eq!(fs::read_dir(folder.path().join("out/references")).unwrap().count(), 4);
+    let (odd, _, _) = reference(&["--spp", "300"]);
+    let fresh = reference(&["--spp", "300", "--out", "fresh"]).0;
+    let name = fine[0].split('-').find_map(|part| part.strip_suffix("spp")).unwrap().to_string();
+    let same = reference(&["--spp", &name, "--out", "fresh"]).0;
+    for (found, expected) in odd.iter().zip(&fresh).chain(fine.iter().zip(&same)) {
+        assert!(found != expected && bytes(found) == bytes(expected), "{found}");
+    }
+    for options in [["--until", "0"], ["--until", "NaN"]] {
+        let arguments = [&["reference", "cornell", "--out", "none"], options.as_slice()].concat();
+        assert!(finish(pathmark(folder.path(), &arguments)).with_code(2).err.contains("until"));
+    }
+    assert!(!folder.path().join("none").exists());
+}

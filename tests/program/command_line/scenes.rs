@@ -1,0 +1,155 @@
+//! Experiments over scenes: all of them with their own estimators, the gallery, the price of an effect, and accuracy by scene.
+
+use super::{json, run};
+use crate::experiment::{TINY, write_tiny};
+use pathmark::effect::Effects;
+use pathmark::experiment::{Definition, Profile};
+use pathmark::material::MATERIALS;
+use pathmark::scene::{FEATURES, PRIMITIVES, PROFILES, SCENES, load};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// `TINY` over other scenes, in one schedule, with one figure.
+fn tiny(scenes: &str, figure: &str, more: &str) -> String {
+    let strategies = ("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
+    let text =
+        TINY.replace(strategies.0, strategies.1).replace("[1, 2]", "[1]").replace("[\"smallpt\"]", "[\"default\"]");
+    let figures = format!("figures = [\"{figure}\"]\n{more}");
+    text.replace("figures = [\"speedup\", \"schedules\"]\n", &figures).replace("[\"cornell\"]", scenes)
+}
+
+#[test]
+fn an_experiment_can_take_all_scenes_with_their_own_estimators() {
+    let definition = Definition::from_text("tiny", "tiny.toml", &tiny("[\"all\"]", "gallery", "")).unwrap();
+    let cells = definition.cells(Profile::Quick).unwrap();
+    let found: Vec<(&str, &str)> = cells.iter().map(|c| (&*c.settings.scene, &*c.settings.spec.estimator)).collect();
+    for ((name, _), (scene, estimator)) in SCENES.iter().zip(&found) {
+        let own = load(name).unwrap().default_estimator.unwrap_or_else(|| "smallpt".to_string());
+        assert_eq!((*scene, *estimator), (*name, &*own));
+    }
+    assert_eq!(found.len(), SCENES.len());
+}
+
+#[test]
+fn listed_scenes_say_what_they_call_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = json(&run(folder.path(), &["list", "scenes", "--json"]).out);
+    let text = run(folder.path(), &["list", "scenes"]).out;
+    for item in listed.as_array().unwrap() {
+        let scene = load(item["name"].as_str().unwrap()).unwrap();
+        let profile = PROFILES.iter().find(|entry| item["profile"] == entry.name).unwrap();
+        assert!(profile.effects.cover(scene.effects()) && scene.effects() != Effects::NONE, "{item}");
+        assert_eq!(item["primitives"], scene.owners.len(), "{item}");
+        let names: Vec<&str> = item["calls_for"].as_str().unwrap().split('+').collect();
+        let named = PRIMITIVES.iter().chain(MATERIALS).chain(FEATURES).filter(|entry| names.contains(&entry.name));
+        assert_eq!(named.fold(Effects::NONE, |all, entry| all.and(entry.effect)), scene.effects(), "{item}");
+        assert!(text.contains(item["about"].as_str().unwrap()) && text.contains(item["calls_for"].as_str().unwrap()));
+    }
+    assert!(text.lines().all(|line| line.chars().count() <= 140), "{text}");
+}
+
+#[test]
+fn a_gallery_shows_each_scene_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        tiny("[\"cornell\", \"spheres\"]", "gallery", "keep = [\"images\"]\n").replace("spp = [4]", "spp = [4, 8]");
+    write_tiny(folder.path(), &text);
+    run(folder.path(), &["run", "tiny.toml", "--out", "out", "--repetitions", "1"]);
+    let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    assert!(page.contains("alt=\"2 scenes\""));
+    assert!(folder.path().join("out/tiny/figures/gallery.png").is_file());
+    // Without the images there is a sentence instead.
+    fs::remove_dir_all(folder.path().join("out/tiny/images")).unwrap();
+    run(folder.path(), &["report", "out"]);
+    assert!(fs::read_to_string(folder.path().join("out/report.html")).unwrap().contains("There is no gallery"));
+}
+
+/// Runs an experiment, changes its rows, draws its report again, and reads a table of it: rows by their first cell.
+fn with_rows(
+    folder: &Path,
+    text: &str,
+    change: impl Fn(&mut BTreeMap<String, String>),
+    table: &str,
+) -> BTreeMap<String, Vec<String>> {
+    write_tiny(folder, text);
+    run(folder, &["run", "tiny.toml", "--out", "out"]);
+    let path = folder.join("out/tiny/records.csv");
+    let mut reader = csv::Reader::from_path(&path).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let rows: Vec<BTreeMap<String, String>> = reader.deserialize().map(Result::unwrap).collect();
+    let mut writer = csv::Writer::from_path(&path).unwrap();
+    writer.write_record(&heads).unwrap();
+    for mut row in rows {
+        change(&mut row);
+        writer.write_record(heads.iter().map(|head| &row[head])).unwrap();
+    }
+    writer.flush().unwrap();
+    run(folder, &["report", "out"]);
+    let mut reader = csv::Reader::from_path(folder.join("out/tiny/figures").join(table)).unwrap();
+    let cells = |row: csv::StringRecord| row.iter().map(str::to_string).collect::<Vec<_>>();
+    reader.records().map(|row| cells(row.unwrap())).map(|row| (row[0].clone(), row)).collect()
+}
+
+/// Times are put into the rows, so the ratios are known.
+#[test]
+fn the_price_of_an_effect_is_a_ratio_of_times() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = tiny("[\"cornell\", \"cornell-diffuse\"]", "effects", "")
+        .replace("spp = [4]", "spp = [4]\nkernel = [\"scalar\"]\neffects = [\"fitting\", \"smallpt\", \"all\"]");
+    // A sample takes 1000 ns where the profile fits, 1100 in the next and 1250 in the largest, and each repetition is slower by itself.
+    let change = |row: &mut BTreeMap<String, String>| {
+        let ns = match (row["scene"].as_str(), row["effects"].as_str()) {
+            (_, "all") => 1250.0,
+            ("cornell-diffuse", "smallpt") => 1100.0,
+            _ => 1000.0,
+        };
+        let (paths, repetition): (f64, f64) = (row["paths"].parse().unwrap(), row["repetition"].parse().unwrap());
+        row.insert("cpu_user_s".into(), (ns * 1e-9 * paths * (1.0 + repetition)).to_string());
+        row.insert("cpu_system_s".into(), "0".into());
+    };
+    let profiles = with_rows(folder.path(), &text, change, "profiles-table.csv");
+    for scene in ["cornell", "cornell-diffuse"] {
+        let row = &profiles[scene];
+        assert_eq!((row[2].as_str(), row[3].as_str()), ("2000", "2500"), "{row:?}");
+        assert!(row[4].starts_with("1.250, 1.250 to 1.250"), "{row:?}");
+    }
+    assert_eq!((profiles["cornell"][1].as_str(), profiles["cornell-diffuse"][1].as_str()), ("smallpt", "diffuse"));
+    let effects = fs::read_to_string(folder.path().join("out/tiny/figures/effects-table.csv")).unwrap();
+    let glass = effects.lines().find(|line| line.starts_with("mirror and glass")).unwrap();
+    assert!(glass.contains("1.100, 1.100 to 1.100") && glass.contains("1.000, 1.000 to 1.000"), "{glass}");
+}
+
+/// Errors are put into the rows: relative ones are those over the mean radiance of the kept images, and the most accurate comes first.
+#[test]
+fn accuracy_by_scene_is_relative_to_its_brightness() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = "[\"cornell\", \"cornell-diffuse\", \"cornell-mirror\", \"forest\", \"wada\"]";
+    let text = tiny(scenes, "scene-accuracy", "keep = [\"images\"]\n").replace("seed = [1]", "seed = [1, 2, 3]");
+    let rmse = |scene: &str, seed: f64| match scene {
+        "cornell" => 0.2 * seed,
+        // Half of the box's, but for a factor whose logarithms sum to nothing.
+        "cornell-diffuse" => 0.1 * seed * [1.1, 1.0, 1.0 / 1.1][seed as usize - 1],
+        "cornell-mirror" => 0.4 * (4.0 - seed),
+        _ => 0.3 * seed,
+    };
+    let change = |row: &mut BTreeMap<String, String>| {
+        let rmse = rmse(&row["scene"], row["seed"].parse().unwrap());
+        row.insert("mse".into(), (rmse * rmse).to_string());
+    };
+    let table = with_rows(folder.path(), &text, change, "scene-accuracy-table.csv");
+    for (scene, row) in &table {
+        let number = |column: usize| row[column].parse::<f64>().unwrap();
+        let squares = [1.0, 2.0, 3.0].map(|seed| rmse(scene, seed) * rmse(scene, seed));
+        let expected = (squares.iter().sum::<f64>() / 3.0).sqrt();
+        assert!((number(2) - expected).abs() < 1e-4, "{row:?}");
+        assert!((number(3) - number(2) / number(1)).abs() < 1e-3, "{row:?}");
+    }
+    let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    // Twice the error of the matt box in the geometric mean; the images' brightness differs a little.
+    let radiance = |scene: &str| table[scene][1].parse::<f64>().unwrap();
+    let ratio = 2.0 * radiance("cornell-diffuse") / radiance("cornell");
+    let said = page.split("its relative error is ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap();
+    assert!((said - ratio).abs() < 0.01, "{said} instead of {ratio}");
+    assert!(page.contains("Over 3 different scenes"));
+}

@@ -1,0 +1,117 @@
+//! What a run leaves of its schedule, and what can be made of it: traces, timelines, forecasts.
+
+use super::{json, run};
+use crate::experiment::{TINY, write_tiny};
+use std::fs;
+use std::path::Path;
+
+/// The head of the table of predictions.
+const PREDICTED: &str = "The simulator predicts this machine";
+
+const SIZE: [&str; 6] = ["--size", "24x16", "--spp", "4", "--decomposition", "tiles:8x8"];
+
+/// `cornell` in six tiles, with a trace in `run.csv`.
+fn traced(folder: &Path, strategy: &str, threads: &str) {
+    let who = ["--strategy", strategy, "--threads", threads, "--trace", "run.csv"];
+    run(folder, &[&["render", "cornell"][..], &SIZE, &who].concat());
+}
+
+#[test]
+fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    traced(folder.path(), "static-cyclic", "2");
+    let text = fs::read_to_string(folder.path().join("run.csv")).unwrap();
+    let mut lines = text.lines();
+    let header = json(lines.next().unwrap().trim_start_matches("# "));
+    assert_eq!(header["settings"]["strategy"], "static-cyclic");
+    let rows: Vec<Vec<&str>> = lines.skip(1).map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 6);
+    let column = |index: usize| rows.iter().map(|row| row[index].parse::<f64>().unwrap()).collect::<Vec<_>>();
+    let (workers, paths) = (column(1), column(4));
+    // Dealt out like cards: two workers, turn by turn.
+    assert!(workers.windows(2).all(|pair| pair[0] != pair[1]), "{workers:?}");
+    assert!(paths.iter().all(|paths| *paths == 256.0), "{paths:?}");
+    let makespan = header["makespan_s"].as_f64().unwrap();
+    assert!(column(2).iter().zip(column(3)).all(|(start, stop)| 0.0 <= *start && *start < stop && stop <= makespan));
+
+    let said = run(folder.path(), &["trace", "run.csv", "-o", "run.svg"]).out;
+    assert!(said.contains("6 jobs on 2 workers"), "{said}");
+    assert!(fs::read_to_string(folder.path().join("run.svg")).unwrap().contains("static-cyclic"));
+    run(folder.path(), &["trace", "run.csv", "-o", "run.json"]);
+    let events = json(&fs::read_to_string(folder.path().join("run.json")).unwrap());
+    let complete = events["traceEvents"].as_array().unwrap().iter().filter(|event| event["ph"] == "X").count();
+    assert_eq!(complete, 6);
+    run(folder.path(), &["trace", "run.csv", "-o", "run.png"]);
+}
+
+/// Predicts this machine, then others; the forecast of one worker is the sum of the jobs and what handing them out costs.
+#[test]
+fn a_trace_is_replayed_on_other_machines() {
+    let folder = tempfile::tempdir().unwrap();
+    traced(folder.path(), "serial", "1");
+    let chosen = ["--strategies", "static-blocks,shared-counter,dynamic:2", "--workers", "1,2,1000"];
+    let said = run(folder.path(), &[&["simulate", "run.csv", "--out", "forecast"][..], &chosen].concat()).out;
+    assert!(said.contains(PREDICTED), "{said}");
+    let table = fs::read_to_string(folder.path().join("forecast/forecast.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
+    let expected = ["static-blocks", "shared-counter", "dynamic:2", "longest-first"];
+    assert_eq!(names, expected.map(|name| [name; 3]).concat());
+    assert!(folder.path().join("forecast/forecast-speedup.svg").is_file());
+
+    let slower = ["simulate", "run.csv", "--no-check", "--workers", "2", "--slow-core", "0.5", "--noise", "0.02:0.5"];
+    let said = run(folder.path(), &slower).out;
+    assert!(!said.contains(PREDICTED), "{said}");
+}
+
+/// What cannot be tried on this machine, a thread for each of 19200 pixels, is left out with a word and simulated all the same.
+#[test]
+fn jobs_too_many_for_threads_are_simulated() {
+    let folder = tempfile::tempdir().unwrap();
+    let cut = ["--size", "160x120", "--spp", "4", "--decomposition", "tiles:1x1", "--trace", "run.csv"];
+    run(folder.path(), &[&["render", "cornell", "--strategy", "serial"][..], &cut].concat());
+    let chosen = ["--strategies", "thread-per-job,shared-counter", "--workers", "4"];
+    let finished = run(folder.path(), &[&["simulate", "run.csv", "--out", "forecast"][..], &chosen].concat());
+    assert!(finished.err.contains("thread-per-job is not tried"), "{}", finished.err);
+    assert!(finished.out.contains("shared-counter"), "{}", finished.out);
+    let chart = fs::read_to_string(folder.path().join("forecast/forecast-speedup.svg")).unwrap();
+    assert!(!chart.contains("no data"));
+}
+
+/// An experiment that keeps traces is predicted from its own rows.
+#[test]
+fn an_experiment_with_traces_is_predicted_from_its_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        TINY.replace("figures = [\"speedup\", ", "keep = [\"traces\", \"calibration\"]\nfigures = [\"forecast\", ");
+    write_tiny(folder.path(), &text);
+    run(folder.path(), &["run", "tiny.toml", "--out", "out"]);
+    assert_eq!(fs::read_dir(folder.path().join("out/tiny/traces")).unwrap().count(), 15);
+    let said = run(folder.path(), &["simulate", "out/tiny", "--workers", "1..4"]).out;
+    let table = said.split_once(PREDICTED).unwrap_or_else(|| panic!("{said}")).1;
+    // How well is the machine's business, which may be disturbed; that each schedule is there is not.
+    let predicted = table.lines().filter(|line| line.contains("tiles:8x8")).count();
+    assert_eq!(predicted, 4, "{said}");
+}
+
+/// No figure fails for want of what it would like to show: a schedule that was not run, an error that was not measured.
+#[test]
+fn every_figure_makes_do_with_any_rows() {
+    let names: Vec<String> = pathmark::report::FIGURES
+        .iter()
+        .filter(|entry| !["contact-sheet", "rmse-against-spp", "rmse-against-time"].contains(&entry.name))
+        .map(|entry| format!("\"{}\"", entry.name))
+        .collect();
+    let figures = format!("figures = [{}]", names.join(", "));
+    let folder = tempfile::tempdir().unwrap();
+    let bare = TINY.replace("figures = [\"speedup\", \"schedules\"]", &figures);
+    let kept = bare.replace("[matrix]", "keep = [\"traces\", \"calibration\"]\n\n[matrix]");
+    let alone = bare.replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"rayon\"]");
+    for (index, text) in [bare, kept, alone].iter().enumerate() {
+        write_tiny(folder.path(), text);
+        let out = format!("out{index}");
+        run(folder.path(), &["run", "tiny.toml", "--repetitions", "2", "--out", &out]);
+        let page = fs::read_to_string(folder.path().join(&out).join("report.html")).unwrap();
+        assert!(page.contains("Tiny") && !page.contains("NaN"), "{out}");
+    }
+}

@@ -1,0 +1,83 @@
+//! Other programs in an experiment's tables: their image is read and measured, their time is that of the process, and one that is not there stops
+//! nothing.
+
+use crate::experiment::{TINY, write_tiny};
+use crate::program::{Finished, finish, pathmark};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Runs the small experiment with one more table; rows of `other`, and what the program said.
+fn run(folder: &Path, external: &str) -> (Vec<BTreeMap<String, String>>, Finished) {
+    let (matrix, scales) = TINY.split_once("[quick]").unwrap();
+    let scales = scales.replacen("repetitions = 3", "repetitions = 1\nreference-spp = 40", 1);
+    let text = format!("{matrix}[reference]\nestimator = \"bsdf\"\n\n{external}\n[quick]{scales}");
+    write_tiny(folder, &text);
+    let finished = finish(pathmark(folder, &["run", "tiny.toml", "--out", "out"]));
+    let rows = csv::Reader::from_path(folder.join("out/tiny/records.csv")).map_or_else(
+        |_| Vec::new(),
+        |mut reader| reader.deserialize().map(|row| row.unwrap()).collect::<Vec<BTreeMap<String, String>>>(),
+    );
+    (rows.into_iter().filter(|row| row["estimator"] == "other").collect(), finished)
+}
+
+fn table(command: &str) -> String {
+    format!("[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [8]\nseed = [3, 4]\ncommand = [{command}]\n")
+}
+
+/// A black image of 24x16 pixels: three floats each.
+const BLACK: &str = r#""sh", "-c", "(printf 'PF\\n24 16\\n-1.0\\n'; head -c 4608 /dev/zero) > $0; sleep 0.05", "{out}", "{spp}", "{seed}""#;
+
+#[test]
+fn its_image_is_measured_and_its_process_timed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (rows, finished) = run(folder.path(), &table(BLACK));
+    finished.with_code(0);
+    let seeds: Vec<&str> = rows.iter().map(|row| row["seed"].as_str()).collect();
+    assert_eq!(rows.len(), 2, "{seeds:?}");
+    for row in &rows {
+        let number = |column: &str| row[column].parse::<f64>().unwrap();
+        assert!(number("makespan_s") >= 0.05, "the process sleeps that long: {}", row["makespan_s"]);
+        assert!(number("cpu_user_s") + number("cpu_system_s") < number("makespan_s"), "and uses no processor for it");
+        // Of a black image the squared error is the mean square of the picture, which is above the square of its mean, 0.33.
+        assert!(number("mse") > 0.33 * 0.33 && number("mean_radiance") == 0.0, "{}", row["mse"]);
+        assert_eq!((row["sampler"].as_str(), row["spp"].as_str(), row["error"].as_str()), ("external", "8", ""));
+    }
+}
+
+#[test]
+fn a_program_that_is_not_there_is_said_and_stops_nothing() {
+    for command in [
+        r#""./nowhere/renderer", "{out}", "{spp}", "{seed}""#,
+        r#""env", "A=B", "nowhere-renderer", "{out}", "{spp}", "{seed}""#,
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let build = "build = [\"nowhere-compiler\", \"{folder}/renderer\"]\n";
+        let (rows, finished) = run(folder.path(), &format!("{}{build}", table(command)));
+        assert!(finished.err.contains("other is left out"), "{}", finished.err);
+        finished.with_code(0);
+        assert_eq!(rows.len(), 2);
+        assert!(rows.iter().all(|row| row["warnings"] == "no-program" && row["makespan_s"].is_empty()));
+    }
+}
+
+#[test]
+fn one_that_fails_or_writes_another_size_is_a_failed_row() {
+    for (command, why) in [
+        (r#""sh", "-c", "echo out of paint >&2; exit 3", "{out}", "{spp}", "{seed}""#, "out of paint"),
+        (r#""sh", "-c", "printf 'PF\\n1 1\\n-1.0\\n000000000000' > $0", "{out}", "{spp}", "{seed}""#, "1x1"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let (rows, finished) = run(folder.path(), &table(command));
+        finished.with_code(1);
+        assert_eq!(rows.len(), 2);
+        assert!(rows.iter().all(|row| row["error"].contains(why)), "{}", rows[0]["error"]);
+    }
+}
+
+#[test]
+fn a_command_without_a_place_for_the_seed_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (rows, finished) = run(folder.path(), &table(r#""renderer", "{out}", "{spp}""#));
+    let refused = finished.with_code(2);
+    assert!(refused.err.contains("command") && refused.err.contains("{seed}") && rows.is_empty(), "{}", refused.err);
+}

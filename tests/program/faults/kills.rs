@@ -1,0 +1,180 @@
+//! F01: a checkpointed render that is ended by a signal at any instant, and goes on to the image that it would have given, bit for bit.
+
+use super::{is_thorough, skip};
+use crate::program::{finish, pathmark};
+use crate::watchdog::Watchdog;
+use nix::sys::signal::{Signal, kill, killpg};
+use nix::unistd::Pid;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
+use std::fs::{self, File};
+use std::os::unix::process::CommandExt;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// How a program is ended: by the system or a batch queue, or by ^C, which every process of the group hears.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Ending {
+    /// One process is told.
+    One(Signal),
+    /// All processes of the group are.
+    Group(Signal),
+}
+
+const ENDINGS: [Ending; 3] =
+    [Ending::One(Signal::SIGKILL), Ending::One(Signal::SIGTERM), Ending::Group(Signal::SIGINT)];
+
+/// Those that end a program here: what this process was told to ignore, as shells tell jobs in the background, its children ignore too.
+pub(crate) fn endings() -> Vec<Ending> {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+    let works = |ending: &Ending| {
+        let (Ending::One(signal) | Ending::Group(signal)) = *ending;
+        let works = ignored & 1 << (signal as i32 - 1) == 0;
+        if !works {
+            skip(&format!("{signal} is ignored here, as in the background of a shell"));
+        }
+        works
+    };
+    ENDINGS.into_iter().filter(works).collect()
+}
+
+/// Ends programs at instants that differ from run to run of the program, and not from run to run of the test.
+pub(crate) struct Killer<'a> {
+    folder: &'a Path,
+    random: Pcg64,
+    /// What a run takes that nobody disturbs.
+    whole: Duration,
+    watchdog: Watchdog,
+}
+
+/// How a run that was to be killed came to its end.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    Killed,
+    Finished,
+}
+
+impl<'a> Killer<'a> {
+    pub(crate) fn new(folder: &'a Path, whole: Duration) -> Self {
+        Self { folder, random: Pcg64::seed_from_u64(1), whole, watchdog: Watchdog::new(Duration::from_mins(2)) }
+    }
+
+    /// How many kills there are to be for each ending.
+    pub(crate) fn kills() -> usize {
+        if is_thorough() { 200 } else { 4 }
+    }
+
+    /// Starts the program and ends it at some instant of its life, unless it is faster. `is_new`: it has nothing to go on from.
+    pub(crate) fn run(&mut self, mut command: Command, ending: Ending, is_new: bool) -> End {
+        let instant = self.random.random_range(0.0..1.1) * self.whole.as_secs_f64();
+        self.watchdog.now(format!("after {ending:?} at {instant} s"));
+        // Into files: nobody reads while it runs, and a full pipe would block it.
+        let said = self.folder.join("said.txt");
+        command.process_group(0).stdout(Stdio::null()).stderr(File::create(&said).unwrap());
+        let start = Instant::now();
+        let mut child = command.spawn().unwrap();
+        while start.elapsed().as_secs_f64() < instant && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        if is_new && child.try_wait().unwrap().is_some() {
+            // The machine is not as busy as it was: later kills would come too late.
+            self.whole = self.whole.min(start.elapsed());
+        }
+        let id = Pid::from_raw(child.id().try_into().unwrap());
+        // One that has ended was waited for, and its number may be another's by now.
+        if child.try_wait().unwrap().is_none() {
+            match ending {
+                Ending::One(signal) => kill(id, signal).unwrap(),
+                Ending::Group(signal) => killpg(id, signal).unwrap(),
+            }
+        }
+        let status = child.wait().unwrap();
+        let said = fs::read_to_string(&said).unwrap();
+        assert!(!said.contains("panicked"), "{said}");
+        match status.code() {
+            None => End::Killed,
+            Some(0) => End::Finished,
+            Some(code) => panic!("{ending:?} at {instant} s: exit code {code}: {said}"),
+        }
+    }
+}
+
+/// Names of files that a killed process was writing.
+pub(crate) fn leftovers(folder: &Path) -> usize {
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.starts_with(".pathmark-")).count()
+}
+
+const RENDER: [&str; 14] = [
+    "render",
+    "cornell",
+    "--size",
+    "40x30",
+    "--spp",
+    "720",
+    "--estimator",
+    "mis",
+    "--threads",
+    "2",
+    "--checkpoint",
+    "render.checkpoint",
+    "-o",
+    "image.exr",
+];
+
+#[test]
+fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let (checkpoint, image) = (folder.path().join("render.checkpoint"), folder.path().join("image.exr"));
+    let start = Instant::now();
+    finish(pathmark(folder.path(), &RENDER)).with_code(0);
+    let whole = start.elapsed();
+    let expected = fs::read(&image).unwrap();
+    let mut killer = Killer::new(folder.path(), whole);
+    let mut resumed = 0;
+    for ending in endings() {
+        let (mut kills, mut renders) = (0, 0);
+        while kills < Killer::kills() {
+            fs::remove_file(&checkpoint).ok();
+            fs::remove_file(&image).ok();
+            loop {
+                let end = killer.run(pathmark(folder.path(), &RENDER), ending, !checkpoint.exists());
+                // Killed at its very end it may have written the image.
+                if image.exists() {
+                    assert!(fs::read(&image).unwrap() == expected, "{ending:?}: another image after {kills} kills");
+                }
+                if end == End::Finished {
+                    assert!(image.exists());
+                    break;
+                }
+                kills += 1;
+                resumed += usize::from(checkpoint.exists());
+            }
+            renders += 1;
+        }
+        println!(
+            "{ending:?}: {kills} kills, {resumed} with a checkpoint to go on from, {renders} renders to their end"
+        );
+        assert!(resumed > 0, "{ending:?}: no render has gone on from a checkpoint");
+    }
+    println!("whole render {whole:?}, {} unfinished files left by kills", leftovers(folder.path()));
+}
+
+/// A kill that comes while the last bytes go to the disk leaves a whole file or none: what is torn by hand is refused.
+#[test]
+fn a_torn_checkpoint_is_refused_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("render.checkpoint");
+    let arguments = RENDER.map(|word| if word == "240" { "32" } else { word });
+    finish(pathmark(folder.path(), &arguments)).with_code(0);
+    let whole = fs::read(&path).unwrap();
+    for length in [0, 1, 21, 22, 40, 300, whole.len() / 2, whole.len() - 33, whole.len() - 1] {
+        fs::write(&path, &whole[..length]).unwrap();
+        let refused = finish(pathmark(folder.path(), &arguments)).with_code(2);
+        assert!(refused.err.contains("checkpoint = render.checkpoint: "), "{}", refused.err);
+        assert_eq!(fs::read(&path).unwrap(), &whole[..length]);
+    }
+}

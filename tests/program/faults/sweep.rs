@@ -1,0 +1,95 @@
+//! F01: a sweep that is ended by a signal at any instant, and goes on to the rows and images of one that was not.
+
+use super::kills::{End, Killer, endings, leftovers};
+use crate::experiment::{TINY, write_tiny};
+use crate::program::{finish, pathmark};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
+/// Five cells, three times.
+const ROWS: usize = 15;
+
+/// References that are rendered first, and images that are kept.
+pub(crate) fn text() -> String {
+    let text = TINY.replace("[quick]\n", "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 400\n");
+    text.replace("[matrix]", "keep = [\"images\"]\n\n[matrix]")
+}
+
+/// Whether a column is of the run and not of the machine it was measured on.
+fn is_fixed(column: &str) -> bool {
+    let measured = ["warnings", "started_utc", "workers_used", "peak_rss_bytes"];
+    !(column.ends_with("_s") || column.ends_with("_switches") || measured.contains(&column))
+}
+
+/// The finished rows in their order, without what was measured.
+pub(crate) fn rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
+    let text = fs::read(folder.join("out/tiny/records.csv")).unwrap_or_default();
+    let end = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+    let rows = csv::Reader::from_reader(&text[..end]).into_deserialize::<BTreeMap<String, String>>();
+    let fixed = |row: BTreeMap<String, String>| row.into_iter().filter(|(column, _)| is_fixed(column)).collect();
+    rows.map(|row| fixed(row.expect("no row is torn"))).collect()
+}
+
+/// Images and references, by name.
+pub(crate) fn pictures(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    for kind in ["out/tiny/images", "out/references"] {
+        for entry in fs::read_dir(folder.join(kind)).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            if !name.starts_with('.') {
+                found.insert(name, fs::read(path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn a_sweep_killed_at_any_instant_is_resumed_to_the_same_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    write_tiny(folder, &text());
+    let start = Instant::now();
+    finish(pathmark(folder, &RESUME)).with_code(0);
+    let whole = start.elapsed();
+    let (expected, expected_pictures) = (rows(folder), pictures(folder));
+    assert_eq!((expected.len(), expected_pictures.len()), (ROWS, 1 + 2));
+    assert!(expected.iter().all(|row| row["error"].is_empty()));
+    let mut killer = Killer::new(folder, whole);
+    let (mut torn, mut resumed) = (0, 0);
+    for ending in endings() {
+        let (mut kills, mut sweeps) = (0, 0);
+        while kills < Killer::kills() {
+            fs::remove_dir_all(folder.join("out")).unwrap();
+            let mut before = 0;
+            loop {
+                let end = killer.run(pathmark(folder, &RESUME), ending, before == 0);
+                let found = rows(folder);
+                // Each row stands where it stands in a sweep that nobody disturbs, once, and none has gone.
+                assert!(found.len() >= before, "{ending:?}: {} rows after {before}", found.len());
+                let wrong = found.iter().zip(&expected).position(|(found, expected)| found != expected);
+                assert!(wrong.is_none() && found.len() <= ROWS, "{ending:?}: {} rows, {wrong:?} is wrong", found.len());
+                before = found.len();
+                if end == End::Finished {
+                    break;
+                }
+                kills += 1;
+                resumed += usize::from(before > 0);
+                let text = fs::read(folder.join("out/tiny/records.csv")).unwrap_or_default();
+                torn += usize::from(text.last().is_some_and(|byte| *byte != b'\n'));
+            }
+            assert_eq!(before, ROWS);
+            assert!(pictures(folder) == expected_pictures, "{ending:?}: another image after {kills} kills");
+            sweeps += 1;
+        }
+        println!("{ending:?}: {kills} kills, {sweeps} sweeps to their end");
+    }
+    println!("{resumed} kills left rows to go on from");
+    assert!(resumed > 0, "no sweep has gone on from a row");
+    let left = leftovers(&folder.join("out/tiny"));
+    println!("whole sweep {whole:?}, {torn} rows torn, {left} unfinished files left by kills of the last sweep");
+}

@@ -1,0 +1,19 @@
+//! What the program `pathmark` does as a user runs it: one test program for all verbs.
+
+mod command_line;
+#[path = "../support/experiment.rs"]
+mod experiment;
+mod external;
+mod faults;
+mod inspection;
+mod price;
+#[path = "../support/program.rs"]
+mod program;
+mod resume;
+#[path = "../support/scene_text.rs"]
+mod scene_text;
+mod shared_seeds;
+#[path = "../support/snapshot.rs"]
+mod snapshot;
+#[path = "../support/watchdog.rs"]
+mod watchdog;

@@ -1,0 +1,75 @@
+//! What an accuracy costs: the prediction, and whether paying for it gives what was predicted.
+
+use crate::program::{Finished, finish, pathmark};
+use serde_json::Value;
+
+fn price(arguments: &[&str]) -> Finished {
+    let folder = tempfile::tempdir().unwrap();
+    finish(pathmark(folder.path(), &[&["price", "cornell", "--quiet"], arguments].concat()))
+}
+
+fn rows(arguments: &[&str]) -> Vec<Value> {
+    let finished = price(&[&["--json"], arguments].concat()).with_code(0);
+    serde_json::from_str(&finished.out).unwrap()
+}
+
+/// The squared error of independent samples falls as 1/n, so half the RMSE takes four times the samples and seconds.
+#[test]
+fn half_the_error_is_predicted_to_cost_four_times_as_much() {
+    let rows = rows(&["--size", "24x18", "--rmse", "0.2,0.1", "--pilot-spp", "8", "--threads", "1"]);
+    let number = |row: usize, field: &str| rows[row][field].as_f64().unwrap();
+    assert_eq!(rows.len(), 2);
+    for row in &rows {
+        let number = |field: &str| row[field].as_f64().unwrap();
+        assert!(number("seconds_low") < number("seconds") && number("seconds") < number("seconds_high"));
+        assert!(number("spp_low") < number("spp") && number("spp") < number("spp_high") + 4.0);
+        assert!((number("half_rmse_seconds") / number("seconds") - 4.0).abs() < 1e-9);
+        assert!(number("kurtosis") > 1.0 && (0.0..1.0).contains(&number("largest_share")));
+        assert!(row["paid_rmse"].is_null(), "nobody paid");
+    }
+    // Rounded up to whole images of four subpixels.
+    assert!((number(1, "spp") - 4.0 * number(0, "spp")).abs() <= 16.0 && number(0, "spp") % 4.0 == 0.0);
+}
+
+/// The goal is reached: two images of seeds that the pilot has not seen differ by as much as was predicted. The pilot's own interval says
+/// within how much; what is left is the noise of two images of 1728 pixels, a standard deviation of about 3 %.
+#[test]
+fn paying_gives_what_was_predicted() {
+    for (estimator, sampler) in [("bsdf", "independent"), ("smallpt", "sobol")] {
+        let rows = rows(&[
+            "--size",
+            "48x36",
+            "--rmse",
+            "0.15",
+            "--estimator",
+            estimator,
+            "--sampler",
+            sampler,
+            "--pay",
+            "--pilot-spp",
+            "16",
+        ]);
+        let ratio = rows[0]["rmse_ratio"].as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 0.12, "{estimator} with {sampler}: {}", rows[0]);
+        assert!((rows[0]["paid_rmse"].as_f64().unwrap() / 0.15 - 1.0).abs() < 0.14, "{}", rows[0]);
+        assert!(rows[0]["paid_seconds"].as_f64().unwrap() > 0.0 && rows[0]["seconds_ratio"].as_f64().unwrap() > 0.0);
+    }
+}
+
+#[test]
+fn what_cannot_be_priced_is_refused() {
+    for (arguments, field) in [
+        (["--rmse", "0"].as_slice(), "rmse"),
+        (&["--rmse", "0.1,-1"], "rmse"),
+        (&["--rmse", "nan"], "rmse"),
+        (&["--rmse", "1e-9", "--size", "8x6"], "rmse"),
+        (&["--rmse", "0.1", "--pilot-spp", "6", "--estimator", "bsdf"], "pilot-spp"),
+        (&["--rmse", "0.1", "--subpixel-clamp", "--size", "8x6"], "subpixel-clamp"),
+        (&["--rmse", "0.1", "--seed", "9223372036854775807"], "seed"),
+        (&["--rmse", "0.1", "--pilot-seeds", "2"], "pilot-seeds"),
+    ] {
+        let refused = price(arguments).with_code(2);
+        assert!(refused.err.contains(field), "{arguments:?}: {}", refused.err);
+        assert!(refused.out.is_empty());
+    }
+}

@@ -1,0 +1,180 @@
+//! A sweep that is resumed gives the rows of one that was not stopped: each once, whole, with the same checksums. Kills at any instant are in
+//! `tests/faults`.
+
+use crate::experiment::{TINY, write_tiny};
+use crate::program::{finish, pathmark};
+use crate::snapshot::{assert_untouched, snapshot};
+use std::collections::{BTreeMap, HashSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
+const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
+
+/// A folder with `tiny.toml`, and where its rows will be.
+fn prepared(text: &str) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), text);
+    let records = folder.path().join("out/tiny/records.csv");
+    (folder, records)
+}
+
+/// One map from column to value for each row; the reader insists that every row has all columns.
+fn rows(records: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(records).unwrap().deserialize().map(|row| row.expect("no row is torn")).collect()
+}
+
+/// (cell, repetition) and what must not depend on when it ran.
+fn results(records: &Path) -> BTreeMap<(String, String), [String; 3]> {
+    let rows = rows(records);
+    let key = |row: &BTreeMap<String, String>| (row["cell"].clone(), row["repetition"].clone());
+    let value = |row: &BTreeMap<String, String>| ["checksum", "rays", "error"].map(|column| row[column].clone());
+    let results: BTreeMap<_, _> = rows.iter().map(|row| (key(row), value(row))).collect();
+    assert_eq!(results.len(), rows.len(), "a row is doubled");
+    results
+}
+
+/// Resuming drops what the crash tore, whatever is left of it, and repeats that row alone.
+#[test]
+fn a_torn_row_is_written_again() {
+    let (folder, records) = prepared(TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let (expected, whole) = (results(&records), fs::read_to_string(&records).unwrap());
+    let header = whole.find('\n').unwrap() + 1;
+    let row = &whole[header..header + whole[header..].find('\n').unwrap()];
+    let cuts = [1, header / 2, header - 1, header, header + 1, header + row.len() / 2, whole.len() - 1];
+    for cut in cuts {
+        println!("cut at {cut}");
+        fs::write(&records, &whole[..cut]).unwrap();
+        finish(pathmark(folder.path(), &RESUME)).with_code(0);
+        assert_eq!(results(&records), expected);
+    }
+    // Half a row more, and bytes that are no text, as a power cut may leave them.
+    for tail in [row.as_bytes()[..row.len() / 2].to_vec(), vec![0; 100], vec![0xff; 100]] {
+        println!("tail {:?}", &tail[..4]);
+        fs::write(&records, [whole.as_bytes(), &tail].concat()).unwrap();
+        finish(pathmark(folder.path(), &RESUME)).with_code(0);
+        assert_eq!(fs::read_to_string(&records).unwrap(), whole);
+    }
+}
+
+/// Killed between making the files of the folder: whatever is there, `--resume` goes on.
+#[test]
+fn a_sweep_killed_before_its_first_row_can_be_resumed() {
+    let (folder, records) = prepared(TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let expected = results(&records);
+    let machine = fs::read(records.with_file_name("machine.toml")).unwrap();
+    for has_machine in [true, false] {
+        println!("machine.toml: {has_machine}");
+        fs::remove_dir_all(folder.path().join("out")).unwrap();
+        fs::create_dir_all(records.parent().unwrap()).unwrap();
+        fs::write(&records, "").unwrap();
+        if has_machine {
+            fs::write(records.with_file_name("machine.toml"), &machine).unwrap();
+        }
+        finish(pathmark(folder.path(), &RESUME)).with_code(0);
+        assert_eq!(results(&records), expected);
+    }
+}
+
+/// A row that failed is no result: it is run again, and stands there once.
+#[test]
+fn a_failed_row_is_run_again() {
+    let (folder, records) = prepared(TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let expected = results(&records);
+    let mut reader = csv::Reader::from_path(&records).unwrap();
+    let headers = reader.headers().unwrap().clone();
+    let error = headers.iter().position(|name| name == "error").unwrap();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&headers).unwrap();
+    for (index, row) in reader.records().enumerate() {
+        let fails = |column: usize| index == 4 && column == error;
+        let row = row.unwrap();
+        let fields = row.iter().enumerate().map(|(column, field)| if fails(column) { "killed" } else { field });
+        writer.write_record(fields).unwrap();
+    }
+    fs::write(&records, writer.into_inner().unwrap()).unwrap();
+
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    assert_eq!(results(&records), expected);
+    let rows = rows(&records);
+    let orders: HashSet<&str> = rows.iter().map(|row| row["order"].as_str()).collect();
+    assert_eq!(orders.len(), rows.len(), "two rows claim the same position in the sweep");
+}
+
+#[test]
+fn resuming_what_is_done_changes_no_row() {
+    let (folder, records) = prepared(TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let before = fs::read(&records).unwrap();
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    assert_eq!(fs::read(&records).unwrap(), before);
+    // More repetitions go behind the old rows.
+    finish(pathmark(folder.path(), &[RESUME.as_slice(), &["--repetitions", "4"]].concat())).with_code(0);
+    assert!(fs::read(&records).unwrap().starts_with(&before));
+    assert_eq!(results(&records).len(), 5 * 4);
+}
+
+/// Rows of another definition, profile, processor or revision are no repetitions of these.
+#[test]
+fn resuming_with_another_definition_or_machine_is_refused() {
+    let (folder, records) = prepared(TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let refused = |arguments: &[&str], said: &str| {
+        let before = snapshot(folder.path());
+        let finished = finish(pathmark(folder.path(), arguments)).with_code(2);
+        assert!(finished.err.contains("machine.toml") && finished.err.contains(said), "{said}: {}", finished.err);
+        assert_eq!(finished.out, "");
+        assert_untouched(&before, &snapshot(folder.path()));
+    };
+    refused(&[RESUME.as_slice(), &["--full"]].concat(), "profile = quick");
+    write_tiny(folder.path(), &TINY.replace("seed = [1]", "seed = [2]"));
+    refused(&RESUME, "definition_hash");
+    write_tiny(folder.path(), TINY);
+
+    let machine = records.with_file_name("machine.toml");
+    let text = fs::read_to_string(&machine).unwrap();
+    for field in ["cpu", "commit"] {
+        let line = text.lines().find(|line| line.starts_with(&format!("{field} = "))).unwrap();
+        fs::write(&machine, text.replace(line, &format!("{field} = \"another\""))).unwrap();
+        refused(&RESUME, &format!("{field} = another"));
+    }
+}
+
+/// A curve gives a row at 4, 8, 16, 32 and 40 samples, each with the checksum of an image rendered at once: the second matrix has those. Cut off among
+/// its rows and resumed, it has all of them once.
+#[test]
+fn a_curve_cut_off_among_its_rows_is_resumed() {
+    let curve = TINY
+        .replace("spp = [4]", "spp = [40]\ncurve = true")
+        .replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
+    let (head, scales) = curve.split_once("[quick]").unwrap();
+    let (head, matrix) = head.split_once("[matrix]").unwrap();
+    let single = matrix.replace("spp = [40]\ncurve = true", "spp = [4, 8, 16, 32, 40]");
+    let text = format!("{head}[[matrix]]{matrix}[[matrix]]{single}[quick]{scales}");
+    let (folder, records) = prepared(&text);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let expected = results(&records);
+    assert_eq!(expected.len(), (5 + 5) * 3);
+    let spp: Vec<u32> = rows(&records)
+        .iter()
+        .filter(|row| row["cell"].ends_with("curve-40") && row["repetition"] == "0")
+        .map(|row| row["spp"].parse().unwrap())
+        .collect();
+    assert_eq!(spp, [4, 8, 16, 32, 40]);
+    let seconds: Vec<f64> = rows(&records)
+        .iter()
+        .filter(|row| row["cell"].ends_with("curve-40") && row["repetition"] == "1" && row["spp"] != "4")
+        .map(|row| row["makespan_s"].parse().unwrap())
+        .collect();
+    assert!(seconds[1] < seconds[2] && seconds[2] < seconds[3], "cumulative: {seconds:?}");
+
+    let whole = fs::read_to_string(&records).unwrap();
+    let lines: Vec<&str> = whole.split_inclusive('\n').collect();
+    let inside = lines.windows(2).position(|pair| pair.iter().all(|line| line.contains("curve-40"))).unwrap() + 1;
+    fs::write(&records, lines[..inside].concat()).unwrap();
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    assert_eq!(results(&records), expected);
+}
