@@ -1,0 +1,191 @@
+//! The one identity of images and schedules: what tells two of them apart, whether they are asked for or measured.
+//!
+//! Cells, rows, references and figures compare by these keys. A new axis belongs into one of the two, which the tests below insist on.
+
+use super::{Record, Setup};
+use crate::kernel::{Clamp, Spec};
+use crate::scene::Scene;
+use std::fmt;
+
+/// What tells images apart: rows with equal keys have equal checksums, unless the sampler gives other numbers in each run.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct ImageKey {
+    /// Name of the scene.
+    pub scene: String,
+    /// Hash of its definition: two files may have the same name, and one may be edited between two runs.
+    pub scene_hash: String,
+    /// Estimator.
+    pub estimator: String,
+    /// Sampler.
+    pub sampler: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Seed.
+    pub seed: u64,
+    /// Bounces after which paths are cut, the estimator's own limit included.
+    pub max_depth: Option<u16>,
+    /// How chance ends paths, the estimator's own rule included; empty if it does not.
+    pub roulette: String,
+    /// What is clamped to 1; empty if nothing is.
+    pub clamp: String,
+    /// Floating-point format of the kernel that renders.
+    pub precision: String,
+    /// Whether tiles have as many samples as their noise calls for.
+    pub adaptive: bool,
+}
+
+impl ImageKey {
+    /// The image of so many samples that a specification comes to in a scene. `precision` is that of the kernel that renders, which need
+    /// not be the one that was asked for.
+    pub fn of(scene: &Scene, spec: &Spec, precision: &str, spp: u32) -> Self {
+        let roulette = spec.roulette().unwrap_or_default();
+        let max_depth = spec.depth();
+        // Every field is named, so that a new one has to be sorted in here.
+        let Spec {
+            width,
+            height,
+            seed,
+            estimator,
+            sampler,
+            kernel: _,
+            simd: _,
+            precision: _,
+            effects: _,
+            accelerator: _,
+            max_depth: _,
+            roulette: _,
+            clamp,
+        } = spec;
+        Self {
+            scene: scene.name.clone(),
+            scene_hash: scene.hash.clone(),
+            estimator: estimator.clone(),
+            sampler: sampler.clone(),
+            width: *width,
+            height: *height,
+            spp,
+            seed: *seed,
+            max_depth,
+            roulette,
+            clamp: clamp.map(Clamp::name).unwrap_or_default().to_string(),
+            precision: precision.to_string(),
+            adaptive: false,
+        }
+    }
+}
+
+/// In one word without spaces, equal for equal keys alone.
+impl fmt::Display for ImageKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { scene, scene_hash, estimator, sampler, width, height, spp, seed, .. } = self;
+        write!(f, "{scene}-{scene_hash}/{estimator}/{sampler}/{width}x{height}/{spp}spp/seed{seed}")?;
+        if let Some(depth) = self.max_depth {
+            write!(f, "/depth{depth}")?;
+        }
+        let parts = [("roulette-", &self.roulette), ("clamp-", &self.clamp), ("", &self.precision)];
+        for (name, value) in parts.iter().filter(|(_, value)| !value.is_empty()) {
+            write!(f, "/{name}{value}")?;
+        }
+        f.write_str(if self.adaptive { "/adaptive" } else { "" })
+    }
+}
+
+/// What tells schedules of one image apart: who renders which pieces by what means. Nothing of it may change a bit of the image.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct ScheduleKey {
+    /// Strategy, with its parameter.
+    pub strategy: String,
+    /// How the film is cut.
+    pub decomposition: String,
+    /// Workers.
+    pub threads: usize,
+    /// How pieces get into the film.
+    pub output: String,
+    /// Kernel that renders.
+    pub kernel: String,
+    /// Why it is not the one that was asked for; empty if it is.
+    pub kernel_fallback: String,
+    /// Instruction set of its lanes; empty if it has none.
+    pub simd: String,
+    /// Effect profile.
+    pub effects: String,
+    /// What the search for the nearest primitive goes by.
+    pub accelerator: String,
+}
+
+/// In one word without spaces, equal for equal keys alone.
+impl fmt::Display for ScheduleKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}/{}t/{}", self.decomposition, self.strategy, self.threads, self.output)?;
+        let fallback = if self.kernel_fallback.is_empty() { "" } else { "fallback" };
+        let parts = [&self.kernel, fallback, &self.simd, &self.effects, &self.accelerator];
+        parts.iter().filter(|part| !part.is_empty()).try_for_each(|part| write!(f, "/{part}"))
+    }
+}
+
+impl Record {
+    /// What tells its image from others.
+    pub fn image_key(&self) -> ImageKey {
+        ImageKey {
+            scene: self.scene.clone(),
+            scene_hash: self.scene_hash.clone(),
+            estimator: self.estimator.clone(),
+            sampler: self.sampler.clone(),
+            width: self.width,
+            height: self.height,
+            spp: self.spp,
+            seed: self.seed,
+            max_depth: self.max_depth,
+            roulette: self.roulette.clone(),
+            clamp: self.clamp.clone(),
+            precision: self.precision.clone(),
+            adaptive: self.adaptive,
+        }
+    }
+
+    /// What tells its schedule from others of the same image.
+    pub fn schedule_key(&self) -> ScheduleKey {
+        ScheduleKey {
+            strategy: self.strategy.clone(),
+            decomposition: self.decomposition.clone(),
+            threads: self.threads,
+            output: self.output.clone(),
+            kernel: self.kernel.clone(),
+            kernel_fallback: self.kernel_fallback.clone(),
+            simd: self.simd.clone(),
+            effects: self.effects.clone(),
+            accelerator: self.accelerator.clone(),
+        }
+    }
+}
+
+impl Setup {
+    /// What tells its image from others.
+    pub fn image_key(&self) -> ImageKey {
+        let settings = self.settings();
+        ImageKey::of(self.scene(), &settings.spec, self.choice().precision().name(), settings.spp)
+    }
+
+    /// What tells its schedule from others of the same image.
+    pub fn schedule_key(&self) -> ScheduleKey {
+        let (settings, choice) = (self.settings(), self.choice());
+        ScheduleKey {
+            strategy: settings.strategy.clone(),
+            decomposition: settings.decomposition.clone(),
+            threads: self.threads(),
+            output: settings.output.clone(),
+            kernel: choice.kernel().to_string(),
+            kernel_fallback: choice.fallback().to_string(),
+            simd: choice.simd().to_string(),
+            effects: self.effects().to_string(),
+            accelerator: self.accelerator().to_string(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+use super::*;
+use crate::measure::{Measured, Settings};
+use serde_json::{Map, Value};
+use std::collections::BTreeSet;
+
+/// Columns that change the image.
+const IMAGE: [&str; 13] = [
+    "scene",
+    "scene_hash",
+    "estimator",
+    "sampler",
+    "width",
+    "height",
+    "spp",
+    "seed",
+    "max_depth",
+    "roulette",
+    "clamp",
+    "precision",
+    "adaptive",
+];
+
+/// Columns that say how the same image is made.
+const SCHEDULE: [&str; 9] =
+    ["strategy", "decomposition", "threads", "output", "kernel", "kernel_fallback", "simd", "effects", "accelerator"];
+
+/// Columns that say which row it is, what follows from the others, and what was measured.
+const OTHER: [&str; 50] = [
+    "schema",
+    "experiment",
+    "cell",
+    "repetition",
+    "order",
+    "target_error",
+    "time_limit_s",
+    "rounds",
+    "biased",
+    "jobs",
+    "workers_used",
+    "build_s",
+    "pilot_s",
+    "setup_s",
+    "makespan_s",
+    "merge_s",
+    "cpu_user_s",
+    "cpu_system_s",
+    "busy_sum_s",
+    "busy_max_s",
+    "gap_sum_s",
+    "tail_sum_s",
+    "job_min_s",
+    "job_median_s",
+    "job_max_s",
+    "voluntary_switches",
+    "involuntary_switches",
+    "foreign_cpu_s",
+    "peak_rss_bytes",
+    "paths",
+    "rays",
+    "box_tests",
+    "primitive_tests",
+    "escaped",
+    "truncated",
+    "invalid_samples",
+    "estimated_rmse",
+    "mse",
+    "rmse",
+    "mse_display",
+    "rmse_display",
+    "rel_mse",
+    "variance",
+    "mean_radiance",
+    "checksum",
+    "warnings",
+    "error",
+    "commit",
+    "dirty",
+    "started_utc",
+];
+
+fn columns(record: &Record) -> Map<String, Value> {
+    match serde_json::to_value(record).unwrap() {
+        Value::Object(columns) => columns,
+        other => panic!("{other}"),
+    }
+}
+
+/// The row with another value in one column.
+fn varied(record: &Record, column: &str) -> Record {
+    let mut columns = columns(record);
+    let other = match &columns[column] {
+        Value::Bool(own) => Value::from(!own),
+        Value::Number(own) => Value::from(own.as_u64().unwrap() + 1),
+        Value::String(own) => Value::from(format!("{own}-other")),
+        _ => Value::from(7),
+    };
+    columns.insert(column.to_string(), other);
+    serde_json::from_value(Value::Object(columns)).unwrap()
+}
+
+#[test]
+fn every_column_of_a_row_is_sorted_into_what_tells_images_or_schedules_apart_or_neither() {
+    let row = Record::default();
+    let sorted: BTreeSet<&str> = IMAGE.into_iter().chain(SCHEDULE).chain(OTHER).collect();
+    let own = columns(&row);
+    assert_eq!(own.keys().map(String::as_str).collect::<BTreeSet<_>>(), sorted);
+    for column in sorted {
+        let other = varied(&row, column);
+        assert_eq!(other.image_key() != row.image_key(), IMAGE.contains(&column), "{column}");
+        assert_eq!(other.schedule_key() != row.schedule_key(), SCHEDULE.contains(&column), "{column}");
+    }
+}
+
+#[test]
+fn words_differ_where_keys_do() {
+    let row = Record { max_depth: Some(3), spp: 4, ..Record::default() };
+    for column in IMAGE {
+        assert_ne!(varied(&row, column).image_key().to_string(), row.image_key().to_string(), "{column}");
+    }
+    for column in SCHEDULE {
+        assert_ne!(varied(&row, column).schedule_key().to_string(), row.schedule_key().to_string(), "{column}");
+    }
+    // The same value on two axes is two words.
+    let of = |roulette: &str, clamp: &str| {
+        Record { roulette: roulette.to_string(), clamp: clamp.to_string(), ..Record::default() }.image_key().to_string()
+    };
+    assert_ne!(of("x", ""), of("", "x"));
+}
+
+fn setup(change: impl Fn(&mut Settings)) -> Setup {
+    let mut settings = Settings { spp: 4, threads: 1, ..Settings::default() };
+    (settings.spec.width, settings.spec.height, settings.spec.estimator) = (8, 6, "bsdf".to_string());
+    change(&mut settings);
+    Setup::prepare(settings).unwrap()
+}
+
+#[test]
+fn every_axis_that_changes_the_image_gives_another_key() {
+    let changes: [fn(&mut Settings); 12] = [
+        |_| (),
+        |s| s.scene = "sky".to_string(),
+        |s| s.spp = 8,
+        |s| s.spec.width = 9,
+        |s| s.spec.height = 7,
+        |s| s.spec.seed = 2,
+        |s| s.spec.estimator = "mis".to_string(),
+        |s| s.spec.sampler = "sobol".to_string(),
+        |s| s.spec.precision = "f32".to_string(),
+        |s| s.spec.max_depth = Some(3),
+        |s| s.spec.roulette = Some("albedo:2".to_string()),
+        |s| s.spec.clamp = Some(Clamp::Subpixel),
+    ];
+    let setups = changes.map(setup);
+    let keys: BTreeSet<ImageKey> = setups.iter().map(Setup::image_key).collect();
+    let words: BTreeSet<String> = keys.iter().map(ToString::to_string).collect();
+    assert_eq!((keys.len(), words.len()), (changes.len(), changes.len()), "{words:#?}");
+}
+
+#[test]
+fn axes_of_schedules_leave_the_image_alone() {
+    let changes: [fn(&mut Settings); 8] = [
+        |_| (),
+        |s| s.strategy = "serial".to_string(),
+        |s| s.threads = 2,
+        |s| s.decomposition = "rows".to_string(),
+        |s| s.output = "channel-piece".to_string(),
+        |s| s.spec.kernel = "scalar".to_string(),
+        |s| s.spec.effects = Some("all".to_string()),
+        |s| s.spec.accelerator = Some("sah".to_string()),
+    ];
+    let setups = changes.map(setup);
+    assert_eq!(setups.iter().map(Setup::image_key).collect::<BTreeSet<_>>().len(), 1);
+    let keys: BTreeSet<ScheduleKey> = setups.iter().map(Setup::schedule_key).collect();
+    assert_eq!(keys.len(), changes.len(), "{keys:#?}");
+}
+
+#[test]
+fn what_is_asked_for_and_what_was_measured_have_the_same_keys() {
+    for change in [|_: &mut Settings| (), |s: &mut Settings| s.spec.sampler = "stratified".to_string()] {
+        let setup = setup(change);
+        let row = Record::new(&setup, &setup.run(None).unwrap(), Measured::default());
+        assert_eq!((row.image_key(), row.schedule_key()), (setup.image_key(), setup.schedule_key()));
+    }
+}
+
+#[test]
+fn an_estimators_own_rule_is_the_same_image_as_that_rule_asked_for() {
+    let (own, asked) = (setup(|_| ()), setup(|s| s.spec.roulette = s.spec.roulette()));
+    assert_eq!(own.image_key(), asked.image_key());
+    assert!(!own.image_key().roulette.is_empty());
+}
