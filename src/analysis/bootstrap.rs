@@ -13,22 +13,6 @@ use super::quantile::{quantile_of_sorted, sorted};
 /// Resamples per interval: the ends then move by about a tenth of the interval's width at most if the seed is changed.
 pub const RESAMPLES: usize = 4000;
 
-/// The interval of any `statistic` of one sample. `statistic` gets as many values as the sample has, in arbitrary order.
-///
-/// `None` for fewer than two values, values without spread, one that is not finite, or a statistic that does not exist.
-pub fn of_sample(values: &[f64], level: f64, statistic: impl Fn(&[f64]) -> Option<f64>) -> Option<Estimate> {
-    if !can_vary(values) {
-        return None;
-    }
-    let mut draw = Resampler::new();
-    let mut buffer = Vec::with_capacity(values.len());
-    let replicates = (0..RESAMPLES).map(|_| {
-        draw.fill(values, &mut buffer);
-        statistic(&buffer)
-    });
-    estimate(statistic(values)?, replicates, level)
-}
-
 /// The intervals of several numbers that are computed together from independent samples, such as the parameters of a curve through
 /// the repetitions at each number of workers: every sample is resampled by itself.
 ///
@@ -99,6 +83,11 @@ mod tests {
     use super::*;
     use crate::analysis::mean::Moments;
     use crate::analysis::quantile::median;
+
+    /// The interval of one number of one sample.
+    fn of_sample(values: &[f64], level: f64, statistic: impl Fn(&[f64]) -> Option<f64>) -> Option<Estimate> {
+        of_groups(&[values.to_vec()], level, |groups| Some([statistic(&groups[0])?])).map(|[estimate]| estimate)
+    }
 
     /// Twelve normal deviates or so: sums of uniforms, minus their mean (the classic Irwin-Hall construction).
     fn normal(draw: &mut Resampler) -> f64 {

@@ -5,9 +5,8 @@
 
 use serde::Serialize;
 
-use super::bootstrap;
 use super::interval::{Estimate, Interval};
-use super::quantile::median;
+use super::quantile::{median, median_interval};
 
 /// S = T1 / Tp, from times in seconds; `None` unless both are positive and finite.
 pub fn speedup(serial_s: f64, parallel_s: f64) -> Option<f64> {
@@ -32,14 +31,18 @@ pub fn serial_fraction(speedup: f64, workers: usize) -> Option<f64> {
     fraction.is_finite().then_some(fraction)
 }
 
-/// The serial fraction of the median of `speedups`, one for each pair of runs measured side by side, with a bootstrap interval.
+/// The serial fraction of the median of `speedups`, one for each pair of runs measured side by side. It falls with the speedup, so the
+/// order statistics that enclose the median speedup, put into the formula, enclose the fraction with the same confidence.
 ///
-/// `None` for fewer than two workers or two speedups, equal speedups, or one that is not positive and finite.
+/// `None` for fewer than two workers or two speedups, or one that is not positive and finite.
 pub fn serial_fraction_estimate(speedups: &[f64], workers: usize, level: f64) -> Option<Estimate> {
     if speedups.iter().any(|&speedup| !(speedup > 0.0 && speedup.is_finite())) {
         return None;
     }
-    bootstrap::of_sample(speedups, level, |sample| serial_fraction(median(sample)?, workers))
+    let of = |speedup: f64| serial_fraction(speedup, workers);
+    let enclosing = median_interval(speedups, level)?;
+    let interval = Interval::between(of(enclosing.high)?, of(enclosing.low)?, enclosing.level)?;
+    Some(Estimate { value: of(median(speedups)?)?, interval })
 }
 
 /// Whether S > p, which needs a cause: a cache that now fits, a higher clock, or a baseline that was built differently.
@@ -97,14 +100,18 @@ mod tests {
 
     #[test]
     fn interval_of_the_fraction_is_that_of_the_speedup_turned_round() {
-        // e falls with S, so the ends of its interval are the fractions of the extremes, which five values reach at 95 %.
-        let speedups = [1.7, 1.8, 1.9, 1.75, 1.85];
+        // Of nine values the second and the eighth enclose the median with 96.1 %; e falls with S, so they change places.
+        let speedups = [1.7, 1.8, 1.9, 1.75, 1.85, 1.6, 1.95, 1.65, 1.78];
         let fraction = serial_fraction_estimate(&speedups, 2, 0.95).unwrap();
-        assert!((fraction.value - serial_fraction(1.8, 2).unwrap()).abs() < 1e-12);
-        assert!(fraction.interval.low >= serial_fraction(1.9, 2).unwrap() - 1e-12);
-        assert!(fraction.interval.high <= serial_fraction(1.7, 2).unwrap() + 1e-12);
-        assert!(fraction.interval.low < fraction.value && fraction.value < fraction.interval.high);
-        for (sample, workers) in [(&speedups[..], 1), (&speedups[..1], 2), (&[1.8, 1.8], 2), (&[1.8, 0.0], 2)] {
+        let of = |speedup: f64| 2.0 / speedup - 1.0;
+        let ends = (fraction.interval.low, fraction.value, fraction.interval.high);
+        for (end, speedup) in [(ends.0, 1.9), (ends.1, 1.78), (ends.2, 1.65)] {
+            assert!((end - of(speedup)).abs() < 1e-12, "{ends:?}");
+        }
+        assert!((fraction.interval.level - 0.960_937_5).abs() < 1e-9);
+        let equal = serial_fraction_estimate(&[1.8, 1.8], 2, 0.95).unwrap();
+        assert!(equal.interval.low == equal.interval.high && equal.interval.level == 0.5);
+        for (sample, workers) in [(&speedups[..], 1), (&speedups[..1], 2), (&[1.8, 0.0], 2)] {
             assert_eq!(serial_fraction_estimate(sample, workers, 0.95), None);
         }
     }
