@@ -38,8 +38,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             "efficiency per thread",
             "efficiency per processor in use",
             "work inflation",
-            "e, p = threads (95 %)",
-            "e, p = processors in use (95 %)",
+            "e, p = threads (confidence)",
+            "e, p = processors in use (confidence)",
             "remark",
         ]
         .map(String::from)
@@ -83,7 +83,7 @@ fn row(results: &Results, schedule: &Schedule, estimate: &Estimate) -> Vec<Strin
     let fraction = |workers: usize| {
         serial_fraction_estimate(&speedups, workers, LEVEL).map_or_else(
             || "-".to_string(),
-            |e| format!("{:.3}, {:.3} to {:.3}", e.value, e.interval.low, e.interval.high),
+            |e| format!("{:.3}, {}", e.value, with_level(&e.interval, 3)),
         )
     };
     let remark = match oddity(&interval, used) {
