@@ -44,6 +44,7 @@ pub mod film;
 pub mod image_io;
 pub mod input;
 pub mod kernel;
+pub mod lab;
 pub mod lock;
 pub mod material;
 pub mod math;
@@ -56,3 +57,5 @@ pub mod scene;
 pub mod simd;
 pub mod simulate;
 pub mod strategy;
+
+pub use lab::Lab;

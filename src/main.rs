@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    pathmark::cli::main()
+    pathmark::Lab::new().main()
 }

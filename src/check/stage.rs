@@ -9,8 +9,7 @@
 //! ```
 
 use crate::error::Result;
-use crate::scene::{Scene, load};
-use std::io::Write;
+use crate::scene::Scene;
 
 /// A camera that looks at a spot that is so small that it is a point: 2e-8 wide at distance 1.
 pub fn camera(position: [f64; 3], look_at: [f64; 3]) -> String {
@@ -95,10 +94,7 @@ pub fn fog(absorption: f64, scattering: f64, emission: f64) -> String {
 
 /// Reads a scene from its parts, or says what is wrong with it; what stands before the first table comes first.
 pub fn try_scene(parts: &[String]) -> Result<Scene> {
-    let mut file = tempfile::Builder::new().suffix(".toml").tempfile().expect("a temporary file");
-    let text = format!("about = 'a case'\n{}", parts.concat());
-    file.write_all(text.as_bytes()).expect("a written file");
-    load(file.path().to_str().expect("a path in UTF-8"))
+    Scene::from_toml(&format!("about = 'a case'\n{}", parts.concat()))
 }
 
 /// Reads a scene from its parts.

@@ -1,11 +1,10 @@
 //! The options that choose what is rendered, in which pieces and by whom.
 
-use crate::error::{InputError, Result};
-use crate::estimator::{self, ESTIMATORS};
+use crate::error::{Error, InputError, Result};
 use crate::input::{locate, read_text};
 use crate::kernel::{Clamp, Spec};
+use crate::lab::Lab;
 use crate::measure::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads};
-use crate::scene;
 use clap::Args;
 use std::path::Path;
 
@@ -75,13 +74,18 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32)> {
     parsed.ok_or_else(|| InputError::new("size", text, "is no size").allowed("WxH, like 1024x768").into())
 }
 
+/// The refusal to look into the paths of a workload.
+pub(super) fn no_paths(workload: &str) -> Error {
+    InputError::new("scene", workload, "is a workload, and has no paths").allowed("a scene").into()
+}
+
 /// The estimator that a scene names; `scene` itself is a layer below estimators and cannot know whether there is one.
-fn default_estimator(scene: &str) -> Result<Option<String>> {
-    let name = scene::load(scene)?.default_estimator;
-    match name.as_deref().filter(|name| estimator::find(name).is_none()) {
+fn default_estimator(lab: &Lab, scene: &str) -> Result<Option<String>> {
+    let name = lab.load_scene(scene)?.default_estimator;
+    match name.as_deref().filter(|name| !lab.estimators().any(|entry| entry.name == *name)) {
         None => Ok(name),
         Some(unknown) => {
-            let names: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).collect();
+            let names: Vec<&str> = lab.estimators().map(|entry| entry.name).collect();
             let at = read_text(Path::new(scene)).ok().and_then(|text| locate(&text, "estimator", unknown));
             let error = InputError::new("estimator", unknown, "there is none of that name");
             Err(error.allowed(names.join(", ")).in_file(scene, at).into())
@@ -91,7 +95,7 @@ fn default_estimator(scene: &str) -> Result<Option<String>> {
 
 impl What {
     /// The kernel for a scene, and a seed that belongs to an image, not to a reference.
-    fn spec(&self, scene: &str, seed: u64) -> Result<Spec> {
+    fn spec(&self, lab: &Lab, scene: &str, seed: u64) -> Result<Spec> {
         let (width, height) = parse_size(&self.size)?;
         if seed > LARGEST_SEED {
             let problem = "belongs to the references";
@@ -102,7 +106,8 @@ impl What {
         let default = Spec::default();
         let estimator = match &self.estimator {
             Some(estimator) => estimator.clone(),
-            None => default_estimator(scene)?.unwrap_or(default.estimator),
+            None if lab.workload_named(scene).is_some() => String::new(),
+            None => default_estimator(lab, scene)?.unwrap_or(default.estimator),
         };
         Ok(Spec {
             width,
@@ -122,8 +127,8 @@ impl What {
     }
 
     /// Settings under which samples are looked into, by nobody in particular.
-    pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
-        let spec = self.spec(scene, seed)?;
+    pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
+        let spec = self.spec(lab, scene, seed)?;
         Ok(Settings { scene: scene.to_string(), spp, spec, ..Settings::default() })
     }
 }
@@ -142,13 +147,13 @@ impl Axes {
     }
 
     /// The settings for a scene, samples and a seed.
-    pub(super) fn settings(&self, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
+    pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let clamp = match (self.subpixel_clamp, self.recursion_clamp) {
             (true, _) => Some(Clamp::Subpixel),
             (false, true) => Some(Clamp::Recursion),
             (false, false) => None,
         };
-        let spec = Spec { clamp, ..self.what.spec(scene, seed)? };
+        let spec = Spec { clamp, ..self.what.spec(lab, scene, seed)? };
         Ok(Settings {
             scene: scene.to_string(),
             spp,

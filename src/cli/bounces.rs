@@ -1,15 +1,14 @@
 //! `pathmark bounces SCENE`: the light of an image by the bounces that it made, and how long its paths are.
 
-use super::axes::What;
+use super::axes::{What, no_paths};
 use super::output::{print, print_json};
 use super::progress::Talk;
 use crate::atomic_file;
 use crate::error::Result;
 use crate::experiment::Progress;
-use crate::kernel::{self, LightByBounce, Spec};
-use crate::measure::Setup;
+use crate::kernel::{Inspector, LightByBounce, Spec};
+use crate::lab::Lab;
 use crate::plot::number;
-use crate::scene;
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -43,18 +42,19 @@ const SHOWN: usize = 16;
 /// What report A says roulette ends paths before.
 const REPORTED: usize = 6;
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
-    let settings = arguments.what.settings(&arguments.scene, arguments.spp, arguments.seed)?;
-    let scene = Arc::new(scene::load(&arguments.scene)?);
-    let spec = Setup::for_scene(Arc::clone(&scene), settings)?.settings().spec.clone();
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    let settings = arguments.what.settings(lab, &arguments.scene, arguments.spp, arguments.seed)?;
+    let setup = lab.prepare(settings)?;
+    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.scene)) };
+    let spec = &setup.settings().spec;
     if let Some(path) = &arguments.csv {
         atomic_file::check_writable(path)?;
     }
-    let inspector = kernel::inspect(&scene, &spec)?;
+    let inspector = Inspector::new(scene, choice)?;
     talk.begin(&format!("{} at {} spp", scene.name, arguments.spp), u64::from(spec.height));
     let mut found = LightByBounce::default();
     for y in 0..spec.height {
-        found.add(&LightByBounce::of(&*inspector, spec.width, y..y + 1, &(0..arguments.spp)));
+        found.add(&LightByBounce::of(&inspector, spec.width, y..y + 1, &(0..arguments.spp)));
         talk.advance(u64::from(y) + 1);
     }
     talk.end();
@@ -76,13 +76,13 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     if arguments.json {
         return print_json(&json!({
             "scene": scene.name, "width": spec.width, "height": spec.height, "spp": arguments.spp, "seed": spec.seed,
-            "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": spec.depth(),
+            "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
             "mean": total(&found), "samples": found.samples, "rays": found.rays, "invalid_samples": found.invalid,
             "parts": found.parts(), "mean_length": found.mean_length(), "longest": found.longest(),
             "bounces": rows.iter().map(object).collect::<Vec<Value>>(),
         }));
     }
-    print(&text(&scene.name, &spec, arguments.spp, &found, &rows))
+    print(&text(&scene.name, spec, arguments.spp, &found, &rows))
 }
 
 /// One number of bounces.

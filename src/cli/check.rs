@@ -7,10 +7,12 @@ use crate::check::guards::PriceRow;
 use crate::check::{self, Case, Effort, Outcome, SECTIONS};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress;
+use crate::lab::Lab;
 use crate::measure::available_threads;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `pathmark check --thorough`
 #[derive(Args)]
@@ -38,7 +40,7 @@ struct Row<'a> {
     outcome: &'a Outcome,
 }
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let cases = chosen(&arguments.cases)?;
     let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
     talk.begin("hard cases", cases.len() as u64);
@@ -61,7 +63,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     }
     if let Some(out) = &arguments.out {
         guards::write(out, &prices)?;
-        print(&format!("report in {}", crate::report::write(out)?.display()))?;
+        print(&format!("report in {}", crate::report::write(lab, out)?.display()))?;
     }
     let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| row.id).collect();
     if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }

@@ -2,20 +2,20 @@
 
 use super::output::{print, print_json};
 use crate::error::Result;
-use crate::estimator::ESTIMATORS;
-use crate::experiment::{Definition, EXPERIMENTS};
+use crate::experiment::Definition;
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
 use crate::kernel::{KERNELS, Spec, choose};
+use crate::lab::Lab;
 use crate::material::MATERIALS;
 use crate::measure::OUTPUTS;
 use crate::metric::METRICS;
 use crate::sampling::SAMPLERS;
-use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, GENERATORS, PROFILES, SCENES, SHAPES, effect_names, load};
+use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, GENERATORS, PROFILES, SHAPES, effect_names};
 use crate::simd::LEVELS;
-use crate::strategy::STRATEGIES;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
+use std::sync::Arc;
 
 /// `pathmark list strategies --json`
 #[derive(Args)]
@@ -30,6 +30,7 @@ pub(super) struct Arguments {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
     Scenes,
+    Workloads,
     Strategies,
     Decompositions,
     Outputs,
@@ -72,8 +73,8 @@ fn item(name: &str, about: &str) -> Item {
     Item { kind: None, name: name.to_string(), about: about.to_string(), scene: None }
 }
 
-fn scene_item(name: &str) -> Result<Item> {
-    let scene = load(name)?;
+fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
+    let scene = lab.load_scene(name)?;
     let choice = choose(&scene, &Spec::default())?;
     let more = SceneItem {
         calls_for: effect_names(scene.effects()),
@@ -84,13 +85,14 @@ fn scene_item(name: &str) -> Result<Item> {
     Ok(Item { scene: Some(more), ..item(name, &scene.about) })
 }
 
-fn items(kind: Kind) -> Result<Vec<Item>> {
+fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
     Ok(match kind {
-        Kind::Scenes => SCENES.iter().map(|(name, _)| scene_item(name)).collect::<Result<_>>()?,
-        Kind::Strategies => STRATEGIES.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Scenes => lab.scenes().map(|name| scene_item(lab, name)).collect::<Result<_>>()?,
+        Kind::Workloads => lab.workloads().iter().map(|entry| item(entry.name, entry.about())).collect(),
+        Kind::Strategies => lab.strategies().iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Decompositions => DECOMPOSITIONS.iter().map(|entry| item(entry.example, entry.about)).collect(),
         Kind::Outputs => OUTPUTS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Estimators => ESTIMATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Estimators => lab.estimators().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Kernels => KERNELS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Simd => LEVELS.iter().map(|level| item(level.name, level.about)).collect(),
@@ -104,21 +106,21 @@ fn items(kind: Kind) -> Result<Vec<Item>> {
         Kind::Metrics => METRICS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Formats => FORMATS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Experiments => {
-            let experiment = |(name, _): &(&str, &str)| Ok(item(name, &Definition::load(name)?.title));
-            EXPERIMENTS.iter().map(experiment).collect::<Result<_>>()?
+            let experiment = |(name, _): (&str, &str)| Ok(item(name, &Definition::load(lab, name)?.title));
+            Definition::known(lab).map(experiment).collect::<Result<_>>()?
         }
     })
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     if let Some(kind) = arguments.kind {
-        let items = items(kind)?;
+        let items = items(lab, kind)?;
         return if arguments.json { print_json(&items) } else { print(&table(&items)) };
     }
     let mut all = Vec::new();
     for kind in Kind::value_variants() {
         let name = format!("{kind:?}").to_lowercase();
-        let listed = items(*kind)?;
+        let listed = items(lab, *kind)?;
         if arguments.json {
             all.extend(listed.into_iter().map(|item| Item { kind: Some(name.clone()), ..item }));
         } else {

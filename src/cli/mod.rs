@@ -23,9 +23,11 @@ mod strict;
 mod trace;
 
 use crate::error::Result;
+use crate::lab::Lab;
 use clap::{Parser, Subcommand};
 use progress::Talk;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]
@@ -71,32 +73,37 @@ enum Verb {
     Cell,
 }
 
-/// Runs the program with the process's arguments.
-pub fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let talk = Talk::new(cli.quiet);
-    let result: Result<()> = match cli.verb {
-        Verb::Reproduce(arguments) => reproduce::run(&arguments, &talk),
-        Verb::Render(arguments) => render::run(&arguments, &talk),
-        Verb::Run(arguments) => run::run(&arguments, &talk),
-        Verb::Compare(arguments) => compare::run(&arguments),
-        Verb::Price(arguments) => price::run(&arguments, &talk),
-        Verb::Reference(arguments) => reference::run(&arguments, &talk),
-        Verb::Report(arguments) => report::run(&arguments),
-        Verb::Simulate(arguments) => simulate::run(&arguments, &talk),
-        Verb::Trace(arguments) => trace::run(&arguments),
-        Verb::Replay(arguments) => replay::run(&arguments),
-        Verb::Bounces(arguments) => bounces::run(&arguments, &talk),
-        Verb::Check(arguments) => check::run(&arguments, &talk),
-        Verb::List(arguments) => list::run(&arguments),
-        Verb::Cell => crate::experiment::child_main(),
-    };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            talk.error(&error);
-            ExitCode::from(error.exit_code())
+impl Lab {
+    /// The whole command line with these tables: runs the program with the process's arguments.
+    pub fn main(self) -> ExitCode {
+        let cli = Cli::parse();
+        let talk = Talk::new(cli.quiet);
+        match self.check().and_then(|()| run_verb(cli.verb, &Arc::new(self), &talk)) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                talk.error(&error);
+                ExitCode::from(error.exit_code())
+            }
         }
+    }
+}
+
+fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    match verb {
+        Verb::Reproduce(arguments) => reproduce::run(&arguments, lab, talk),
+        Verb::Render(arguments) => render::run(&arguments, lab, talk),
+        Verb::Run(arguments) => run::run(&arguments, lab, talk),
+        Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Price(arguments) => price::run(&arguments, lab, talk),
+        Verb::Reference(arguments) => reference::run(&arguments, lab, talk),
+        Verb::Report(arguments) => report::run(&arguments, lab),
+        Verb::Simulate(arguments) => simulate::run(&arguments, lab, talk),
+        Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Replay(arguments) => replay::run(&arguments, lab),
+        Verb::Bounces(arguments) => bounces::run(&arguments, lab, talk),
+        Verb::Check(arguments) => check::run(&arguments, lab, talk),
+        Verb::List(arguments) => list::run(&arguments, lab),
+        Verb::Cell => crate::experiment::child_main(lab),
     }
 }
 

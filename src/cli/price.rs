@@ -8,9 +8,11 @@ use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Paid, Pilot, pay};
-use crate::measure::{LARGEST_SEED, LARGEST_SPP, Settings, Setup};
+use crate::lab::Lab;
+use crate::measure::{LARGEST_SEED, LARGEST_SPP, Settings};
 use clap::Args;
 use serde::Serialize;
+use std::sync::Arc;
 
 /// Confidence of the intervals.
 const LEVEL: f64 = 0.95;
@@ -67,7 +69,7 @@ struct Row {
     fewest: u32,
 }
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     for goal in &arguments.rmse {
         if !(*goal > 0.0 && goal.is_finite()) {
             let error = InputError::new("rmse", goal.to_string(), "can be no goal");
@@ -78,18 +80,19 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         let error = InputError::new("seed", arguments.seed.to_string(), "belongs to pilots and references");
         return Err(error.allowed(format!("0 to {}", LARGEST_SEED / 2 - 1)).into());
     }
-    let settings = arguments.axes.settings(&arguments.scene, arguments.pilot_spp, arguments.seed)?;
-    let fewest = Setup::prepare(settings.clone())?.fewest_spp();
+    let settings = arguments.axes.settings(lab, &arguments.scene, arguments.pilot_spp, arguments.seed)?;
+    let fewest = lab.prepare(settings.clone())?.fewest_spp();
     let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
-    let (renderer, tail) = pilot.run(&settings, LEVEL, talk)?;
+    let (renderer, tail) = pilot.run(lab, &settings, LEVEL, talk)?;
     let mut rows = Vec::new();
     for &goal in &arguments.rmse {
-        rows.push(Row { tail, ..row(arguments, &settings, &renderer, goal, fewest, talk)? });
+        rows.push(Row { tail, ..row(lab, arguments, &settings, &renderer, goal, fewest, talk)? });
     }
     if arguments.json { print_json(&rows) } else { print(&table(&settings, arguments, &renderer, &rows)) }
 }
 
 fn row(
+    lab: &Lab,
     arguments: &Arguments,
     settings: &Settings,
     renderer: &Renderer,
@@ -106,7 +109,7 @@ fn row(
         return Err(InputError::new("rmse", goal.to_string(), problem).into());
     }
     let spp = wanted as u32;
-    let paid = if arguments.pay { Some(pay(settings, spp, talk)?) } else { None };
+    let paid = if arguments.pay { Some(pay(lab, settings, spp, talk)?) } else { None };
     Ok(Row::new(&price, (spp, fewest), renderer, paid))
 }
 

@@ -5,8 +5,10 @@ use super::output::print;
 use super::progress::Talk;
 use crate::error::{Error, Result};
 use crate::experiment::{Reference, ReferenceError, check_until, refine_reference, render_reference};
+use crate::lab::Lab;
 use clap::Args;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `pathmark reference cornell --spp 4096 --size 256x192`
 #[derive(Args)]
@@ -36,7 +38,7 @@ pub(super) struct Arguments {
 /// Where refining starts.
 const FIRST_SPP: u32 = 16;
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let (width, height) = parse_size(&arguments.size)?;
     let reference = Reference {
         scene: arguments.scene.clone(),
@@ -46,12 +48,12 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         spp: arguments.spp.unwrap_or(FIRST_SPP),
     };
     arguments.until.map_or(Ok(()), check_until)?;
-    reference.check()?;
-    reference.check_cache(&arguments.out)?;
+    reference.check(lab)?;
+    reference.check_cache(lab, &arguments.out)?;
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
     let halves = match arguments.until {
-        Some(rmse) => refine_reference(&reference, rmse, &arguments.out, talk)?,
-        None => render_reference(&reference, &arguments.out, talk)?,
+        Some(rmse) => refine_reference(lab, &reference, rmse, &arguments.out, talk)?,
+        None => render_reference(lab, &reference, &arguments.out, talk)?,
     };
     let [(first, a), (second, b)] = &halves;
     print(&format!("{}\n{}\n{}", first.display(), second.display(), ReferenceError::of(a, b)))

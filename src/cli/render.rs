@@ -9,9 +9,11 @@ use crate::atomic_file;
 use crate::error::Result;
 use crate::experiment::Progress;
 use crate::image_io;
-use crate::measure::{InvalidSample, Measured, Outcome, Record, Setup, TraceFile};
+use crate::lab::Lab;
+use crate::measure::{InvalidSample, Measured, Outcome, Record, TraceFile};
 use clap::Args;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `pathmark render cornell --spp 64 -o box.png`
 #[derive(Args)]
@@ -49,13 +51,13 @@ pub(super) struct Arguments {
 
 const DEFAULT_SPP: u32 = 16;
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let spp = arguments.spp.unwrap_or(DEFAULT_SPP);
-    let setup = Setup::prepare(arguments.axes.settings(&arguments.scene, spp, arguments.seed)?)?;
+    let setup = lab.prepare(arguments.axes.settings(lab, &arguments.scene, spp, arguments.seed)?)?;
     if arguments.adaptive {
         setup.check_adaptive()?;
     }
-    let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.scene().name)));
+    let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.name())));
     let format = image_io::check_format(&path)?;
     rounds::check_image(&arguments.rounds, &path)?;
     atomic_file::check_writable(&path)?;
@@ -67,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         let goal_spp = (!arguments.rounds.have_a_goal()).then_some(spp);
         rounds::render(&arguments.rounds, setup, goal_spp, talk)?
     } else {
-        talk.begin(&format!("{} at {spp} spp", setup.scene().name), setup.jobs() as u64);
+        talk.begin(&format!("{} at {spp} spp", setup.name()), setup.jobs() as u64);
         let watch = |done| talk.advance(done);
         let outcome = if arguments.adaptive { setup.run_adaptive(Some(&watch)) } else { setup.run(Some(&watch)) }?;
         talk.end();
@@ -131,7 +133,7 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
 mod tests {
     use super::*;
     use crate::kernel::Spec;
-    use crate::measure::Settings;
+    use crate::measure::{Settings, Setup};
 
     /// The command is one that the program takes, and names the sample's place.
     #[test]

@@ -1,14 +1,14 @@
 //! `pathmark replay SCENE`: one sample's path, bounce by bounce.
 
-use super::axes::What;
+use super::axes::{What, no_paths};
 use super::output::{print, print_json};
 use crate::error::{Error, InputError, Result};
-use crate::estimator;
-use crate::kernel::{self, Event, PathLog, Spec};
+use crate::kernel::{self, Choice, Event, Inspector, PathLog, Spec};
+use crate::lab::Lab;
 use crate::math::{Rgb, Vec3};
-use crate::measure::{LARGEST_SPP, Setup};
+use crate::measure::LARGEST_SPP;
 use crate::plot::number;
-use crate::scene::{self, Scene};
+use crate::scene::Scene;
 use clap::Args;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let sample = arguments.sample;
     if sample >= LARGEST_SPP {
         let problem = "is further than any image goes";
@@ -42,30 +42,31 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         return Err(InputError::new("sample", sample.to_string(), problem).allowed(allowed).into());
     }
     // Any number of samples that the estimator takes: only the names are looked at.
-    let mut settings = arguments.what.settings(&arguments.scene, 1, arguments.seed)?;
-    let estimator = estimator::find(&settings.spec.estimator);
+    let mut settings = arguments.what.settings(lab, &arguments.scene, 1, arguments.seed)?;
+    let estimator = lab.estimators().find(|entry| entry.name == settings.spec.estimator);
     settings.spp = estimator.map_or(1, |entry| entry.spp_multiple);
-    let scene = Arc::new(scene::load(&arguments.scene)?);
-    let spec = Setup::for_scene(Arc::clone(&scene), settings)?.settings().spec.clone();
-    let (x, y) = pixel(&arguments.pixel, &spec)?;
+    let setup = lab.prepare(settings)?;
+    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.scene)) };
+    let spec = &setup.settings().spec;
+    let (x, y) = pixel(&arguments.pixel, spec)?;
 
     let mut log = PathLog::default();
-    let radiance = kernel::inspect(&scene, &spec)?.estimate(x, y, sample, &mut log);
-    check(&scene, &spec, (x, y, sample), radiance)?;
+    let radiance = Inspector::new(scene, choice)?.estimate(x, y, sample, &mut log);
+    check(scene, choice, (x, y, sample), radiance)?;
     if arguments.json {
         return print_json(&json!({
             "scene": scene.name, "width": spec.width, "height": spec.height, "seed": spec.seed,
-            "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": spec.depth(),
+            "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
             "pixel": [x, y], "sample": sample, "rays": log.rays, "radiance": radiance.channels(),
-            "events": log.events.iter().map(|event| object(&scene, event)).collect::<Vec<Value>>(),
+            "events": log.events.iter().map(|event| object(scene, event)).collect::<Vec<Value>>(),
         }));
     }
-    let Spec { width, height, seed, estimator, .. } = &spec;
+    let Spec { width, height, seed, estimator, .. } = spec;
     let [r, g, b] = radiance.channels();
     print(&format!(
         "{}, {width}x{height}, {estimator}, seed {seed}: pixel {x},{y}, sample {sample}\n\n{}\n\nradiance {r} {g} {b}\n{}",
         scene.name,
-        table(&lines(&scene, &log.events)),
+        table(&lines(scene, &log.events)),
         if radiance.is_valid_radiance() {
             "This is what the image is given, bit for bit."
         } else {
@@ -85,8 +86,8 @@ fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
 }
 
 /// Renders the sample once more as an image does, with the kernel that fits the scene.
-fn check(scene: &Arc<Scene>, spec: &Spec, (x, y, sample): (u32, u32, u32), radiance: Rgb) -> Result<()> {
-    let (given, _) = kernel::one_sample(&*kernel::build(scene, spec)?, [x, y], sample);
+fn check(scene: &Arc<Scene>, choice: &Choice, (x, y, sample): (u32, u32, u32), radiance: Rgb) -> Result<()> {
+    let (given, _) = kernel::one_sample(&*kernel::construct(scene, choice)?, [x, y], sample);
     let expected = if radiance.is_valid_radiance() { radiance } else { Rgb::BLACK };
     if given.map(f64::to_bits) == expected.channels().map(f64::to_bits) {
         return Ok(());

@@ -2,8 +2,10 @@
 
 use super::output::print;
 use crate::error::Result;
+use crate::lab::Lab;
 use clap::Args;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `pathmark report out`
 #[derive(Args)]
@@ -12,7 +14,7 @@ pub(super) struct Arguments {
     folder: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let page = crate::report::write(&arguments.folder)?;
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
+    let page = crate::report::write(lab, &arguments.folder)?;
     print(&page.display().to_string())
 }

@@ -4,9 +4,11 @@ use super::progress::Talk;
 use super::{command_line, guards, output::print, strict::Strict};
 use crate::check::guards::FOLDER;
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, EXPERIMENTS, Options, Profile, Progress, RecordsFile, sweep};
+use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, sweep};
+use crate::lab::Lab;
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::SystemTime;
 
 /// `pathmark reproduce --full --out results-here`
@@ -28,7 +30,7 @@ pub(super) struct Arguments {
     strict: Strict,
 }
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let profile = if arguments.full && !arguments.quick { Profile::Full } else { Profile::Quick };
     let options = Options {
         out: arguments.out.clone(),
@@ -38,7 +40,8 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         filters: Vec::new(),
         command: command_line(),
     };
-    let mut definitions = EXPERIMENTS.iter().map(|(name, _)| Definition::load(name)).collect::<Result<Vec<_>>>()?;
+    let mut definitions =
+        Definition::known(lab).map(|(name, _)| Definition::load(lab, name)).collect::<Result<Vec<_>>>()?;
     definitions.retain(|definition| match definition.missing_feature() {
         None => true,
         Some(feature) => {
@@ -59,7 +62,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     if !guards::are_in(&arguments.out) {
         guards::write(&arguments.out, &guards::measure(talk))?;
     }
-    let page = crate::report::write(&arguments.out)?;
+    let page = crate::report::write(lab, &arguments.out)?;
     print(&format!("{rows} rows from {} experiments, report in {}", definitions.len(), page.display()))?;
     if failed > 0 {
         return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));

@@ -77,7 +77,7 @@ pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &T
     };
     goal.check(&rounds)?;
 
-    let (resumed, name) = (rounds.spp(), rounds.setup().scene().name.clone());
+    let (resumed, name) = (rounds.spp(), rounds.setup().name().to_string());
     let title = match (spp, goal.target_error, goal.time_limit_s) {
         (Some(spp), ..) => format!("{name} at {spp} spp"),
         (_, Some(error), _) => format!("{name} until its RMSE is below {error} ({:.0} % sure)", 100.0 * CONFIDENCE),

@@ -4,9 +4,11 @@ use super::progress::Talk;
 use super::{command_line, output::print, strict::Strict};
 use crate::error::{Error, Result};
 use crate::experiment::{Definition, Options, Profile, sweep};
+use crate::lab::Lab;
 use crate::report::check_figures;
 use clap::Args;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `pathmark run thread-scaling --filter strategy=rayon`
 #[derive(Args)]
@@ -32,8 +34,8 @@ pub(super) struct Arguments {
     strict: Strict,
 }
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
-    let definition = Definition::load(&arguments.experiment)?;
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    let definition = Definition::load(lab, &arguments.experiment)?;
     check_figures(&definition)?;
     let options = Options {
         out: arguments.out.clone(),
@@ -44,7 +46,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         command: command_line(),
     };
     let summary = sweep(&definition, &options, talk)?;
-    let page = crate::report::write(&arguments.out);
+    let page = crate::report::write(lab, &arguments.out);
     // Rows that failed are worse news than a page that could not be written.
     if summary.failed > 0 {
         let problem = format!("{} of {} rows failed; their column `error` says why", summary.failed, summary.rows);

@@ -4,12 +4,13 @@ use super::output::print;
 use super::progress::Talk;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Progress, read_calibration};
-use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate, strategy_named};
+use crate::lab::Lab;
+use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate};
 use crate::report::{Block, Results, forecasts, save};
 use crate::simulate::{Contender, Hardware, Noise, Observed, Prediction, Speeds, contenders, forecast, predict};
-use crate::strategy::STRATEGIES;
 use clap::Args;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `pathmark simulate run.csv --workers 1..4096`, after `pathmark render cornell --strategy serial --trace run.csv`
 #[derive(Args)]
@@ -40,10 +41,10 @@ pub(super) struct Arguments {
     out: PathBuf,
 }
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let workers = parse_workers(&arguments.workers)?;
     let hardware = hardware(arguments)?;
-    let measured = if arguments.trace.is_dir() { Some(Results::open(&arguments.trace)?) } else { None };
+    let measured = if arguments.trace.is_dir() { Some(Results::open(lab, &arguments.trace)?) } else { None };
     let trace = match &measured {
         Some(results) => results.largest_serial_trace()?.ok_or_else(|| {
             let problem = "holds no trace of the strategy serial";
@@ -52,11 +53,11 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         None => TraceFile::read(&arguments.trace)?,
     };
     let names = match &arguments.strategies[..] {
-        [] => STRATEGIES.iter().map(|entry| entry.name.to_string()).collect(),
+        [] => lab.strategies().iter().map(|entry| entry.name.to_string()).collect(),
         names => names.to_vec(),
     };
     for name in &names {
-        strategy_named(name)?;
+        lab.strategy_named(name)?;
     }
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
     // What was measured elsewhere or earlier is explained by what handing out cost then.
@@ -65,15 +66,15 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         read_calibration(&calibrated)?
     } else {
         talk.note("calibrating: every strategy hands out empty jobs");
-        calibrate(&names)?
+        calibrate(lab, &names)?
     };
-    let mut contenders = contenders(&rows);
+    let mut contenders = contenders(lab, &rows);
     let costs = trace.costs_s();
 
     if !arguments.no_check {
         let predictions = match &measured {
             Some(results) => forecasts::predictions(results, &contenders)?,
-            None => predict_live(&trace, &contenders, talk)?,
+            None => predict_live(lab, &trace, &contenders, talk)?,
         };
         show(&forecasts::prediction_blocks(&predictions))?;
     }
@@ -180,7 +181,7 @@ const CHECK_S: f64 = 30.0;
 const MOST_CHECK_S: f64 = 120.0;
 
 /// Runs the trace's own workload on 1, 2, 4 and so on to all processors of this machine, each round beginning with a serial run for the costs.
-fn predict_live(trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Result<Vec<Prediction>> {
+fn predict_live(lab: &Lab, trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Result<Vec<Prediction>> {
     let processors = available_threads();
     let base = &trace.header.settings;
     let work_s: f64 = trace.costs_s().iter().sum();
@@ -192,7 +193,7 @@ fn predict_live(trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Res
         let threads = if contender.has_a_thread_per_job() { &[1][..] } else { &counts };
         for &threads in threads {
             let settings = Settings { strategy: contender.name.clone(), threads, ..base.clone() };
-            match Setup::prepare(settings) {
+            match lab.prepare(settings) {
                 Ok(setup) => schedules.push(setup),
                 Err(error) => talk.note(&format!("{} is not tried on this machine: {error}", contender.name)),
             }
@@ -210,7 +211,7 @@ fn predict_live(trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Res
     let mut runs = Vec::new();
     talk.begin("predicting this machine", rounds * schedules.len() as u64);
     for round in 0..rounds {
-        let serial = Setup::prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;
+        let serial = lab.prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;
         let alone = serial.run(None)?;
         let costs = TraceFile::new(&serial, &alone).costs_s();
         for (index, setup) in schedules.iter().enumerate() {

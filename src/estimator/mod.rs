@@ -18,7 +18,8 @@ mod whitted;
 use crate::effect::{EffectSet, Effects};
 use crate::math::{Ray, Rgb};
 use crate::sampling::{SampleKey, Sampler};
-use crate::scene::{Hit, Scene, Tests};
+use crate::scene::{AllEffects, Hit, Scene, Tests};
+use std::sync::Arc;
 
 pub use aimed::power_heuristic;
 pub use bsdf::Bsdf;
@@ -103,6 +104,9 @@ pub struct Course {
 
 /// An estimate of radiance, one sample at a time: unbiased unless it has a [`Estimator::MAX_DEPTH`] of its own.
 pub trait Estimator: Send + Sync {
+    /// What it is, in a line of `pathmark list estimators`.
+    const ABOUT: &'static str = "an estimator from outside";
+
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
 
@@ -137,8 +141,60 @@ pub trait Estimator: Send + Sync {
     ) -> Rgb;
 }
 
+/// An estimator behind a pointer, with every effect in it: for whoever looks into samples and does not count seconds. One instance serves every
+/// sampler and probe; an effect that a scene does not call for changes no bit.
+pub trait AnyEstimator: Send + Sync {
+    /// [`Estimator::course`].
+    fn any_course(&self) -> Option<Course>;
+
+    /// [`Estimator::sample`].
+    fn estimate(&self, scene: &Scene, ray: Ray, key: SampleKey, sampler: &dyn Sampler, probe: &mut dyn Probe) -> Rgb;
+}
+
+impl<E: Estimator> AnyEstimator for E {
+    fn any_course(&self) -> Option<Course> {
+        self.course()
+    }
+
+    fn estimate(
+        &self,
+        scene: &Scene,
+        ray: Ray,
+        key: SampleKey,
+        sampler: &dyn Sampler,
+        mut probe: &mut dyn Probe,
+    ) -> Rgb {
+        self.sample::<&dyn Sampler, AllEffects, &mut dyn Probe>(scene, ray, key, &sampler, &mut probe)
+    }
+}
+
+impl<E: Estimator> Estimator for Arc<E> {
+    const SPP_MULTIPLE: u32 = E::SPP_MULTIPLE;
+    const AIMS: bool = E::AIMS;
+    const MAX_DEPTH: Option<u16> = E::MAX_DEPTH;
+    const ROULETTE: Option<Roulette> = E::ROULETTE;
+    const IS_ONE_PATH: bool = E::IS_ONE_PATH;
+    const LARGEST_DEPTH: u16 = E::LARGEST_DEPTH;
+
+    fn course(&self) -> Option<Course> {
+        (**self).course()
+    }
+
+    #[inline(always)]
+    fn sample<S: Sampler, X: EffectSet, P: Probe>(
+        &self,
+        scene: &Scene,
+        ray: Ray,
+        key: SampleKey,
+        sampler: &S,
+        probe: &mut P,
+    ) -> Rgb {
+        (**self).sample::<S, X, P>(scene, ray, key, sampler, probe)
+    }
+}
+
 /// A function over estimators: how the name on the command line becomes a type in a kernel.
-pub trait EstimatorVisitor {
+pub(crate) trait EstimatorVisitor {
     /// What it returns.
     type Output;
     /// Called with the estimator that was named.
@@ -146,6 +202,7 @@ pub trait EstimatorVisitor {
 }
 
 /// One line of the table of estimators.
+#[derive(Debug, Clone, Copy)]
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
@@ -163,6 +220,22 @@ pub struct Entry {
     pub is_one_path: bool,
     /// The largest number of bounces that it can be asked for.
     pub largest_depth: u16,
+}
+
+impl Entry {
+    /// What is known of an estimator from its type.
+    pub const fn of<E: Estimator>(name: &'static str, about: &'static str) -> Self {
+        Self {
+            name,
+            about,
+            spp_multiple: E::SPP_MULTIPLE,
+            max_depth: E::MAX_DEPTH,
+            aims: E::AIMS,
+            roulette: E::ROULETTE,
+            is_one_path: E::IS_ONE_PATH,
+            largest_depth: E::LARGEST_DEPTH,
+        }
+    }
 }
 
 /// The line of the estimator of that name.
@@ -183,25 +256,28 @@ macro_rules! estimators {
     ($($name:literal, $about:literal => $estimator:ty, $new:path;)*) => {
         /// The estimators, in the order in which they are listed.
         pub const ESTIMATORS: &[Entry] =
-            &[$(Entry {
-                name: $name,
-                about: $about,
-                spp_multiple: <$estimator as Estimator>::SPP_MULTIPLE,
-                max_depth: <$estimator as Estimator>::MAX_DEPTH,
-                aims: <$estimator as Estimator>::AIMS,
-                roulette: <$estimator as Estimator>::ROULETTE,
-                is_one_path: <$estimator as Estimator>::IS_ONE_PATH,
-                largest_depth: <$estimator as Estimator>::LARGEST_DEPTH,
-            }),*];
+            &[$(Entry::of::<$estimator>($name, $about)),*];
 
         /// Calls the visitor with the estimator of that name; `None` if there is none.
-        pub fn with_estimator<V: EstimatorVisitor>(name: &str, options: Options, visitor: V) -> Option<V::Output> {
+        pub(crate) fn with_estimator<V: EstimatorVisitor>(name: &str, options: Options, visitor: V) -> Option<V::Output> {
             match name {
                 $($name => Some(visitor.visit($new(options))),)*
                 _ => None,
             }
         }
     };
+}
+
+/// The estimator of that name behind a pointer; `None` if there is none.
+pub fn any_estimator(name: &str, options: Options) -> Option<Box<dyn AnyEstimator>> {
+    struct Boxed;
+    impl EstimatorVisitor for Boxed {
+        type Output = Box<dyn AnyEstimator>;
+        fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
+            Box::new(estimator)
+        }
+    }
+    with_estimator(name, options, Boxed)
 }
 
 estimators! {

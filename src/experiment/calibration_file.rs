@@ -2,16 +2,16 @@
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::lab::Lab;
 use crate::measure::{CalibrationRow, calibrate};
-use crate::strategy::STRATEGIES;
 use std::path::Path;
 
 /// Times all strategies of the table and writes the file.
-pub(super) fn write_calibration(path: &Path) -> Result<()> {
-    let strategies: Vec<String> = STRATEGIES.iter().map(|entry| entry.name.to_string()).collect();
+pub(super) fn write_calibration(lab: &Lab, path: &Path) -> Result<()> {
+    let strategies: Vec<String> = lab.strategies().iter().map(|entry| entry.name.to_string()).collect();
     let system = |e: std::io::Error| Error::system("writing", path, e);
     let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in calibrate(&strategies)? {
+    for row in calibrate(lab, &strategies)? {
         writer.serialize(row).map_err(|e| system(e.into()))?;
     }
     let bytes = writer.into_inner().map_err(|e| system(e.into_error()))?;

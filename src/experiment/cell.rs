@@ -4,7 +4,6 @@ use super::External;
 use crate::error::{InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads, schedule_name};
-use crate::scene::Scene;
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,7 +69,7 @@ impl Cell {
             }
         }
         let point = |spp: u32| {
-            let image = image_word(setup.scene(), spec, spp);
+            let image = image_word(setup, spp);
             CellPoint { id: format!("{image}/{schedule}{of}"), spp, image }
         };
         let id = point(settings.spp).id;
@@ -97,7 +96,7 @@ impl Cell {
             ("effects", spec.effects.clone().unwrap_or_default()),
             ("accelerator", spec.accelerator.clone().unwrap_or_default()),
             ("max-depth", spec.max_depth.map(|depth| depth.to_string()).unwrap_or_default()),
-            ("roulette", spec.roulette().unwrap_or_default()),
+            ("roulette", spec.roulette.clone().unwrap_or_default()),
             ("strategy", schedule_name(&settings.strategy, &settings.decomposition).to_string()),
             ("threads", settings.threads.to_string()),
         ];
@@ -118,8 +117,9 @@ pub fn trace_file(cell: &str, repetition: u32) -> String {
 }
 
 /// The scene's hash is in it: two scene files may have the same name, and one may be edited between two runs.
-fn image_word(scene: &Scene, spec: &Spec, spp: u32) -> String {
-    let what = format!("{}-{}/{}/{}", scene.name, scene.hash, spec.estimator, spec.sampler);
+fn image_word(setup: &Setup, spp: u32) -> String {
+    let spec = &setup.settings().spec;
+    let what = format!("{}-{}/{}/{}", setup.name(), setup.hash(), spec.estimator, spec.sampler);
     let depth = spec.max_depth.map(|depth| format!("/depth{depth}")).unwrap_or_default();
     let roulette = spec.roulette.as_ref().map(|rule| format!("/{rule}")).unwrap_or_default();
     let clamp = spec.clamp.map(|what| format!("/{}-clamp", what.name())).unwrap_or_default();

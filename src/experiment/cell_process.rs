@@ -10,10 +10,10 @@ use super::external::filled;
 use crate::error::{Error, InputError, Result};
 use crate::film::{SAMPLE_BLOCK, read_film};
 use crate::image_io::{self, Image};
+use crate::lab::Lab;
 use crate::measure::{
     Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure, missing_external, run_external,
 };
-use crate::scene::load;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -100,26 +100,26 @@ impl CellJob {
         serde_json::from_slice(&output.stdout).map_err(|e| format!("reading what the cell's process said: {e}"))
     }
 
-    fn run(&self) -> Result<Vec<Record>> {
+    fn run(&self, lab: &Lab) -> Result<Vec<Record>> {
         let references = self.references.as_ref().map(|paths| self.read_references(paths)).transpose()?;
         if let Some((external, folder)) = &self.external {
-            return self.other_program(external, folder, references.as_ref());
+            return self.other_program(lab, external, folder, references.as_ref());
         }
         if let [point] = self.points.as_slice() {
-            let setup = Setup::prepare(self.settings.clone())?;
+            let setup = lab.prepare(self.settings.clone())?;
             let outcome = setup.run(None)?;
             if let Some(path) = &self.trace {
                 TraceFile::new(&setup, &outcome).write(path)?;
             }
             return Ok(vec![self.row(point, &setup, &outcome, references.as_ref())?]);
         }
-        self.curve(references.as_ref())
+        self.curve(lab, references.as_ref())
     }
 
     /// The rows of a curve. Rounds that end inside a block of samples would render its samples twice and time them twice, so an image of fewer
     /// samples than a block is rendered by itself; from there on one render grows.
-    fn curve(&self, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
-        let rounds = |spp: u32| Rounds::new(Setup::prepare(Settings { spp, ..self.settings.clone() })?);
+    fn curve(&self, lab: &Lab, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
+        let rounds = |spp: u32| Rounds::new(lab.prepare(Settings { spp, ..self.settings.clone() })?);
         let mut long = rounds(self.settings.spp)?;
         let mut rows = Vec::new();
         for point in &self.points {
@@ -133,13 +133,14 @@ impl CellJob {
 
     fn other_program(
         &self,
+        lab: &Lab,
         external: &External,
         folder: &Path,
         references: Option<&[Image; 2]>,
     ) -> Result<Vec<Record>> {
         let own = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
         let (spec, out) = (&self.settings.spec, own.path().join(format!("image.{}", external.format())));
-        let scene = load(&self.settings.scene)?;
+        let scene = lab.load_scene(&self.settings.scene)?;
         let values = [
             ("spp", self.settings.spp.to_string()),
             ("seed", spec.seed.to_string()),
@@ -195,7 +196,7 @@ impl CellJob {
 }
 
 /// The child's side: reads a job, answers with its rows.
-pub fn child_main() -> Result<()> {
+pub fn child_main(lab: &Lab) -> Result<()> {
     let mut text = String::new();
     std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
     let job: CellJob = serde_json::from_str(&text)
@@ -205,7 +206,7 @@ pub fn child_main() -> Result<()> {
         let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
         std::process::exit(3);
     });
-    let rows = job.run()?;
+    let rows = job.run(lab)?;
     let answer = serde_json::to_string(&rows).map_err(|e| Error::system("writing", "standard output", e.into()))?;
     writeln!(std::io::stdout(), "{answer}").map_err(|e| Error::system("writing", "standard output", e))
 }

@@ -38,8 +38,10 @@ use super::External;
 use super::matrix::{Matrix, Scale, one_or_many};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
+use crate::lab::Lab;
 use serde::Deserialize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Name and text of the experiments that the binary carries.
 pub const EXPERIMENTS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/experiments.rs"));
@@ -96,6 +98,9 @@ pub struct Definition {
     /// The file's name, for errors.
     #[serde(skip)]
     pub file: String,
+    /// What its names mean.
+    #[serde(skip, default = "Lab::built_in")]
+    pub lab: Arc<Lab>,
     /// Heading.
     pub title: String,
     /// What is asked.
@@ -131,28 +136,35 @@ struct ReferenceTable {
 
 impl Definition {
     /// Reads a definition from its text.
-    pub fn from_text(name: &str, file: &str, text: &str) -> Result<Self> {
+    pub fn from_text(lab: &Arc<Lab>, name: &str, file: &str, text: &str) -> Result<Self> {
         let mut definition: Self = parse(text, file)?;
+        definition.lab = Arc::clone(lab);
         definition.name = name.to_string();
         definition.text = text.to_string();
         definition.file = file.to_string();
         Ok(definition)
     }
 
-    /// The definition of that name in the binary, or the one in the file of that path.
-    pub fn load(name_or_path: &str) -> Result<Self> {
-        if let Some((name, text)) = EXPERIMENTS.iter().find(|(name, _)| *name == name_or_path) {
-            return Self::from_text(name, &format!("{name}.toml"), text);
+    /// Name and text of the definitions that are known by name: those in the binary, then those that a program added.
+    pub fn known(lab: &Lab) -> impl Iterator<Item = (&str, &str)> {
+        let own = lab.own_experiments().iter().map(|(name, text)| (name.as_str(), text.as_str()));
+        EXPERIMENTS.iter().copied().chain(own)
+    }
+
+    /// The definition of that name, or the one in the file of that path.
+    pub fn load(lab: &Arc<Lab>, name_or_path: &str) -> Result<Self> {
+        if let Some((name, text)) = Self::known(lab).find(|(name, _)| *name == name_or_path) {
+            return Self::from_text(lab, name, &format!("{name}.toml"), text);
         }
         let path = Path::new(name_or_path);
         if path.extension().is_none_or(|extension| extension != "toml") {
-            let names: Vec<&str> = EXPERIMENTS.iter().map(|(name, _)| *name).collect();
+            let names: Vec<&str> = Self::known(lab).map(|(name, _)| name).collect();
             return Err(InputError::new("experiment", name_or_path, "there is no experiment of that name")
                 .allowed(format!("{}, or the path of a .toml file", names.join(", ")))
                 .into());
         }
         let stem = path.file_stem().map_or_else(|| name_or_path.into(), |stem| stem.to_string_lossy());
-        Self::from_text(&stem, name_or_path, &read_text(path)?)
+        Self::from_text(lab, &stem, name_or_path, &read_text(path)?)
     }
 
     pub(super) fn scale(&self, profile: Profile) -> &Scale {

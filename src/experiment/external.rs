@@ -16,7 +16,6 @@ use super::{Cell, CellPoint, Definition, Profile, Progress};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::Settings;
-use crate::scene::load;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -120,7 +119,7 @@ impl Definition {
                 Error::Input(input) => self.located(profile, *input),
                 other => other,
             })?;
-            let scene = load(&external.scene)?;
+            let scene = self.lab.load_scene(&external.scene)?;
             let spps = scale.spp.as_ref().unwrap_or(&external.spp);
             let seeds = scale.seed.as_ref().unwrap_or(&external.seed);
             for (spp, seed) in spps.iter().flat_map(|spp| {

@@ -7,14 +7,20 @@ use super::reference::reference_path;
 use super::{Progress, Reference};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Film, FilmKey, GrowingFilm, SAMPLE_BLOCK, read_film, write_film};
+use crate::lab::Lab;
 use crate::lock::Lock;
-use crate::measure::{LARGEST_SPP, Rounds, Setup};
+use crate::measure::{LARGEST_SPP, Rounds};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 /// The two halves, from the cache in `folder` where they are there and whole, rendered otherwise.
-pub fn render_reference(reference: &Reference, folder: &Path, progress: &dyn Progress) -> Result<[(PathBuf, Film); 2]> {
-    let mut halves = [Half::new(reference, 0, folder)?, Half::new(reference, 1, folder)?];
+pub fn render_reference(
+    lab: &Lab,
+    reference: &Reference,
+    folder: &Path,
+    progress: &dyn Progress,
+) -> Result<[(PathBuf, Film); 2]> {
+    let mut halves = [Half::new(lab, reference, 0, folder)?, Half::new(lab, reference, 1, folder)?];
     let are_cached = halves.iter().all(|half| half.path(reference.spp).is_file());
     // What is only read may lie on a disk that is only read.
     let _lock = if are_cached { None } else { Some(lock(folder)?) };
@@ -38,8 +44,8 @@ struct Half<'a> {
 }
 
 impl<'a> Half<'a> {
-    fn new(reference: &Reference, index: u32, folder: &'a Path) -> Result<Self> {
-        Ok(Self { rounds: Rounds::new(Setup::prepare(reference.half(index))?)?, index, folder })
+    fn new(lab: &Lab, reference: &Reference, index: u32, folder: &'a Path) -> Result<Self> {
+        Ok(Self { rounds: Rounds::new(lab.prepare(reference.half(index))?)?, index, folder })
     }
 
     fn key(&self, spp: u32) -> FilmKey {
@@ -80,7 +86,7 @@ impl<'a> Half<'a> {
             return Ok((path, film));
         }
         self.adopt_beginning(spp)?;
-        let title = format!("reference {} of 2: {} at {spp} spp", self.index + 1, self.rounds.setup().scene().name);
+        let title = format!("reference {} of 2: {} at {spp} spp", self.index + 1, self.rounds.setup().name());
         progress.begin(&title, u64::from(spp));
         let (mut unsaved_s, mut stone) = (0.0, None);
         while self.rounds.spp() < spp {
@@ -157,14 +163,15 @@ pub fn check_until(rmse: f64) -> Result<()> {
 /// Doubles both halves until the error of their average, in the worse of both accounts, is at most `rmse`. Starts with what is cached; films on
 /// the way to the last one are removed if this run made them.
 pub fn refine_reference(
+    lab: &Lab,
     reference: &Reference,
     rmse: f64,
     folder: &Path,
     progress: &dyn Progress,
 ) -> Result<[(PathBuf, Film); 2]> {
     let _lock = lock(folder)?;
-    let mut first = Half::new(reference, 0, folder)?;
-    let mut second = Half::new(reference, 1, folder)?;
+    let mut first = Half::new(lab, reference, 0, folder)?;
+    let mut second = Half::new(lab, reference, 1, folder)?;
     let longest = subtrees().rev().find(|spp| first.path(*spp).is_file() && second.path(*spp).is_file());
     let mut made: Vec<PathBuf> = Vec::new();
     for spp in subtrees().filter(|spp| longest.is_none_or(|longest| *spp >= longest)) {

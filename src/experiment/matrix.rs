@@ -4,11 +4,9 @@ use super::definition::FEATURES;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::{Clamp, Spec};
-use crate::measure::{LARGEST_SEED, Settings, Setup, available_threads};
+use crate::measure::{LARGEST_SEED, Settings, available_threads};
 use crate::sampling::{SAMPLERS, is_deterministic};
-use crate::scene::{SCENES, load};
 use crate::simd::LEVELS;
-use crate::strategy::STRATEGIES;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -195,12 +193,12 @@ impl Definition {
             return Err(self.located(profile, InputError::new(axis, "[]", problem).allowed("at least one value")));
         }
         let available = LEVELS.iter().filter(|level| level.is_available());
-        let levels = all_of(&matrix.simd, &available.map(|level| level.name));
+        let levels = all_of(&matrix.simd, available.map(|level| level.name));
         let depths: Vec<Option<u16>> = match matrix.max_depth.as_slice() {
             [] => vec![None],
             depths => depths.iter().copied().map(Some).collect(),
         };
-        for scene in &all_of(&matrix.scene, &SCENES.iter().map(|(name, _)| *name)) {
+        for scene in &all_of(&matrix.scene, self.lab.scenes()) {
             for estimator in &self.estimators(profile, matrix, scene)? {
                 for sampler in &matrix.sampler {
                     self.check_sampler(profile, sampler)?;
@@ -246,7 +244,8 @@ impl Definition {
 
     /// The estimators for a scene; `default` is the one that it names itself.
     fn estimators(&self, profile: Profile, matrix: &Matrix, scene: &str) -> Result<Vec<String>> {
-        let own = || match load(&self.scene_path(scene)) {
+        let own = || match self.lab.load_scene(&self.scene_path(scene)) {
+            _ if self.lab.workload_named(scene).is_some() => Ok(String::new()),
             Ok(scene) => Ok(scene.default_estimator.unwrap_or(Spec::default().estimator)),
             Err(Error::Input(input)) if input.place.is_none() => Err(self.located(profile, *input)),
             Err(other) => Err(other),
@@ -273,7 +272,7 @@ impl Definition {
             return Err(self.located(profile, error.allowed(format!("0 to {LARGEST_SEED}"))));
         }
         let strategies = scale.strategy.as_ref().unwrap_or(&matrix.strategy);
-        for strategy in all_of(strategies, &STRATEGIES.iter().map(|entry| entry.name)) {
+        for strategy in all_of(strategies, self.lab.strategies().iter().map(|entry| entry.name)) {
             for threads in scale.threads.as_ref().unwrap_or(&matrix.threads).iter().map(Threads::count) {
                 for decomposition in scale.decomposition.as_ref().unwrap_or(&matrix.decomposition) {
                     for output in &matrix.output {
@@ -286,7 +285,7 @@ impl Definition {
                             threads,
                             ..image.clone()
                         };
-                        let setup = Setup::prepare(settings).map_err(|error| match error {
+                        let setup = self.lab.prepare(settings).map_err(|error| match error {
                             Error::Input(input) if input.place.is_none() => self.located(profile, *input),
                             other => other,
                         })?;
@@ -312,7 +311,7 @@ impl Definition {
 }
 
 /// The names as they stand, `all` being every one in the table.
-fn all_of(names: &[String], table: &(impl Iterator<Item = &'static str> + Clone)) -> Vec<String> {
-    let every = || table.clone().map(str::to_string).collect();
-    names.iter().flat_map(|name| if name == "all" { every() } else { vec![name.clone()] }).collect()
+fn all_of<'a>(names: &[String], table: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let every: Vec<String> = table.map(str::to_string).collect();
+    names.iter().flat_map(|name| if name == "all" { every.clone() } else { vec![name.clone()] }).collect()
 }

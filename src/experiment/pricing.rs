@@ -9,7 +9,8 @@ use crate::analysis::price::{Law, Renderer};
 use crate::analysis::tail::{Tail, tail};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
-use crate::measure::{Rounds, Settings, Setup};
+use crate::lab::Lab;
+use crate::measure::{Rounds, Settings};
 use crate::sampling::{REFERENCE_SEEDS, is_spread};
 
 /// Seeds from here on are for pilots.
@@ -47,9 +48,9 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
 impl Pilot {
     /// Renders the pilot; intervals have this level. The tail is that of the pixels' values over seeds: where one value of one pixel makes up much of the
     /// variance, the price rests on whether the pilot met it.
-    pub fn run(&self, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<(Renderer, Tail)> {
+    pub fn run(&self, lab: &Lab, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<(Renderer, Tail)> {
         let law = law_of(&settings.spec.sampler);
-        let fewest = Setup::prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
+        let fewest = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
         if !self.spp.is_multiple_of(fewest) {
             let problem = format!("is no multiple of {fewest}, the fewest samples that make an image");
             return Err(InputError::new("pilot-spp", self.spp.to_string(), problem).into());
@@ -63,9 +64,9 @@ impl Pilot {
         let mut per_spp = Vec::new();
         progress.begin("pilot", u64::from(self.seeds));
         // The first run of a process is slower than the rest.
-        Setup::prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;
+        lab.prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;
         for seed in 0..self.seeds {
-            let setup = Setup::prepare(with_seed(settings, self.spp, PILOT_SEEDS + u64::from(seed)))?;
+            let setup = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS + u64::from(seed)))?;
             let mut rounds = Rounds::new(setup)?;
             let (mut seconds, mut samples) = (0.0, 0);
             for (&spp, images) in points.iter().zip(&mut images) {
@@ -98,11 +99,11 @@ fn tail_over_seeds(images: &[Vec<f64>]) -> Option<Tail> {
 }
 
 /// Renders two seeds, from the settings' own on, with so many samples, and measures what that took and what it gave.
-pub fn pay(settings: &Settings, spp: u32, progress: &dyn Progress) -> Result<Paid> {
+pub fn pay(lab: &Lab, settings: &Settings, spp: u32, progress: &dyn Progress) -> Result<Paid> {
     let mut images = Vec::new();
     let mut seconds = 0.0;
     for index in 0..2_u64 {
-        let setup = Setup::prepare(with_seed(settings, spp, settings.spec.seed + index))?;
+        let setup = lab.prepare(with_seed(settings, spp, settings.spec.seed + index))?;
         progress.begin(&format!("paying {} of 2: {spp} spp", index + 1), setup.jobs() as u64);
         let outcome = setup.run(Some(&|done| progress.advance(done)))?;
         progress.end();

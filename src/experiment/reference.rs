@@ -7,7 +7,8 @@ use super::{Cell, Definition, Profile};
 use crate::error::{InputError, Result};
 use crate::film::{FilmKey, read_film};
 use crate::kernel::Spec;
-use crate::measure::{Settings, Setup, available_threads};
+use crate::lab::Lab;
+use crate::measure::{Settings, available_threads};
 use crate::sampling::{REFERENCE_SEEDS, SAMPLERS, is_deterministic};
 use std::path::{Path, PathBuf};
 
@@ -63,26 +64,25 @@ pub(super) fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
 
 impl Reference {
     /// Refuses what cannot be rendered, before anything is made.
-    pub fn check(&self) -> Result<()> {
+    pub fn check(&self, lab: &Lab) -> Result<()> {
         if !is_deterministic(&self.sampler) {
             let problem = "gives other numbers in each run, and a reference must be what its name says";
             let names: Vec<&str> =
                 SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
             return Err(InputError::new("sampler", &self.sampler, problem).allowed(names.join(", ")).into());
         }
-        Setup::prepare(self.half(0)).map(|_| ())
+        lab.prepare(self.half(0)).map(|_| ())
     }
 
     /// Where its two halves are cached.
-    pub fn paths(&self, folder: &Path) -> Result<[PathBuf; 2]> {
-        let path =
-            |half| -> Result<PathBuf> { Ok(reference_path(folder, &Setup::prepare(self.half(half))?.film_key())) };
+    pub fn paths(&self, lab: &Lab, folder: &Path) -> Result<[PathBuf; 2]> {
+        let path = |half| -> Result<PathBuf> { Ok(reference_path(folder, &lab.prepare(self.half(half))?.film_key())) };
         Ok([path(0)?, path(1)?])
     }
 
     /// Refuses a damaged film in the cache. It is never quietly replaced: it may be the user's only copy.
-    pub fn check_cache(&self, folder: &Path) -> Result<()> {
-        for path in self.paths(folder)? {
+    pub fn check_cache(&self, lab: &Lab, folder: &Path) -> Result<()> {
+        for path in self.paths(lab, folder)? {
             if path.is_file() {
                 read_film(&path)?;
             }

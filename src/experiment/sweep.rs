@@ -59,8 +59,8 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     }
     let wanted = wanted_references(definition, options.profile, &cells)?;
     for reference in &wanted {
-        reference.check().map_err(|error| definition.reference_error(options.profile, error))?;
-        reference.check_cache(&options.out.join("references"))?;
+        reference.check(&definition.lab).map_err(|error| definition.reference_error(options.profile, error))?;
+        reference.check_cache(&definition.lab, &options.out.join("references"))?;
     }
     let folder = options.out.join(&definition.name);
     let (mut file, done) = open(definition, options, &folder)?;
@@ -68,9 +68,9 @@ pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress
     let calibration = folder.join("calibration.csv");
     if definition.keeps(Keep::Calibration) && !calibration.is_file() {
         progress.note("calibrating: every strategy hands out empty jobs");
-        write_calibration(&calibration)?;
+        write_calibration(&definition.lab, &calibration)?;
     }
-    let references = references(&wanted, options, progress)?;
+    let references = references(definition, &wanted, options, progress)?;
     let programs = folder.join("external");
     for external in &definition.external {
         std::fs::create_dir_all(&programs).map_err(|e| Error::system("creating", &programs, e))?;
@@ -193,6 +193,7 @@ fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(Re
 
 /// The two halves of each reference, by scene.
 fn references(
+    definition: &Definition,
     wanted: &[Reference],
     options: &Options,
     progress: &dyn Progress,
@@ -201,7 +202,7 @@ fn references(
     let mut halves = HashMap::new();
     for reference in wanted {
         std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-        let [(first, _), (second, _)] = render_reference(reference, &folder, progress)?;
+        let [(first, _), (second, _)] = render_reference(&definition.lab, reference, &folder, progress)?;
         halves.insert(reference.scene.clone(), [first, second]);
     }
     Ok(halves)

@@ -1,22 +1,33 @@
 //! What the names of a [`Spec`] come to for a scene: everything that a user could have got wrong is found here.
 
-use super::{Clamp, KERNELS, LANES, SCALAR, Spec};
+use super::{Clamp, KERNELS, LANES, OwnEstimator, SCALAR, Spec};
+use crate::effect::Effects;
 use crate::error::{InputError, Result};
-use crate::estimator::{self, Course, ESTIMATORS, Estimator, EstimatorVisitor, Roulette, with_estimator};
+use crate::estimator::{AnyEstimator, Course, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
 use crate::material::Diffuse;
-use crate::sampling::{InLanes as LaneSampler, SAMPLERS, is_deterministic};
+use crate::sampling::{Entry as SamplerEntry, InLanes as LaneSampler, SAMPLERS};
 use crate::scene::{
     ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES,
     ProfileEntry, Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
 use crate::simd::{Entry as Level, LEVELS, Precision, best, widths_of};
+use std::sync::Arc;
 
 /// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
 const AT_RUN_TIME: &str = "run-time";
 
-/// What a spec comes to for a scene.
-#[derive(Clone, Copy)]
+/// What a spec comes to for a scene: no name of it has to be looked up again.
+#[derive(Clone)]
 pub struct Choice {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) seed: u64,
+    pub(super) clamp: Option<Clamp>,
+    pub(super) estimator: EstimatorEntry,
+    /// The estimator, if it is in no table.
+    pub(super) own: Option<OwnEstimator>,
+    pub(super) options: Options,
+    pub(super) sampler: &'static SamplerEntry,
     pub(super) profile: &'static ProfileEntry,
     accelerator: &'static Accelerator,
     /// How lanes go about it, or why they do not.
@@ -35,6 +46,53 @@ pub(super) struct InLanes {
 }
 
 impl Choice {
+    /// The estimator.
+    pub fn estimator(&self) -> &EstimatorEntry {
+        &self.estimator
+    }
+
+    /// The sampler.
+    pub fn sampler(&self) -> &'static SamplerEntry {
+        self.sampler
+    }
+
+    /// The same radiance from samples of another seed, and nothing clamped.
+    #[must_use]
+    pub fn pilot(self, seed: u64) -> Self {
+        Self { seed, clamp: None, ..self }
+    }
+
+    /// What is clamped to 1.
+    pub fn clamp(&self) -> Option<Clamp> {
+        self.clamp
+    }
+
+    /// When and how chance ends paths: what was asked for, or else the estimator's own rule.
+    pub fn roulette(&self) -> Option<Roulette> {
+        self.options.roulette.or(self.estimator.roulette)
+    }
+
+    /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
+    pub fn depth(&self) -> Option<u16> {
+        self.options.max_depth.or(self.estimator.max_depth)
+    }
+
+    /// Whether an option is on that changes what the image converges to.
+    pub fn is_biased(&self) -> bool {
+        self.clamp.is_some() || self.depth().is_some()
+    }
+
+    /// The estimator behind a pointer.
+    pub(super) fn any_estimator(&self) -> Result<Arc<dyn AnyEstimator>> {
+        match &self.own {
+            Some(own) => Ok(own.any()),
+            None => match any_estimator(self.estimator.name, self.options) {
+                Some(estimator) => Ok(Arc::from(estimator)),
+                None => Err(unknown("estimator", self.estimator.name, ESTIMATORS.iter().map(|e| e.name)).into()),
+            },
+        }
+    }
+
     /// Name of the kernel that renders.
     pub fn kernel(&self) -> &'static str {
         if self.lanes.is_ok() { LANES } else { SCALAR }
@@ -42,12 +100,12 @@ impl Choice {
 
     /// Instruction set of its lanes; empty if it has none.
     pub fn simd(&self) -> &'static str {
-        self.lanes.map_or("", |lanes| lanes.level.name)
+        self.lanes.as_ref().map_or("", |lanes| lanes.level.name)
     }
 
     /// Floating-point format of what it computes with.
     pub fn precision(&self) -> Precision {
-        self.lanes.map_or(Precision::F64, |lanes| lanes.precision)
+        self.lanes.as_ref().map_or(Precision::F64, |lanes| lanes.precision)
     }
 
     /// Why it is not the kernel that was asked for; empty if it is.
@@ -89,18 +147,44 @@ pub(super) const INDEPENDENT: &str = "independent";
 
 /// The profiles that kernels with a sampler are compiled for; all of them if it is empty. All samplers in all profiles would be more than a
 /// hundred kernels, which take minutes to compile.
-fn profiles_for(sampler: &str) -> &'static [&'static str] {
-    match sampler {
+fn profiles_for(sampler: &SamplerEntry) -> &'static [&'static str] {
+    match sampler.name {
         INDEPENDENT => &[],
-        keyed if is_deterministic(keyed) => &[SmallptEffects::NAME, AllEffects::NAME],
+        _ if sampler.deterministic => &[SmallptEffects::NAME, AllEffects::NAME],
         _ => &[AllEffects::NAME],
     }
 }
 
-/// Checks every name of the spec and chooses what it leaves open.
+/// The estimator of that name among the built-in ones and those of one's own.
+fn estimator_named(name: &str, own: &[OwnEstimator]) -> Result<(EstimatorEntry, Option<OwnEstimator>)> {
+    if let Some(entry) = ESTIMATORS.iter().find(|entry| entry.name == name) {
+        return Ok((*entry, None));
+    }
+    let Some(found) = own.iter().find(|own| own.entry().name == name) else {
+        let names = ESTIMATORS.iter().map(|entry| entry.name).chain(own.iter().map(|own| own.entry().name));
+        return Err(unknown("estimator", name, names).into());
+    };
+    Ok((*found.entry(), Some(found.clone())))
+}
+
+/// Checks every name of the spec against what is built in, and chooses what it leaves open.
 pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
-    let lanes = lanes_for(scene, spec)?;
-    let scan = match lanes {
+    choose_among(scene, spec, &[])
+}
+
+/// Likewise, where there are estimators that are in no table.
+pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<Choice> {
+    let Some(sampler) = SAMPLERS.iter().find(|entry| entry.name == spec.sampler) else {
+        return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name)).into());
+    };
+    let (estimator, own) = estimator_named(&spec.estimator, own)?;
+    let options = options(spec, &estimator, own.is_some())?;
+    let course = match &own {
+        Some(own) => own.any().any_course(),
+        None => any_estimator(estimator.name, options).and_then(|estimator| estimator.any_course()),
+    };
+    let lanes = lanes_for(scene, spec, course)?;
+    let scan = match &lanes {
         Err(_) => Scan::OneByOne,
         Ok(chosen) => {
             let [lanes, singles] = widths_of(chosen.level, chosen.precision);
@@ -116,11 +200,33 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     if accelerator.is_hierarchy() {
         effects = effects.and(HIERARCHY);
     }
-    let compiled = profiles_for(&spec.sampler);
+    Ok(Choice {
+        width: spec.width,
+        height: spec.height,
+        seed: spec.seed,
+        clamp: spec.clamp,
+        profile: profile(effects, spec.effects.as_deref(), sampler, own.is_some())?,
+        estimator,
+        own,
+        options,
+        sampler,
+        accelerator,
+        lanes,
+    })
+}
+
+/// The profile that was asked for, or the smallest one that covers the effects and that kernels with the sampler are compiled for.
+fn profile(
+    effects: Effects,
+    wanted: Option<&str>,
+    sampler: &SamplerEntry,
+    is_own: bool,
+) -> Result<&'static ProfileEntry> {
+    let compiled = if is_own { &[AllEffects::NAME] } else { profiles_for(sampler) };
     let is_compiled = |name: &str| compiled.is_empty() || compiled.contains(&name);
     let fitting = PROFILES.iter().find(|entry| is_compiled(entry.name) && entry.effects.cover(effects));
     let fitting = fitting.map_or(AllEffects::NAME, |entry| entry.name);
-    let wanted = spec.effects.as_deref().unwrap_or(fitting);
+    let wanted = wanted.unwrap_or(fitting);
     let Some(profile) = PROFILES.iter().find(|entry| entry.name == wanted) else {
         return Err(unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name)).into());
     };
@@ -129,18 +235,17 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
     if !is_compiled(profile.name) {
-        let problem = format!("is not compiled for the sampler {}", spec.sampler);
+        let problem = format!("is not compiled for the sampler {}", sampler.name);
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
-    if !SAMPLERS.iter().any(|entry| entry.name == spec.sampler) {
-        return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name)).into());
-    }
-    let Some(estimator) = estimator::find(&spec.estimator) else {
-        return Err(unknown("estimator", &spec.estimator, ESTIMATORS.iter().map(|entry| entry.name)).into());
-    };
-    if let Some(depth) = spec.max_depth.filter(|depth| *depth > estimator.largest_depth) {
+    Ok(profile)
+}
+
+/// What the estimator is told, where it can be told that.
+fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Options> {
+    if let Some(depth) = spec.max_depth.filter(|depth| is_own || *depth > estimator.largest_depth) {
         let problem = format!("is more than {} can follow", estimator.name);
-        let allowed = format!("0 to {}", estimator.largest_depth);
+        let allowed = if is_own { "none".to_string() } else { format!("0 to {}", estimator.largest_depth) };
         return Err(InputError::new("max-depth", depth.to_string(), problem).allowed(allowed).into());
     }
     if spec.clamp == Some(Clamp::Recursion) && !estimator.is_one_path {
@@ -148,14 +253,12 @@ pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
         let single: Vec<&str> = ESTIMATORS.iter().filter(|entry| entry.is_one_path).map(|entry| entry.name).collect();
         return Err(InputError::new("recursion-clamp", estimator.name, problem).allowed(single.join(", ")).into());
     }
-    if let Some(roulette) = &spec.roulette {
-        Roulette::parse(roulette)?;
-        if estimator.roulette.is_none() {
-            let problem = format!("is nothing for {}, which ends no path by chance", estimator.name);
-            return Err(InputError::new("roulette", roulette, problem).allowed("none").into());
-        }
+    let roulette = spec.roulette.as_deref().map(Roulette::parse).transpose()?;
+    if let Some(rule) = spec.roulette.as_deref().filter(|_| is_own || estimator.roulette.is_none()) {
+        let problem = format!("is no option of {}, which ends no path by chance", estimator.name);
+        return Err(InputError::new("roulette", rule, problem).allowed("none").into());
     }
-    Ok(Choice { profile, accelerator, lanes })
+    Ok(Options { max_depth: spec.max_depth, roulette })
 }
 
 /// As many primitives as single precision has whole numbers for are more than lanes tell apart.
@@ -174,7 +277,7 @@ fn obstacle(scene: &Scene, spec: &Spec) -> Option<&'static str> {
 }
 
 /// The level on which lanes render a scene with these settings, or why they do not.
-fn lanes_for(scene: &Scene, spec: &Spec) -> Result<std::result::Result<InLanes, &'static str>> {
+fn lanes_for(scene: &Scene, spec: &Spec, course: Option<Course>) -> Result<std::result::Result<InLanes, &'static str>> {
     if !KERNELS.iter().any(|entry| entry.name == spec.kernel) {
         return Err(unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into());
     }
@@ -195,7 +298,7 @@ fn lanes_for(scene: &Scene, spec: &Spec) -> Result<std::result::Result<InLanes, 
     if spec.kernel == SCALAR {
         return Ok(Err(SCALAR));
     }
-    Ok(Err(match (obstacle(scene, spec), course(spec), LaneSampler::find(&spec.sampler)) {
+    Ok(Err(match (obstacle(scene, spec), course, LaneSampler::find(&spec.sampler)) {
         (None, Some(course), Some(sampler)) => {
             let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
             // Where most of the time goes to lights, being compiled for it would gain 3 %, and takes as long to compile as the others.
@@ -219,16 +322,4 @@ fn precision(spec: &Spec) -> Result<Precision> {
         return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
     }
     Ok(precision)
-}
-
-/// How the estimator follows paths, if it does.
-fn course(spec: &Spec) -> Option<Course> {
-    struct OfEstimator;
-    impl EstimatorVisitor for OfEstimator {
-        type Output = Option<Course>;
-        fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
-            estimator.course()
-        }
-    }
-    with_estimator(&spec.estimator, spec.options(), OfEstimator).flatten()
 }

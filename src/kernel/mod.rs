@@ -3,26 +3,30 @@
 mod choice;
 mod inspect;
 mod lanes;
+mod own;
 mod recursion_clamp;
 mod scalar;
 mod spec;
+pub mod workload;
 
 use crate::effect::EffectSet;
 use crate::error::Result;
-use crate::estimator::{self, Estimator, EstimatorVisitor, with_estimator};
+use crate::estimator::{Estimator, EstimatorVisitor, with_estimator};
 use crate::film::{Bounds, Piece, TileBuffer};
 use crate::sampling::{
     Independent, SAMPLERS, Sampler, SamplerVisitor, keyed_sampler, stateful_sampler, with_keyed_sampler,
 };
 use crate::scene::{AllEffects, ProfileVisitor, Scene, SmallptEffects, with_profile};
-pub use choice::{Choice, choose};
+pub use choice::{Choice, choose, choose_among};
 use choice::{INDEPENDENT, unknown};
-pub use inspect::{BounceRow, Event, Inspect, LightByBounce, PathLog, inspect};
+pub use inspect::{BounceRow, Event, Inspector, LightByBounce, PathLog};
 use lanes::Lanes;
+pub use own::OwnEstimator;
 use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
 pub use spec::{Clamp, Spec};
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// Version of the arithmetic. It changes when the same settings give other bits than before, and films of the old ones are no longer used.
@@ -84,50 +88,49 @@ const LANES: &str = "lanes";
 const SCALAR: &str = "scalar";
 
 /// The scene with what the accelerator and the estimator need of it.
-fn prepared(scene: &Arc<Scene>, spec: &Spec, choice: Choice) -> Arc<Scene> {
+fn prepared(scene: &Arc<Scene>, choice: &Choice) -> Arc<Scene> {
     let mut prepared = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
-    if estimator::find(&spec.estimator).is_some_and(|entry| entry.aims) {
-        prepared = Arc::new(prepared.lit(&scene.camera.view(spec.width, spec.height)));
+    if choice.estimator.aims {
+        prepared = Arc::new(prepared.lit(&scene.camera.view(choice.width, choice.height)));
     }
     prepared
 }
 
-/// Builds the kernel for a scene, and what accelerates it.
+/// Builds the kernel for a scene, and what accelerates it, from names of what is built in.
 pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
-    let choice = choose(scene, spec)?;
-    if let Ok(chosen) = choice.lanes {
-        return Ok(Box::new(Lanes::new(prepared(scene, spec, choice), spec, chosen)));
-    }
-    if spec.clamp == Some(Clamp::Recursion) {
-        return Ok(Box::new(RecursionClamp(inspect(scene, spec)?)));
-    }
-    let scene = prepared(scene, spec, choice);
-    let spec = spec.clone();
-    let name = spec.sampler.clone();
-    let kernel = match stateful_sampler(&name, spec.seed) {
-        Some(sampler) => BySampler::<AllEffects>::new(scene, spec.clone()).visit(sampler),
-        None if name == INDEPENDENT => {
-            with_profile(choice.profile.name, ByProfile { scene, spec: spec.clone() }).flatten()
-        }
-        None if choice.profile.name == SmallptEffects::NAME => {
-            with_keyed_sampler(&name, BySampler::<SmallptEffects>::new(scene, spec.clone())).flatten()
-        }
-        None => with_keyed_sampler(&name, BySampler::<AllEffects>::new(scene, spec.clone())).flatten(),
-    };
-    // Every name has been checked, so there is a kernel.
-    kernel.ok_or_else(|| unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into())
+    construct(scene, &choose(scene, spec)?)
 }
 
-/// Builds the kernel of an estimator that is in no table, with every effect and the spec's sampler. What the spec says of the estimator by
-/// name (its lights, its multiple of samples) is taken from the table's entry of that name.
-pub fn build_of<E: Estimator + 'static>(scene: &Arc<Scene>, spec: &Spec, estimator: E) -> Result<Box<dyn Kernel>> {
-    let choice = choose(scene, spec)?;
-    let Some(sampler) = keyed_sampler(&spec.sampler) else {
-        let names = SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name);
-        return Err(unknown("sampler", &spec.sampler, names).into());
+/// Builds what looks into samples of a scene, from names of what is built in.
+pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Inspector> {
+    Inspector::new(scene, &choose(scene, spec)?)
+}
+
+/// Builds the kernel for a scene, and what accelerates it.
+pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>> {
+    if let Ok(chosen) = choice.lanes {
+        return Ok(Box::new(Lanes::new(prepared(scene, choice), choice, chosen)));
+    }
+    if choice.clamp == Some(Clamp::Recursion) {
+        return Ok(Box::new(RecursionClamp(Inspector::new(scene, choice)?)));
+    }
+    let scene = prepared(scene, choice);
+    let name = choice.sampler.name;
+    if let Some(own) = &choice.own {
+        let sampler = keyed_sampler(name).or_else(|| stateful_sampler(name, choice.seed));
+        let unknown = || unknown("sampler", name, SAMPLERS.iter().map(|entry| entry.name));
+        return Ok(own.kernel(scene, choice, sampler.ok_or_else(unknown)?));
+    }
+    let kernel = match stateful_sampler(name, choice.seed) {
+        Some(sampler) => BySampler::<AllEffects>::new(scene, choice).visit(sampler),
+        None if name == INDEPENDENT => with_profile(choice.profile.name, ByProfile { scene, choice }).flatten(),
+        None if choice.profile.name == SmallptEffects::NAME => {
+            with_keyed_sampler(name, BySampler::<SmallptEffects>::new(scene, choice)).flatten()
+        }
+        None => with_keyed_sampler(name, BySampler::<AllEffects>::new(scene, choice)).flatten(),
     };
-    let scene = prepared(scene, spec, choice);
-    Ok(Box::new(Scalar::<E, Box<dyn Sampler>, AllEffects>::new(scene, spec, estimator, sampler)))
+    // Every name has been checked, so there is a kernel.
+    kernel.ok_or_else(|| unknown("kernel", choice.kernel(), KERNELS.iter().map(|entry| entry.name)).into())
 }
 
 /// What an image is given of one sample, in sum and counts. A kernel that is asked for no more gives the same bits.
@@ -139,54 +142,50 @@ pub fn one_sample(kernel: &dyn Kernel, [x, y]: [u32; 2], sample: u32) -> ([f64; 
 }
 
 /// From the profile's name to a type.
-struct ByProfile {
+struct ByProfile<'a> {
     scene: Arc<Scene>,
-    spec: Spec,
+    choice: &'a Choice,
 }
 
-impl ProfileVisitor for ByProfile {
+impl ProfileVisitor for ByProfile<'_> {
     type Output = Option<Box<dyn Kernel>>;
     fn visit<X: EffectSet>(self) -> Self::Output {
-        BySampler::<X>::new(self.scene, self.spec).visit(Independent)
+        BySampler::<X>::new(self.scene, self.choice).visit(Independent)
     }
 }
 
 /// From the sampler's name to a type, then from the estimator's.
-struct BySampler<X> {
+struct BySampler<'a, X> {
     scene: Arc<Scene>,
-    spec: Spec,
-    profile: std::marker::PhantomData<X>,
+    choice: &'a Choice,
+    profile: PhantomData<X>,
 }
 
-impl<X> BySampler<X> {
-    fn new(scene: Arc<Scene>, spec: Spec) -> Self {
-        Self { scene, spec, profile: std::marker::PhantomData }
+impl<'a, X> BySampler<'a, X> {
+    fn new(scene: Arc<Scene>, choice: &'a Choice) -> Self {
+        Self { scene, choice, profile: PhantomData }
     }
 }
 
-impl<X: EffectSet> SamplerVisitor for BySampler<X> {
+impl<X: EffectSet> SamplerVisitor for BySampler<'_, X> {
     type Output = Option<Box<dyn Kernel>>;
     fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output {
-        let (name, options) = (self.spec.estimator.clone(), self.spec.options());
-        with_estimator(
-            &name,
-            options,
-            ByEstimator::<S, X> { scene: self.scene, spec: self.spec, sampler, profile: self.profile },
-        )
+        let Self { scene, choice, profile } = self;
+        with_estimator(choice.estimator.name, choice.options, ByEstimator::<S, X> { scene, choice, sampler, profile })
     }
 }
 
 /// From the estimator's name to a type, then to a kernel.
-struct ByEstimator<S, X> {
+struct ByEstimator<'a, S, X> {
     scene: Arc<Scene>,
-    spec: Spec,
+    choice: &'a Choice,
     sampler: S,
-    profile: std::marker::PhantomData<X>,
+    profile: PhantomData<X>,
 }
 
-impl<S: Sampler + 'static, X: EffectSet> EstimatorVisitor for ByEstimator<S, X> {
+impl<S: Sampler + 'static, X: EffectSet> EstimatorVisitor for ByEstimator<'_, S, X> {
     type Output = Box<dyn Kernel>;
     fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
-        Box::new(Scalar::<E, S, X>::new(self.scene, &self.spec, estimator, self.sampler))
+        Box::new(Scalar::<E, S, X>::new(self.scene, self.choice, estimator, self.sampler))
     }
 }

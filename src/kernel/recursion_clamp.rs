@@ -4,14 +4,14 @@
 //! Written without the recursion: a ray that sets out with throughput T brings at most T to the sample. So the sample is the least of what
 //! was collected before any vertex plus the throughput of the ray that led there, and of everything collected.
 
-use super::{Counts, Inspect, Kernel};
+use super::{Counts, Inspector, Kernel};
 use crate::estimator::Probe;
 use crate::film::{Piece, SampleSum, TileBuffer};
 use crate::math::{Ray, Rgb};
 use crate::scene::{Hit, Tests};
 
 /// The kernel. It looks into another's samples, which is slow, and fast enough for what it is to show.
-pub(super) struct RecursionClamp(pub(super) Box<dyn Inspect>);
+pub(super) struct RecursionClamp(pub(super) Inspector);
 
 /// What of a sample is left so far.
 struct Clamped<'a> {

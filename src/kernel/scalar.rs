@@ -1,6 +1,6 @@
 //! One path at a time, in f64: the readable kernel that every other one is measured against.
 
-use super::{Clamp, Counts, Inspect, Kernel, Spec};
+use super::{Choice, Clamp, Counts, Kernel};
 use crate::effect::EffectSet;
 use crate::estimator::{Estimator, Probe, camera_ray};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
@@ -38,31 +38,25 @@ impl Probe for Counts {
 }
 
 impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
-    pub(super) fn new(scene: Arc<Scene>, spec: &Spec, estimator: E, sampler: S) -> Self {
+    pub(super) fn new(scene: Arc<Scene>, choice: &Choice, estimator: E, sampler: S) -> Self {
         Self {
-            view: scene.camera.view(spec.width, spec.height),
+            view: scene.camera.view(choice.width, choice.height),
             scene,
-            width: spec.width,
-            seed: spec.seed,
-            subpixel_clamp: spec.clamp == Some(Clamp::Subpixel),
+            width: choice.width,
+            seed: choice.seed,
+            subpixel_clamp: choice.clamp == Some(Clamp::Subpixel),
             estimator,
             sampler,
             profile: PhantomData,
         }
     }
 
-    /// What the estimator makes of a sample, right or wrong.
-    #[inline(always)]
-    fn estimate<P: Probe>(&self, x: u32, y: u32, sample: u32, probe: &mut P) -> Rgb {
-        let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
-        let ray = camera_ray::<S, X, P>(&self.view, [x, y], key, &self.sampler, probe);
-        self.estimator.sample::<S, X, P>(&self.scene, ray, key, &self.sampler, probe)
-    }
-
     /// What a sample contributes to its pixel.
     #[inline(always)]
     fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
-        let radiance = self.estimate(x, y, sample, counts);
+        let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
+        let ray = camera_ray::<S, X, Counts>(&self.view, [x, y], key, &self.sampler, counts);
+        let radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
         counts.paths += 1;
         if radiance.is_valid_radiance() {
             return radiance;
@@ -71,25 +65,21 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
         Rgb::BLACK
     }
 
+    /// Where subpixels are clamped, each is a pass of its own over its samples; smallpt cuts its mean at 1 before the four are averaged. Squares
+    /// are those of the unclamped samples. One loop serves both, because the compiler repeats a whole path at every place that calls it.
     fn pixel(&self, x: u32, y: u32, piece: &Piece, sum: &mut SampleSum, counts: &mut Counts) -> PixelSum {
-        sum.clear();
-        for sample in piece.samples.clone() {
-            sum.add(self.sample(x, y, sample, counts));
-        }
-        sum.total()
-    }
-
-    /// smallpt's way: the mean of each subpixel is cut at 1 before the four are averaged. Squares are those of the unclamped samples.
-    fn clamped_pixel(&self, x: u32, y: u32, piece: &Piece, sum: &mut SampleSum, counts: &mut Counts) -> PixelSum {
+        let passes = if self.subpixel_clamp { SUBPIXELS } else { 1 };
         let mut pixel = PixelSum::default();
-        for subpixel in 0..SUBPIXELS {
+        for pass in 0..passes {
             sum.clear();
-            for sample in piece.samples.clone().filter(|sample| sample % SUBPIXELS == subpixel) {
+            for sample in piece.samples.clone().filter(|sample| sample % passes == pass) {
                 sum.add(self.sample(x, y, sample, counts));
             }
             let mut part = sum.total();
-            let clamped = part.mean().map(|mean| mean.min(1.0) * f64::from(part.count));
-            part.sum = clamped;
+            if !self.subpixel_clamp {
+                return part;
+            }
+            part.sum = part.mean().map(|mean| mean.min(1.0) * f64::from(part.count));
             pixel = pixel.plus(&part);
         }
         pixel
@@ -102,19 +92,9 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Kernel for Scalar<E, S, X> {
         let mut sum = SampleSum::default();
         for y in piece.bounds.y0..piece.bounds.y1 {
             for (x, pixel) in (piece.bounds.x0..piece.bounds.x1).zip(out.row_mut(y)) {
-                *pixel = if self.subpixel_clamp {
-                    self.clamped_pixel(x, y, piece, &mut sum, &mut counts)
-                } else {
-                    self.pixel(x, y, piece, &mut sum, &mut counts)
-                };
+                *pixel = self.pixel(x, y, piece, &mut sum, &mut counts);
             }
         }
         counts
-    }
-}
-
-impl<E: Estimator, S: Sampler, X: EffectSet> Inspect for Scalar<E, S, X> {
-    fn estimate(&self, x: u32, y: u32, sample: u32, mut probe: &mut dyn Probe) -> Rgb {
-        Self::estimate(self, x, y, sample, &mut probe)
     }
 }

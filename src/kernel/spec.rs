@@ -1,7 +1,6 @@
 //! The *what* of a render, by name.
 
 use super::LANES;
-use crate::estimator::{self, Options, Roulette};
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
@@ -52,7 +51,7 @@ pub struct Spec {
     pub accelerator: Option<String>,
     /// After so many bounces a path is cut; `None` leaves it to the estimator.
     pub max_depth: Option<u16>,
-    /// When and how chance ends paths, as [`Roulette`] reads it; `None` leaves it to the estimator.
+    /// When and how chance ends paths, as [`Roulette`](crate::estimator::Roulette) reads it; `None` leaves it to the estimator.
     #[serde(default)]
     pub roulette: Option<String>,
     /// What is clamped to 1: biased.
@@ -81,30 +80,5 @@ impl Default for Spec {
             roulette: None,
             clamp: None,
         }
-    }
-}
-
-impl Spec {
-    /// Whether an option is on that changes what the image converges to.
-    pub fn is_biased(&self) -> bool {
-        self.clamp.is_some() || self.depth().is_some()
-    }
-
-    /// What the estimator is told; what cannot be read is what [`choose`] refuses.
-    pub(super) fn options(&self) -> Options {
-        let roulette = self.roulette.as_deref().and_then(|text| Roulette::parse(text).ok());
-        Options { max_depth: self.max_depth, roulette }
-    }
-
-    /// When and how chance ends paths, as [`Roulette`] reads it: what was asked for, or else the estimator's own rule.
-    pub fn roulette(&self) -> Option<String> {
-        let own = estimator::find(&self.estimator).and_then(|entry| entry.roulette);
-        self.options().roulette.or(own).map(|rule| rule.to_string())
-    }
-
-    /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
-    pub fn depth(&self) -> Option<u16> {
-        let own = estimator::find(&self.estimator).and_then(|entry| entry.max_depth);
-        self.max_depth.or(own)
     }
 }

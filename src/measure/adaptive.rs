@@ -9,10 +9,8 @@ use super::run::{Account, Watch};
 use super::{Outcome, Settings, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{Film, FilmKey, SampleGrid};
-use crate::kernel::Spec;
 use crate::scene::SUBPIXELS;
 use std::slice::from_ref;
-use std::sync::Arc;
 use std::time::Instant;
 
 /// Seeds from here on are for pilots: above those of images, and far above those of references, which count from 2^63.
@@ -59,9 +57,7 @@ impl Setup {
         let pilot_spp = (spp / PILOT_PART).clamp(8, 64).next_multiple_of(SUBPIXELS);
         // Two seeds of images that differ in the highest bits alone share their pilot, which is nobody's sample.
         let seed = PILOT_SEEDS | (spec.seed & !PILOT_SEEDS);
-        let spec = Spec { seed, clamp: None, ..spec.clone() };
-        let settings = Settings { spp: pilot_spp, spec, ..self.settings().clone() };
-        let pilot = Self::for_scene(Arc::clone(self.shared_scene()), settings)?.run(None)?;
+        let pilot = self.pilot(pilot_spp, seed)?.run(None)?;
         let least = (spp / EVEN_PART / SUBPIXELS * SUBPIXELS).max(SUBPIXELS);
         Ok(SampleGrid::neyman(&pilot.film, *spp, least, SUBPIXELS))
     }

@@ -8,10 +8,10 @@
 //! What the rows mean is the simulator's business (`simulate::Overheads`).
 
 use super::available_threads;
-use super::settings::strategy_named;
 use super::usage::Usage;
 use crate::analysis::quantile::median;
 use crate::error::{Error, Result};
+use crate::lab::Lab;
 use crate::strategy::{Config, Spawner, SystemThreads, Workers};
 use serde::{Deserialize, Serialize};
 use std::hint::black_box;
@@ -68,10 +68,10 @@ struct Run {
 }
 
 /// Times empty jobs under each of these strategies, given as in [`super::Settings::strategy`].
-pub fn calibrate(strategies: &[String]) -> Result<Vec<CalibrationRow>> {
+pub fn calibrate(lab: &Lab, strategies: &[String]) -> Result<Vec<CalibrationRow>> {
     let mut rows = Vec::new();
     for strategy in strategies {
-        let (entry, _) = strategy_named(strategy)?;
+        let (entry, _) = lab.strategy_named(strategy)?;
         let (threads, jobs) = match entry.workers {
             Workers::Caller => (vec![1], JOBS),
             Workers::PerJob => (vec![1], JOBS_WITH_THREADS),
@@ -95,7 +95,7 @@ pub fn calibrate(strategies: &[String]) -> Result<Vec<CalibrationRow>> {
             break;
         }
         for (row, times) in rows.iter_mut().zip(&mut times) {
-            let run = run_empty_jobs(row)?;
+            let run = run_empty_jobs(lab, row)?;
             row.started = run.started;
             if round > 0 {
                 times.0.push(run.seconds);
@@ -116,8 +116,8 @@ fn thread_counts(most: usize) -> Vec<usize> {
     doubled.chain([most]).collect()
 }
 
-fn run_empty_jobs(row: &CalibrationRow) -> Result<Run> {
-    let (entry, parameter) = strategy_named(&row.strategy)?;
+fn run_empty_jobs(lab: &Lab, row: &CalibrationRow) -> Result<Run> {
+    let (entry, parameter) = lab.strategy_named(&row.strategy)?;
     let failed = |error| Error::system("calibrating strategy", entry.name, std::io::Error::other(error));
     let threads = NonZeroUsize::new(row.threads).unwrap_or(NonZeroUsize::MIN);
     let spawner = Arc::new(Counted::default());
@@ -170,11 +170,11 @@ mod tests {
     #[test]
     fn every_strategy_is_timed() {
         let names: Vec<String> = STRATEGIES.iter().map(|entry| entry.name.to_owned()).collect();
-        let rows = calibrate(&names).unwrap();
+        let rows = calibrate(&Lab::new(), &names).unwrap();
         for name in &names {
             let of: Vec<_> = rows.iter().filter(|row| &row.strategy == name).collect();
             assert!(of.len() >= 2 && of.iter().all(|row| row.seconds > 0.0), "{of:?}");
         }
-        assert!(calibrate(&["no-such-strategy".to_owned()]).is_err());
+        assert!(calibrate(&Lab::new(), &["no-such-strategy".to_owned()]).is_err());
     }
 }

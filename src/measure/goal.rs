@@ -11,7 +11,7 @@
 //! checkpoint may cut the way into steps.
 
 use super::run::{RoundTimes, Watch};
-use super::settings::{LARGEST_SPP, spp_multiple};
+use super::settings::LARGEST_SPP;
 use super::{Rounds, Warning};
 use crate::analysis::z_test::normal_quantile;
 use crate::error::{InputError, Result};
@@ -159,12 +159,5 @@ impl Goal {
             }
             look = None;
         }
-    }
-}
-
-impl super::Setup {
-    /// Samples per pixel are a multiple of this.
-    pub fn spp_multiple(&self) -> u32 {
-        spp_multiple(&self.settings().spec.estimator)
     }
 }

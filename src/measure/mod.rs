@@ -26,6 +26,7 @@ mod trace_file;
 mod usage;
 mod warning;
 
+pub use crate::lab::THREAD_PER_ROW;
 pub use calibration::{CalibrationRow, calibrate};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;
@@ -39,9 +40,7 @@ pub use output::{Entry as OutputEntry, OUTPUTS};
 pub use record::{Measured, Record, SCHEMA, failure};
 pub use rounds::Rounds;
 pub use run::{Outcome, RoundTimes, Watch};
-pub use settings::{
-    LARGEST_SEED, LARGEST_SPP, Settings, THREAD_PER_ROW, available_threads, schedule_name, strategy_named,
-};
+pub use settings::{LARGEST_SEED, LARGEST_SPP, Settings, available_threads, schedule_name};
 pub use setup::Setup;
 pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};

@@ -199,10 +199,10 @@ fn described(settings: &Settings) -> Record {
         sampler: spec.sampler.clone(),
         kernel: spec.kernel.clone(),
         precision: spec.precision.clone(),
-        max_depth: spec.depth(),
-        roulette: spec.roulette().unwrap_or_default(),
+        max_depth: spec.max_depth,
+        roulette: spec.roulette.clone().unwrap_or_default(),
         clamp: spec.clamp.map(Clamp::name).unwrap_or_default().to_string(),
-        biased: spec.is_biased(),
+        biased: spec.clamp.is_some() || spec.max_depth.is_some(),
         decomposition: settings.decomposition.clone(),
         strategy: settings.strategy.clone(),
         output: settings.output.clone(),
@@ -265,14 +265,26 @@ impl Record {
         record.rounds = Some(outcome.rounds);
         record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());
         record.started_utc.clone_from(&outcome.started_utc);
-        record.scene.clone_from(&setup.scene().name);
-        record.scene_hash.clone_from(&setup.scene().hash);
-        record.kernel = setup.choice().kernel().to_string();
-        record.kernel_fallback = setup.choice().fallback().to_string();
-        record.simd = setup.choice().simd().to_string();
-        record.precision = setup.choice().precision().name().to_string();
-        record.effects = setup.effects().to_string();
-        record.accelerator = setup.accelerator().to_string();
+        record.scene = setup.name().to_string();
+        record.scene_hash = setup.hash();
+        match setup.scene() {
+            None => record.kernel = "workload".to_string(),
+            Some((scene, choice)) => {
+                record.max_depth = choice.depth();
+                record.roulette = choice.roulette().map(|rule| rule.to_string()).unwrap_or_default();
+                record.biased = choice.is_biased();
+                record.kernel = choice.kernel().to_string();
+                record.kernel_fallback = choice.fallback().to_string();
+                record.simd = choice.simd().to_string();
+                record.precision = choice.precision().name().to_string();
+                record.effects = choice.effects().to_string();
+                record.accelerator = choice.accelerator().to_string();
+                record.box_tests = Some(counts.box_tests);
+                // Without a hierarchy every ray is tested against every primitive, and nobody counts.
+                let all = counts.rays * scene.owners.len() as u64;
+                record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
+            }
+        }
         record.build_s = Some(outcome.build_s);
         record.jobs = durations.len();
         record.workers_used = Some(outcome.workers_used);
@@ -299,10 +311,6 @@ impl Record {
         record.job_max_s = durations.iter().copied().reduce(f64::max);
         record.paths = Some(counts.paths);
         record.rays = Some(counts.rays);
-        record.box_tests = Some(counts.box_tests);
-        // Without a hierarchy every ray is tested against every primitive, and nobody counts.
-        let all = counts.rays * setup.scene().owners.len() as u64;
-        record.primitive_tests = Some(if setup.is_hierarchical() { counts.primitive_tests } else { all });
         record.escaped = Some(counts.escaped);
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);

@@ -35,7 +35,7 @@ impl Rounds {
 
     /// Renders until there are `spp` samples a pixel. If there are as many already nothing happens: films do not shrink.
     pub fn extend_to(&mut self, spp: u32, watch: Watch<'_>) -> Result<RoundTimes> {
-        check_spp(spp, &self.setup.settings().spec.estimator)?;
+        check_spp(spp, &self.setup.settings().spec.estimator, self.setup.spp_multiple())?;
         let sections = self.film.missing(spp);
         if sections.is_empty() {
             return Ok(RoundTimes::default());

@@ -1,11 +1,10 @@
 //! The three axes of a run, by name: what is rendered, in which pieces, and who renders them when.
 
 use crate::error::{InputError, Result};
-use crate::estimator::find;
 use crate::film::check_size;
 use crate::kernel::Spec;
+use crate::lab::THREAD_PER_ROW;
 use crate::sampling::REFERENCE_SEEDS;
-use crate::strategy::{self, Entry, STRATEGIES, StrategyError};
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
 
@@ -51,44 +50,17 @@ impl Default for Settings {
     }
 }
 
-/// Report A's name for the strategy `thread-per-job` on the decomposition `rows`.
-pub const THREAD_PER_ROW: &str = "thread-per-row";
-
 /// What a strategy on a decomposition is called.
 pub fn schedule_name<'a>(strategy: &'a str, decomposition: &str) -> &'a str {
     if strategy == "thread-per-job" && decomposition == "rows" { THREAD_PER_ROW } else { strategy }
 }
 
-/// The strategy that `text` names, and its parameter if a colon follows.
-pub fn strategy_named(text: &str) -> Result<(&'static Entry, Option<String>)> {
-    let (name, parameter) = match text.split_once(':') {
-        Some((name, parameter)) => (name, Some(parameter.to_string())),
-        None => (text, None),
-    };
-    let entry = strategy::find(name).ok_or_else(|| {
-        let names: Vec<&str> = STRATEGIES.iter().map(|entry| entry.name).collect();
-        InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
-    })?;
-    match (entry.discipline)(parameter.as_deref()) {
-        Err(StrategyError::Parameter { allowed, .. }) => {
-            Err(InputError::new("strategy", text, "has no such parameter").allowed(allowed).into())
-        }
-        _ => Ok((entry, parameter)),
-    }
-}
-
-/// Samples per pixel are a multiple of this.
-pub(super) fn spp_multiple(estimator: &str) -> u32 {
-    find(estimator).map_or(1, |entry| entry.spp_multiple)
-}
-
-/// Refuses numbers of samples that no image of the estimator can have.
-pub(super) fn check_spp(spp: u32, estimator: &str) -> Result<()> {
+/// Refuses numbers of samples that no image of the estimator can have, which takes multiples of a number.
+pub(super) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> {
     if !(1..=LARGEST_SPP).contains(&spp) {
         let allowed = format!("1 to {LARGEST_SPP}");
         return Err(InputError::new("spp", spp.to_string(), "is out of range").allowed(allowed).into());
     }
-    let multiple = spp_multiple(estimator);
     if !spp.is_multiple_of(multiple) {
         let problem = format!("is no multiple of {multiple}, which {estimator} needs for its subpixels");
         let near = spp.next_multiple_of(multiple);
@@ -119,7 +91,6 @@ impl Settings {
     /// from a user refuses those.
     pub(super) fn check(&self) -> Result<()> {
         check_size(self.spec.width, self.spec.height)?;
-        check_spp(self.spp, &self.spec.estimator)?;
         if !(1..=LARGEST_THREADS).contains(&self.threads) {
             let allowed = format!("1 to {LARGEST_THREADS}");
             return Err(InputError::new("threads", self.threads.to_string(), "is out of range")

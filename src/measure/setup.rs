@@ -1,32 +1,43 @@
 //! Settings that have been checked, and the run itself.
 
 use super::output::{self, Delivery, OUTPUTS, Output};
-use super::settings::{LARGEST_THREADS, strategy_named};
-use super::{Settings, THREAD_PER_ROW, Warning, available_threads, pilot};
+use super::settings::{LARGEST_THREADS, check_spp};
+use super::{Settings, Warning, available_threads, pilot};
+use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::estimator::Estimator;
 use crate::film::{Decomposition, FilmKey, Plan};
-use crate::kernel::{self, Choice, Clamp, Counts, Kernel};
-use crate::sampling::is_deterministic;
+use crate::kernel::workload::Entry as Workload;
+use crate::kernel::{self, Choice, Clamp, Counts, Kernel, OwnEstimator, Spec};
+use crate::lab::{Lab, THREAD_PER_ROW};
 use crate::scene::{Filter, SUBPIXELS, Scene};
+use crate::simd::Precision;
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// A run that can start: everything that the user could have got wrong has been checked.
+/// A run that can start: everything that the user could have got wrong has been checked, and no name has to be looked up again.
 pub struct Setup {
     settings: Settings,
-    scene: Arc<Scene>,
-    choice: Choice,
+    subject: Subject,
     /// Made by the first run: what accelerates a large scene takes seconds to build, and whoever only checks settings needs no kernel.
     built: OnceLock<Built>,
     decomposition: Decomposition,
     plan: Plan,
     output: &'static output::Entry,
-    strategy: &'static strategy::Entry,
+    strategy: strategy::Entry,
     parameter: Option<String>,
+}
+
+/// What is worked on.
+#[derive(Clone)]
+enum Subject {
+    /// A scene is rendered.
+    Scene { scene: Arc<Scene>, choice: Box<Choice> },
+    /// Work that has nothing to do with light.
+    Workload(Workload),
 }
 
 /// A kernel, and how long it took to build.
@@ -35,20 +46,48 @@ struct Built {
     build_s: f64,
 }
 
-impl Setup {
+impl Lab {
     /// Checks the settings, loads the scene and cuts the film.
-    pub fn prepare(settings: Settings) -> Result<Self> {
-        let scene = Arc::new(crate::scene::load(&settings.scene)?);
-        Self::for_scene(scene, settings)
+    pub fn prepare(&self, settings: Settings) -> Result<Setup> {
+        if let Some(workload) = self.workload_named(&settings.scene) {
+            let Spec { width, height, seed, .. } = settings.spec;
+            let nothing = Spec { estimator: String::new(), sampler: String::new(), ..Spec::default() };
+            let spec = Spec { width, height, seed, ..nothing };
+            return Setup::new(self, Subject::Workload(workload.clone()), Settings { spec, ..settings });
+        }
+        let scene = Arc::new(self.load_scene(&settings.scene)?);
+        self.prepare_scene(scene, settings)
     }
 
     /// Likewise, for a scene that is already there; `settings.scene` is not looked at.
+    pub fn prepare_scene(&self, scene: Arc<Scene>, settings: Settings) -> Result<Setup> {
+        let choice = Box::new(kernel::choose_among(&scene, &settings.spec, self.own_estimators())?);
+        Setup::new(self, Subject::Scene { scene, choice }, settings)
+    }
+}
+
+impl Setup {
+    /// [`Lab::prepare`] with what is built in.
+    pub fn prepare(settings: Settings) -> Result<Self> {
+        Lab::built_in().prepare(settings)
+    }
+
+    /// [`Lab::prepare_scene`] with what is built in.
     pub fn for_scene(scene: Arc<Scene>, settings: Settings) -> Result<Self> {
+        Lab::built_in().prepare_scene(scene, settings)
+    }
+
+    fn new(lab: &Lab, subject: Subject, settings: Settings) -> Result<Self> {
         let settings = settings.resolved();
         settings.check()?;
+        check_spp(settings.spp, &settings.spec.estimator, subject.spp_multiple())?;
         let decomposition = Decomposition::parse(&settings.decomposition)?;
-        let (strategy, parameter) = strategy_named(&settings.strategy).map_err(|error| match error {
-            Error::Input(input) if strategy::find(&input.value).is_none() => also_per_row(*input),
+        let (strategy, parameter) = lab.strategy_named(&settings.strategy).map_err(|error| match error {
+            // Where a strategy is named together with its pieces, report A's name for both is allowed too.
+            Error::Input(input) if !lab.strategies().iter().any(|entry| entry.name == input.value) => {
+                let allowed = format!("{}, {THREAD_PER_ROW}", input.allowed);
+                input.allowed(allowed).into()
+            }
             other => other,
         })?;
         let Some(output) = output::find(&settings.output) else {
@@ -62,12 +101,34 @@ impl Setup {
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
         }
         let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
-        check_jobs(plan.len(), strategy, &settings.decomposition)?;
-        let choice = kernel::choose(&scene, &settings.spec)?;
-        Ok(Self { scene, choice, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings })
+        check_jobs(plan.len(), &strategy, &settings.decomposition)?;
+        Ok(Self { subject, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings })
     }
 
-    /// The same run with an estimator of one's own, in the place of the one that the settings name.
+    /// The same run of other samples of the same radiance, nothing of it clamped.
+    pub(super) fn pilot(&self, spp: u32, seed: u64) -> Result<Self> {
+        let mut settings = Settings { spp, ..self.settings.clone() };
+        (settings.spec.seed, settings.spec.clamp) = (seed, None);
+        check_spp(spp, &settings.spec.estimator, self.spp_multiple())?;
+        let plan = self.decomposition.plan(settings.spec.width, settings.spec.height, &(0..spp));
+        check_jobs(plan.len(), &self.strategy, &settings.decomposition)?;
+        let mut subject = self.subject.clone();
+        if let Subject::Scene { choice, .. } = &mut subject {
+            **choice = choice.as_ref().clone().pilot(seed);
+        }
+        Ok(Self {
+            settings,
+            subject,
+            built: OnceLock::new(),
+            decomposition: self.decomposition.clone(),
+            plan,
+            output: self.output,
+            strategy: self.strategy,
+            parameter: self.parameter.clone(),
+        })
+    }
+
+    /// The same run with an estimator of one's own, in the place of the one that the settings name. Records say `name`.
     ///
     /// ```
     /// use pathmark::effect::EffectSet;
@@ -87,14 +148,18 @@ impl Setup {
     ///     }
     /// }
     ///
-    /// let outcome = Setup::prepare(Settings { scene: "cornell".into(), spp: 4, ..Settings::default() })?.with(White)?.run(None)?;
+    /// let setup = Setup::prepare(Settings { scene: "cornell".into(), spp: 4, ..Settings::default() })?;
+    /// let outcome = setup.with("white", White)?.run(None)?;
     /// assert_eq!(outcome.film.pixels()[0].mean(), [1.0; 3]);
     /// # Ok::<(), pathmark::error::Error>(())
     /// ```
-    pub fn with<E: Estimator + 'static>(mut self, estimator: E) -> Result<Self> {
-        let before = Instant::now();
-        let kernel = Arc::from(kernel::build_of(&self.scene, &self.settings.spec, estimator)?);
-        self.built = OnceLock::from(Built { kernel, build_s: before.elapsed().as_secs_f64() });
+    pub fn with<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Result<Self> {
+        self.settings.spec.estimator = name.to_string();
+        if let Subject::Scene { scene, choice } = &mut self.subject {
+            **choice = kernel::choose_among(scene, &self.settings.spec, &[OwnEstimator::new(name, estimator)])?;
+        }
+        check_spp(self.settings.spp, name, self.spp_multiple())?;
+        self.built = OnceLock::new();
         Ok(self)
     }
 
@@ -103,34 +168,33 @@ impl Setup {
         &self.settings
     }
 
-    /// The scene.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
+    /// The scene's name, or the workload's.
+    pub fn name(&self) -> &str {
+        match &self.subject {
+            Subject::Scene { scene, .. } => &scene.name,
+            Subject::Workload(workload) => workload.name,
+        }
     }
 
-    /// The scene, to be kept.
-    pub(super) fn shared_scene(&self) -> &Arc<Scene> {
-        &self.scene
+    /// The scene's hash, or what stands for it where there is none.
+    pub fn hash(&self) -> String {
+        match &self.subject {
+            Subject::Scene { scene, .. } => scene.hash.clone(),
+            Subject::Workload(workload) => digest::of_text(&format!("workload {}", workload.name)),
+        }
     }
 
-    /// Name of the effect profile.
-    pub fn effects(&self) -> &'static str {
-        self.choice.effects()
+    /// The scene, and what the settings come to for it; `None` for a workload.
+    pub fn scene(&self) -> Option<(&Arc<Scene>, &Choice)> {
+        match &self.subject {
+            Subject::Scene { scene, choice } => Some((scene, choice)),
+            Subject::Workload(_) => None,
+        }
     }
 
-    /// What the settings come to.
-    pub fn choice(&self) -> Choice {
-        self.choice
-    }
-
-    /// Name of the accelerator.
-    pub fn accelerator(&self) -> &'static str {
-        self.choice.accelerator()
-    }
-
-    /// Whether rays are tested against boxes before primitives.
-    pub fn is_hierarchical(&self) -> bool {
-        self.choice.is_hierarchical()
+    /// Samples per pixel are a multiple of this.
+    pub fn spp_multiple(&self) -> u32 {
+        self.subject.spp_multiple()
     }
 
     /// The kernel, which the first to ask has to wait for, and how many seconds that took.
@@ -139,7 +203,7 @@ impl Setup {
             built
         } else {
             let before = Instant::now();
-            let kernel = Arc::from(kernel::build(&self.scene, &self.settings.spec)?);
+            let kernel = Arc::from(self.subject.kernel(&self.settings.spec)?);
             self.built.get_or_init(|| Built { kernel, build_s: before.elapsed().as_secs_f64() })
         };
         Ok((Arc::clone(&built.kernel), built.build_s))
@@ -162,16 +226,20 @@ impl Setup {
     /// Fewest samples per pixel that make a whole image: what the estimator needs, and one for each subpixel where the camera has them.
     pub fn fewest_spp(&self) -> u32 {
         let multiple = self.spp_multiple();
-        let subpixels = if self.scene.camera.filter == Filter::Subpixels { SUBPIXELS } else { 1 };
+        let subpixels = if self.has_subpixels() { SUBPIXELS } else { 1 };
         if multiple.is_multiple_of(subpixels) { multiple } else { multiple * subpixels }
+    }
+
+    fn has_subpixels(&self) -> bool {
+        self.scene().is_some_and(|(scene, _)| scene.camera.filter == Filter::Subpixels)
     }
 
     /// What the film will be of.
     pub fn film_key(&self) -> FilmKey {
         let spec = &self.settings.spec;
         FilmKey {
-            scene: self.scene.name.clone(),
-            scene_hash: self.scene.hash.clone(),
+            scene: self.name().to_string(),
+            scene_hash: self.hash(),
             estimator: spec.estimator.clone(),
             sampler: spec.sampler.clone(),
             seed: spec.seed,
@@ -180,7 +248,7 @@ impl Setup {
             height: spec.height,
             max_depth: spec.max_depth,
             roulette: spec.roulette.clone(),
-            precision: self.choice.precision().name().to_string(),
+            precision: self.scene().map_or(Precision::F64, |(_, choice)| choice.precision()).name().to_string(),
             adaptive: false,
             revision: kernel::REVISION,
         }
@@ -188,12 +256,12 @@ impl Setup {
 
     /// Whether the film's checksum says anything: whether the sampler gives the same numbers each time.
     pub fn is_deterministic(&self) -> bool {
-        is_deterministic(&self.settings.spec.sampler)
+        self.scene().is_none_or(|(_, choice)| choice.sampler().deterministic)
     }
 
     /// What the strategy does with its jobs.
-    pub fn strategy(&self) -> &'static strategy::Entry {
-        self.strategy
+    pub fn strategy(&self) -> &strategy::Entry {
+        &self.strategy
     }
 
     /// The pieces of all samples that were asked for.
@@ -214,7 +282,7 @@ impl Setup {
 
     /// Refuses more jobs than the strategy may start threads.
     pub(super) fn check_jobs(&self, jobs: usize) -> Result<()> {
-        check_jobs(jobs, self.strategy, &self.settings.decomposition)
+        check_jobs(jobs, &self.strategy, &self.settings.decomposition)
     }
 
     /// How the film is cut.
@@ -256,29 +324,40 @@ impl Setup {
         if workers_used as usize > processors {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
         }
-        if self.scene.camera.filter == Filter::Subpixels && !spp.is_multiple_of(SUBPIXELS) {
+        if self.has_subpixels() && !spp.is_multiple_of(SUBPIXELS) {
             warnings.push(Warning::PartialSubpixels);
         }
-        let left_out = self.scene.primitives.degenerate;
+        let Some((scene, choice)) = self.scene() else { return warnings };
+        let left_out = scene.primitives.degenerate;
         if left_out > 0 {
             warnings.push(Warning::LeftOut(left_out));
         }
-        if self.settings.spec.is_biased() {
+        if choice.is_biased() {
             warnings.push(Warning::Biased);
         }
         // Where a background says that the scene is open, or a depth that paths are to be cut, that is what was asked for.
-        let leaks = if self.scene.background.is_none() { counts.escaped } else { 0 };
-        let cuts = if self.settings.spec.depth().is_none() { counts.truncated } else { 0 };
+        let leaks = if scene.background.is_none() { counts.escaped } else { 0 };
+        let cuts = if choice.depth().is_none() { counts.truncated } else { 0 };
         let counted = [(leaks, Warning::Escaped(leaks)), (cuts, Warning::Truncated(cuts))];
         warnings.extend(counted.into_iter().filter(|(count, _)| *count > 0).map(|(_, warning)| warning));
         warnings
     }
 }
 
-/// Where a strategy is named together with its pieces, report A's name for both is allowed too.
-fn also_per_row(error: InputError) -> Error {
-    let allowed = format!("{}, {THREAD_PER_ROW}", error.allowed);
-    error.allowed(allowed).into()
+impl Subject {
+    fn spp_multiple(&self) -> u32 {
+        match self {
+            Self::Scene { choice, .. } => choice.estimator().spp_multiple,
+            Self::Workload(_) => 1,
+        }
+    }
+
+    fn kernel(&self, spec: &Spec) -> Result<Box<dyn Kernel>> {
+        match self {
+            Self::Scene { scene, choice } => kernel::construct(scene, choice),
+            Self::Workload(workload) => Ok(workload.kernel(spec.width, spec.height, spec.seed)),
+        }
+    }
 }
 
 /// Refuses more jobs than a strategy with a thread for each may start.

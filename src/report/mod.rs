@@ -16,14 +16,16 @@ pub use results::Results;
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::lab::Lab;
 use page::Section;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path.
-pub fn write(out: &Path) -> Result<PathBuf> {
+pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     let mut sections = Vec::new();
     for folder in experiment_folders(out)? {
-        let results = Results::read(out, &folder)?;
+        let results = Results::read(lab, out, &folder)?;
         let blocks = figures::blocks(&results)?;
         for block in &blocks {
             block.save(&folder.join("figures"))?;

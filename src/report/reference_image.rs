@@ -16,7 +16,7 @@ pub(super) fn reference_image(results: &Results, scene: Option<&str>) -> Result<
     else {
         return Ok(None);
     };
-    let [first, second] = wanted.paths(&results.out.join("references"))?;
+    let [first, second] = wanted.paths(&results.definition.lab, &results.out.join("references"))?;
     if !(first.is_file() && second.is_file()) {
         return Ok(None);
     }

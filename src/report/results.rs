@@ -6,9 +6,11 @@ use crate::error::Result;
 use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file, trace_file};
 use crate::image_io::{self, Image};
 use crate::input::read_text;
+use crate::lab::Lab;
 use crate::measure::{Record, TraceFile, schedule_name};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Confidence of every interval in the report.
 pub(super) const LEVEL: f64 = 0.95;
@@ -62,10 +64,10 @@ pub(super) fn median_with_interval(values: &[f64]) -> Option<(f64, Option<Interv
 
 impl Results {
     /// Reads a folder that a sweep wrote.
-    pub fn read(out: &Path, folder: &Path) -> Result<Self> {
+    pub fn read(lab: &Arc<Lab>, out: &Path, folder: &Path) -> Result<Self> {
         let path = folder.join("experiment.toml");
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let definition = Definition::from_text(&name, &path.display().to_string(), &read_text(&path)?)?;
+        let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
         let run = read_run_file(&folder.join("machine.toml"))?;
         let rows = read_records(&folder.join("records.csv"))?;
         let (records, failed) = rows.into_iter().partition(|record: &Record| record.error.is_empty());
@@ -73,9 +75,9 @@ impl Results {
     }
 
     /// Reads an experiment's folder by itself.
-    pub fn open(folder: &Path) -> Result<Self> {
+    pub fn open(lab: &Arc<Lab>, folder: &Path) -> Result<Self> {
         let out = folder.parent().unwrap_or(Path::new(""));
-        Self::read(out, folder)
+        Self::read(lab, out, folder)
     }
 
     /// Of the serial runs whose trace was kept, the one of the most jobs, and of its repetitions the one with the median time.

@@ -84,6 +84,12 @@ pub trait Sampler: Send + Sync {
     fn pair(&self, at: Address) -> [f64; 2];
 }
 
+impl Sampler for &dyn Sampler {
+    fn pair(&self, at: Address) -> [f64; 2] {
+        (**self).pair(at)
+    }
+}
+
 impl Sampler for Box<dyn Sampler> {
     fn pair(&self, at: Address) -> [f64; 2] {
         (**self).pair(at)

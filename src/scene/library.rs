@@ -1,108 +1,60 @@
-//! The scenes in the binary, and scenes from files.
+//! The scenes that there are by name, and scenes from files and texts.
 //!
-//! To add one, write `experiments/scenes/NAME.toml`: the build embeds every file there.
+//! To add one, write `experiments/scenes/NAME.toml`: the build embeds every file there. A program of one's own brings scenes along as text.
 
 use super::Scene;
 use super::reader::scene_from_text;
-use crate::digest::Fingerprint;
-use crate::error::{InputError, Result};
-use crate::input::{read_text, read_text_up_to};
-use std::path::{Path, PathBuf};
+use super::source::{Folder, OwnScene, SCENES, Source, source};
+use crate::error::Result;
+use std::path::PathBuf;
 
-/// Name and definition of the scenes that the binary carries.
-pub const SCENES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/scenes.rs"));
-
-/// Name and text of the meshes that they use.
-const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"));
-
-/// Some hundred thousand triangles.
-const LARGEST_MESH: u64 = 16 << 20;
-
-/// Where a scene's other files are looked for.
-#[derive(Debug, Clone)]
-pub(super) enum Folder {
-    /// In the binary.
-    Embedded,
-    /// On disk.
-    Disk(PathBuf),
+/// The scenes in the binary, and those that a user's program adds.
+#[derive(Debug, Clone, Default)]
+pub struct Library {
+    own: Vec<OwnScene>,
 }
 
-impl Folder {
-    /// What to call a file of that name in errors.
-    pub(super) fn place_of(&self, name: &str) -> String {
-        match self {
-            Self::Embedded => name.to_string(),
-            Self::Disk(folder) => folder.join(name).display().to_string(),
-        }
+impl Library {
+    /// Adds a scene.
+    pub fn add(&mut self, scene: OwnScene) {
+        self.own.push(scene);
     }
 
-    fn read(&self, name: &str) -> Result<String> {
-        match self {
-            Self::Disk(folder) => read_text_up_to(&folder.join(name), LARGEST_MESH),
-            Self::Embedded => match MESHES.iter().find(|(known, _)| *known == name) {
-                Some((_, text)) => Ok((*text).to_string()),
-                None => Err(InputError::new("file", name, "there is no such file in the program").into()),
+    /// The names, in the order in which they are listed.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        SCENES.iter().map(|(name, _)| *name).chain(self.own.iter().map(|scene| scene.name.as_str()))
+    }
+
+    /// The scene of that name, or the one in the file of that path. A number behind a colon is for the scene's generator: `spheres:1000`.
+    pub fn load(&self, name_or_path: &str) -> Result<Scene> {
+        let (base, number) = match name_or_path.rsplit_once(':') {
+            Some((base, number)) => match number.parse::<f64>() {
+                Ok(value) => (base, Some((value, number))),
+                Err(_) => (name_or_path, None),
             },
-        }
-    }
-}
-
-/// The other files of a scene; what is read becomes part of the scene's hash.
-pub(super) struct Files<'a> {
-    pub(super) folder: &'a Folder,
-    pub(super) hash: &'a mut Fingerprint,
-}
-
-impl Files<'_> {
-    /// The text of a file.
-    pub(super) fn read(&mut self, name: &str) -> Result<String> {
-        let text = self.folder.read(name)?;
-        self.hash.update(text.as_bytes());
-        Ok(text)
-    }
-}
-
-/// The text of a scene, what to call it, and where its other files are.
-pub(super) struct Source {
-    pub(super) name: String,
-    pub(super) file: String,
-    pub(super) text: String,
-    pub(super) folder: Folder,
-}
-
-/// The scene in the binary of that name, or the file of that path: whatever ends in `.toml` or has a directory in it is a path. `folder` is
-/// where a relative path starts.
-pub(super) fn source(name_or_path: &str, folder: &Folder) -> Result<Source> {
-    let path = Path::new(name_or_path);
-    if path.extension().is_some_and(|extension| extension == "toml") || path.components().count() > 1 {
-        let path = match folder {
-            Folder::Disk(folder) => folder.join(path),
-            Folder::Embedded => path.to_path_buf(),
+            None => (name_or_path, None),
         };
-        let text = read_text(&path)?;
-        let name =
-            path.file_stem().map_or_else(|| name_or_path.to_string(), |stem| stem.to_string_lossy().into_owned());
-        let folder = Folder::Disk(path.parent().map(Path::to_path_buf).unwrap_or_default());
-        return Ok(Source { name, file: path.display().to_string(), text, folder });
+        scene_from_text(source(base, &Folder::Disk(PathBuf::new()), &self.own)?, number, &self.own)
     }
-    if let Some((name, text)) = SCENES.iter().find(|(name, _)| *name == name_or_path) {
-        let file = format!("{name}.toml");
-        return Ok(Source { name: (*name).to_string(), file, text: (*text).to_string(), folder: Folder::Embedded });
-    }
-    let names: Vec<&str> = SCENES.iter().map(|(name, _)| *name).collect();
-    Err(InputError::new("scene", name_or_path, "there is no scene of that name")
-        .allowed(format!("{}, or the path of a .toml file", names.join(", ")))
-        .into())
 }
 
-/// The scene of that name, or the one in the file of that path. A number behind a colon is for the scene's generator: `spheres:1000`.
+/// The scene in the binary of that name, or the one in the file of that path, as [`Library::load`] says.
 pub fn load(name_or_path: &str) -> Result<Scene> {
-    let (base, number) = match name_or_path.rsplit_once(':') {
-        Some((base, number)) => match number.parse::<f64>() {
-            Ok(value) => (base, Some((value, number))),
-            Err(_) => (name_or_path, None),
-        },
-        None => (name_or_path, None),
-    };
-    scene_from_text(source(base, &Folder::Disk(PathBuf::new()))?, number)
+    Library::default().load(name_or_path)
+}
+
+impl Scene {
+    /// Reads a scene from its text; files that it names are looked for in the binary.
+    ///
+    /// ```
+    /// use pathmark::scene::Scene;
+    ///
+    /// let scene = Scene::from_toml("about = 'a room with green walls'\nbase = 'cornell'\nwithout = ['glass ball']")?;
+    /// assert_eq!(scene.objects.len(), 8);
+    /// # Ok::<(), pathmark::error::Error>(())
+    /// ```
+    pub fn from_toml(text: &str) -> Result<Self> {
+        let (name, file) = ("scene".to_string(), "scene.toml".to_string());
+        scene_from_text(Source { name, file, text: text.to_string(), folder: Folder::Embedded }, None, &[])
+    }
 }

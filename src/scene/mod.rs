@@ -12,6 +12,7 @@ mod point_light;
 mod profile;
 mod reader;
 mod shape;
+mod source;
 
 pub use angular_emission::AngularEmission;
 pub use camera::{CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
@@ -21,7 +22,7 @@ pub use generator::GENERATORS;
 pub use hierarchy::{
     ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Scan, Tests, accelerator, padding,
 };
-pub use library::{SCENES, load};
+pub use library::{Library, load};
 pub use light::{Aim, Aims, Lights, LightsInLanes, Met, Start, one_minus_cos};
 pub use point_light::PointLight;
 pub use profile::{
@@ -29,6 +30,7 @@ pub use profile::{
     SmallptEffects, SurfaceEffects, effect_names, with_profile,
 };
 pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Sphere, Triangle};
+pub use source::{OwnScene, SCENES};
 
 use crate::effect::{EffectSet, Effects};
 use crate::material::Material;

@@ -23,8 +23,8 @@
 //! an object with the name of one of its objects replaces the fields that it has, and `without` lists objects to leave out.
 
 use super::generator::{Generator, Made};
-use super::library::{Files, Source, source};
 use super::shape::{AnyShape, Primitives};
+use super::source::{Files, OwnScene, Source, source};
 use super::{Camera, Fog, Object, PointLight, Scene};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
@@ -92,10 +92,11 @@ struct Draft {
 /// A scene that is the base of a base and so on, further than this, is taken for a circle.
 const DEEPEST_BASE: usize = 8;
 
-/// Reads a scene. `number` is for its generator, with the text that it was given as.
-pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>) -> Result<Scene> {
+/// Reads a scene. `number` is for its generator, with the text that it was given as; `own` are scenes that may be its base besides those in the
+/// binary.
+pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: &[OwnScene]) -> Result<Scene> {
     let source = &Rc::new(source);
-    let (mut draft, about) = draft(source, 0)?;
+    let (mut draft, about) = draft(source, 0, own)?;
     let mut name = source.name.clone();
     if let Some((number, given)) = number {
         let problem = match &mut draft.generator {
@@ -182,7 +183,7 @@ fn missing(source: &Source, field: &str, problem: &str) -> Error {
 }
 
 /// What a file says on top of what its base says.
-fn draft(source: &Rc<Source>, depth: usize) -> Result<(Draft, String)> {
+fn draft(source: &Rc<Source>, depth: usize, own: &[OwnScene]) -> Result<(Draft, String)> {
     let mut file: SceneFile = parse(&source.text, &source.file)?;
     if let Some(generator) = &mut file.generator {
         let (field, number) = (generator.field(), generator.number());
@@ -202,7 +203,7 @@ fn draft(source: &Rc<Source>, depth: usize) -> Result<(Draft, String)> {
             parts: Vec::new(),
             hash: Fingerprint::default(),
         },
-        Some(base) => base_of(source, base, depth)?,
+        Some(base) => base_of(source, base, depth, own)?,
     };
     draft.hash.update(source.text.as_bytes());
     draft.estimator = file.estimator.or(draft.estimator);
@@ -252,17 +253,17 @@ fn draft(source: &Rc<Source>, depth: usize) -> Result<(Draft, String)> {
     Ok((draft, file.about))
 }
 
-fn base_of(from: &Source, base: &str, depth: usize) -> Result<Draft> {
+fn base_of(from: &Source, base: &str, depth: usize, own: &[OwnScene]) -> Result<Draft> {
     let error =
         |problem: String| InputError::new("base", base, problem).in_file(&from.file, locate(&from.text, "base", base));
     if depth == DEEPEST_BASE {
         return Err(error(format!("is the {DEEPEST_BASE}th base of a base: they may go in a circle")).into());
     }
-    let source = source(base, &from.folder).map_err(|problem| match problem {
+    let source = source(base, &from.folder, own).map_err(|problem| match problem {
         Error::Input(problem) if problem.place.is_none() => {
             Error::from(error(problem.problem).allowed(problem.allowed))
         }
         other => other,
     })?;
-    Ok(draft(&Rc::new(source), depth + 1)?.0)
+    Ok(draft(&Rc::new(source), depth + 1, own)?.0)
 }

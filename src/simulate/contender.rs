@@ -5,7 +5,8 @@ use super::hardware::Hardware;
 use super::overhead::Overheads;
 use super::replay::{Replay, replay};
 use crate::analysis::quantile::median;
-use crate::measure::{CalibrationRow, strategy_named};
+use crate::lab::Lab;
+use crate::measure::CalibrationRow;
 use crate::strategy::{ChunkRule, Discipline};
 
 /// A discipline with a name and its mechanism's cost.
@@ -69,13 +70,13 @@ impl Contender {
 ///
 /// What a chunk costs under rules whose chunks are too few to be timed is taken from the cheapest rule that hands out single jobs. A thread's
 /// start is the same whoever starts it, so strategies that start their workers in the run share the median of what was fitted to each.
-pub fn contenders(rows: &[CalibrationRow]) -> Vec<Contender> {
+pub fn contenders(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
     let mut contenders: Vec<Contender> = Vec::new();
     for row in rows {
         if contenders.iter().any(|contender| contender.name == row.strategy) {
             continue;
         }
-        let Ok((entry, parameter)) = strategy_named(&row.strategy) else { continue };
+        let Ok((entry, parameter)) = lab.strategy_named(&row.strategy) else { continue };
         let Ok(discipline) = (entry.discipline)(parameter.as_deref()) else { continue };
         let overheads = Overheads::fit(rows.iter().filter(|other| other.strategy == row.strategy), discipline);
         contenders.push(Contender { name: row.strategy.clone(), discipline, order: Order::ByIndex, overheads });
@@ -126,7 +127,7 @@ mod tests {
 
     #[test]
     fn every_strategy_competes_and_pays_for_its_chunks() {
-        let contenders = contenders(&rows());
+        let contenders = contenders(&Lab::new(), &rows());
         assert_eq!(contenders.len(), STRATEGIES.len());
         for contender in &contenders {
             let at = contender.overheads.at(2);
@@ -155,7 +156,7 @@ mod tests {
             of("steal-half", 9e-5, false),
             of("rayon-join", 1e-6, true),
         ];
-        let contenders = contenders(rows.as_flattened());
+        let contenders = contenders(&Lab::new(), rows.as_flattened());
         let starts: Vec<f64> = contenders.iter().map(|contender| contender.overheads.at(2).start_s).collect();
         assert!(starts[..3].iter().all(|start| (start - 2e-5).abs() < 1e-12), "{starts:?}");
         assert!((starts[3] - 1e-6).abs() < 1e-12, "{starts:?}");
@@ -164,7 +165,7 @@ mod tests {
     #[test]
     fn a_row_of_no_strategy_is_left_out() {
         let wrong = |strategy: &str| CalibrationRow { strategy: strategy.to_owned(), ..rows()[0].clone() };
-        let found = contenders(&["no-such-strategy", "dynamic:x", "dynamic:4"].map(wrong));
+        let found = contenders(&Lab::new(), &["no-such-strategy", "dynamic:x", "dynamic:4"].map(wrong));
         let names: Vec<&str> = found.iter().map(|contender| contender.name.as_str()).collect();
         assert_eq!(names, ["dynamic:4"]);
     }

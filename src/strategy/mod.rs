@@ -109,6 +109,7 @@ pub trait Strategy: Send {
 }
 
 /// A strategy's line in the table.
+#[derive(Clone, Copy)]
 pub struct Entry {
     /// Its name on the command line and in records.
     pub name: &'static str,

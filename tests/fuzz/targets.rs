@@ -1,5 +1,6 @@
 //! What is read: one line a target.
 
+use pathmark::Lab;
 use pathmark::error::Result;
 use pathmark::experiment::{
     Definition, EXPERIMENTS, Profile, RecordsFile, read_calibration, read_records, read_run_file,
@@ -241,7 +242,7 @@ fn mesh(path: &Path) -> bool {
 }
 
 fn experiment(path: &Path) -> bool {
-    let Ok(definition) = Definition::load(path.to_str().unwrap()) else { return false };
+    let Ok(definition) = Definition::load(&Lab::built_in(), path.to_str().unwrap()) else { return false };
     [Profile::Quick, Profile::Full].into_iter().filter(|profile| ok(definition.cells(*profile))).count() > 0
 }
 
@@ -328,5 +329,5 @@ fn beside_the_records(folder: &Path) {
 
 /// The whole page from rows that somebody may have edited.
 fn report(path: &Path) -> bool {
-    ok(pathmark::report::write(path.parent().and_then(Path::parent).unwrap()))
+    ok(pathmark::report::write(&Lab::built_in(), path.parent().and_then(Path::parent).unwrap()))
 }

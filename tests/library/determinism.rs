@@ -87,7 +87,7 @@ fn a_larger_effect_profile_changes_nothing() {
             ..Settings::default()
         };
         let setup = Setup::for_scene(Arc::clone(&scene), settings).unwrap();
-        assert_eq!(setup.effects(), effects);
+        assert_eq!(setup.scene().unwrap().1.effects(), effects);
         setup.run(None).unwrap()
     };
     let (diffuse, all) = (render("diffuse"), render("all"));

@@ -46,11 +46,12 @@ const RULES: &[Rule] = &[
     rule("film", 4),
     rule("estimator", 4),
     rule("kernel", 5),
+    beside("lab", 5, &["kernel", "strategy"]), // what there is to choose from
     // A strategy schedules integers: with no import it cannot see a pixel. It shares the kernel's layer, so that only `measure` and
     // what uses it can bring the two together.
     only("strategy", 5, &[]),
     rule("measure", 6),
-    only("simulate", 7, &["analysis", "measure", "strategy"]), // numbers in, numbers out: no pixel, no thread, no clock
+    only("simulate", 7, &["analysis", "lab", "measure", "strategy"]), // numbers in, numbers out: no pixel, no thread, no clock
     rule("experiment", 8),
     beside("check", 8, &["experiment"]), // tries all that the renderer is made of
     only("plot", 9, &["error", "atomic_file", "metric", "image_io"]), // draws numbers, whatever they were measured on

@@ -35,7 +35,10 @@ fn scene_files_of_the_same_name_are_different_cells() {
             .unwrap();
     }
     let file = folder.path().join("twins.toml").display().to_string();
-    let cells = Definition::from_text("twins", &file, EXPERIMENT).unwrap().cells(Profile::Quick).unwrap();
+    let cells = Definition::from_text(&pathmark::Lab::built_in(), "twins", &file, EXPERIMENT)
+        .unwrap()
+        .cells(Profile::Quick)
+        .unwrap();
     assert_eq!(cells.len(), 2);
     assert_ne!(cells[0].points[0].image, cells[1].points[0].image);
     assert_ne!(cells[0].points[0].image_file(), cells[1].points[0].image_file());

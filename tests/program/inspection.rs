@@ -119,7 +119,7 @@ fn a_sampler_that_forgets_is_refused() {
 }
 
 fn by_bounce(scene: &Arc<Scene>, spec: &Spec, spp: u32) -> LightByBounce {
-    LightByBounce::of(&*kernel::inspect(scene, spec).unwrap(), spec.width, 0..spec.height, &(0..spp))
+    LightByBounce::of(&kernel::inspect(scene, spec).unwrap(), spec.width, 0..spec.height, &(0..spp))
 }
 
 /// The mean radiance of an image.

@@ -2,7 +2,7 @@
 
 use crate::check::{Case, Trials};
 use crate::effect::EffectSet;
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Probe, with_estimator};
+use crate::estimator::{AnyEstimator, ESTIMATORS, Estimator, Options, Probe, any_estimator};
 use crate::film::DECOMPOSITIONS;
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Rgb};
@@ -24,8 +24,8 @@ const SPP: u32 = 32;
 const TOLD: usize = 10;
 
 /// An estimator some of whose samples are spoilt.
-struct Spoilt<E> {
-    estimator: E,
+struct Spoilt {
+    estimator: Box<dyn AnyEstimator>,
     instead: f64,
 }
 
@@ -34,9 +34,10 @@ fn is_spoilt(pixel: u32, sample: u32) -> bool {
     ((pixel * SPP + sample).wrapping_mul(2_654_435_761) >> 16).is_multiple_of(31)
 }
 
-impl<E: Estimator> Estimator for Spoilt<E> {
-    const SPP_MULTIPLE: u32 = E::SPP_MULTIPLE;
-    const AIMS: bool = E::AIMS;
+impl Estimator for Spoilt {
+    const SPP_MULTIPLE: u32 = SPP;
+    // What does not aim at lights does not mind that they are there.
+    const AIMS: bool = true;
 
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
         &self,
@@ -46,29 +47,16 @@ impl<E: Estimator> Estimator for Spoilt<E> {
         sampler: &S,
         probe: &mut P,
     ) -> Rgb {
-        let radiance = self.estimator.sample::<S, X, P>(scene, ray, key, sampler, probe);
+        let radiance = self.estimator.estimate(scene, ray, key, sampler, probe);
         if is_spoilt(key.pixel, key.sample) { Rgb { g: self.instead, ..radiance } } else { radiance }
     }
 }
 
 /// Renders with an estimator whose spoilt samples have this instead of their green.
-struct Render {
-    setup: Setup,
-    instead: f64,
-}
-
-impl EstimatorVisitor for Render {
-    type Output = Outcome;
-    fn visit<E: Estimator + 'static>(self, estimator: E) -> Outcome {
-        let setup = self.setup.with(Spoilt { estimator, instead: self.instead }).expect("a kernel");
-        setup.run(None).expect("an image")
-    }
-}
-
 fn render(settings: Settings, instead: f64) -> Outcome {
-    let name = settings.spec.estimator.clone();
+    let estimator = any_estimator(&settings.spec.estimator, Options::default()).expect("an estimator of the table");
     let setup = Setup::prepare(settings).expect("settings that fit");
-    with_estimator(&name, Options::default(), Render { setup, instead }).expect("an estimator of the table")
+    setup.with("spoilt", Spoilt { estimator, instead }).expect("a kernel").run(None).expect("an image")
 }
 
 fn injected(trials: &mut Trials) {

@@ -3,13 +3,13 @@
 use crate::check::exact::{Bench, arriving_estimators, critical, full_estimators, run};
 use crate::check::stage::{camera, object, scene, sphere};
 use crate::check::{Case, Trials};
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Roulette, with_estimator};
+use crate::estimator::{ESTIMATORS, Options, Roulette, any_estimator};
 use crate::film::Film;
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Vec3};
 use crate::measure::Settings;
 use crate::sampling::{Address, SampleKey, Sampler};
-use crate::scene::{AllEffects, Scene};
+use crate::scene::Scene;
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "P04", tries: "random numbers at the chance to survive", run: at_the_chance },
@@ -33,15 +33,11 @@ impl Sampler for Always {
 }
 
 /// A sample of a scene by that number.
-struct Sample<'a>(&'a Scene, f64);
-
-impl EstimatorVisitor for Sample<'_> {
-    type Output = f64;
-    fn visit<E: Estimator + 'static>(self, estimator: E) -> f64 {
-        let ray = Ray { origin: Vec3::new(0.1, 0.2, 0.3), direction: Vec3::new(1.0, 0.0, 0.0) };
-        let key = SampleKey { seed: 1, pixel: 0, sample: 0 };
-        estimator.sample::<_, AllEffects, ()>(self.0, ray, key, &Always(self.1), &mut ()).r
-    }
+fn sample(estimator: &str, options: Options, scene: &Scene, u: f64) -> f64 {
+    let ray = Ray { origin: Vec3::new(0.1, 0.2, 0.3), direction: Vec3::new(1.0, 0.0, 0.0) };
+    let key = SampleKey { seed: 1, pixel: 0, sample: 0 };
+    let found = any_estimator(estimator, options).map(|any| any.estimate(scene, ray, key, &Always(u), &mut ()).r);
+    found.unwrap_or(f64::NAN)
 }
 
 /// A path survives where the number is below the chance, not where it is equal, so that nothing survives black. From roulette at the first
@@ -63,7 +59,7 @@ fn at_the_chance(trials: &mut Trials) {
         let scene = hollow([albedo; 3], [1.0; 3]);
         for entry in ESTIMATORS.iter().filter(|entry| entry.roulette.is_some()) {
             let options = Options { max_depth: Some(3), roulette };
-            let found = with_estimator(entry.name, options, Sample(&scene, u)).unwrap_or(f64::NAN);
+            let found = sample(entry.name, options, &scene, u);
             trials.close(format!("rho {albedo}, u {u:?}, {}", entry.name), exact, found, 1e-14);
         }
     }

@@ -3,7 +3,7 @@
 use super::first;
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Probe, camera_ray, with_estimator};
+use crate::estimator::{AnyEstimator, ESTIMATORS, Options, Probe, any_estimator, camera_ray};
 use crate::math::{Ray, Rgb, dot};
 use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler, concentric_disk, mix, tent, unit};
 use crate::scene::{AllEffects, CAMERAS, Fog, SCENES, Scan, Scene, Standpoint, Tests, accelerator, load};
@@ -144,16 +144,14 @@ struct Sample<'a> {
     escapes: &'a mut Escapes,
 }
 
-impl EstimatorVisitor for Sample<'_> {
-    type Output = Rgb;
-    fn visit<E: Estimator + 'static>(self, estimator: E) -> Rgb {
+impl Sample<'_> {
+    fn by(self, estimator: &dyn AnyEstimator) -> Rgb {
         let Self { scene, pixel, sampler, escapes } = self;
         let view = scene.camera.view(SIZE[0], SIZE[1]);
         let key = SampleKey { seed: 0, pixel, sample: pixel % 4 };
         let place = [pixel % SIZE[0], pixel / SIZE[0]];
         let ray = camera_ray::<Stub, AllEffects, ()>(&view, place, key, sampler, &mut ());
-        let mut probe: &mut dyn Probe = escapes;
-        estimator.sample::<Stub, AllEffects, &mut dyn Probe>(scene, ray, key, sampler, &mut probe)
+        estimator.estimate(scene, ray, key, sampler, escapes)
     }
 }
 
@@ -168,6 +166,7 @@ fn estimators(trials: &mut Trials) {
         let depth = entry.max_depth.unwrap_or(trials.times(20, 1000) as u16);
         let options = Options { max_depth: Some(depth), roulette: None };
         let (mut tried, mut wrong, mut closed, mut leaks) = (0, 0, 0, 0);
+        let estimator = any_estimator(entry.name, options).expect("an estimator of the table");
         for scene in scenes() {
             let is_closed = scene.background.is_none() && scene.fog.is_none();
             let lit = scene.lit(&scene.camera.view(SIZE[0], SIZE[1]));
@@ -175,10 +174,9 @@ fn estimators(trials: &mut Trials) {
             let mut samples = |sampler: &Stub| {
                 let mut escapes = Escapes::default();
                 for pixel in (0..SIZE[0] * SIZE[1]).step_by(step) {
-                    let visitor = Sample { scene, pixel, sampler, escapes: &mut escapes };
-                    let radiance = with_estimator(entry.name, options, visitor);
+                    let sample = Sample { scene, pixel, sampler, escapes: &mut escapes };
                     tried += 1;
-                    wrong += u64::from(!radiance.is_some_and(Rgb::is_valid_radiance));
+                    wrong += u64::from(!sample.by(&*estimator).is_valid_radiance());
                 }
                 escapes.0
             };

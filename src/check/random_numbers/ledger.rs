@@ -2,7 +2,7 @@
 
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
-use crate::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, camera_ray, with_estimator};
+use crate::estimator::{AnyEstimator, ESTIMATORS, Options, any_estimator, camera_ray};
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::{AllEffects, SCENES, Scan, Scene, accelerator, load};
 use std::collections::HashSet;
@@ -53,16 +53,15 @@ impl Found {
     }
 }
 
-impl EstimatorVisitor for Samples<'_> {
-    type Output = Found;
-    fn visit<E: Estimator + 'static>(self, estimator: E) -> Found {
+impl Samples<'_> {
+    fn by(self, estimator: &dyn AnyEstimator) -> Found {
         let Self { scene, pixels, is_one_path, ledger } = self;
         let view = scene.camera.view(16, 12);
         let mut found = Found::default();
         for pixel in (0..16 * 12).step_by((192 / pixels) as usize) {
             let key = SampleKey { seed: 3, pixel, sample: pixel % 8 };
             let ray = camera_ray::<Ledger, AllEffects, ()>(&view, [pixel % 16, pixel / 16], key, ledger, &mut ());
-            estimator.sample::<Ledger, AllEffects, ()>(scene, ray, key, ledger, &mut ());
+            estimator.estimate(scene, ray, key, ledger, &mut ());
             let used = std::mem::take(&mut *ledger.used.lock().unwrap_or_else(PoisonError::into_inner));
             found.used += used.len() as u64;
             found.twice += (used.len() - used.iter().collect::<HashSet<_>>().len()) as u64;
@@ -93,7 +92,7 @@ fn once(trials: &mut Trials) {
             for ((_, ledger), all) in ledgers.iter().zip(all) {
                 let scene = if entry.aims { &lit } else { &scene };
                 let samples = Samples { scene, pixels, is_one_path: entry.is_one_path, ledger };
-                all.add(&with_estimator(entry.name, options, samples).unwrap_or_default());
+                all.add(&any_estimator(entry.name, options).map(|any| samples.by(&*any)).unwrap_or_default());
             }
         }
     }

@@ -10,6 +10,7 @@ use crate::experiment::{Definition, EXPERIMENTS, Profile, reference_seed};
 use crate::film::Film;
 use crate::image_io::Image;
 use crate::kernel::Spec;
+use crate::lab::Lab;
 use crate::measure::{LARGEST_SEED, Settings};
 use crate::metric::{self, bias_squared};
 use crate::scene::load;
@@ -95,7 +96,7 @@ fn shared_bias(trials: &mut Trials) {
     let aims = |name: &str| estimator::find(name).is_some_and(|entry| entry.aims);
     let mut others = Vec::new();
     for (name, _) in EXPERIMENTS {
-        let definition = Definition::load(name).expect("a shipped experiment");
+        let definition = Definition::load(&Lab::built_in(), name).expect("a shipped experiment");
         let Ok(Some((reference, _))) = definition.reference(Profile::Full) else { continue };
         if definition.estimator_names().iter().any(|estimator| aims(estimator) != aims(&reference)) {
             others.push(*name);

@@ -1,7 +1,7 @@
 //! The light of an image by the bounces that it made, and where paths end: the terms of the Neumann series L = E + KE + K²E + ... that
 //! report B writes down, where E is what surfaces give off and K is one bounce.
 
-use super::Inspect;
+use super::Inspector;
 use crate::estimator::Probe;
 use crate::math::Rgb;
 use crate::scene::Tests;
@@ -40,7 +40,7 @@ pub struct LightByBounce {
 
 impl LightByBounce {
     /// The samples of some rows of an image of that width, added up row by row.
-    pub fn of(inspector: &dyn Inspect, width: u32, rows: Range<u32>, samples: &Range<u32>) -> Self {
+    pub fn of(inspector: &Inspector, width: u32, rows: Range<u32>, samples: &Range<u32>) -> Self {
         let mut total = Self::default();
         for y in rows {
             let mut row = Self::default();

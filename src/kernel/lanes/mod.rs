@@ -16,7 +16,7 @@ mod wide;
 mod window;
 
 use super::choice::InLanes;
-use super::{Counts, Kernel, Spec};
+use super::{Choice, Counts, Kernel};
 use crate::estimator::Course;
 use crate::film::{Piece, TileBuffer};
 use crate::math::Rgb;
@@ -61,11 +61,11 @@ enum Search {
 impl Lanes {
     pub(super) fn new(
         scene: Arc<Scene>,
-        spec: &Spec,
+        choice: &Choice,
         InLanes { level, precision, course, sampler, is_matt }: InLanes,
     ) -> Self {
         let tables = Tables::of(&scene, precision);
-        let view = scene.camera.view(spec.width, spec.height);
+        let view = scene.camera.view(choice.width, choice.height);
         Self {
             targets: scene.lights.as_ref().and_then(LightsInLanes::of).map(Box::new),
             search: match precision {
@@ -78,8 +78,8 @@ impl Lanes {
             view,
             precision,
             scene,
-            width: spec.width,
-            seed: spec.seed,
+            width: choice.width,
+            seed: choice.seed,
             course,
             sampler,
             tables,

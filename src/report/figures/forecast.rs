@@ -17,7 +17,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     if !path.is_file() {
         return Ok(vec![Block::Finding("There is no calibration.csv, so nothing can be simulated.".to_string())]);
     }
-    let contenders = contenders(&read_calibration(&path)?);
+    let contenders = contenders(&results.definition.lab, &read_calibration(&path)?);
     let mut blocks = prediction_blocks(&predictions(results, &contenders)?);
     let serial = |record: &&Record| record.strategy == "serial" && record.decomposition == "rows";
     let rows: Vec<&Record> = results.records.iter().filter(serial).collect();

@@ -9,7 +9,7 @@ use super::obj::essence;
 use super::{Primitives, Shape, Triangle};
 use crate::error::{InputError, Result};
 use crate::math::Vec3;
-use crate::scene::library::{Files, Folder};
+use crate::scene::source::{Files, Folder};
 use serde::Deserialize;
 
 /// A mesh in a file.

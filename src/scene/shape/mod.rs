@@ -16,7 +16,7 @@ use super::{HIERARCHY, Standpoint};
 use crate::effect::{EffectSet, Effects, Entry};
 use crate::error::Result;
 use crate::math::{Ray, Vec3};
-use crate::scene::library::Files;
+use crate::scene::source::Files;
 pub(super) use mesh::Mesh;
 pub(super) use quad::Quad;
 use serde::Deserialize;

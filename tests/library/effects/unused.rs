@@ -2,7 +2,7 @@
 //! for it.
 
 use pathmark::effect::Effects;
-use pathmark::estimator::{ESTIMATORS, Estimator, EstimatorVisitor, Options, Probe, camera_ray, with_estimator};
+use pathmark::estimator::{AnyEstimator, ESTIMATORS, Options, Probe, any_estimator, camera_ray};
 use pathmark::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
 use pathmark::scene::{
     AllEffects, BACKGROUND, COMPOUND, FOG, HIERARCHY, LENS, PRIMITIVES, SCENES, Scene, effect_names, load,
@@ -40,22 +40,16 @@ impl Sampler for Drawn {
 }
 
 /// A few samples of a scene with every effect compiled in.
-struct Look<'a>(&'a Scene);
-
-impl EstimatorVisitor for Look<'_> {
-    type Output = (Effects, [u64; 2]);
-    fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
-        let Self(scene) = self;
-        let view = scene.camera.view(SIDE, SIDE);
-        let (mut used, drawn) = (Used::default(), Drawn::default());
-        for pixel in 0..SIDE * SIDE {
-            let key = SampleKey { seed: 11, pixel, sample: pixel % 4 };
-            let at = [pixel % SIDE, pixel / SIDE];
-            let ray = camera_ray::<_, AllEffects, _>(&view, at, key, &drawn, &mut used);
-            estimator.sample::<_, AllEffects, _>(scene, ray, key, &drawn, &mut used);
-        }
-        (used.0, [drawn.lens.into_inner(), drawn.medium.into_inner()])
+fn look(scene: &Scene, estimator: &dyn AnyEstimator) -> (Effects, [u64; 2]) {
+    let view = scene.camera.view(SIDE, SIDE);
+    let (mut used, drawn) = (Used::default(), Drawn::default());
+    for pixel in 0..SIDE * SIDE {
+        let key = SampleKey { seed: 11, pixel, sample: pixel % 4 };
+        let at = [pixel % SIDE, pixel / SIDE];
+        let ray = camera_ray::<_, AllEffects, _>(&view, at, key, &drawn, &mut used);
+        estimator.estimate(scene, ray, key, &drawn, &mut used);
     }
+    (used.0, [drawn.lens.into_inner(), drawn.medium.into_inner()])
 }
 
 #[test]
@@ -65,8 +59,8 @@ fn no_scene_enters_an_effect_that_it_does_not_call_for() {
         let scene = load(name).unwrap();
         let called = scene.effects();
         for entry in ESTIMATORS {
-            let look = with_estimator(entry.name, Options::default(), Look(&scene));
-            let (used, [lens, medium]) = look.unwrap();
+            let estimator = any_estimator(entry.name, Options::default()).unwrap();
+            let (used, [lens, medium]) = look(&scene, &*estimator);
             let (used_names, called_names) = (effect_names(used), effect_names(called));
             assert!(called.cover(used), "{name}, {}: {used_names} for {called_names}", entry.name);
             assert_eq!(lens > 0, called.cover(LENS), "{name}, {}: {lens} numbers for a lens", entry.name);

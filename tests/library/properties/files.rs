@@ -1,11 +1,12 @@
 //! What is written is read again, to the bit; and no text makes a parser panic.
 
 use super::cases;
+use pathmark::Lab;
 use pathmark::estimator::Roulette;
 use pathmark::experiment::{Definition, RecordsFile, read_records};
 use pathmark::film::{Assembly, Bounds, Decomposition, Film, FilmKey, PixelSum, TileBuffer, read_film, write_film};
 use pathmark::image_io::{self, FORMATS, Image, tone_map};
-use pathmark::measure::{Record, SCHEMA, strategy_named};
+use pathmark::measure::{Record, SCHEMA};
 use proptest::prelude::*;
 use std::fs;
 
@@ -129,8 +130,8 @@ proptest! {
             if let Ok(found) = Roulette::parse(&text) {
                 prop_assert_eq!(Roulette::parse(&found.to_string()).expect("its own name"), found);
             }
-            let _ = strategy_named(&text);
-            if let Err(error) = Definition::from_text("name", "file.toml", &text) {
+            let _ = Lab::built_in().strategy_named(&text);
+            if let Err(error) = Definition::from_text(&Lab::built_in(), "name", "file.toml", &text) {
                 prop_assert_eq!(error.exit_code(), 2);
                 prop_assert!(error.to_string().contains("file.toml"), "{error}");
             }

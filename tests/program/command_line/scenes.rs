@@ -2,6 +2,7 @@
 
 use super::{json, run};
 use crate::experiment::{TINY, write_tiny};
+use pathmark::Lab;
 use pathmark::effect::Effects;
 use pathmark::experiment::{Definition, Profile};
 use pathmark::material::MATERIALS;
@@ -21,7 +22,8 @@ fn tiny(scenes: &str, figure: &str, more: &str) -> String {
 
 #[test]
 fn an_experiment_can_take_all_scenes_with_their_own_estimators() {
-    let definition = Definition::from_text("tiny", "tiny.toml", &tiny("[\"all\"]", "gallery", "")).unwrap();
+    let definition =
+        Definition::from_text(&Lab::built_in(), "tiny", "tiny.toml", &tiny("[\"all\"]", "gallery", "")).unwrap();
     let cells = definition.cells(Profile::Quick).unwrap();
     let found: Vec<(&str, &str)> = cells.iter().map(|c| (&*c.settings.scene, &*c.settings.spec.estimator)).collect();
     for ((name, _), (scene, estimator)) in SCENES.iter().zip(&found) {

@@ -1,0 +1,45 @@
+//! An estimator that is in no table: a user's own.
+
+use super::scalar::Scalar;
+use super::{Choice, Kernel};
+use crate::estimator::{AnyEstimator, Entry, Estimator};
+use crate::sampling::Sampler;
+use crate::scene::{AllEffects, Scene};
+use std::sync::Arc;
+
+type Build = dyn Fn(Arc<Scene>, &Choice, Box<dyn Sampler>) -> Box<dyn Kernel> + Send + Sync;
+
+/// An estimator with a name. It is compiled where it is written, once, with every effect and for any sampler.
+#[derive(Clone)]
+pub struct OwnEstimator {
+    entry: Entry,
+    any: Arc<dyn AnyEstimator>,
+    build: Arc<Build>,
+}
+
+impl OwnEstimator {
+    /// The estimator under a name.
+    pub fn new<E: Estimator + 'static>(name: &'static str, estimator: E) -> Self {
+        let estimator = Arc::new(estimator);
+        let any = Arc::clone(&estimator);
+        let build = move |scene: Arc<Scene>, choice: &Choice, sampler: Box<dyn Sampler>| -> Box<dyn Kernel> {
+            let estimator = Arc::clone(&estimator);
+            Box::new(Scalar::<Arc<E>, Box<dyn Sampler>, AllEffects>::new(scene, choice, estimator, sampler))
+        };
+        Self { entry: Entry::of::<E>(name, E::ABOUT), any, build: Arc::new(build) }
+    }
+
+    /// What is known of it.
+    pub fn entry(&self) -> &Entry {
+        &self.entry
+    }
+
+    /// The same behind a pointer.
+    pub(super) fn any(&self) -> Arc<dyn AnyEstimator> {
+        Arc::clone(&self.any)
+    }
+
+    pub(super) fn kernel(&self, scene: Arc<Scene>, choice: &Choice, sampler: Box<dyn Sampler>) -> Box<dyn Kernel> {
+        (self.build)(scene, choice, sampler)
+    }
+}

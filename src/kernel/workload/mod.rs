@@ -1,0 +1,173 @@
+//! Workloads: work of unequal cost, cut into jobs, with a result that can be checked. The path tracer is one; this folder has others, so that
+//! strategies can be compared on more than one program.
+//!
+//! A workload fills a film: each pixel and sample is an item with a value. So decompositions, outputs, traces, checksums and the simulator serve
+//! it as they serve a scene, and `pathmark render mandelbrot`, `scene = ["mandelbrot"]` in an experiment and `--size 1x1000 --decomposition rows`
+//! (a thousand jobs of one item) mean what they say. A workload has no estimator and no sampler.
+//!
+//! To add one: write its file with a type that implements [`Workload`], and give it a line in [`WORKLOADS`].
+
+mod costs;
+mod mandelbrot;
+mod sum;
+
+use super::{Counts, Kernel};
+use crate::film::{Piece, SampleSum, TileBuffer};
+use crate::math::Rgb;
+use std::fmt;
+use std::sync::Arc;
+
+pub use costs::{Costs, Distribution};
+pub use mandelbrot::Mandelbrot;
+pub use sum::Sum;
+
+/// One item of work.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Item {
+    /// Column, from 0.
+    pub x: u32,
+    /// Row, from 0.
+    pub y: u32,
+    /// Columns in all.
+    pub width: u32,
+    /// Rows in all.
+    pub height: u32,
+    /// Number of the sample, from 0.
+    pub sample: u32,
+    /// Seed of the run.
+    pub seed: u64,
+}
+
+impl Item {
+    /// Its number, row by row.
+    pub fn index(&self) -> u64 {
+        u64::from(self.y) * u64::from(self.width) + u64::from(self.x)
+    }
+
+    /// How many there are of each sample.
+    pub fn count(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+}
+
+/// Work of unequal cost with a result.
+pub trait Workload: Send + Sync + 'static {
+    /// What it is, in a line of `pathmark list workloads`.
+    fn about(&self) -> &'static str {
+        "a workload from outside"
+    }
+
+    /// Makes what all items share, before the clock runs.
+    fn prepare(&self) {}
+
+    /// Does the item's work and gives its result: three finite numbers that are not negative and follow from the item alone, whoever asks and
+    /// however often.
+    fn run(&self, item: &Item) -> [f64; 3];
+}
+
+/// A workload under a name.
+#[derive(Clone)]
+pub struct Entry {
+    /// Its name where a scene's name may stand.
+    pub name: &'static str,
+    workload: Made,
+}
+
+#[derive(Clone)]
+enum Made {
+    BuiltIn(&'static dyn Workload),
+    Own(Arc<dyn Workload>),
+}
+
+impl fmt::Debug for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Entry").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+impl Entry {
+    /// A workload of one's own.
+    pub fn own(name: &'static str, workload: impl Workload) -> Self {
+        Self { name, workload: Made::Own(Arc::new(workload)) }
+    }
+
+    const fn built_in(name: &'static str, workload: &'static dyn Workload) -> Self {
+        Self { name, workload: Made::BuiltIn(workload) }
+    }
+
+    fn workload(&self) -> &dyn Workload {
+        match &self.workload {
+            Made::BuiltIn(workload) => *workload,
+            Made::Own(workload) => &**workload,
+        }
+    }
+
+    /// What it is, in a line.
+    pub fn about(&self) -> &'static str {
+        self.workload().about()
+    }
+
+    /// The kernel that does its work.
+    pub fn kernel(&self, width: u32, height: u32, seed: u64) -> Box<dyn Kernel> {
+        self.workload().prepare();
+        Box::new(OfWorkload { entry: self.clone(), width, height, seed })
+    }
+}
+
+/// The workloads, in the order in which they are listed.
+pub static WORKLOADS: &[Entry] = &[
+    Entry::built_in("mandelbrot", &Mandelbrot),
+    Entry::built_in("costs-uniform", &Costs(Distribution::Uniform)),
+    Entry::built_in("costs-exponential", &Costs(Distribution::Exponential)),
+    Entry::built_in("costs-bimodal", &Costs(Distribution::Bimodal)),
+    Entry::built_in("costs-giant", &Costs(Distribution::Giant)),
+    Entry::built_in("costs-sorted", &Costs(Distribution::Sorted)),
+    Entry::built_in("sum", &Sum),
+];
+
+struct OfWorkload {
+    entry: Entry,
+    width: u32,
+    height: u32,
+    seed: u64,
+}
+
+impl Kernel for OfWorkload {
+    fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+        let workload = self.entry.workload();
+        let (mut counts, mut sum) = (Counts::default(), SampleSum::default());
+        for y in piece.bounds.y0..piece.bounds.y1 {
+            for (x, pixel) in (piece.bounds.x0..piece.bounds.x1).zip(out.row_mut(y)) {
+                sum.clear();
+                for sample in piece.samples.clone() {
+                    let Self { width, height, seed, .. } = *self;
+                    let [r, g, b] = workload.run(&Item { x, y, width, height, sample, seed });
+                    let value = Rgb { r, g, b };
+                    counts.paths += 1;
+                    counts.invalid += u64::from(!value.is_valid_radiance());
+                    sum.add(if value.is_valid_radiance() { value } else { Rgb::BLACK });
+                }
+                *pixel = sum.total();
+            }
+        }
+        counts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every item has a valid result that follows from the item alone.
+    #[test]
+    fn results_are_valid_and_repeat() {
+        for entry in WORKLOADS {
+            for (index, sample) in (0..64).flat_map(|index| [(index, 0), (index, 3)]) {
+                let item = Item { x: index % 8, y: index / 8, width: 8, height: 8, sample, seed: 5 };
+                let result = entry.workload().run(&item);
+                assert!(result.iter().all(|number| number.is_finite() && *number >= 0.0), "{}: {result:?}", entry.name);
+                assert_eq!(result, entry.workload().run(&item), "{}", entry.name);
+            }
+        }
+    }
+}

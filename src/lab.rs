@@ -1,0 +1,237 @@
+//! What there is to choose from, as a value: everything built in, and what a program of one's own adds.
+//!
+//! ```no_run
+//! use pathmark::kernel::workload::{Item, Workload};
+//!
+//! struct Squares;
+//!
+//! impl Workload for Squares {
+//!     fn run(&self, item: &Item) -> [f64; 3] {
+//!         [(0..item.index()).map(|n| (n * n) as f64).sum(), 0.0, 0.0]
+//!     }
+//! }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     pathmark::Lab::new().workload("squares", Squares).main()
+//! }
+//! ```
+//!
+//! The program above is `pathmark` with one workload more: `cargo run --release -- render squares --strategy rayon`. Cells of experiments run in
+//! processes of the same program, so they have the same tables.
+
+use crate::error::{InputError, Result};
+use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
+use crate::kernel::OwnEstimator;
+use crate::kernel::workload::{self, WORKLOADS, Workload};
+use crate::scene::{Library, OwnScene, Scene};
+use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
+use std::fmt;
+use std::panic::Location;
+use std::sync::{Arc, LazyLock};
+
+/// Report A's name for the strategy `thread-per-job` on the decomposition `rows`.
+pub const THREAD_PER_ROW: &str = "thread-per-row";
+
+/// The tables.
+pub struct Lab {
+    strategies: Vec<Strategy>,
+    estimators: Vec<OwnEstimator>,
+    workloads: Vec<workload::Entry>,
+    scenes: Library,
+    experiments: Vec<(String, String)>,
+    /// Names that a program added, by kind, and where.
+    added: Vec<(&'static str, String, &'static Location<'static>)>,
+    /// The first name that was taken.
+    problem: Option<InputError>,
+}
+
+static BUILT_IN: LazyLock<Arc<Lab>> = LazyLock::new(|| Arc::new(Lab::new()));
+
+impl fmt::Debug for Lab {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Lab").field("added", &self.added).finish_non_exhaustive()
+    }
+}
+
+impl Default for Lab {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Lab {
+    /// Everything built in.
+    pub fn new() -> Self {
+        Self {
+            strategies: STRATEGIES.to_vec(),
+            estimators: Vec::new(),
+            workloads: WORKLOADS.to_vec(),
+            scenes: Library::default(),
+            experiments: Vec::new(),
+            added: Vec::new(),
+            problem: None,
+        }
+    }
+
+    /// The same, shared: for whoever adds nothing.
+    pub fn built_in() -> Arc<Self> {
+        Arc::clone(&BUILT_IN)
+    }
+
+    /// Adds a strategy.
+    #[must_use]
+    #[track_caller]
+    pub fn strategy(mut self, entry: Strategy) -> Self {
+        let taken = self.strategies.iter().any(|known| known.name == entry.name) || entry.name == THREAD_PER_ROW;
+        self.note("strategy", entry.name, taken, Location::caller());
+        self.strategies.push(entry);
+        self
+    }
+
+    /// Adds an estimator.
+    #[must_use]
+    #[track_caller]
+    pub fn estimator<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Self {
+        let taken = self.estimators().any(|known| known.name == name);
+        self.note("estimator", name, taken, Location::caller());
+        self.estimators.push(OwnEstimator::new(name, estimator));
+        self
+    }
+
+    /// Adds a workload. It shares its names with scenes, because it stands where they stand.
+    #[must_use]
+    #[track_caller]
+    pub fn workload(mut self, name: &'static str, workload: impl Workload) -> Self {
+        let taken = self.is_subject(name);
+        self.note("workload", name, taken, Location::caller());
+        self.workloads.push(workload::Entry::own(name, workload));
+        self
+    }
+
+    /// Adds a scene in TOML; it is read when somebody asks for it.
+    #[must_use]
+    #[track_caller]
+    pub fn scene(mut self, name: &str, text: &str) -> Self {
+        let taken = self.is_subject(name);
+        self.note("scene", name, taken, Location::caller());
+        self.scenes.add(OwnScene { name: name.to_string(), text: text.to_string() });
+        self
+    }
+
+    /// Adds an experiment in TOML, which `reproduce` runs with the others.
+    #[must_use]
+    #[track_caller]
+    pub fn experiment(mut self, name: &str, text: &str) -> Self {
+        let taken = self.experiments.iter().any(|(known, _)| known == name);
+        self.note("experiment", name, taken, Location::caller());
+        self.experiments.push((name.to_string(), text.to_string()));
+        self
+    }
+
+    fn is_subject(&self, name: &str) -> bool {
+        self.scenes.names().any(|known| known == name) || self.workloads.iter().any(|known| known.name == name)
+    }
+
+    fn note(&mut self, kind: &'static str, name: &str, is_taken: bool, at: &'static Location<'static>) {
+        if is_taken && self.problem.is_none() {
+            let first = self.added.iter().find(|(_, known, _)| known == name);
+            let owner = first.map_or_else(|| "pathmark itself".to_string(), |(_, _, at)| at.to_string());
+            let problem = format!("is a name that {owner} has taken; {at} wants it, too");
+            self.problem = Some(InputError::new(kind, name, problem).allowed("another name"));
+        }
+        self.added.push((kind, name.to_string(), at));
+    }
+
+    /// Refuses tables in which a name means two things.
+    pub fn check(&self) -> Result<()> {
+        self.problem.as_ref().map_or(Ok(()), |problem| Err(problem.clone().into()))
+    }
+
+    /// The strategies, in the order in which they are listed.
+    pub fn strategies(&self) -> &[Strategy] {
+        &self.strategies
+    }
+
+    /// The strategy that `text` names, and its parameter if a colon follows.
+    pub fn strategy_named(&self, text: &str) -> Result<(Strategy, Option<String>)> {
+        let (name, parameter) = match text.split_once(':') {
+            Some((name, parameter)) => (name, Some(parameter.to_string())),
+            None => (text, None),
+        };
+        let entry = self.strategies.iter().find(|entry| entry.name == name).ok_or_else(|| {
+            let names: Vec<&str> = self.strategies.iter().map(|entry| entry.name).collect();
+            InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
+        })?;
+        match (entry.discipline)(parameter.as_deref()) {
+            Err(StrategyError::Parameter { allowed, .. }) => {
+                Err(InputError::new("strategy", text, "has no such parameter").allowed(allowed).into())
+            }
+            _ => Ok((*entry, parameter)),
+        }
+    }
+
+    /// The estimators, in the order in which they are listed.
+    pub fn estimators(&self) -> impl Iterator<Item = &EstimatorEntry> {
+        ESTIMATORS.iter().chain(self.estimators.iter().map(OwnEstimator::entry))
+    }
+
+    /// Those that a program added.
+    pub fn own_estimators(&self) -> &[OwnEstimator] {
+        &self.estimators
+    }
+
+    /// The workloads, in the order in which they are listed.
+    pub fn workloads(&self) -> &[workload::Entry] {
+        &self.workloads
+    }
+
+    /// The workload of that name.
+    pub fn workload_named(&self, name: &str) -> Option<&workload::Entry> {
+        self.workloads.iter().find(|entry| entry.name == name)
+    }
+
+    /// The names of the scenes, in the order in which they are listed.
+    pub fn scenes(&self) -> impl Iterator<Item = &str> {
+        self.scenes.names()
+    }
+
+    /// The scene of that name, or the one in the file of that path.
+    pub fn load_scene(&self, name_or_path: &str) -> Result<Scene> {
+        self.scenes.load(name_or_path)
+    }
+
+    /// Name and text of the experiments that a program added.
+    pub fn own_experiments(&self) -> &[(String, String)] {
+        &self.experiments
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::workload::Mandelbrot;
+    use crate::scene::SCENES;
+
+    fn said(lab: &Lab) -> String {
+        lab.check().err().map(|error| error.to_string()).unwrap_or_default()
+    }
+
+    #[test]
+    fn names_that_are_taken_name_both_owners() {
+        assert_eq!(said(&Lab::new().workload("mine", Mandelbrot)), "");
+        let error = said(&Lab::new().workload("cornell", Mandelbrot));
+        assert!(error.starts_with("workload = cornell: ") && error.contains("pathmark itself"), "{error}");
+        let error = said(&Lab::new().scene("mine", "").workload("mine", Mandelbrot));
+        assert_eq!(error.matches(file!()).count(), 2, "{error}");
+        let error = said(&Lab::new().strategy(STRATEGIES[0]));
+        assert!(error.starts_with(&format!("strategy = {}: ", STRATEGIES[0].name)), "{error}");
+    }
+
+    #[test]
+    fn every_name_means_one_thing() {
+        let lab = Lab::new();
+        for entry in lab.workloads() {
+            assert!(!SCENES.iter().any(|(name, _)| *name == entry.name), "{}", entry.name);
+        }
+    }
+}

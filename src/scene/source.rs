@@ -1,0 +1,103 @@
+//! Where the text of a scene and of its other files comes from: the binary, a user's program, or the disk.
+
+use crate::digest::Fingerprint;
+use crate::error::{InputError, Result};
+use crate::input::{read_text, read_text_up_to};
+use std::path::{Path, PathBuf};
+
+/// Name and definition of the scenes that the binary carries.
+pub const SCENES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/scenes.rs"));
+
+/// A scene that a user's program brings along.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OwnScene {
+    /// Its name.
+    pub name: String,
+    /// Its definition in TOML.
+    pub text: String,
+}
+
+/// Name and text of the meshes that they use.
+const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"));
+
+/// Some hundred thousand triangles.
+const LARGEST_MESH: u64 = 16 << 20;
+
+/// Where a scene's other files are looked for.
+#[derive(Debug, Clone)]
+pub(super) enum Folder {
+    /// In the binary.
+    Embedded,
+    /// On disk.
+    Disk(PathBuf),
+}
+
+impl Folder {
+    /// What to call a file of that name in errors.
+    pub(super) fn place_of(&self, name: &str) -> String {
+        match self {
+            Self::Embedded => name.to_string(),
+            Self::Disk(folder) => folder.join(name).display().to_string(),
+        }
+    }
+
+    fn read(&self, name: &str) -> Result<String> {
+        match self {
+            Self::Disk(folder) => read_text_up_to(&folder.join(name), LARGEST_MESH),
+            Self::Embedded => match MESHES.iter().find(|(known, _)| *known == name) {
+                Some((_, text)) => Ok((*text).to_string()),
+                None => Err(InputError::new("file", name, "there is no such file in the program").into()),
+            },
+        }
+    }
+}
+
+/// The other files of a scene; what is read becomes part of the scene's hash.
+pub(super) struct Files<'a> {
+    pub(super) folder: &'a Folder,
+    pub(super) hash: &'a mut Fingerprint,
+}
+
+impl Files<'_> {
+    /// The text of a file.
+    pub(super) fn read(&mut self, name: &str) -> Result<String> {
+        let text = self.folder.read(name)?;
+        self.hash.update(text.as_bytes());
+        Ok(text)
+    }
+}
+
+/// The text of a scene, what to call it, and where its other files are.
+pub(super) struct Source {
+    pub(super) name: String,
+    pub(super) file: String,
+    pub(super) text: String,
+    pub(super) folder: Folder,
+}
+
+/// The scene in the binary of that name, or the file of that path: whatever ends in `.toml` or has a directory in it is a path. `folder` is
+/// where a relative path starts.
+pub(super) fn source(name_or_path: &str, folder: &Folder, own: &[OwnScene]) -> Result<Source> {
+    let path = Path::new(name_or_path);
+    if path.extension().is_some_and(|extension| extension == "toml") || path.components().count() > 1 {
+        let path = match folder {
+            Folder::Disk(folder) => folder.join(path),
+            Folder::Embedded => path.to_path_buf(),
+        };
+        let text = read_text(&path)?;
+        let name =
+            path.file_stem().map_or_else(|| name_or_path.to_string(), |stem| stem.to_string_lossy().into_owned());
+        let folder = Folder::Disk(path.parent().map(Path::to_path_buf).unwrap_or_default());
+        return Ok(Source { name, file: path.display().to_string(), text, folder });
+    }
+    let own = own.iter().map(|scene| (scene.name.as_str(), scene.text.as_str()));
+    let known = SCENES.iter().copied().chain(own);
+    if let Some((name, text)) = known.clone().find(|(name, _)| *name == name_or_path) {
+        let file = format!("{name}.toml");
+        return Ok(Source { name: name.to_string(), file, text: text.to_string(), folder: Folder::Embedded });
+    }
+    let names: Vec<&str> = known.map(|(name, _)| name).collect();
+    Err(InputError::new("scene", name_or_path, "there is no scene of that name")
+        .allowed(format!("{}, or the path of a .toml file", names.join(", ")))
+        .into())
+}
