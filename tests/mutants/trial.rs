@@ -1,0 +1,107 @@
+//! Tries a fault in a scratch copy of what is committed.
+
+use super::fault::{Fault, Sources};
+use super::killer::{Killer, Killers};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+pub(crate) enum Outcome {
+    /// What noticed it.
+    Killed(String),
+    /// Who should have noticed it.
+    Survived(String),
+    /// Why nobody could.
+    NotTried(String),
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Killed(by) => write!(f, "killed by {by}"),
+            Self::Survived(who) => write!(f, "SURVIVED {who}"),
+            Self::NotTried(why) => write!(f, "not tried: {why}"),
+        }
+    }
+}
+
+pub(crate) struct Scratch {
+    _folder: tempfile::TempDir,
+    copy: PathBuf,
+    target: PathBuf,
+}
+
+impl Scratch {
+    pub(crate) fn new(root: &Path) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let scratch = Self { copy: folder.path().join("copy"), target: root.join("target/mutants"), _folder: folder };
+        let clone = Command::new("git").args(["clone", "--quiet", "--shared"]).args([root, &scratch.copy]).status();
+        assert!(clone.unwrap().success(), "git clone");
+        scratch
+    }
+
+    pub(crate) fn try_fault(&self, fault: &Fault) -> Outcome {
+        self.tried(fault).unwrap_or_else(Outcome::NotTried)
+    }
+
+    fn tried(&self, fault: &Fault) -> Result<Outcome, String> {
+        let source = self.copy.join("src");
+        let killer = Killers::read(&self.copy).find(&fault.killed_by)?;
+        let right = Sources::read(&source);
+        let changed = fault.apply(&right)?;
+        for (file, text) in &changed {
+            std::fs::write(source.join(file), text).unwrap();
+        }
+        let outcome = self.noticed(&killer);
+        for file in changed.keys() {
+            std::fs::write(source.join(file), right.text(file)).unwrap();
+        }
+        let output = outcome?;
+        let said = String::from_utf8_lossy(&output.stdout);
+        let noticed = said.lines().filter(|line| line.contains("FAIL")).map(str::trim);
+        Ok(match (output.status.success(), Vec::from_iter(noticed)) {
+            (true, _) => Outcome::Survived(fault.killed_by.clone()),
+            (false, who) if who.is_empty() => Outcome::Killed("its time limit or a crash".into()),
+            (false, who) => Outcome::Killed(who.join(", ")),
+        })
+    }
+
+    /// What those who should notice say.
+    fn noticed(&self, killer: &Killer) -> Result<Output, String> {
+        let limited = |program: &Path| {
+            let mut command = self.command("timeout");
+            command.arg("600").arg(program);
+            command
+        };
+        let cargo = Path::new(env!("CARGO"));
+        let (mut build, mut try_it) = (self.command(cargo), limited(cargo));
+        match killer {
+            Killer::Cases(ids) => {
+                build.args(["build", "--quiet", "--bin", "pathmark"]);
+                try_it = limited(&self.target.join("debug/pathmark"));
+                try_it.arg("check").args(ids).arg("--quiet");
+            }
+            Killer::Tests(program, names) => {
+                build.args(["test", "--quiet", "--no-run"]).args(program);
+                try_it.arg("test").args(program).arg("--").args(names);
+            }
+        }
+        let built = build.output().unwrap();
+        if !built.status.success() {
+            let said = String::from_utf8_lossy(&built.stderr);
+            return Err(format!(
+                "does not compile: {}",
+                said.lines().find(|line| line.starts_with("error")).unwrap_or("")
+            ));
+        }
+        Ok(try_it.output().unwrap())
+    }
+
+    /// Compiling takes longer than the cases: less optimisation, and only what a fault changes.
+    fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
+        let mut command = Command::new(program);
+        command.current_dir(&self.copy).env("CARGO_TARGET_DIR", &self.target).env("CARGO_INCREMENTAL", "1");
+        command.env("CARGO_PROFILE_DEV_OPT_LEVEL", "1").env("CARGO_PROFILE_DEV_DEBUG", "false");
+        command
+    }
+}
