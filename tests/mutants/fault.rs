@@ -14,7 +14,7 @@ pub(crate) struct Fault {
     edits: Vec<Edit>,
 }
 
-/// A text that stands exactly once, in `file` or in all of `src`, and what replaces it. Blanks and line ends are not compared.
+/// A text that stands exactly once, in `file` or in the sources of all packages, and what replaces it. Blanks and line ends are not compared.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edit {
@@ -23,7 +23,7 @@ struct Edit {
     new: String,
 }
 
-/// Source files by their path below `src`.
+/// Source files by their path in the repository.
 pub(crate) struct Sources(BTreeMap<PathBuf, Source>);
 
 struct Source {
@@ -52,10 +52,10 @@ impl FromIterator<(PathBuf, String)> for Sources {
 }
 
 impl Sources {
-    pub(crate) fn read(folder: &Path) -> Self {
-        let text =
-            |file: PathBuf| (file.strip_prefix(folder).unwrap().to_path_buf(), fs::read_to_string(&file).unwrap());
-        rust_files(folder).into_iter().map(text).collect()
+    /// The sources of the package at `root` and of those in its `crates`.
+    pub(crate) fn read(root: &Path) -> Self {
+        let text = |file: PathBuf| (file.strip_prefix(root).unwrap().to_path_buf(), fs::read_to_string(&file).unwrap());
+        packages(root).iter().flat_map(|package| rust_files(&package.join("src"))).map(text).collect()
     }
 
     pub(crate) fn text(&self, file: &Path) -> &str {
@@ -63,11 +63,17 @@ impl Sources {
     }
 }
 
-/// The Rust files below a folder.
+/// The folders of the package at `root` and of those in its `crates`.
+pub(crate) fn packages(root: &Path) -> Vec<PathBuf> {
+    let members = fs::read_dir(root.join("crates")).into_iter().flatten().map(|entry| entry.unwrap().path());
+    std::iter::once(root.to_path_buf()).chain(members).collect()
+}
+
+/// The Rust files below a folder; none if there is no such folder.
 pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let (mut files, mut folders) = (Vec::new(), vec![folder.to_path_buf()]);
     while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        for path in fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
                 folders.push(path);
             } else if path.extension().is_some_and(|extension| extension == "rs") {
@@ -104,7 +110,7 @@ impl Edit {
         };
         let places: Vec<_> = asked.flat_map(found).collect();
         let [(file, source, at)] = places[..] else {
-            let place = self.file.as_ref().map_or("src".into(), |file| file.to_string_lossy());
+            let place = self.file.as_ref().map_or("all sources".into(), |file| file.to_string_lossy());
             return Err(format!("`{}` stands {} times in {place}", self.old, places.len()));
         };
         let (start, end) = (source.places[at], source.places[at + old.len() - 1] + 1);

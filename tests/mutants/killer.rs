@@ -1,6 +1,6 @@
 //! Who notices a fault: cases of `pathmark check`, or tests by their path, wherever their program is.
 
-use super::fault::rust_files;
+use super::fault::{packages, rust_files};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -23,15 +23,19 @@ pub(crate) struct Killers {
 impl Killers {
     pub(crate) fn read(root: &Path) -> Self {
         let cases = rust_files(&root.join("src/check")).iter().map(|file| fs::read_to_string(file).unwrap()).collect();
-        let library = rust_files(&root.join("src")).into_iter().map(|file| (vec!["lib".to_string()], file, "src"));
-        let programs = rust_files(&root.join("tests")).into_iter().map(|file| (vec![], file, "tests"));
         let mut tests = Vec::new();
-        for (mut path, file, folder) in library.chain(programs) {
-            let inner = file.strip_prefix(root.join(folder)).unwrap().with_extension("");
-            let parts = inner.iter().map(|part| part.to_string_lossy().into_owned());
-            path.extend(parts.filter(|part| part != "mod" && part != "main"));
-            let text = fs::read_to_string(&file).unwrap();
-            tests.extend(functions(&text).map(|name| [path.clone(), vec![name.to_string()]].concat()));
+        for package in packages(root) {
+            for (folder, program) in [("src", Some("lib")), ("tests", None)] {
+                let folder = package.join(folder);
+                for file in rust_files(&folder) {
+                    let inner = file.strip_prefix(&folder).unwrap().with_extension("");
+                    let parts = inner.iter().filter_map(|part| part.to_str());
+                    let modules = parts.filter(|part| !["mod", "main"].contains(part));
+                    let path: Vec<String> = program.into_iter().chain(modules).map(str::to_string).collect();
+                    let text = fs::read_to_string(&file).unwrap();
+                    tests.extend(functions(&text).map(|name| [path.clone(), vec![name.to_string()]].concat()));
+                }
+            }
         }
         Self { tests, cases }
     }

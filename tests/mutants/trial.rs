@@ -45,24 +45,23 @@ impl Scratch {
     }
 
     fn tried(&self, fault: &Fault) -> Result<Outcome, String> {
-        let source = self.copy.join("src");
         let killer = Killers::read(&self.copy).find(&fault.killed_by)?;
-        let right = Sources::read(&source);
+        let right = Sources::read(&self.copy);
         let changed = fault.apply(&right)?;
         for (file, text) in &changed {
-            std::fs::write(source.join(file), text).unwrap();
+            std::fs::write(self.copy.join(file), text).unwrap();
         }
         let outcome = self.noticed(&killer);
         for file in changed.keys() {
-            std::fs::write(source.join(file), right.text(file)).unwrap();
+            std::fs::write(self.copy.join(file), right.text(file)).unwrap();
         }
         let output = outcome?;
         let said = String::from_utf8_lossy(&output.stdout);
-        let noticed = said.lines().filter(|line| line.contains("FAIL")).map(str::trim);
-        Ok(match (output.status.success(), Vec::from_iter(noticed)) {
-            (true, _) => Outcome::Survived(fault.killed_by.clone()),
-            (false, who) if who.is_empty() => Outcome::Killed("its time limit or a crash".into()),
-            (false, who) => Outcome::Killed(who.join(", ")),
+        let who: Vec<&str> = said.lines().filter(|line| line.contains("FAIL")).map(str::trim).collect();
+        Ok(match output.status.success() {
+            true => Outcome::Survived(fault.killed_by.clone()),
+            false if who.is_empty() => Outcome::Killed("its time limit or a crash".into()),
+            false => Outcome::Killed(who.join(", ")),
         })
     }
 
@@ -82,8 +81,8 @@ impl Scratch {
                 try_it.arg("check").args(ids).arg("--quiet");
             }
             Killer::Tests(program, names) => {
-                build.args(["test", "--quiet", "--no-run"]).args(program);
-                try_it.arg("test").args(program).arg("--").args(names);
+                build.args(["test", "--quiet", "--workspace", "--no-run"]).args(program);
+                try_it.args(["test", "--quiet", "--workspace"]).args(program).arg("--").args(names);
             }
         }
         let built = build.output().unwrap();
