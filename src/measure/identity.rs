@@ -3,8 +3,9 @@
 //! Cells, rows, references and figures compare by these keys. A new axis belongs into one of the two, which the tests below insist on.
 
 use super::{Record, Setup};
-use crate::kernel::{Clamp, Spec};
-use crate::scene::Scene;
+use crate::kernel::workload::WORKLOAD;
+use crate::kernel::{Choice, Clamp, Spec};
+use crate::simd::Precision;
 use std::fmt;
 
 /// What tells images apart: rows with equal keys have equal checksums, unless the sampler gives other numbers in each run.
@@ -36,46 +37,6 @@ pub struct ImageKey {
     pub precision: String,
     /// Whether tiles have as many samples as their noise calls for.
     pub adaptive: bool,
-}
-
-impl ImageKey {
-    /// The image of so many samples that a specification comes to in a scene. `precision` is that of the kernel that renders, which need
-    /// not be the one that was asked for.
-    pub fn of(scene: &Scene, spec: &Spec, precision: &str, spp: u32) -> Self {
-        let roulette = spec.roulette().unwrap_or_default();
-        let max_depth = spec.depth();
-        // Every field is named, so that a new one has to be sorted in here.
-        let Spec {
-            width,
-            height,
-            seed,
-            estimator,
-            sampler,
-            kernel: _,
-            simd: _,
-            precision: _,
-            effects: _,
-            accelerator: _,
-            max_depth: _,
-            roulette: _,
-            clamp,
-        } = spec;
-        Self {
-            scene: scene.name.clone(),
-            scene_hash: scene.hash.clone(),
-            estimator: estimator.clone(),
-            sampler: sampler.clone(),
-            width: *width,
-            height: *height,
-            spp,
-            seed: *seed,
-            max_depth,
-            roulette,
-            clamp: clamp.map(Clamp::name).unwrap_or_default().to_string(),
-            precision: precision.to_string(),
-            adaptive: false,
-        }
-    }
 }
 
 /// In one word without spaces, equal for equal keys alone.
@@ -166,23 +127,56 @@ impl Record {
 impl Setup {
     /// What tells its image from others.
     pub fn image_key(&self) -> ImageKey {
-        let settings = self.settings();
-        ImageKey::of(self.scene(), &settings.spec, self.choice().precision().name(), settings.spp)
+        // Every field is named, so that a new one has to be sorted in here.
+        let Spec {
+            width,
+            height,
+            seed,
+            estimator,
+            sampler,
+            kernel: _,
+            simd: _,
+            precision: _,
+            effects: _,
+            accelerator: _,
+            max_depth: _,
+            roulette: _,
+            clamp,
+        } = &self.settings().spec;
+        let choice = self.scene().map(|(_, choice)| choice);
+        let roulette = choice.and_then(Choice::roulette).map(|rule| rule.to_string());
+        ImageKey {
+            scene: self.name().to_string(),
+            scene_hash: self.hash(),
+            estimator: estimator.clone(),
+            sampler: sampler.clone(),
+            width: *width,
+            height: *height,
+            spp: self.settings().spp,
+            seed: *seed,
+            max_depth: choice.and_then(Choice::depth),
+            roulette: roulette.unwrap_or_default(),
+            clamp: clamp.map(Clamp::name).unwrap_or_default().to_string(),
+            precision: choice.map_or(Precision::F64, Choice::precision).name().to_string(),
+            adaptive: false,
+        }
     }
 
     /// What tells its schedule from others of the same image.
     pub fn schedule_key(&self) -> ScheduleKey {
-        let (settings, choice) = (self.settings(), self.choice());
+        let settings = self.settings();
+        let choice = self.scene().map(|(_, choice)| choice);
+        let of = |name: fn(&Choice) -> &'static str| choice.map(name).unwrap_or_default().to_string();
         ScheduleKey {
             strategy: settings.strategy.clone(),
             decomposition: settings.decomposition.clone(),
             threads: self.threads(),
             output: settings.output.clone(),
-            kernel: choice.kernel().to_string(),
-            kernel_fallback: choice.fallback().to_string(),
-            simd: choice.simd().to_string(),
-            effects: self.effects().to_string(),
-            accelerator: self.accelerator().to_string(),
+            kernel: choice.map_or(WORKLOAD, Choice::kernel).to_string(),
+            kernel_fallback: of(Choice::fallback),
+            simd: of(Choice::simd),
+            effects: of(Choice::effects),
+            accelerator: of(Choice::accelerator),
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
 use crate::kernel::Clamp;
+use crate::kernel::workload::WORKLOAD;
 use crate::metric;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
@@ -268,7 +269,7 @@ impl Record {
         record.scene = setup.name().to_string();
         record.scene_hash = setup.hash();
         match setup.scene() {
-            None => record.kernel = "workload".to_string(),
+            None => record.kernel = WORKLOAD.to_string(),
             Some((scene, choice)) => {
                 record.max_depth = choice.depth();
                 record.roulette = choice.roulette().map(|rule| rule.to_string()).unwrap_or_default();

@@ -21,6 +21,9 @@ pub use costs::{Costs, Distribution};
 pub use mandelbrot::Mandelbrot;
 pub use sum::Sum;
 
+/// What records say of the kernel of a workload.
+pub const WORKLOAD: &str = "workload";
+
 /// One item of work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Item {
