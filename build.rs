@@ -6,7 +6,7 @@ use std::process::Command;
 use std::{env, fs, io};
 
 /// What a render depends on: an uncommitted change elsewhere does not make a measurement dirty.
-const SOURCES: [&str; 6] = ["src", "experiments", "Cargo.toml", "Cargo.lock", "build.rs", "assets"];
+const SOURCES: [&str; 7] = ["src", "crates", "experiments", "Cargo.toml", "Cargo.lock", "build.rs", "assets"];
 
 fn main() -> io::Result<()> {
     for source in SOURCES {
@@ -31,9 +31,6 @@ fn main() -> io::Result<()> {
         env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default().replace('\x1f', " ")
     );
 
-    #[cfg(feature = "openmp")]
-    openmp();
-
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     embed("experiments/scenes", "toml", &out.join("scenes.rs"))?;
     embed("experiments/scenes", "obj", &out.join("meshes.rs"))?;
@@ -43,13 +40,6 @@ fn main() -> io::Result<()> {
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8_lossy(&output.stdout).trim().to_string())
-}
-
-/// Compiles the loops of the OpenMP strategies and links the runtime that comes with GCC.
-#[cfg(feature = "openmp")]
-fn openmp() {
-    cc::Build::new().file("src/strategy/openmp/shim.c").flag("-fopenmp").compile("pathmark_openmp");
-    println!("cargo::rustc-link-lib=gomp");
 }
 
 /// Writes an array of (name, text) over the files of a folder with that extension, sorted by name. Definitions go by their stems; files

@@ -57,7 +57,7 @@ fn threads_label(workers: Workers, threads: usize) -> String {
 
 fn strategy(entry: &Entry, threads: usize) -> Box<dyn Strategy> {
     let config = Config::new(NonZeroUsize::new(threads).expect("thread counts are positive"));
-    (entry.new)(config).expect("threads can be started")
+    entry.build(config).expect("threads can be started")
 }
 
 fn scheduling(criterion: &mut Criterion) {

@@ -162,7 +162,7 @@ impl Lab {
             let names: Vec<&str> = self.strategies.iter().map(|entry| entry.name).collect();
             InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
         })?;
-        match (entry.discipline)(parameter.as_deref()) {
+        match entry.discipline(parameter.as_deref()) {
             Err(StrategyError::Parameter { allowed, .. }) => {
                 Err(InputError::new("strategy", text, "has no such parameter").allowed(allowed).into())
             }

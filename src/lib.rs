@@ -56,6 +56,7 @@ pub mod sampling;
 pub mod scene;
 pub mod simd;
 pub mod simulate;
-pub mod strategy;
 
 pub use lab::Lab;
+#[doc(inline)]
+pub use pathmark_strategy as strategy;

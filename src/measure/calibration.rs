@@ -122,7 +122,7 @@ fn run_empty_jobs(lab: &Lab, row: &CalibrationRow) -> Result<Run> {
     let threads = NonZeroUsize::new(row.threads).unwrap_or(NonZeroUsize::MIN);
     let spawner = Arc::new(Counted::default());
     let config = Config { parameter, spawner: spawner.clone(), ..Config::new(threads) };
-    let mut strategy = (entry.new)(config).map_err(failed)?;
+    let mut strategy = entry.build(config).map_err(failed)?;
     let before = spawner.0.load(Ordering::Relaxed);
     let usage = Usage::now();
     let start = Instant::now();

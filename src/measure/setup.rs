@@ -307,7 +307,7 @@ impl Setup {
     pub(super) fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
         let threads = NonZeroUsize::new(self.settings.threads).unwrap_or(NonZeroUsize::MIN);
         let config = Config { parameter: self.parameter.clone(), ..Config::new(threads) };
-        (self.strategy.new)(config).map_err(|error| self.strategy_error(error))
+        self.strategy.build(config).map_err(|error| self.strategy_error(error))
     }
 
     pub(super) fn strategy_error(&self, error: StrategyError) -> Error {

@@ -77,7 +77,7 @@ pub fn contenders(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
             continue;
         }
         let Ok((entry, parameter)) = lab.strategy_named(&row.strategy) else { continue };
-        let Ok(discipline) = (entry.discipline)(parameter.as_deref()) else { continue };
+        let Ok(discipline) = entry.discipline(parameter.as_deref()) else { continue };
         let overheads = Overheads::fit(rows.iter().filter(|other| other.strategy == row.strategy), discipline);
         contenders.push(Contender { name: row.strategy.clone(), discipline, order: Order::ByIndex, overheads });
     }

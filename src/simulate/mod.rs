@@ -8,7 +8,7 @@
 //! use pathmark::simulate::{Hardware, Overhead, bounds, replay};
 //! use pathmark::strategy::find;
 //!
-//! let discipline = (find("shared-counter").expect("it is in the table").discipline)(None)?;
+//! let discipline = find("shared-counter").expect("it is in the table").discipline;
 //! let costs = [3.0, 1.0, 1.0, 1.0];
 //! let replayed = replay(&costs, discipline, 2, &Overhead::default(), &Hardware::default());
 //! assert_eq!(replayed.makespan_s, 3.0);

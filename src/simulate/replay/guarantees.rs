@@ -9,7 +9,7 @@ use rand_pcg::Pcg32;
 /// Every discipline of the table, and every way of stealing.
 fn disciplines() -> Vec<(String, Discipline)> {
     let mut all: Vec<(String, Discipline)> =
-        STRATEGIES.iter().map(|entry| (entry.name.to_owned(), (entry.discipline)(None).unwrap())).collect();
+        STRATEGIES.iter().map(|entry| (entry.name.to_owned(), entry.discipline)).collect();
     for start in [Start::Blocks, Start::Shared(32)] {
         for amount in [Amount::One, Amount::Half] {
             for victim in [Victim::Neighbour, Victim::Random, Victim::Richest] {

@@ -83,7 +83,7 @@ proptest! {
     #[test]
     fn disciplines_hand_out_every_job_once(jobs in 0..3000_usize, workers in 1..70_usize) {
         for entry in STRATEGIES {
-            match (entry.discipline)(None).expect("no parameter is a parameter") {
+            match entry.discipline {
                 Discipline::Dealt(deal) => {
                     let mut dealt: Vec<usize> = (0..workers).flat_map(|worker| deal(worker, workers, jobs)).collect();
                     dealt.sort_unstable();
@@ -109,7 +109,7 @@ proptest! {
     fn strategies_run_every_job_once(jobs in prop_oneof![0..4_usize, 0..40_usize, 0..700_usize], threads in 1..9_usize) {
         for entry in STRATEGIES {
             let threads = NonZeroUsize::new(threads).expect("at least one");
-            let mut strategy = (entry.new)(Config::new(threads)).expect("threads");
+            let mut strategy = entry.build(Config::new(threads)).expect("threads");
             let runs: Arc<[AtomicU32]> = (0..jobs).map(|_| AtomicU32::new(0)).collect();
             let counted = Arc::clone(&runs);
             strategy.run(jobs, Arc::new(move |job| _ = counted[job].fetch_add(1, Ordering::Relaxed))).expect("no failure");

@@ -1,0 +1,86 @@
+//! The strategies, one a file, and their table.
+
+mod chili;
+mod dynamic;
+mod factoring;
+mod fixed_pool;
+mod guided;
+mod mutex_queue;
+#[cfg(feature = "openmp")]
+mod openmp;
+#[cfg(feature = "openmp")]
+mod openmp_dynamic;
+#[cfg(feature = "openmp")]
+mod openmp_guided;
+#[cfg(feature = "openmp")]
+mod openmp_static;
+mod orx_parallel;
+mod paralight;
+mod range_stealing;
+mod rayon;
+mod rayon_join;
+mod rayon_pool;
+mod rayon_scope;
+mod serial;
+mod shared_counter;
+mod static_blocks;
+mod static_cyclic;
+mod steal_half;
+mod steal_one;
+mod thread_per_job;
+mod trapezoid;
+mod work_stealing;
+
+use crate::Entry;
+
+pub use static_blocks::block;
+
+/// Every strategy there is, in the order in which people meet them.
+pub static STRATEGIES: &[Entry] = &[
+    serial::ENTRY,
+    thread_per_job::ENTRY,
+    static_blocks::ENTRY,
+    static_cyclic::ENTRY,
+    shared_counter::ENTRY,
+    dynamic::ENTRY,
+    guided::ENTRY,
+    trapezoid::ENTRY,
+    factoring::ENTRY,
+    mutex_queue::ENTRY,
+    fixed_pool::ENTRY,
+    work_stealing::ENTRY,
+    steal_one::ENTRY,
+    steal_half::ENTRY,
+    rayon::ENTRY,
+    rayon_join::ENTRY,
+    rayon_scope::ENTRY,
+    chili::ENTRY,
+    paralight::ENTRY,
+    orx_parallel::ENTRY,
+    #[cfg(feature = "openmp")]
+    openmp_static::ENTRY,
+    #[cfg(feature = "openmp")]
+    openmp_dynamic::ENTRY,
+    #[cfg(feature = "openmp")]
+    openmp_guided::ENTRY,
+];
+
+/// The strategy called `name`.
+pub fn find(name: &str) -> Option<&'static Entry> {
+    STRATEGIES.iter().find(|entry| entry.name == name)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_are_found() {
+        let names: HashSet<_> = STRATEGIES.iter().map(|entry| entry.name).collect();
+        assert_eq!(names.len(), STRATEGIES.len());
+        assert!(STRATEGIES.iter().all(|entry| find(entry.name).is_some_and(|found| found.about == entry.about)));
+        assert!(find("no-such-strategy").is_none());
+    }
+}

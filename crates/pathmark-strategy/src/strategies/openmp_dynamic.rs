@@ -1,0 +1,23 @@
+//! OpenMP, dynamic: whoever is free takes the next C jobs, from a counter of libgomp.
+//!
+//! `pathmark render cornell --strategy openmp-dynamic:8 --threads 4`, in a build with `--features openmp`; without a number C is 1.
+//!
+//! The `schedule(dynamic, C)` of OpenMP: "OpenMP Application Programming Interface", version 5.2, 2021, section 11.5.3. smallpt is parallel by
+//! it, a row of pixels to a chunk. It hands out like `dynamic`.
+//!
+//! Cost: threads start once, in the construction. A run wakes them and ends with a barrier; a chunk is an atomic addition in libgomp, a job a
+//! call through C.
+
+use super::dynamic;
+use super::openmp::{Schedule, chunk, chunks, entry, make};
+use crate::Entry;
+
+pub(super) const ENTRY: Entry = Entry {
+    parameter: chunk(|value| chunks(dynamic::size, value)),
+    ..entry(
+        "openmp-dynamic",
+        "OpenMP's schedule(dynamic, C) in libgomp (openmp-dynamic:C; 1 if no number is given)",
+        dynamic::ENTRY.discipline,
+        |blueprint| make(blueprint, Schedule::Dynamic),
+    )
+};

@@ -1,0 +1,28 @@
+//! OpenMP, guided: whoever is free takes a p-th of what is left, and at least C jobs, by the reckoning of libgomp.
+//!
+//! `pathmark render cornell --strategy openmp-guided:4 --threads 4`, in a build with `--features openmp`; without a number C is 1.
+//!
+//! The `schedule(guided, C)` of OpenMP: "OpenMP Application Programming Interface", version 5.2, 2021, section 11.5.3. The standard leaves
+//! the sizes to the implementation; libgomp rounds up, like `guided` and the paper that it cites.
+//!
+//! Cost: threads start once, in the construction. A run wakes them and ends with a barrier; a chunk is a compare-exchange in libgomp, a job a
+//! call through C.
+
+use super::guided;
+use super::openmp::{Schedule, chunk, chunks, entry, make};
+use crate::{Entry, Handout};
+
+pub(super) const ENTRY: Entry = Entry {
+    parameter: chunk(|value| chunks(size, value)),
+    ..entry(
+        "openmp-guided",
+        "OpenMP's schedule(guided, C) in libgomp (openmp-guided:C; 1 if no number is given)",
+        guided::ENTRY.discipline,
+        |blueprint| make(blueprint, Schedule::Guided),
+    )
+};
+
+/// As `guided`, but C jobs at least.
+fn size(handout: &Handout) -> usize {
+    guided::size(handout).max(handout.parameter)
+}

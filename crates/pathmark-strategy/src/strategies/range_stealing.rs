@@ -1,0 +1,177 @@
+//! What `steal-one` and `steal-half` share: each worker begins with its block of the jobs, and whoever has none left steals from another
+//! worker's end.
+
+use std::cmp::Reverse;
+use std::ops::Range;
+use std::sync::Arc;
+
+use rand::Rng;
+use rand_pcg::Pcg32;
+
+use super::static_blocks::block;
+use crate::panics::Panics;
+use crate::ranges::Ranges;
+use crate::taken::Taken;
+use crate::{
+    Amount, Blueprint, Discipline, Entry, Job, Parameter, Start, Stealing, Strategy, StrategyError, Victim, team,
+};
+
+/// What may follow the colon.
+const VICTIMS: [(&str, Victim); 3] =
+    [("neighbour", Victim::Neighbour), ("random", Victim::Random), ("richest", Victim::Richest)];
+
+/// A job's number has half of a 64-bit word.
+const MOST: usize = u32::MAX as usize;
+
+/// The strategy that steals so much; `read` is its [`discipline`], from the victim that the user names.
+pub(super) const fn entry(
+    name: &'static str,
+    about: &'static str,
+    amount: Amount,
+    read: fn(&str) -> Option<Discipline>,
+) -> Entry {
+    let stealing = Stealing { start: Start::Blocks, amount, victim: Victim::Neighbour };
+    Entry {
+        parameter: Some(Parameter { allowed: "neighbour, random, richest", read }),
+        ..Entry::new(name, about, Discipline::Stealing(stealing), make)
+    }
+}
+
+/// Stealing so much from a victim by name.
+pub(super) fn discipline(amount: Amount, victim: &str) -> Option<Discipline> {
+    let &(_, victim) = VICTIMS.iter().find(|(known, _)| *known == victim)?;
+    Some(Discipline::Stealing(Stealing { start: Start::Blocks, amount, victim }))
+}
+
+fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    match blueprint.discipline {
+        Discipline::Stealing(stealing) => Ok(Box::new(RangeStealing { blueprint: blueprint.clone(), stealing })),
+        other => unreachable!("{} hands out jobs by {other:?}", blueprint.strategy),
+    }
+}
+
+struct RangeStealing {
+    blueprint: Blueprint,
+    stealing: Stealing,
+}
+
+impl Strategy for RangeStealing {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        if jobs > MOST {
+            return Err(StrategyError::TooManyJobs { strategy: self.blueprint.strategy, jobs, most: MOST });
+        }
+        let workers = self.blueprint.threads.get().min(jobs);
+        let blocks = (0..workers).map(|worker| {
+            let Range { start, end } = block(worker, workers, jobs);
+            start as u32..end as u32
+        });
+        let shared = Arc::new((Ranges::new(blocks), Taken::new(jobs, workers)));
+        let Stealing { amount, victim, .. } = self.stealing;
+        let bodies = (0..workers).map(|worker| {
+            let (job, shared) = (Arc::clone(&job), Arc::clone(&shared));
+            move |panics: &Panics| {
+                let (ranges, taken) = &*shared;
+                let mut thief = Thief::new(worker, amount, victim);
+                let next = || ranges.pop(worker).or_else(|| thief.steal(ranges)).map(|index| index as usize);
+                taken.work(worker, panics, next, &*job);
+            }
+        });
+        team::run(&*self.blueprint.spawner, bodies)
+    }
+}
+
+/// A worker whose own range is empty.
+struct Thief {
+    worker: usize,
+    amount: Amount,
+    victim: Victim,
+    /// Its stream is the worker's number, so that no clock and no luck from outside has a part in a run.
+    random: Pcg32,
+}
+
+impl Thief {
+    fn new(worker: usize, amount: Amount, victim: Victim) -> Self {
+        Self { worker, amount, victim, random: Pcg32::new(0, worker as u64) }
+    }
+
+    /// A job from another worker; what comes with it is in this worker's range afterwards. `None` if no worker had one when asked.
+    fn steal(&mut self, ranges: &Ranges) -> Option<u32> {
+        let workers = ranges.workers();
+        let thief = self.worker;
+        let amount = match self.amount {
+            Amount::One => |_| 1,
+            Amount::Half => |left: u32| left.div_ceil(2),
+        };
+        let first = match self.victim {
+            Victim::Neighbour => thief + 1,
+            // The product's high half is below the number of workers.
+            Victim::Random => ((u64::from(self.random.next_u32()) * workers as u64) >> 32) as usize,
+            // Of equals the first. If it has become poor meanwhile, its neighbour will do.
+            Victim::Richest => (0..workers).max_by_key(|&worker| (ranges.left(worker), Reverse(worker)))?,
+        };
+        let mut victims = (first..first + workers).map(|worker| worker % workers).filter(|&victim| victim != thief);
+        victims.find_map(|victim| ranges.steal(thief, victim, amount))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Config, find};
+    use std::num::NonZeroUsize;
+
+    /// Worker 0 has nothing, 1 one job, 2 none, 3 four jobs and 4 two.
+    fn ranges() -> Ranges {
+        Ranges::new([0..0, 0..1, 1..1, 1..5, 5..7].into_iter())
+    }
+
+    fn stolen(worker: usize, amount: Amount, victim: Victim, ranges: &Ranges) -> Option<u32> {
+        Thief::new(worker, amount, victim).steal(ranges)
+    }
+
+    #[test]
+    fn a_thief_takes_the_last_job_or_the_upper_half() {
+        let from = ranges();
+        assert_eq!(stolen(2, Amount::One, Victim::Neighbour, &from), Some(4));
+        assert_eq!([2, 3].map(|worker| from.left(worker)), [0, 3]);
+        // Half of three is two: 2 is run at once and 3 is the thief's.
+        assert_eq!(stolen(2, Amount::Half, Victim::Neighbour, &from), Some(2));
+        assert_eq!([2, 3].map(|worker| from.left(worker)), [1, 1]);
+        assert_eq!((from.pop(2), from.pop(2), from.pop(3), from.pop(3)), (Some(3), None, Some(1), None));
+    }
+
+    #[test]
+    fn the_victim_is_the_one_that_was_asked_for() {
+        assert_eq!(stolen(0, Amount::One, Victim::Neighbour, &ranges()), Some(0));
+        assert_eq!(stolen(0, Amount::One, Victim::Richest, &ranges()), Some(4));
+        // Worker 3 first, then 4: a random start reaches both, and 1.
+        let mut thief = Thief::new(0, Amount::One, Victim::Random);
+        let mut seen: Vec<_> = (0..50).filter_map(|_| thief.steal(&ranges())).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        assert_eq!(seen, [0, 4, 6]);
+        let empty = Ranges::new([0..0, 0..0].into_iter());
+        assert!(
+            [Victim::Neighbour, Victim::Random, Victim::Richest].map(|v| stolen(0, Amount::Half, v, &empty))
+                == [None; 3]
+        );
+    }
+
+    #[test]
+    fn of_equally_rich_victims_the_first_is_asked() {
+        let from = Ranges::new([0..0, 0..2, 2..4].into_iter());
+        assert_eq!(stolen(0, Amount::One, Victim::Richest, &from), Some(1));
+    }
+
+    #[test]
+    fn more_jobs_than_a_word_can_number_are_refused() {
+        for name in ["steal-one", "steal-half"] {
+            let mut strategy = find(name).unwrap().build(Config::new(NonZeroUsize::MIN)).unwrap();
+            let error = strategy.run(MOST + 1, Arc::new(|_| panic!("nothing may run"))).unwrap_err();
+            assert_eq!(
+                error.to_string(),
+                format!("strategy {name}: 4294967296 jobs are too many (allowed: 0 to 4294967295)")
+            );
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! Rayon: a parallel iterator over the jobs, split down to single ones.
+//!
+//! `pathmark render cornell --strategy rayon --threads 4`
+//!
+//! The library that most Rust programs use, as they use it. The range of jobs is halved again and again by `join`, whose second half may be
+//! stolen (the scheme of Cilk: Blumofe and Leiserson, JACM 46(5), 1999).
+//!
+//! Cost: threads start once, in the construction and not in the run. A run wakes the pool; a job is a leaf of the tree of joins
+//! and costs about one push and pop on the worker's own deque. Idle workers search for a while before they sleep.
+
+use ::rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+
+use super::rayon_pool::Pool;
+use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError};
+
+pub(super) const ENTRY: Entry = Entry::new(
+    "rayon",
+    "rayon's parallel iterator in a pool of its own, split down to single jobs",
+    Discipline::Halving,
+    make,
+);
+
+fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    Ok(Box::new(Rayon(Pool::new(blueprint)?)))
+}
+
+struct Rayon(Pool);
+
+impl Strategy for Rayon {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        self.0.run(|panics| {
+            let leaf = |index| panics.attempt(|| job(index));
+            (0..jobs).into_par_iter().with_max_len(1).for_each(leaf);
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,46 @@
+//! Rayon's join: the range of jobs is halved by our own recursion, down to single jobs.
+//!
+//! `pathmark render cornell --strategy rayon-join --threads 4`
+//!
+//! Divide and conquer as Cilk has it: Blumofe et al., "Cilk: an efficient multithreaded runtime system", PPoPP 1995; in Rust, `join` of
+//! rayon. A worker goes on with the first half and leaves the second where others may steal it. Against `rayon` this shows what the
+//! machinery of parallel iterators adds to the same halving.
+//!
+//! Cost: threads start once, in the construction and not in the run. One `join` for each job, which is a push and a pop on the worker's
+//! own deque unless the second half was stolen.
+
+use std::ops::Range;
+
+use ::rayon::join;
+
+use super::rayon_pool::Pool;
+use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError};
+
+pub(super) const ENTRY: Entry =
+    Entry::new("rayon-join", "rayon's join, halving the jobs down to single ones", Discipline::Halving, make);
+
+fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    Ok(Box::new(RayonJoin(Pool::new(blueprint)?)))
+}
+
+struct RayonJoin(Pool);
+
+impl Strategy for RayonJoin {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        self.0.run(|panics| halve(0..jobs, &|index| panics.attempt(|| job(index))));
+        Ok(())
+    }
+}
+
+/// Runs the jobs of a range, the two halves perhaps on two workers.
+fn halve(range: Range<usize>, leaf: &(impl Fn(usize) + Sync)) {
+    let Range { start, end } = range;
+    match end - start {
+        0 => {}
+        1 => leaf(start),
+        jobs => {
+            let middle = start + jobs / 2;
+            join(|| halve(start..middle, leaf), || halve(middle..end, leaf));
+        }
+    }
+}

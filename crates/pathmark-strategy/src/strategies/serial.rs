@@ -1,0 +1,35 @@
+//! Serial: one job after the other on the calling thread.
+//!
+//! `pathmark render cornell --strategy serial`
+//!
+//! The baseline T1 of every speedup: the best that one thread can do. It starts nothing and synchronises nothing, so a parallel
+//! strategy on one thread is measured *against* it, not instead of it.
+//!
+//! Cost: an indirect call a job.
+
+use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, Workers};
+
+pub(super) const ENTRY: Entry = Entry {
+    workers: Workers::Caller,
+    ..Entry::new(
+        "serial",
+        "one job after the other on the calling thread: the baseline of speedups (ignores --threads)",
+        Discipline::InOrder,
+        make,
+    )
+};
+
+fn make(_: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    Ok(Box::new(Serial))
+}
+
+struct Serial;
+
+impl Strategy for Serial {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        for index in 0..jobs {
+            job(index);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,47 @@
+//! Shared counter: whoever is free takes the next index from one atomic counter.
+//!
+//! `pathmark render cornell --strategy shared-counter --threads 4`
+//!
+//! Processor self-scheduling in its purest form, a chunk of one job: Tang and Yew, "Processor self-scheduling for multiple-nested
+//! parallel loops", ICPP 1986. OpenMP calls it `schedule(dynamic, 1)`.
+//!
+//! Cost: one thread's start for each worker, and for each job one atomic addition on a cache line that all workers want. No
+//! worker idles while a job is left, so the imbalance is one job at most; with very small jobs the line is the bottleneck.
+
+use std::sync::Arc;
+
+use crate::counter::Counter;
+use crate::panics::Panics;
+use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, team};
+
+pub(super) const ENTRY: Entry = Entry::new(
+    "shared-counter",
+    "whoever is free takes the next index from an atomic counter",
+    Discipline::ONE_BY_ONE,
+    make,
+);
+
+fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    Ok(Box::new(SharedCounter(blueprint.clone())))
+}
+
+struct SharedCounter(Blueprint);
+
+impl Strategy for SharedCounter {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        let next = Arc::new(Counter::default());
+        let bodies = (0..self.0.threads.get().min(jobs)).map(|_| {
+            let (job, next) = (Arc::clone(&job), Arc::clone(&next));
+            move |panics: &Panics| {
+                while !panics.stop_asked() {
+                    let index = next.take();
+                    if index >= jobs {
+                        break;
+                    }
+                    job(index);
+                }
+            }
+        });
+        team::run(&*self.0.spawner, bodies)
+    }
+}

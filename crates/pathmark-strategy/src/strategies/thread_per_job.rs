@@ -1,0 +1,46 @@
+//! Thread per job: a new thread for each job, all at once, and the operating system does the scheduling.
+//!
+//! `pathmark render cornell --strategy thread-per-job --decomposition rows`, or `--strategy thread-per-row` for short
+//!
+//! The plan of report A (METHODOLOGY), which starts 768 threads for the 768 rows of its picture. It ignores `--threads`.
+//!
+//! Cost: a thread's start and end for each job (tens of microseconds), a stack for each, and time slices shared among far more
+//! threads than cores. Balance is left to the kernel. With tens of thousands of jobs the system refuses or ends the process, so
+//! whoever chooses the jobs keeps below that.
+
+use std::sync::Arc;
+
+use crate::panics::Panics;
+use crate::{Blueprint, Discipline, Entry, Job, Spawner, Strategy, StrategyError, Workers, team};
+
+pub(super) const ENTRY: Entry = Entry {
+    workers: Workers::PerJob,
+    ..Entry::new(
+        "thread-per-job",
+        "a new thread for each job, all at once (ignores --threads)",
+        Discipline::AllAtOnce,
+        make,
+    )
+};
+
+fn make(Blueprint { spawner, .. }: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    Ok(Box::new(ThreadPerJob { spawner: Arc::clone(spawner) }))
+}
+
+struct ThreadPerJob {
+    spawner: Arc<dyn Spawner>,
+}
+
+impl Strategy for ThreadPerJob {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        let bodies = (0..jobs).map(|index| {
+            let job = Arc::clone(&job);
+            move |panics: &Panics| {
+                if !panics.stop_asked() {
+                    job(index);
+                }
+            }
+        });
+        team::run(&*self.spawner, bodies)
+    }
+}

@@ -1,0 +1,48 @@
+//! Our strategies keep the contract, and the contract notices strategies that don't.
+
+mod broken;
+#[cfg(feature = "openmp")]
+mod openmp;
+mod refusals;
+
+use pathmark_strategy::contract::Contract;
+use pathmark_strategy::{Entry, STRATEGIES, find};
+
+/// As `contract::verify`; with `PATHMARK_THOROUGH`, at every place where a job may panic.
+fn verify(entry: &Entry, parameter: Option<&str>) {
+    let thorough = std::env::var_os("PATHMARK_THOROUGH").is_some();
+    let contract = Contract { thorough, parameter: parameter.map(str::to_owned), ..Contract::default() };
+    contract.verify(entry).unwrap_or_else(|violations| panic!("{}: {violations:#?}", entry.name));
+}
+
+#[test]
+fn every_strategy_keeps_the_contract() {
+    for entry in STRATEGIES {
+        verify(entry, None);
+    }
+}
+
+/// Every parameter that a strategy's documentation names.
+const PARAMETERS: &[(&str, &[&str])] = &[
+    ("dynamic", &["1", "2", "7", "5000"]),
+    ("orx-parallel", &["1", "7", "5000"]),
+    ("steal-one", &["neighbour", "random", "richest"]),
+    ("steal-half", &["neighbour", "random", "richest"]),
+    #[cfg(feature = "openmp")]
+    ("openmp-dynamic", &["1", "7", "5000"]),
+    #[cfg(feature = "openmp")]
+    ("openmp-guided", &["1", "7", "5000"]),
+];
+
+#[test]
+fn every_parameter_keeps_the_contract() {
+    for (name, parameters) in PARAMETERS {
+        let entry = find(name).expect("it is in the table");
+        for parameter in *parameters {
+            verify(entry, Some(parameter));
+        }
+    }
+    // Who has a parameter is in the list.
+    let listed = |entry: &&Entry| PARAMETERS.iter().any(|(name, _)| *name == entry.name);
+    assert!(STRATEGIES.iter().filter(|entry| entry.parameter.is_some()).all(|entry| listed(&entry)));
+}

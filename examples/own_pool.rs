@@ -1,0 +1,68 @@
+//! A thread pool of your own beside Pathmark's: here `paralight` with fixed ranges, which gives each of its threads a block of the jobs.
+//!
+//! `cargo run --release --example own_pool -- render cornell --strategy paralight-fixed --threads 2` renders with it,
+//! `-- run thread-scaling` compares it, and `cargo test --example own_pool` says whether it keeps the contract.
+
+use std::iter::StepBy;
+use std::ops::Range;
+use std::process::ExitCode;
+
+use paralight::prelude::{
+    CpuPinningPolicy, ExactParallelSourceExt, IntoExactParallelSource, ParallelIteratorExt, RangeStrategy, ThreadCount,
+    ThreadPool, ThreadPoolBuilder,
+};
+use pathmark::Lab;
+use pathmark::strategy::{Blueprint, Discipline, Entry, Job, Panics, Strategy, StrategyError, Threads, library};
+
+const ENTRY: Entry = Entry {
+    threads: Threads::Library, // Paralight starts them itself; a pool that takes threads gets them from `Blueprint::spawner`.
+    ..Entry::new(
+        "paralight-fixed",
+        "a block of jobs for each thread of paralight's pool",
+        Discipline::Dealt(deal),
+        make,
+    )
+};
+
+/// What paralight does, as the simulator can replay it. `Discipline::ONE_BY_ONE` and `Halving` say it of many other pools.
+fn deal(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>> {
+    let start = |worker| worker * jobs / workers;
+    (start(worker)..start(worker + 1)).step_by(1)
+}
+
+fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    let threads = blueprint.threads;
+    let pool = ThreadPoolBuilder {
+        num_threads: ThreadCount::Count(threads),
+        range_strategy: RangeStrategy::Fixed,
+        cpu_pinning: CpuPinningPolicy::No,
+    };
+    // Where the system gives no thread paralight panics, and this is an error.
+    Ok(Box::new(Fixed(library::start(blueprint, threads.get(), || pool.build())?)))
+}
+
+struct Fixed(ThreadPool);
+
+impl Strategy for Fixed {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        let panics = Panics::default();
+        // After a panic `attempt` leaves out the jobs that are left, and `raise` passes the panic on.
+        let attempt = |index| panics.attempt(|| job(index));
+        (0..jobs).into_par_iter().with_thread_pool(&mut self.0).for_each(attempt);
+        drop(job);
+        panics.raise();
+        Ok(())
+    }
+}
+
+fn main() -> ExitCode {
+    Lab::new().strategy(ENTRY).main()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn it_keeps_the_contract() {
+        pathmark::strategy::contract::verify(&super::ENTRY).unwrap();
+    }
+}
