@@ -30,7 +30,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// Version of the arithmetic. It changes when the same settings give other bits than before, and films of the old ones are no longer used.
-pub const REVISION: u32 = 1;
+pub const REVISION: u32 = 2;
 
 /// What happened while a piece was rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]

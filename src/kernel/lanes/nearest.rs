@@ -18,7 +18,7 @@ impl Lanes {
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
-            Search::Wide(wide) => wide.nearest(rays, wanted, counts),
+            Search::Wide(wide) => (wide.nearest(rays, wanted, counts), 0),
             // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };
@@ -100,6 +100,19 @@ impl<V: Float> Found<V> {
     #[inline(always)]
     pub(super) fn take_from_anywhere(&mut self, number: V, distance: V) {
         let is_nearer = V::splat(0.0).lt(distance) & distance.lt(self.nearest);
+        self.replace(is_nearer, number, distance);
+    }
+
+    /// Likewise, for primitives in any order: among equally near ones the lowest number wins.
+    #[inline(always)]
+    pub(super) fn take_in_any_order(&mut self, number: V, distance: V) {
+        let comes_first = distance.equal(self.nearest) & number.lt(self.primitive);
+        let is_nearer = V::splat(0.0).lt(distance) & (distance.lt(self.nearest) | comes_first);
+        self.replace(is_nearer, number, distance);
+    }
+
+    #[inline(always)]
+    fn replace(&mut self, is_nearer: V::Mask, number: V, distance: V) {
         self.nearest = V::select(is_nearer, distance, self.nearest);
         self.primitive = V::select(is_nearer, number, self.primitive);
     }

@@ -60,8 +60,8 @@ impl Singles {
         curved.chain(self.centred.iter().map(|(number, ..)| *number)).any(|own| own == number)
     }
 
-    /// The first sphere along each ray. Ties go to those that enclose all, those by curvature and those by centre, in this order, and then to the
-    /// lowest number.
+    /// The first sphere along each ray. Among equally near ones the lowest number wins; of large ones, those that enclose all win first. A tree
+    /// over the small ones ([`super::wide`]) finds the same by the same formula.
     #[inline(always)]
     pub(super) fn scan<V: Float>(&self, rays: &Rays<V>) -> Found<V> {
         let (origin, direction) = (rays.ray.origin, rays.ray.direction);
@@ -79,11 +79,13 @@ impl Singles {
             let (b, c) = curved_quadratic(&in_lanes(sphere), origin, direction, square, along);
             found.take(rays, V::splat((*number).into()), first_root_curved(V::splat(sphere.curvature.into()), b, c));
         }
+        let mut small = Found::nothing();
         for (number, center, radius) in &self.centred {
             let offset = origin - splat::<V>(*center);
             let root = first_root(offset, direction, V::splat(1.0), V::splat(f64::from(*radius)));
-            found.take(rays, V::splat((*number).into()), root);
+            small.take(rays, V::splat((*number).into()), root);
         }
+        found.take_in_any_order(small.primitive, small.nearest);
         found
     }
 }

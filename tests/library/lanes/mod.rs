@@ -1,6 +1,7 @@
 //! The kernel of SIMD lanes gives what the scalar kernel gives, sample by sample and bit for bit, on every instruction set that this processor
 //! has. The scalar kernel is the oracle here; that it is right is what the other tests are about.
 
+mod invariance;
 mod precision;
 
 use crate::watchdog::Watchdog;

@@ -21,8 +21,9 @@ const NO_SPHERE: ([f64; 4], [f64; 4]) = ([1e30, 1e30, 1e30, 0.0], [f64::NAN; 4])
 pub(super) struct Blocks {
     /// As [`super::coarse`] has them.
     spheres: Vec<f32>,
-    /// The same in the same order: centres and radii as they are.
-    exact: Vec<[f64; 4]>,
+    /// The same in the same order: centres and radii as they are, in double precision sphere by sphere, in single precision block by block, first the
+    /// x of all, then y, z and the radii.
+    exact: Numbers,
     triangles: Numbers,
     pub(super) has_triangles: bool,
     pub(super) scale: Scale,
@@ -133,7 +134,14 @@ impl<'a> Making<'a> {
         Blocks {
             has_triangles: !self.triangles.is_empty(),
             spheres: self.spheres,
-            exact: self.exact,
+            exact: match precision {
+                Precision::F64 => Numbers::new(self.exact.concat(), precision),
+                Precision::F32 => {
+                    let columns = |block: &[[f64; 4]]| [0, 1, 2, 3].map(|k| block.iter().map(|row| row[k]).collect());
+                    let blocks = self.exact.chunks(self.widths[0]).flat_map(columns).collect::<Vec<Vec<f64>>>();
+                    Numbers::new(blocks.concat(), precision)
+                }
+            },
             triangles: Numbers::new(self.triangles, precision),
             scale: self.scale,
         }
@@ -158,6 +166,15 @@ fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Turned
 }
 
 impl Blocks {
+    /// Distances to the spheres of a block, by the formula of [`Singles`] and with its bits.
+    #[inline(always)]
+    fn roots_in_block<W: Float<One = f32>>(&self, block: usize, origin: Vec3, direction: Vec3) -> W {
+        let exact = &f32::all(&self.exact)[block * 4 * W::LANES..];
+        let (x, y) = (W::load(exact), W::load(&exact[W::LANES..]));
+        let (z, radius) = (W::load(&exact[2 * W::LANES..]), W::load(&exact[3 * W::LANES..]));
+        first_root(Vec3::splat(origin) - Vec3 { x, y, z }, Vec3::splat(direction), W::splat(1.0), radius)
+    }
+
     /// Tests a ray against all primitives of a leaf.
     #[inline(always)]
     pub(super) fn test<V: Float>(&self, leaf: &Leaf, ray: &Single<V>, best: &mut Best) {
@@ -166,11 +183,18 @@ impl Blocks {
             let spheres = &self.spheres[block * OF_SPHERE * lanes..(block + 1) * OF_SPHERE * lanes];
             let numbers = &spheres[(OF_SPHERE - 1) * lanes..];
             let is_own = V::Single::splat(ray.from).equal(V::Single::load(numbers));
-            // Of a block most rays come near one sphere or none.
-            for lane in LanesOf((!(ray.coarse.passes(spheres) | is_own)).bits()) {
-                let [x, y, z, radius] = self.exact[block * lanes + lane];
-                let root = first_root(ray.origin - Vec3::new(x, y, z), ray.direction, 1.0, radius);
-                best.take_one(V::one(root).into(), numbers[lane].into());
+            let is_near = !(ray.coarse.passes(spheres) | is_own);
+            if V::IS_DOUBLE {
+                // Of a block most rays come near one sphere or none.
+                let exact = f64::all(&self.exact).as_chunks().0;
+                for lane in LanesOf(is_near.bits()) {
+                    let [x, y, z, radius] = exact[block * lanes + lane];
+                    let root = first_root(ray.origin - Vec3::new(x, y, z), ray.direction, 1.0, radius);
+                    best.take_one(root, numbers[lane].into());
+                }
+            } else if is_near.any() {
+                let roots = self.roots_in_block::<V::Single>(block, ray.origin, ray.direction);
+                best.take(numbers, V::Single::select(is_near, roots, V::Single::splat(f64::NAN)));
             }
         }
         let Some(turned) = &ray.turned else { return };

@@ -2,7 +2,8 @@
 //! into a hierarchy by itself tests fewer boxes than all of them together (Wald, Benthin and Boulos, "Getting Rid of Packets", 2008).
 //!
 //! What it finds does not depend on how many are tested at a time: what is tested in single precision first has a padding that covers all rounding,
-//! and among equally near primitives the lowest number wins. In double precision it is what the scalar search finds, to the bit.
+//! and among equally near primitives the lowest number wins. In double precision it is what the scalar search finds, to the bit; in single precision
+//! each primitive is tested by one formula, in a tree and without one: spheres by those of [`Singles`].
 
 mod blocks;
 mod coarse;
@@ -53,14 +54,14 @@ impl Wide {
         Self { large, planes, blocks, search }
     }
 
-    /// The first thing along each of the `wanted` rays, and those whose search was given up because too much was left to look at.
+    /// The first thing along each of the `wanted` rays.
     #[inline(always)]
     pub(in crate::kernel::lanes) fn nearest<V: Float>(
         &self,
         rays: &Rays<V>,
         wanted: u32,
         counts: &mut Counts,
-    ) -> (Found<V>, u32) {
+    ) -> Found<V> {
         let Ray { origin, direction } = rays.ray;
         let mut found = match &self.large {
             Some(large) => large.scan(rays),
@@ -68,7 +69,7 @@ impl Wide {
         };
         // What a ray starts on is not tested: where it will be met again is known. A ray that starts on nothing has any `own_root`.
         let nowhere = V::splat(f64::NAN);
-        found.take_from_anywhere(rays.from, V::select(V::splat(0.0).le(rays.from), rays.own_root, nowhere));
+        found.take_in_any_order(rays.from, V::select(V::splat(0.0).le(rays.from), rays.own_root, nowhere));
         for (number, plane) in &self.planes {
             let (point, normal) = (Vec3::splat(plane.point), Vec3::splat(plane.normal));
             found.take(rays, V::splat(*number), plane_root(point - origin, direction, normal));
@@ -79,7 +80,7 @@ impl Wide {
         for (row, vector) in rows.iter_mut().zip(vectors.into_iter().chain([found.nearest, found.primitive])) {
             vector.store(row);
         }
-        let (mut left, mut tests) = (0, Tests::default());
+        let mut tests = Tests::default();
         let mut waiting = Waiting::new();
         for lane in LanesOf(wanted) {
             let [ox, oy, oz, dx, dy, dz, from, nearest, primitive] = rows.each_ref().map(|row| row[lane].into());
@@ -89,18 +90,14 @@ impl Wide {
             let mut best = Best { nearest, primitive };
             match &self.search {
                 Search::All(leaf) => self.blocks.test(leaf, &ray, &mut best),
-                Search::Tree(tree) => {
-                    if !tree.search(&self.blocks, &ray, &mut best, &mut waiting, &mut tests) {
-                        left |= 1 << lane;
-                    }
-                }
+                Search::Tree(tree) => tree.search(&self.blocks, &ray, &mut best, &mut waiting, &mut tests),
             }
             rows[7][lane] = V::one(best.nearest);
             rows[8][lane] = V::one(best.primitive);
         }
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
-        (Found { nearest: V::load(&rows[7]), primitive: V::load(&rows[8]) }, left)
+        Found { nearest: V::load(&rows[7]), primitive: V::load(&rows[8]) }
     }
 }
 
@@ -187,8 +184,7 @@ mod tests {
             let Self(scene, wide, starts) = self;
             for starts in starts.chunks_exact(V::LANES) {
                 let wanted = u32::MAX >> (MOST_LANES - V::LANES);
-                let (found, left) = wide.nearest(&side_by_side::<V>(scene, starts), wanted, &mut Counts::default());
-                assert_eq!(left, 0, "given up");
+                let found = wide.nearest(&side_by_side::<V>(scene, starts), wanted, &mut Counts::default());
                 for (lane, start) in starts.iter().enumerate() {
                     let (t, primitive) = nearest(scene, start);
                     let found = (found.nearest.lane(lane), found.primitive.lane(lane));

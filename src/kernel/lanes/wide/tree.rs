@@ -44,7 +44,7 @@ impl Tree {
         Self { faces, children, counts, leaves }
     }
 
-    /// Tests a ray against what is in the boxes on its way; `false` if more was left to look at than may wait.
+    /// Tests a ray against what is in the boxes on its way.
     #[inline(always)]
     pub(super) fn search<V: Float>(
         &self,
@@ -53,9 +53,8 @@ impl Tree {
         best: &mut Best,
         waiting: &mut Waiting,
         tests: &mut Tests,
-    ) -> bool {
+    ) {
         let lanes = V::Single::LANES;
-        waiting.count = 0;
         let mut next = Some(0);
         while let Some(child) = next {
             if child & IS_LEAF != 0 {
@@ -69,7 +68,7 @@ impl Tree {
                 let met = met.bits();
                 if met != 0 {
                     if waiting.count + lanes > MOST_WAITING {
-                        return false;
+                        waiting.put_aside();
                     }
                     enter.store(&mut waiting.met);
                     next = Some(waiting.push(&self.children[node * lanes..(node + 1) * lanes], met));
@@ -78,18 +77,19 @@ impl Tree {
             }
             next = waiting.pop((best.nearest * blocks.scale.0) as f32);
         }
-        true
     }
 }
 
-/// Children that may wait for a ray: some 15 a level of a tree that is six or more levels deep on the widest registers.
+/// Children that wait in place: some 15 a level of a tree that is six or more levels deep on the widest registers.
 const MOST_WAITING: usize = 160;
 
-/// Children to come back to.
+/// Children to come back to; none when a search is done.
 pub(super) struct Waiting {
     children: [u32; MOST_WAITING],
     distances: [f32; MOST_WAITING],
     count: usize,
+    /// Those for which there is no place: a tree may be deeper than any scene has needed.
+    aside: Vec<(u32, f32)>,
     /// Where the ray enters the boxes of one node.
     met: [f32; MOST_LANES],
 }
@@ -97,7 +97,22 @@ pub(super) struct Waiting {
 impl Waiting {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self { children: [0; MOST_WAITING], distances: [0.0; MOST_WAITING], count: 0, met: [0.0; MOST_LANES] }
+        Self {
+            children: [0; MOST_WAITING],
+            distances: [0.0; MOST_WAITING],
+            count: 0,
+            aside: Vec::new(),
+            met: [0.0; MOST_LANES],
+        }
+    }
+
+    /// Makes room.
+    #[cold]
+    #[inline(never)]
+    fn put_aside(&mut self) {
+        let waiting = self.children.iter().copied().zip(self.distances);
+        self.aside.extend(waiting.take(self.count));
+        self.count = 0;
     }
 
     /// Keeps those of a node's children that are met, which must be one or more, but for the nearest, which is returned. The others are not sorted: to
@@ -125,6 +140,11 @@ impl Waiting {
             self.count -= 1;
             if self.distances[self.count] <= limit {
                 return Some(self.children[self.count]);
+            }
+        }
+        while let Some((child, distance)) = self.aside.pop() {
+            if distance <= limit {
+                return Some(child);
             }
         }
         None
