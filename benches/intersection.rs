@@ -4,7 +4,7 @@
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::math::{Curved, Ray, Vec3, curved_quadratic, dot, first_root, first_root_curved};
 use pathmark::scene::{ACCELERATORS, AllEffects, Bounds, Plane, Primitive, Sphere, Tests, Triangle, load};
-use pathmark::simd::{Float, LEVELS, Precision, Work, on_level};
+use pathmark::simd::{Float, Precision, Work, levels, on_level};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 use std::hint::black_box;
@@ -104,14 +104,14 @@ fn lanes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("lanes");
     group.throughput(Throughput::Elements(RAYS as u64 * u64::from(SPHERES)));
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
-    for level in LEVELS.iter().filter(|level| level.is_available()) {
+    for level in levels() {
         for precision in Precision::ALL {
             for (form, is_curved) in [("centre", false), ("curvature", true)] {
                 let name = format!("{form}-{}", precision.name());
-                group.bench_function(BenchmarkId::new(name, level.name), |bencher| {
+                group.bench_function(BenchmarkId::new(name, level.name()), |bencher| {
                     bencher.iter(|| {
                         let work = InEachLane { rays: black_box(&rays), spheres: SPHERES, is_curved };
-                        black_box(on_level(level.name, precision, work))
+                        black_box(on_level(level, precision, work))
                     });
                 });
             }

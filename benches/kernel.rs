@@ -5,7 +5,7 @@ use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Decomposition, TileBuffer};
 use pathmark::kernel::{KERNELS, Spec, build, choose};
-use pathmark::simd::{LEVELS, Precision};
+use pathmark::simd::{Precision, levels};
 use std::hint::black_box;
 use std::sync::Arc;
 use std::time::Duration;
@@ -19,8 +19,7 @@ fn kernels() -> impl Iterator<Item = (String, Spec)> {
         if kernel.name == "scalar" {
             return vec![(kernel.name.to_string(), spec)];
         }
-        let levels = LEVELS.iter().filter(|level| level.is_available());
-        let formats = levels.flat_map(|level| Precision::ALL.map(|precision| (level.name, precision.name())));
+        let formats = levels().flat_map(|level| Precision::ALL.map(|precision| (level.name(), precision.name())));
         formats
             .map(|(level, precision)| {
                 let name = format!("{}-{precision}-{level}", kernel.name);

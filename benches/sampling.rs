@@ -3,7 +3,7 @@
 use criterion::{BenchmarkId, Criterion, Throughput};
 use pathmark::math::Bits;
 use pathmark::sampling::{Address, InLanes, PathWords, Purpose, SAMPLERS, SampleKey, Sampler, keyed_sampler};
-use pathmark::simd::{Float, LEVELS, Precision, Work, on_level};
+use pathmark::simd::{Float, Precision, Work, levels, on_level};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -59,11 +59,11 @@ fn main() {
             bencher.iter(|| black_box(one_by_one(&*sampler)));
         });
         let Some(sampler) = InLanes::find(entry.name) else { continue };
-        for level in LEVELS.iter().filter(|level| level.is_available()) {
+        for level in levels() {
             for precision in Precision::ALL {
-                let name = format!("{}-{}", precision.name(), level.name);
+                let name = format!("{}-{}", precision.name(), level.name());
                 group.bench_function(BenchmarkId::new(name, entry.name), |bencher| {
-                    bencher.iter(|| black_box(on_level(level.name, precision, InEachLane { sampler })));
+                    bencher.iter(|| black_box(on_level(level, precision, InEachLane { sampler })));
                 });
             }
         }

@@ -6,7 +6,7 @@ use crate::error::{Error, InputError, Result};
 use crate::kernel::{Clamp, Spec};
 use crate::measure::{LARGEST_SEED, Settings, available_threads};
 use crate::sampling::{SAMPLERS, is_deterministic};
-use crate::simd::LEVELS;
+use crate::simd::{Level, levels};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -192,8 +192,7 @@ impl Definition {
             let problem = "is an empty axis, so there is nothing to run";
             return Err(self.located(profile, InputError::new(axis, "[]", problem).allowed("at least one value")));
         }
-        let available = LEVELS.iter().filter(|level| level.is_available());
-        let levels = all_of(&matrix.simd, available.map(|level| level.name));
+        let levels = all_of(&matrix.simd, levels().map(Level::name));
         let depths: Vec<Option<u16>> = match matrix.max_depth.as_slice() {
             [] => vec![None],
             depths => depths.iter().copied().map(Some).collect(),

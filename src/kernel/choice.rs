@@ -10,7 +10,7 @@ use crate::scene::{
     ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES,
     ProfileEntry, Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
 };
-use crate::simd::{Entry as Level, LEVELS, Precision, best, widths_of};
+use crate::simd::{Entry as LevelEntry, LEVELS, Level, Precision, widths_of};
 use std::sync::Arc;
 
 /// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
@@ -37,7 +37,7 @@ pub struct Choice {
 /// What lanes are made with.
 #[derive(Clone, Copy)]
 pub(super) struct InLanes {
-    pub(super) level: &'static Level,
+    pub(super) level: Level,
     pub(super) precision: Precision,
     pub(super) course: Course,
     pub(super) sampler: LaneSampler,
@@ -100,7 +100,7 @@ impl Choice {
 
     /// Instruction set of its lanes; empty if it has none.
     pub fn simd(&self) -> &'static str {
-        self.lanes.as_ref().map_or("", |lanes| lanes.level.name)
+        self.lanes.as_ref().map_or("", |lanes| lanes.level.name())
     }
 
     /// Floating-point format of what it computes with.
@@ -281,19 +281,7 @@ fn lanes_for(scene: &Scene, spec: &Spec, course: Option<Course>) -> Result<std::
     if !KERNELS.iter().any(|entry| entry.name == spec.kernel) {
         return Err(unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into());
     }
-    let available = || LEVELS.iter().filter(|level| level.is_available());
-    let level = match &spec.simd {
-        None => best(),
-        Some(name) => match available().find(|level| level.name == *name) {
-            Some(level) => level,
-            None if LEVELS.iter().any(|level| level.name == *name) => {
-                let allowed: Vec<&str> = available().map(|level| level.name).collect();
-                let error = InputError::new("simd", name, "is nothing that this processor has");
-                return Err(error.allowed(allowed.join(", ")).into());
-            }
-            None => return Err(unknown("simd", name, available().map(|level| level.name)).into()),
-        },
-    };
+    let level = level(LEVELS, spec.simd.as_deref())?;
     let precision = precision(spec)?;
     if spec.kernel == SCALAR {
         return Ok(Err(SCALAR));
@@ -311,6 +299,20 @@ fn lanes_for(scene: &Scene, spec: &Spec, course: Option<Course>) -> Result<std::
     }))
 }
 
+/// The level of that name, or the fastest that this processor has.
+fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> std::result::Result<Level, InputError> {
+    let available = || levels.iter().filter_map(LevelEntry::here);
+    if let Some(level) = available().find(|level| wanted.is_none_or(|name| level.name() == name)) {
+        return Ok(level);
+    }
+    let name = wanted.unwrap_or_default();
+    if levels.iter().any(|level| level.name == name) {
+        let allowed: Vec<&str> = available().map(Level::name).collect();
+        return Err(InputError::new("simd", name, "is not supported by this processor").allowed(allowed.join(", ")));
+    }
+    Err(unknown("simd", name, available().map(Level::name)))
+}
+
 /// The format that the spec names; the scalar kernel has but one.
 fn precision(spec: &Spec) -> Result<Precision> {
     let name = &spec.precision;
@@ -322,4 +324,23 @@ fn precision(spec: &Spec) -> Result<Precision> {
         return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
     }
     Ok(precision)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a processor without the first level the next one renders, and the first is refused by what there is.
+    #[test]
+    fn a_level_that_the_processor_lacks_is_refused() {
+        let [mut first, last] = [&LEVELS[0], &LEVELS[LEVELS.len() - 1]].map(LevelEntry::clone);
+        (first.name, first.is_available) = ("first", || false);
+        let table = Box::leak(Box::new([first, last]));
+        assert_eq!(level(table, None).unwrap().name(), "baseline");
+        let error = level(table, Some("first")).unwrap_err().to_string();
+        assert!(error.contains("first") && error.contains("is not supported by this processor"), "{error}");
+        assert!(error.contains("baseline"), "{error}");
+        let error = level(table, Some("mmx")).unwrap_err().to_string();
+        assert!(error.contains("there is none of that name"), "{error}");
+    }
 }

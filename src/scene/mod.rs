@@ -23,7 +23,8 @@ pub use hierarchy::{
     ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Scan, Tests, accelerator, padding,
 };
 pub use library::{Library, load};
-pub use light::{Aim, Aims, Lights, LightsInLanes, Met, Start, one_minus_cos};
+pub use light::{Aim, Lights, one_minus_cos};
+pub(crate) use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
 pub use point_light::PointLight;
 pub use profile::{
     AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects,

@@ -6,30 +6,6 @@
 //!
 //! To add an instruction set: write its file with types that implement [`Float`] and [`Words`], and a line in `levels!` below.
 
-/// An intrinsic of a level that not every processor has. No value of such a level's types is made outside of its `enter`, which only
-/// processors that have its instructions come to.
-#[cfg(target_arch = "x86_64")]
-macro_rules! op {
-    ($call:expr) => {
-        // SAFETY: reached through `enter` alone, as above; loads and stores go to arrays of the register's size.
-        unsafe { $call }
-    };
-}
-
-/// Operators of a register that are one intrinsic each.
-#[cfg(target_arch = "x86_64")]
-macro_rules! operator {
-    ($Type:ident: $($Trait:ident $method:ident $intrinsic:ident),*) => {$(
-        impl $Trait for $Type {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(op!($intrinsic(self.0, other.0)))
-            }
-        }
-    )*};
-}
-
 /// Half bytes with their bits in reverse order, in the upper half of a byte and in the lower, and the bytes of two words in reverse order:
 /// what turns words round on processors that shuffle bytes by a table.
 #[cfg(target_arch = "x86_64")]
@@ -38,6 +14,10 @@ const REVERSED: [[i8; 16]; 3] = [
     [0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15],
     [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8],
 ];
+
+#[cfg(target_arch = "x86_64")]
+#[macro_use]
+mod register;
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -209,33 +189,49 @@ impl Precision {
 }
 
 /// One line of the table of levels.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
     /// What it is, in a line.
     pub about: &'static str,
-    is_available: fn() -> bool,
+    set: Set,
+    pub(crate) is_available: fn() -> bool,
 }
 
 impl Entry {
-    /// Whether this processor has it.
-    pub fn is_available(&self) -> bool {
-        (self.is_available)()
+    /// The level, if this processor has it.
+    pub fn here(&'static self) -> Option<Level> {
+        (self.is_available)().then_some(Level(self))
+    }
+}
+
+/// A level that this processor has: only [`Entry::here`] makes one.
+#[derive(Debug, Clone, Copy)]
+pub struct Level(&'static Entry);
+
+impl Level {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        self.0.name
     }
 }
 
 macro_rules! levels {
-    ($($(#[$attribute:meta])* $name:literal, $about:literal => $module:ident;)*) => {
-        /// The levels, the fastest first; the last one is everywhere.
-        pub const LEVELS: &[Entry] =
-            &[$($(#[$attribute])* Entry { name: $name, about: $about, is_available: $module::is_available }),*];
+    ($($(#[$attribute:meta])* $Set:ident: $name:literal, $about:literal => $module:ident;)*) => {
+        #[derive(Debug, Clone, Copy)]
+        enum Set { $($(#[$attribute])* $Set),* }
 
-        /// Does some work on the level of that name; `None` if there is none or this processor does not have it.
-        pub fn on_level<W: Work>(name: &str, precision: Precision, work: W) -> Option<W::Output> {
-            match name {
-                $($(#[$attribute])* $name => $module::run(precision, work),)*
-                _ => None,
+        /// The table of levels, the fastest first; the last one is everywhere.
+        pub const LEVELS: &[Entry] = &[$(
+            $(#[$attribute])*
+            Entry { name: $name, about: $about, set: Set::$Set, is_available: $module::is_available },
+        )*];
+
+        /// Does some work on a level.
+        pub fn on_level<W: Work>(level: Level, precision: Precision, work: W) -> W::Output {
+            match level.0.set {
+                $($(#[$attribute])* Set::$Set => $module::run(precision, work)),*
             }
         }
     };
@@ -243,10 +239,10 @@ macro_rules! levels {
 
 levels! {
     #[cfg(target_arch = "x86_64")]
-    "avx512", "AVX-512 (F, DQ, VL, BW): 512-bit registers, two at a time" => avx512;
+    Avx512: "avx512", "AVX-512 (F, DQ, VL, BW): 512-bit registers, two at a time" => avx512;
     #[cfg(target_arch = "x86_64")]
-    "avx2", "AVX2 and FMA: 256-bit registers, two at a time" => avx2;
-    "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
+    Avx2: "avx2", "AVX2 and FMA: 256-bit registers, two at a time" => avx2;
+    Baseline: "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
 }
 
 struct Widths;
@@ -259,12 +255,12 @@ impl Work for Widths {
     }
 }
 
-/// How many numbers a level has side by side, and how many in a register of single precision; 1 if this processor does not have it.
-pub fn widths_of(level: &Entry, precision: Precision) -> [usize; 2] {
-    on_level(level.name, precision, Widths).unwrap_or([1; 2])
+/// How many numbers a level has side by side, and how many in a register of single precision.
+pub fn widths_of(level: Level, precision: Precision) -> [usize; 2] {
+    on_level(level, precision, Widths)
 }
 
-/// The fastest level of this processor.
-pub fn best() -> &'static Entry {
-    LEVELS.iter().find(|level| level.is_available()).unwrap_or(&LEVELS[LEVELS.len() - 1])
+/// The levels of this processor, the fastest first.
+pub fn levels() -> impl Iterator<Item = Level> + Clone {
+    LEVELS.iter().filter_map(Entry::here)
 }

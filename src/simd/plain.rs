@@ -12,11 +12,11 @@ pub(super) fn is_available() -> bool {
 }
 
 /// Does the work.
-pub(super) fn run<W: Work>(precision: Precision, work: W) -> Option<W::Output> {
-    Some(match precision {
+pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
+    match precision {
         Precision::F64 => work.run::<Plain<f64>>(),
         Precision::F32 => work.run::<Plain<f32>>(),
-    })
+    }
 }
 
 /// Four of something.

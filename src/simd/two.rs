@@ -8,34 +8,45 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Two<V>(pub(super) V, pub(super) V);
 
-macro_rules! operators {
-    ($($Trait:ident $method:ident),*) => {$(
-        impl<V: $Trait<Output = V>> $Trait for Two<V> {
-            type Output = Self;
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(self.0.$method(other.0), self.1.$method(other.1))
-            }
+/// Operations that are done on the lower lanes, then on the upper ones.
+macro_rules! forward {
+    ($($method:ident($($other:ident),*);)*) => {$(
+        #[inline(always)]
+        fn $method(self, $($other: Self),*) -> Self {
+            Self(self.0.$method($($other.0),*), self.1.$method($($other.1),*))
         }
     )*};
 }
 
-operators!(Add add, Sub sub, Mul mul, Div div, BitAnd bitand, BitOr bitor, BitXor bitxor);
-
-impl<V: Neg<Output = V>> Neg for Two<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
+/// Likewise, comparisons.
+macro_rules! compare {
+    ($($method:ident)*) => {$(
+        #[inline(always)]
+        fn $method(self, other: Self) -> Self::Mask {
+            Two(self.0.$method(other.0), self.1.$method(other.1))
+        }
+    )*};
 }
 
-impl<V: Not<Output = V>> Not for Two<V> {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(!self.0, !self.1)
-    }
+macro_rules! operators {
+    ($($Trait:ident $method:ident($($other:ident)?);)*) => {$(
+        impl<V: $Trait<Output = V>> $Trait for Two<V> {
+            type Output = Self;
+            forward! { $method($($other)?); }
+        }
+    )*};
+}
+
+operators! {
+    Add add(other);
+    Sub sub(other);
+    Mul mul(other);
+    Div div(other);
+    BitAnd bitand(other);
+    BitOr bitor(other);
+    BitXor bitxor(other);
+    Neg neg();
+    Not not();
 }
 
 impl<V: Real> Real for Two<V> {
@@ -43,33 +54,16 @@ impl<V: Real> Real for Two<V> {
     const SIGNIFICAND: u32 = V::SIGNIFICAND;
     const SMALLEST: f64 = V::SMALLEST;
 
+    forward! {
+        sqrt();
+        abs();
+        times_plus(factor, addend);
+        copysign(sign);
+    }
+    compare! { lt le }
     #[inline(always)]
     fn splat(value: f64) -> Self {
         Self(V::splat(value), V::splat(value))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        Self(self.0.sqrt(), self.1.sqrt())
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        Self(self.0.abs(), self.1.abs())
-    }
-    #[inline(always)]
-    fn times_plus(self, factor: Self, addend: Self) -> Self {
-        Self(self.0.times_plus(factor.0, addend.0), self.1.times_plus(factor.1, addend.1))
-    }
-    #[inline(always)]
-    fn copysign(self, sign: Self) -> Self {
-        Self(self.0.copysign(sign.0), self.1.copysign(sign.1))
-    }
-    #[inline(always)]
-    fn lt(self, other: Self) -> Self::Mask {
-        Two(self.0.lt(other.0), self.1.lt(other.1))
-    }
-    #[inline(always)]
-    fn le(self, other: Self) -> Self::Mask {
-        Two(self.0.le(other.0), self.1.le(other.1))
     }
     #[inline(always)]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
@@ -78,17 +72,15 @@ impl<V: Real> Real for Two<V> {
 }
 
 impl<B: Bits> Bits for Two<B> {
+    forward! {
+        plus(other);
+        times(other);
+        down_by(count);
+        reversed();
+    }
     #[inline(always)]
     fn splat(word: u64) -> Self {
         Self(B::splat(word), B::splat(word))
-    }
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        Self(self.0.plus(other.0), self.1.plus(other.1))
-    }
-    #[inline(always)]
-    fn times(self, other: Self) -> Self {
-        Self(self.0.times(other.0), self.1.times(other.1))
     }
     #[inline(always)]
     fn up<const N: u32>(self) -> Self {
@@ -97,14 +89,6 @@ impl<B: Bits> Bits for Two<B> {
     #[inline(always)]
     fn down<const N: u32>(self) -> Self {
         Self(self.0.down::<N>(), self.1.down::<N>())
-    }
-    #[inline(always)]
-    fn down_by(self, count: Self) -> Self {
-        Self(self.0.down_by(count.0), self.1.down_by(count.1))
-    }
-    #[inline(always)]
-    fn reversed(self) -> Self {
-        Self(self.0.reversed(), self.1.reversed())
     }
 }
 
@@ -194,6 +178,14 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     type Single = V::Single;
     const LANES: usize = 2 * V::LANES;
 
+    forward! {
+        larger(other);
+        smaller(other);
+        about_times_plus(factor, addend);
+        sooner(other);
+        later(other);
+    }
+    compare! { equal is_sooner }
     #[inline(always)]
     fn load(from: &[V::One]) -> Self {
         let (lower, upper) = from.split_at(V::LANES);
@@ -223,40 +215,12 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
         if lane < V::LANES { self.0.set_lane(lane, value) } else { self.1.set_lane(lane - V::LANES, value) }
     }
     #[inline(always)]
-    fn equal(self, other: Self) -> Self::Mask {
-        Two(self.0.equal(other.0), self.1.equal(other.1))
-    }
-    #[inline(always)]
-    fn larger(self, other: Self) -> Self {
-        Self(self.0.larger(other.0), self.1.larger(other.1))
-    }
-    #[inline(always)]
-    fn smaller(self, other: Self) -> Self {
-        Self(self.0.smaller(other.0), self.1.smaller(other.1))
-    }
-    #[inline(always)]
     fn least(self) -> f64 {
         self.0.smaller(self.1).least()
     }
     #[inline(always)]
-    fn about_times_plus(self, factor: Self, addend: Self) -> Self {
-        Self(self.0.about_times_plus(factor.0, addend.0), self.1.about_times_plus(factor.1, addend.1))
-    }
-    #[inline(always)]
     fn ahead(near: Self, far: Self) -> Self {
         Self(V::ahead(near.0, far.0), V::ahead(near.1, far.1))
-    }
-    #[inline(always)]
-    fn sooner(self, other: Self) -> Self {
-        Self(self.0.sooner(other.0), self.1.sooner(other.1))
-    }
-    #[inline(always)]
-    fn later(self, other: Self) -> Self {
-        Self(self.0.later(other.0), self.1.later(other.1))
-    }
-    #[inline(always)]
-    fn is_sooner(self, other: Self) -> Self::Mask {
-        Two(self.0.is_sooner(other.0), self.1.is_sooner(other.1))
     }
     #[inline(always)]
     fn number(bits: Self::Bits) -> Self {

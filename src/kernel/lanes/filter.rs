@@ -104,7 +104,7 @@ mod tests {
     use super::*;
     use crate::kernel::lanes::walks::{Start, nearest, side_by_side, walks};
     use crate::scene::{SCENES, load};
-    use crate::simd::{LEVELS, Mask, Precision, Work, on_level};
+    use crate::simd::{Mask, Precision, Work, levels, on_level};
 
     /// Compares the filter with a test of all; which share of the rays it was sure of.
     struct Compare<'a>(&'a Scene, &'a [Start]);
@@ -143,11 +143,10 @@ mod tests {
             scenes += 1;
             let (walks, edges) = walks(&scene, 20_000);
             assert!(edges.len() > 5000, "{name}: {} rays near edges", edges.len());
-            for level in LEVELS.iter().filter(|level| level.is_available()) {
-                let sure =
-                    [&walks, &edges].map(|rays| on_level(level.name, Precision::F64, Compare(&scene, rays)).unwrap());
-                println!("{name} {}: sure of {sure:?}, in walks and near edges", level.name);
-                assert!(sure[0] > 0.98 && sure[1] < sure[0], "{name} {}: sure of {sure:?}", level.name);
+            for level in levels() {
+                let sure = [&walks, &edges].map(|rays| on_level(level, Precision::F64, Compare(&scene, rays)));
+                println!("{name} {}: sure of {sure:?}, in walks and near edges", level.name());
+                assert!(sure[0] > 0.98 && sure[1] < sure[0], "{name} {}: sure of {sure:?}", level.name());
             }
         }
         assert!(scenes > 5, "{scenes} scenes of spheres");

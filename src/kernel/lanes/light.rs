@@ -3,12 +3,13 @@
 use super::Lanes;
 use super::packet::{LanesOf, Packet, Rays, vector};
 use super::tables::Kind;
+use super::targets::{Met, Start};
 use super::vertex::{Arrival, Vertex, own_root};
 use crate::estimator::power_heuristic;
 use crate::kernel::Counts;
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::Purpose;
-use crate::scene::{AllEffects, Met, Start};
+use crate::scene::AllEffects;
 use crate::simd::{Float, Mask};
 use std::f64::consts::FRAC_1_PI;
 

@@ -9,6 +9,7 @@ mod packet;
 mod singles;
 mod supply;
 mod tables;
+mod targets;
 mod vertex;
 #[cfg(test)]
 mod walks;
@@ -21,14 +22,15 @@ use crate::estimator::Course;
 use crate::film::{Piece, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
-use crate::scene::{LightsInLanes, Scene, View};
-use crate::simd::{self, Float, MOST_LANES, Precision, Work, on_level};
+use crate::scene::{Scene, View};
+use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level};
 use filter::Filter;
 use packet::{LanesOf, Packet};
 use singles::Singles;
 use std::sync::Arc;
 use supply::Supply;
 use tables::Tables;
+use targets::Targets;
 use wide::Wide;
 use window::Window;
 
@@ -41,8 +43,8 @@ pub(super) struct Lanes {
     course: Course,
     sampler: Sampler,
     tables: Tables,
-    targets: Option<Box<LightsInLanes>>,
-    level: &'static simd::Entry,
+    targets: Option<Box<Targets>>,
+    level: Level,
     precision: Precision,
     is_matt: bool,
     search: Search,
@@ -67,7 +69,7 @@ impl Lanes {
         let tables = Tables::of(&scene, precision);
         let view = scene.camera.view(choice.width, choice.height);
         Self {
-            targets: scene.lights.as_ref().and_then(LightsInLanes::of).map(Box::new),
+            targets: scene.lights.as_ref().and_then(Targets::of).map(Box::new),
             search: match precision {
                 _ if !tables.is_round || scene.hierarchy.is_some() => {
                     Search::Wide(Box::new(Wide::of(&scene, level, precision, &scene.enclosing(&view))))
@@ -154,8 +156,7 @@ impl<const AIMS: bool, const MATT: bool> Work for Render<'_, AIMS, MATT> {
 impl Lanes {
     fn render_by<const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
         let work = Render::<AIMS, MATT> { kernel: self, piece, out };
-        // The level has been found on this processor when the kernel was made.
-        on_level(self.level.name, self.precision, work).unwrap_or_default()
+        on_level(self.level, self.precision, work)
     }
 }
 

@@ -3,7 +3,6 @@
 //! Planes have no end, a background has no place, and of a sphere the part may be left out that no path can reach; such light is found by the
 //! directions of surfaces alone. [`Lights::density`] says which, so what is not aimed at is not lost.
 
-mod lanes;
 mod reach;
 mod sphere;
 mod triangle;
@@ -12,10 +11,10 @@ use super::{Hit, Primitives, Scene, Standpoint};
 use crate::math::{Ray, Rgb, Vec3};
 use reach::{Part, Walls};
 use sphere::SphereTarget;
-use triangle::TriangleTarget;
 
-pub use lanes::{Aims, LightsInLanes, Met, Start};
 pub use sphere::one_minus_cos;
+pub(crate) use sphere::towards_cap;
+pub(crate) use triangle::{TriangleTarget, per_steradian, point_of};
 
 /// A direction towards a light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,8 +39,9 @@ trait Target {
     fn area(&self) -> f64;
 }
 
+/// Anything that can be aimed at.
 #[derive(Debug, Clone, PartialEq)]
-enum AnyTarget {
+pub(crate) enum AnyTarget {
     Sphere(SphereTarget),
     Triangle(TriangleTarget),
 }
@@ -62,7 +62,7 @@ impl AnyTarget {
         primitives.triangles.get(index).and_then(TriangleTarget::new).map(Self::Triangle)
     }
 
-    fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         match self {
             Self::Sphere(target) => target.area(),
             Self::Triangle(target) => target.area(),
@@ -70,14 +70,15 @@ impl AnyTarget {
     }
 }
 
+/// A light, and how it is chosen.
 #[derive(Debug, Clone, PartialEq)]
-struct Light {
-    target: AnyTarget,
-    primitive: u32,
+pub(crate) struct Light {
+    pub(crate) target: AnyTarget,
+    pub(crate) primitive: u32,
     /// How often it is chosen.
-    chance: f64,
+    pub(crate) chance: f64,
     /// How often it or one before it is.
-    up_to: f64,
+    pub(crate) up_to: f64,
 }
 
 /// Pairs of a light and a wall that are looked at; with more of them spheres are aimed at as wholes.
@@ -86,12 +87,13 @@ const MOST_PAIRS: usize = 1 << 24;
 /// The lights of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lights {
-    lights: Vec<Light>,
+    pub(crate) lights: Vec<Light>,
     /// The light of each primitive, or [`NO_LIGHT`].
-    of_primitive: Vec<u32>,
+    pub(crate) of_primitive: Vec<u32>,
 }
 
-const NO_LIGHT: u32 = u32::MAX;
+/// Of a primitive that is none.
+pub(crate) const NO_LIGHT: u32 = u32::MAX;
 
 impl Lights {
     /// The lights of a scene whose camera rays start at `origins`. Half of the time a light is chosen by its power, half of the time evenly, so

@@ -13,32 +13,23 @@ use super::{Float, Mask, Precision, REVERSED, Words, Work};
 use crate::math::Bits;
 use double::F64x4;
 use single::F32x8;
-use std::arch::x86_64::{
-    __m256, __m256d, __m256i, _mm_cvtsi64_si128, _mm_loadu_si128, _mm256_add_epi64, _mm256_and_pd, _mm256_and_ps,
-    _mm256_and_si256, _mm256_blendv_epi8, _mm256_broadcastsi128_si256, _mm256_castpd_si256, _mm256_castps_si256,
-    _mm256_castsi256_pd, _mm256_castsi256_ps, _mm256_castsi256_si128, _mm256_cmpeq_epi32, _mm256_cmpeq_epi64,
-    _mm256_cmpgt_epi64, _mm256_cvtepi32_epi64, _mm256_extracti128_si256, _mm256_loadu_si256, _mm256_movemask_pd,
-    _mm256_movemask_ps, _mm256_mul_epu32, _mm256_or_pd, _mm256_or_ps, _mm256_or_si256, _mm256_permute4x64_epi64,
-    _mm256_permutevar8x32_epi32, _mm256_set1_epi32, _mm256_set1_epi64x, _mm256_setr_epi32, _mm256_setr_epi64x,
-    _mm256_shuffle_epi8, _mm256_shuffle_ps, _mm256_sll_epi64, _mm256_slli_epi64, _mm256_srl_epi64, _mm256_srli_epi64,
-    _mm256_srlv_epi64, _mm256_storeu_si256, _mm256_xor_pd, _mm256_xor_ps, _mm256_xor_si256,
-};
-use std::ops::{BitAnd, BitOr, BitXor, Not};
+use std::arch::x86_64 as x86;
+use std::ops::Not;
 
 /// Whether this processor has what is used here.
 pub(super) fn is_available() -> bool {
     is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
 }
 
-/// Does the work; `None` if this processor cannot.
-pub(super) fn run<W: Work>(precision: Precision, work: W) -> Option<W::Output> {
-    // SAFETY: the features have been found in the line.
-    is_available().then(|| unsafe {
+/// Does the work.
+pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
+    // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
+    unsafe {
         match precision {
             Precision::F64 => enter::<Two<F64x4>, W>(work),
             Precision::F32 => enter::<Two<F32x8>, W>(work),
         }
-    })
+    }
 }
 
 #[target_feature(enable = "avx2,fma")]
@@ -47,15 +38,15 @@ fn enter<V: Float, W: Work>(work: W) -> W::Output {
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct U64x4(__m256i);
+pub(super) struct U64x4(x86::__m256i);
 
 /// All ones or all zeros in each lane.
 #[derive(Clone, Copy)]
-pub(super) struct Mask4(__m256d);
+pub(super) struct Mask4(x86::__m256d);
 
 /// Likewise, of a register of single precision.
 #[derive(Clone, Copy)]
-pub(super) struct Mask8(__m256);
+pub(super) struct Mask8(x86::__m256);
 
 operator!(U64x4: BitAnd bitand _mm256_and_si256, BitOr bitor _mm256_or_si256, BitXor bitxor _mm256_xor_si256);
 operator!(Mask4: BitAnd bitand _mm256_and_pd, BitOr bitor _mm256_or_pd);
@@ -65,47 +56,47 @@ impl Not for Mask4 {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self(op!(_mm256_xor_pd(self.0, _mm256_castsi256_pd(_mm256_set1_epi64x(-1)))))
+        Self(op!(x86::_mm256_xor_pd(self.0, x86::_mm256_castsi256_pd(x86::_mm256_set1_epi64x(-1)))))
     }
 }
 
 /// Sixteen bytes, in every half of a register.
 #[inline(always)]
-fn table(entries: &[i8; 16]) -> __m256i {
-    op!(_mm256_broadcastsi128_si256(_mm_loadu_si128(entries.as_ptr().cast())))
+fn table(entries: &[i8; 16]) -> x86::__m256i {
+    op!(x86::_mm256_broadcastsi128_si256(x86::_mm_loadu_si128(entries.as_ptr().cast())))
 }
 
 impl Bits for U64x4 {
     #[inline(always)]
     fn splat(word: u64) -> Self {
-        Self(op!(_mm256_set1_epi64x(word as i64)))
+        Self(op!(x86::_mm256_set1_epi64x(word as i64)))
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
-        Self(op!(_mm256_add_epi64(self.0, other.0)))
+        Self(op!(x86::_mm256_add_epi64(self.0, other.0)))
     }
     #[inline(always)]
     fn times(self, other: Self) -> Self {
         // By halves, as on paper; the product of the higher ones is beyond 64 bits.
         op!({
-            let low = _mm256_mul_epu32(self.0, other.0);
-            let first = _mm256_mul_epu32(_mm256_srli_epi64::<32>(self.0), other.0);
-            let second = _mm256_mul_epu32(self.0, _mm256_srli_epi64::<32>(other.0));
-            let crossed = _mm256_slli_epi64::<32>(_mm256_add_epi64(first, second));
-            Self(_mm256_add_epi64(low, crossed))
+            let low = x86::_mm256_mul_epu32(self.0, other.0);
+            let first = x86::_mm256_mul_epu32(x86::_mm256_srli_epi64::<32>(self.0), other.0);
+            let second = x86::_mm256_mul_epu32(self.0, x86::_mm256_srli_epi64::<32>(other.0));
+            let crossed = x86::_mm256_slli_epi64::<32>(x86::_mm256_add_epi64(first, second));
+            Self(x86::_mm256_add_epi64(low, crossed))
         })
     }
     #[inline(always)]
     fn up<const N: u32>(self) -> Self {
-        Self(op!(_mm256_sll_epi64(self.0, _mm_cvtsi64_si128(i64::from(N)))))
+        Self(op!(x86::_mm256_sll_epi64(self.0, x86::_mm_cvtsi64_si128(i64::from(N)))))
     }
     #[inline(always)]
     fn down<const N: u32>(self) -> Self {
-        Self(op!(_mm256_srl_epi64(self.0, _mm_cvtsi64_si128(i64::from(N)))))
+        Self(op!(x86::_mm256_srl_epi64(self.0, x86::_mm_cvtsi64_si128(i64::from(N)))))
     }
     #[inline(always)]
     fn down_by(self, count: Self) -> Self {
-        Self(op!(_mm256_srlv_epi64(self.0, count.0)))
+        Self(op!(x86::_mm256_srlv_epi64(self.0, count.0)))
     }
     #[inline(always)]
     fn reversed(self) -> Self {
@@ -113,21 +104,21 @@ impl Bits for U64x4 {
         let [low, high, swap] = [table(&REVERSED[0]), table(&REVERSED[1]), table(&REVERSED[2])];
         let nibble = Self::splat(0x0F0F_0F0F_0F0F_0F0F);
         let (a, b) = ((self & nibble).0, (self.down::<4>() & nibble).0);
-        let bytes = op!(_mm256_or_si256(_mm256_shuffle_epi8(low, a), _mm256_shuffle_epi8(high, b)));
-        Self(op!(_mm256_shuffle_epi8(bytes, swap)))
+        let bytes = op!(x86::_mm256_or_si256(x86::_mm256_shuffle_epi8(low, a), x86::_mm256_shuffle_epi8(high, b)));
+        Self(op!(x86::_mm256_shuffle_epi8(bytes, swap)))
     }
 }
 
 impl Mask for Mask4 {
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
-        let each = U64x4(op!(_mm256_setr_epi64x(1, 2, 4, 8)));
+        let each = U64x4(op!(x86::_mm256_setr_epi64x(1, 2, 4, 8)));
         let found = U64x4::splat(u64::from(bits)) & each;
-        Self(op!(_mm256_castsi256_pd(_mm256_cmpeq_epi64(found.0, each.0))))
+        Self(op!(x86::_mm256_castsi256_pd(x86::_mm256_cmpeq_epi64(found.0, each.0))))
     }
     #[inline(always)]
     fn bits(self) -> u32 {
-        op!(_mm256_movemask_pd(self.0)) as u32
+        op!(x86::_mm256_movemask_pd(self.0)) as u32
     }
 }
 
@@ -139,7 +130,7 @@ impl Not for Mask8 {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Self(op!(_mm256_xor_ps(self.0, _mm256_castsi256_ps(_mm256_set1_epi32(-1)))))
+        Self(op!(x86::_mm256_xor_ps(self.0, x86::_mm256_castsi256_ps(x86::_mm256_set1_epi32(-1)))))
     }
 }
 
@@ -147,14 +138,14 @@ impl Mask for Mask8 {
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
         op!({
-            let each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
-            let found = _mm256_and_si256(_mm256_set1_epi32(bits as i32), each);
-            Self(_mm256_castsi256_ps(_mm256_cmpeq_epi32(found, each)))
+            let each = x86::_mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let found = x86::_mm256_and_si256(x86::_mm256_set1_epi32(bits as i32), each);
+            Self(x86::_mm256_castsi256_ps(x86::_mm256_cmpeq_epi32(found, each)))
         })
     }
     #[inline(always)]
     fn bits(self) -> u32 {
-        op!(_mm256_movemask_ps(self.0)) as u32
+        op!(x86::_mm256_movemask_ps(self.0)) as u32
     }
 }
 
@@ -167,25 +158,29 @@ impl PairMask for Mask8 {
     #[inline(always)]
     fn halves(self) -> Two<Mask4> {
         op!({
-            let both = _mm256_castps_si256(self.0);
-            let lower = _mm256_cvtepi32_epi64(_mm256_castsi256_si128(both));
-            let upper = _mm256_cvtepi32_epi64(_mm256_extracti128_si256::<1>(both));
-            Two(Mask4(_mm256_castsi256_pd(lower)), Mask4(_mm256_castsi256_pd(upper)))
+            let both = x86::_mm256_castps_si256(self.0);
+            let lower = x86::_mm256_cvtepi32_epi64(x86::_mm256_castsi256_si128(both));
+            let upper = x86::_mm256_cvtepi32_epi64(x86::_mm256_extracti128_si256::<1>(both));
+            Two(Mask4(x86::_mm256_castsi256_pd(lower)), Mask4(x86::_mm256_castsi256_pd(upper)))
         })
     }
     #[inline(always)]
     fn of_halves(halves: Two<Mask4>) -> Self {
-        Self(op!(_mm256_castsi256_ps(narrowed(_mm256_castpd_si256(halves.0.0), _mm256_castpd_si256(halves.1.0)))))
+        Self(op!(x86::_mm256_castsi256_ps(narrowed(
+            x86::_mm256_castpd_si256(halves.0.0),
+            x86::_mm256_castpd_si256(halves.1.0)
+        ))))
     }
 }
 
 /// The lower halves of eight words.
 #[inline(always)]
-fn narrowed(lower: __m256i, upper: __m256i) -> __m256i {
+fn narrowed(lower: x86::__m256i, upper: x86::__m256i) -> x86::__m256i {
     op!({
-        let halves = _mm256_shuffle_ps::<0b10_00_10_00>(_mm256_castsi256_ps(lower), _mm256_castsi256_ps(upper));
+        let halves =
+            x86::_mm256_shuffle_ps::<0b10_00_10_00>(x86::_mm256_castsi256_ps(lower), x86::_mm256_castsi256_ps(upper));
         // The quarters are of the lower, the upper, the lower, the upper.
-        _mm256_permute4x64_epi64::<0b11_01_10_00>(_mm256_castps_si256(halves))
+        x86::_mm256_permute4x64_epi64::<0b11_01_10_00>(x86::_mm256_castps_si256(halves))
     })
 }
 
@@ -193,12 +188,12 @@ impl Words<Mask4> for U64x4 {
     #[inline(always)]
     fn load(from: &[u64]) -> Self {
         assert!(from.len() >= 4);
-        Self(op!(_mm256_loadu_si256(from.as_ptr().cast())))
+        Self(op!(x86::_mm256_loadu_si256(from.as_ptr().cast())))
     }
     #[inline(always)]
     fn store(self, to: &mut [u64]) {
         assert!(to.len() >= 4);
-        op!(_mm256_storeu_si256(to.as_mut_ptr().cast(), self.0));
+        op!(x86::_mm256_storeu_si256(to.as_mut_ptr().cast(), self.0));
     }
     #[inline(always)]
     fn fill(self, mask: Mask4, from: &[u64]) -> Self {
@@ -219,15 +214,15 @@ impl Words<Mask4> for U64x4 {
     }
     #[inline(always)]
     fn choose(mask: Mask4, yes: Self, no: Self) -> Self {
-        Self(op!(_mm256_blendv_epi8(no.0, yes.0, _mm256_castpd_si256(mask.0))))
+        Self(op!(x86::_mm256_blendv_epi8(no.0, yes.0, x86::_mm256_castpd_si256(mask.0))))
     }
     #[inline(always)]
     fn less(self, other: Self) -> Mask4 {
-        Mask4(op!(_mm256_castsi256_pd(_mm256_cmpgt_epi64(other.0, self.0))))
+        Mask4(op!(x86::_mm256_castsi256_pd(x86::_mm256_cmpgt_epi64(other.0, self.0))))
     }
     #[inline(always)]
     fn equal(self, other: Self) -> Mask4 {
-        Mask4(op!(_mm256_castsi256_pd(_mm256_cmpeq_epi64(self.0, other.0))))
+        Mask4(op!(x86::_mm256_castsi256_pd(x86::_mm256_cmpeq_epi64(self.0, other.0))))
     }
 }
 
@@ -251,7 +246,7 @@ const SPREAD: [[i32; 8]; 16] = {
 
 /// The lowest words, moved to the lanes of a mask in order.
 #[inline(always)]
-fn spread(mask: Mask4, words: __m256i) -> __m256i {
+fn spread(mask: Mask4, words: x86::__m256i) -> x86::__m256i {
     let order = &SPREAD[mask.bits() as usize & 15];
-    op!(_mm256_permutevar8x32_epi32(words, _mm256_loadu_si256(order.as_ptr().cast())))
+    op!(x86::_mm256_permutevar8x32_epi32(words, x86::_mm256_loadu_si256(order.as_ptr().cast())))
 }

@@ -13,14 +13,8 @@ use super::{Float, Mask, Precision, REVERSED, Words, Work};
 use crate::math::Bits;
 use double::F64x8;
 use single::F32x16;
-use std::arch::x86_64::{
-    __m512i, __mmask8, __mmask16, _mm_loadu_si128, _mm512_add_epi64, _mm512_and_si512, _mm512_broadcast_i32x4,
-    _mm512_cmpeq_epu64_mask, _mm512_cmplt_epu64_mask, _mm512_loadu_si512, _mm512_mask_blend_epi64,
-    _mm512_mask_expand_epi64, _mm512_mask_mov_epi64, _mm512_mullo_epi64, _mm512_or_si512, _mm512_set1_epi64,
-    _mm512_shuffle_epi8, _mm512_slli_epi64, _mm512_srli_epi64, _mm512_srlv_epi64, _mm512_storeu_si512,
-    _mm512_xor_si512,
-};
-use std::ops::{BitAnd, BitOr, BitXor, Not};
+use std::arch::x86_64 as x86;
+use std::ops::{BitAnd, BitOr, Not};
 
 /// Whether this processor has what is used here.
 pub(super) fn is_available() -> bool {
@@ -30,15 +24,15 @@ pub(super) fn is_available() -> bool {
         && is_x86_feature_detected!("avx512bw")
 }
 
-/// Does the work; `None` if this processor cannot.
-pub(super) fn run<W: Work>(precision: Precision, work: W) -> Option<W::Output> {
-    // SAFETY: the features have been found in the line.
-    is_available().then(|| unsafe {
+/// Does the work.
+pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
+    // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
+    unsafe {
         match precision {
             Precision::F64 => enter::<Two<F64x8>, W>(work),
             Precision::F32 => enter::<Two<F32x16>, W>(work),
         }
-    })
+    }
 }
 
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
@@ -47,48 +41,48 @@ fn enter<V: Float, W: Work>(work: W) -> W::Output {
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct U64x8(__m512i);
+pub(super) struct U64x8(x86::__m512i);
 
 /// One bit a number.
 #[derive(Clone, Copy)]
-pub(super) struct Mask8(__mmask8);
+pub(super) struct Mask8(x86::__mmask8);
 
 /// Likewise, of a register of single precision.
 #[derive(Clone, Copy)]
-pub(super) struct Mask16(__mmask16);
+pub(super) struct Mask16(x86::__mmask16);
 
 operator!(U64x8: BitAnd bitand _mm512_and_si512, BitOr bitor _mm512_or_si512, BitXor bitxor _mm512_xor_si512);
 
 /// Sixteen bytes, in every quarter of a register.
 #[inline(always)]
-fn table(entries: &[i8; 16]) -> __m512i {
-    op!(_mm512_broadcast_i32x4(_mm_loadu_si128(entries.as_ptr().cast())))
+fn table(entries: &[i8; 16]) -> x86::__m512i {
+    op!(x86::_mm512_broadcast_i32x4(x86::_mm_loadu_si128(entries.as_ptr().cast())))
 }
 
 impl Bits for U64x8 {
     #[inline(always)]
     fn splat(word: u64) -> Self {
-        Self(op!(_mm512_set1_epi64(word as i64)))
+        Self(op!(x86::_mm512_set1_epi64(word as i64)))
     }
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
-        Self(op!(_mm512_add_epi64(self.0, other.0)))
+        Self(op!(x86::_mm512_add_epi64(self.0, other.0)))
     }
     #[inline(always)]
     fn times(self, other: Self) -> Self {
-        Self(op!(_mm512_mullo_epi64(self.0, other.0)))
+        Self(op!(x86::_mm512_mullo_epi64(self.0, other.0)))
     }
     #[inline(always)]
     fn up<const N: u32>(self) -> Self {
-        Self(op!(_mm512_slli_epi64::<N>(self.0)))
+        Self(op!(x86::_mm512_slli_epi64::<N>(self.0)))
     }
     #[inline(always)]
     fn down<const N: u32>(self) -> Self {
-        Self(op!(_mm512_srli_epi64::<N>(self.0)))
+        Self(op!(x86::_mm512_srli_epi64::<N>(self.0)))
     }
     #[inline(always)]
     fn down_by(self, count: Self) -> Self {
-        Self(op!(_mm512_srlv_epi64(self.0, count.0)))
+        Self(op!(x86::_mm512_srlv_epi64(self.0, count.0)))
     }
     #[inline(always)]
     fn reversed(self) -> Self {
@@ -96,8 +90,8 @@ impl Bits for U64x8 {
         let [low, high, swap] = [table(&REVERSED[0]), table(&REVERSED[1]), table(&REVERSED[2])];
         let nibble = Self::splat(0x0F0F_0F0F_0F0F_0F0F);
         let (a, b) = ((self & nibble).0, (self.down::<4>() & nibble).0);
-        let bytes = op!(_mm512_or_si512(_mm512_shuffle_epi8(low, a), _mm512_shuffle_epi8(high, b)));
-        Self(op!(_mm512_shuffle_epi8(bytes, swap)))
+        let bytes = op!(x86::_mm512_or_si512(x86::_mm512_shuffle_epi8(low, a), x86::_mm512_shuffle_epi8(high, b)));
+        Self(op!(x86::_mm512_shuffle_epi8(bytes, swap)))
     }
 }
 
@@ -163,16 +157,16 @@ impl Words<Mask8> for U64x8 {
     #[inline(always)]
     fn load(from: &[u64]) -> Self {
         assert!(from.len() >= 8);
-        Self(op!(_mm512_loadu_si512(from.as_ptr().cast())))
+        Self(op!(x86::_mm512_loadu_si512(from.as_ptr().cast())))
     }
     #[inline(always)]
     fn store(self, to: &mut [u64]) {
         assert!(to.len() >= 8);
-        op!(_mm512_storeu_si512(to.as_mut_ptr().cast(), self.0));
+        op!(x86::_mm512_storeu_si512(to.as_mut_ptr().cast(), self.0));
     }
     #[inline(always)]
     fn fill(self, mask: Mask8, from: &[u64]) -> Self {
-        Self(op!(_mm512_mask_expand_epi64(self.0, mask.0, Self::load(from).0)))
+        Self(op!(x86::_mm512_mask_expand_epi64(self.0, mask.0, Self::load(from).0)))
     }
     #[inline(always)]
     fn word(&self, lane: usize) -> u64 {
@@ -182,18 +176,18 @@ impl Words<Mask8> for U64x8 {
     }
     #[inline(always)]
     fn set_word(&mut self, lane: usize, word: u64) {
-        self.0 = op!(_mm512_mask_mov_epi64(self.0, 1 << lane, _mm512_set1_epi64(word as i64)));
+        self.0 = op!(x86::_mm512_mask_mov_epi64(self.0, 1 << lane, x86::_mm512_set1_epi64(word as i64)));
     }
     #[inline(always)]
     fn choose(mask: Mask8, yes: Self, no: Self) -> Self {
-        Self(op!(_mm512_mask_blend_epi64(mask.0, no.0, yes.0)))
+        Self(op!(x86::_mm512_mask_blend_epi64(mask.0, no.0, yes.0)))
     }
     #[inline(always)]
     fn less(self, other: Self) -> Mask8 {
-        Mask8(op!(_mm512_cmplt_epu64_mask(self.0, other.0)))
+        Mask8(op!(x86::_mm512_cmplt_epu64_mask(self.0, other.0)))
     }
     #[inline(always)]
     fn equal(self, other: Self) -> Mask8 {
-        Mask8(op!(_mm512_cmpeq_epu64_mask(self.0, other.0)))
+        Mask8(op!(x86::_mm512_cmpeq_epu64_mask(self.0, other.0)))
     }
 }

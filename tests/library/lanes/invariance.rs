@@ -1,13 +1,14 @@
 //! Nothing that the program chooses by itself changes a bit: no accelerator, no instruction set and no number of lanes. Scenes have as many
 //! primitives as stand on either side of each threshold of such a choice; where those are is asked of the program.
 
-use super::{levels, render, without_tests};
+use super::{render, without_tests};
 use crate::watchdog::Watchdog;
 use pathmark::film::{Bounds, Piece, TileBuffer};
 use pathmark::kernel::{Counts, Spec, build, choose};
 use pathmark::material::{Diffuse, Material};
 use pathmark::math::{Rgb, Vec3};
 use pathmark::scene::{ACCELERATORS, Object, Scene, Sphere, Triangle, load};
+use pathmark::simd::levels;
 use std::collections::BTreeSet;
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
@@ -93,7 +94,7 @@ const ALL: [Content; 4] = [Content::Spheres, Content::Twins, Content::Triangles,
 fn kernels(precision: &str) -> Vec<Spec> {
     let spec = Spec { width: 8, height: 6, estimator: "mis".into(), precision: precision.into(), ..Spec::default() };
     let on_level = |name: &str| Spec { simd: Some(name.into()), ..spec.clone() };
-    let lanes = levels().map(|level| on_level(level.name));
+    let lanes = levels().map(|level| on_level(level.name()));
     let scalar = Spec { kernel: "scalar".into(), ..spec.clone() };
     lanes.chain((precision == "f64").then_some(scalar)).collect()
 }

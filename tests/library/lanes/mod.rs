@@ -9,14 +9,10 @@ use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
 use pathmark::kernel::{Clamp, Counts, Kernel, Spec, build, choose};
 use pathmark::scene::{SCENES, Scene, load};
-use pathmark::simd::{Entry, LEVELS};
+use pathmark::simd::{Level, levels};
 use statrs::distribution::{ContinuousCDF, Normal};
 use std::sync::Arc;
 use std::time::Duration;
-
-fn levels() -> impl Iterator<Item = &'static Entry> {
-    LEVELS.iter().filter(|level| level.is_available())
-}
 
 fn render(kernel: &dyn Kernel, piece: &Piece) -> (TileBuffer, Counts) {
     let mut buffer = TileBuffer::new(piece.bounds);
@@ -37,10 +33,10 @@ fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
     let scalar = build(scene, &Spec { kernel: "scalar".into(), ..spec.clone() }).unwrap();
     let expected: Vec<_> = pieces.iter().map(|piece| render(&*scalar, piece)).collect();
     for level in levels() {
-        let spec = Spec { kernel: "lanes".into(), simd: Some(level.name.into()), ..spec.clone() };
-        let what = format!("{}, {}, {}, {}", scene.name, spec.estimator, spec.sampler, level.name);
+        let spec = Spec { kernel: "lanes".into(), simd: Some(level.name().into()), ..spec.clone() };
+        let what = format!("{}, {}, {}, {}", scene.name, spec.estimator, spec.sampler, level.name());
         let choice = choose(scene, &spec).unwrap();
-        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("lanes", level.name, ""), "{what}");
+        assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("lanes", level.name(), ""), "{what}");
         let lanes = build(scene, &spec).unwrap();
         for (piece, (buffer, counts)) in pieces.iter().zip(&expected) {
             let (sums, found) = render(&*lanes, piece);
@@ -100,8 +96,8 @@ fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
             }
             let single = Spec { precision: "f32".into(), ..double.clone() };
             let what = format!("{name}, {}", single.estimator);
-            let on = |level: &Entry, piece: &Piece| {
-                let spec = Spec { simd: Some(level.name.into()), ..single.clone() };
+            let on = |level: Level, piece: &Piece| {
+                let spec = Spec { simd: Some(level.name().into()), ..single.clone() };
                 assert_eq!(choose(&scene, &spec).unwrap().precision().name(), "f32");
                 let (sums, counts) = render(&*build(&scene, &spec).unwrap(), piece);
                 (sums, without_tests(counts))
@@ -109,7 +105,7 @@ fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
             let few = Piece { samples: 0..4, ..piece.clone() };
             let expected = on(levels().next().unwrap(), &few);
             for level in levels() {
-                assert!(on(level, &few) == expected, "{what}: {}", level.name);
+                assert!(on(level, &few) == expected, "{what}: {}", level.name());
             }
             let (found, counts) = on(levels().next().unwrap(), &piece);
             assert_eq!(counts.invalid, 0, "{what}");

@@ -15,7 +15,7 @@ use super::singles::Singles;
 use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
 use crate::scene::{Bounds, Plane, Scene, Tests};
-use crate::simd::{Entry, Float, MOST_LANES, Mask, Precision, widths_of};
+use crate::simd::{Float, Level, MOST_LANES, Mask, Precision, widths_of};
 use blocks::{Blocks, Leaf, Making};
 use coarse::{AllCoarse, Coarse, Scale};
 use tree::{Tree, Waiting};
@@ -38,7 +38,7 @@ enum Search {
 }
 
 impl Wide {
-    pub(in crate::kernel::lanes) fn of(scene: &Scene, level: &Entry, precision: Precision, enclosing: &[u32]) -> Self {
+    pub(in crate::kernel::lanes) fn of(scene: &Scene, level: Level, precision: Precision, enclosing: &[u32]) -> Self {
         let [lanes, width] = widths_of(level, precision);
         let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
         let bounds = scene.primitives.bounds();
@@ -171,7 +171,7 @@ mod tests {
     use crate::sampling::uniform_sphere;
     use crate::scene::Standpoint;
     use crate::scene::{SCENES, load};
-    use crate::simd::{LEVELS, Work, on_level};
+    use crate::simd::{Work, levels, on_level};
 
     /// Compares with the scalar search.
     struct Compare<'a>(&'a Scene, &'a Wide, &'a [Start]);
@@ -223,10 +223,10 @@ mod tests {
                     continue;
                 }
                 let (walks, edges) = walks(&scene, 4000);
-                for level in LEVELS.iter().filter(|level| level.is_available()) {
+                for level in levels() {
                     let wide = Wide::of(&scene, level, Precision::F64, &[]);
                     for starts in [&walks, &edges] {
-                        on_level(level.name, Precision::F64, Compare(&scene, &wide, starts)).unwrap();
+                        on_level(level, Precision::F64, Compare(&scene, &wide, starts));
                         compared += starts.len();
                     }
                 }
@@ -242,10 +242,10 @@ mod tests {
             for exponent in [-300, -140, -40, 40, 140, 300] {
                 let scene = load(name).unwrap().scaled(libm::exp2(f64::from(exponent))).accelerated("sah").unwrap();
                 let (walks, edges) = walks(&scene, 1000);
-                for level in LEVELS.iter().filter(|level| level.is_available()) {
+                for level in levels() {
                     let wide = Wide::of(&scene, level, Precision::F64, &[]);
                     for starts in [&walks, &edges] {
-                        on_level(level.name, Precision::F64, Compare(&scene, &wide, starts)).unwrap();
+                        on_level(level, Precision::F64, Compare(&scene, &wide, starts));
                     }
                 }
             }
@@ -274,9 +274,9 @@ mod tests {
             !line_meets(ray.origin - sphere.center, ray.direction, 1.0, sphere.radius)
         };
         assert!(starts.iter().filter(line_passes).count() > 500);
-        for level in LEVELS.iter().filter(|level| level.is_available()) {
+        for level in levels() {
             let wide = Wide::of(&scene, level, Precision::F64, &[]);
-            on_level(level.name, Precision::F64, Compare(&scene, &wide, &starts)).unwrap();
+            on_level(level, Precision::F64, Compare(&scene, &wide, &starts));
         }
     }
 }

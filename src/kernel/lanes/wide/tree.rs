@@ -150,3 +150,78 @@ impl Waiting {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Counts;
+    use crate::kernel::lanes::packet::Rays;
+    use crate::kernel::lanes::wide::{Search, Wide};
+    use crate::math::{Ray, Vec3};
+    use crate::scene::{Content, Primitive, Primitives, Sphere};
+    use crate::simd::{Precision, Work, levels, on_level, widths_of};
+
+    const DEPTH: usize = 100;
+
+    /// A row of spheres whose boxes are all on the x axis, though the axis meets the last one alone. Each node holds the last of its spheres and a
+    /// node with those before, so a ray along the axis comes to the last one when everything else has been looked at.
+    fn row(width: usize) -> (Vec<Sphere>, Vec<Vec<Child>>) {
+        let count = DEPTH * (width - 1);
+        let sphere = |k: usize| {
+            let beside = if k + 1 < count { 0.9 } else { 0.0 };
+            Sphere { center: Vec3::new(10.0 + 3.0 * k as f64, beside, beside), radius: 1.0 }
+        };
+        let spheres: Vec<Sphere> = (0..count).map(sphere).collect();
+        let around = |range: std::ops::Range<usize>| {
+            let boxes = spheres[range].iter().filter_map(Primitive::bounds);
+            boxes.fold(Bounds::EMPTY, |all, own| all.and(&own))
+        };
+        let node = |depth: usize| {
+            let end = (DEPTH - depth) * (width - 1);
+            let first = end - (width - 1);
+            let leaf = |k: usize| Child { bounds: around(k..k + 1), content: Content::Primitives(vec![k as u32]) };
+            let deeper = Child { bounds: around(0..first), content: Content::Node(depth + 1) };
+            (first..end).map(leaf).chain((depth + 1 < DEPTH).then_some(deeper)).collect()
+        };
+        let nodes = (0..DEPTH).map(node).collect();
+        (spheres, nodes)
+    }
+
+    struct Along<'a>(&'a Wide);
+
+    impl Work for Along<'_> {
+        type Output = (f64, f64);
+
+        #[inline(always)]
+        fn run<V: Float>(self) -> (f64, f64) {
+            let ray =
+                Ray { origin: Vec3::splat(Vec3::new(0.0, 0.0, 0.0)), direction: Vec3::splat(Vec3::new(1.0, 0.0, 0.0)) };
+            let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
+            let found = self.0.nearest(&rays, 1, &mut Counts::default());
+            (found.nearest.lane(0), found.primitive.lane(0))
+        }
+    }
+
+    /// Trees may be so deep that more is left to look at than there is place for; nothing is forgotten.
+    #[test]
+    fn what_there_is_no_place_for_is_looked_at_in_the_end() {
+        for level in levels() {
+            for precision in Precision::ALL {
+                let [lanes, width] = widths_of(level, precision);
+                let (spheres, nodes) = row(width);
+                assert!(spheres.len() > MOST_WAITING + width);
+                let bounds: Vec<Option<Bounds>> = spheres.iter().map(Primitive::bounds).collect();
+                let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
+                let primitives = Primitives { spheres, ..Primitives::default() };
+                let mut making = Making::new(&primitives, &bounds, scale, None, [width, lanes]);
+                let tree = Tree::of(&nodes, width, scale, &mut making);
+                let blocks = making.made(precision);
+                let wide = Wide { large: None, planes: Vec::new(), blocks, search: Search::Tree(tree) };
+                let last = primitives.spheres.len() - 1;
+                let (distance, number) = on_level(level, precision, Along(&wide));
+                assert_eq!(number, last as f64, "{} {precision:?}", level.name());
+                assert!((distance / (9.0 + 3.0 * number) - 1.0).abs() < 1e-6, "{} {precision:?}", level.name());
+            }
+        }
+    }
+}

@@ -1,16 +1,16 @@
-//! Lights as targets, in SIMD lanes: the choices of [`Lights`] with a mask for each, and the same bits.
+//! Lights to aim at: the choices of [`Lights`] with a mask for each, and the same bits.
 
 mod sphere;
 mod triangle;
 
-use super::{AnyTarget, Lights, NO_LIGHT};
 use crate::math::{Ray, Vec3};
+use crate::scene::{AnyTarget, Lights, NO_LIGHT};
 use crate::simd::{Float, Table};
 use sphere::Spheres;
 use triangle::Triangles;
 
 /// The lights of a scene that has any.
-pub struct LightsInLanes {
+pub(super) struct Targets {
     spheres: Option<Spheres>,
     triangles: Option<Triangles>,
     /// Number of the primitive, how often it is chosen, the area of what is aimed at, 1 for triangles.
@@ -22,37 +22,37 @@ pub struct LightsInLanes {
 }
 
 /// Directions towards lights.
-pub struct Aims<V: Float> {
+pub(super) struct Aims<V: Float> {
     /// Where there is one.
-    pub lanes: V::Mask,
+    pub(super) lanes: V::Mask,
     /// The direction, of length 1.
-    pub direction: Vec3<V>,
+    pub(super) direction: Vec3<V>,
     /// The primitive that it is to arrive at.
-    pub primitive: V,
+    pub(super) primitive: V,
     /// How likely the light and the direction were, per steradian.
-    pub density: V,
+    pub(super) density: V,
 }
 
 /// Where a ray or an aim starts: the number of the primitive that it is on, and whether on its inside.
 #[derive(Clone, Copy)]
-pub struct Start<V: Float> {
+pub(super) struct Start<V: Float> {
     /// The point.
-    pub point: Vec3<V>,
+    pub(super) point: Vec3<V>,
     /// The primitive, -1 if none.
-    pub primitive: V,
+    pub(super) primitive: V,
     /// The side.
-    pub inside: V::Mask,
+    pub(super) inside: V::Mask,
 }
 
 /// Where rays arrive.
 #[derive(Clone, Copy)]
-pub struct Met<V> {
+pub(super) struct Met<V> {
     /// The primitive.
-    pub primitive: V,
+    pub(super) primitive: V,
     /// How far away.
-    pub t: V,
+    pub(super) t: V,
     /// Its outward normal there.
-    pub normal: Vec3<V>,
+    pub(super) normal: Vec3<V>,
 }
 
 /// A light for each lane.
@@ -84,9 +84,9 @@ impl<V: Float> Directions<V> {
     }
 }
 
-impl LightsInLanes {
+impl Targets {
     /// The lights in tables; `None` if there are none.
-    pub fn of(lights: &Lights) -> Option<Self> {
+    pub(super) fn of(lights: &Lights) -> Option<Self> {
         if lights.lights.is_empty() {
             return None;
         }
@@ -112,7 +112,7 @@ impl LightsInLanes {
     }
 
     /// Whether a number is needed to choose one.
-    pub fn are_several(&self) -> bool {
+    pub(super) fn are_several(&self) -> bool {
         self.up_to.len() > 1
     }
 
@@ -137,7 +137,7 @@ impl LightsInLanes {
 
     /// Directions towards lights. `choice` is looked at only where there are several.
     #[inline(always)]
-    pub fn aim<V: Float>(&self, start: &Start<V>, choice: V, place: [V; 2]) -> Aims<V> {
+    pub(super) fn aim<V: Float>(&self, start: &Start<V>, choice: V, place: [V; 2]) -> Aims<V> {
         let light = self.chosen::<V>(self.choose(choice));
         let found = match (&self.spheres, &self.triangles) {
             (Some(spheres), None) => spheres.aim(&light, start, place),
@@ -154,9 +154,9 @@ impl LightsInLanes {
         Aims { lanes, direction: found.direction, primitive: light.primitive, density }
     }
 
-    /// How likely [`LightsInLanes::aim`] was to choose the directions of rays; 0 where nothing is aimed at.
+    /// How likely [`Targets::aim`] was to choose the directions of rays; 0 where nothing is aimed at.
     #[inline(always)]
-    pub fn density<V: Float>(&self, start: &Start<V>, ray: &Ray<V>, met: &Met<V>) -> V {
+    pub(super) fn density<V: Float>(&self, start: &Start<V>, ray: &Ray<V>, met: &Met<V>) -> V {
         let zero = V::splat(0.0);
         let [light, ..] = V::rows(&self.of_primitive, met.primitive);
         let is_target = zero.le(light);

@@ -1,11 +1,9 @@
-//! Spheres as targets, as [`SphereTarget`](super::super::sphere::SphereTarget) has them.
+//! Spheres as targets, as `SphereTarget` has them.
 
-use super::super::sphere::{one_minus_cos, towards_cap};
-use super::super::{AnyTarget, Lights};
 use super::{Chosen, Directions, Met, Start};
 use crate::math::{Ray, Vec3, dot};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, uniform_sphere};
-use crate::scene::Sphere;
+use crate::scene::{AnyTarget, Lights, Sphere, one_minus_cos, towards_cap};
 use crate::simd::{Float, Mask, Table};
 use std::f64::consts::PI;
 

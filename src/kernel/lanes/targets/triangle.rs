@@ -1,9 +1,8 @@
-//! Triangles as targets, as [`TriangleTarget`](super::super::triangle::TriangleTarget) has them.
+//! Triangles as targets, as [`TriangleTarget`] has them.
 
-use super::super::triangle::{TriangleTarget, per_steradian, point_of};
-use super::super::{AnyTarget, Lights};
 use super::{Chosen, Directions, Met, Start};
 use crate::math::{Ray, Vec3, dot};
+use crate::scene::{AnyTarget, Lights, TriangleTarget, per_steradian, point_of};
 use crate::simd::{Float, Table};
 
 /// Triangles among lights.
