@@ -2,7 +2,7 @@
 
 use super::{Purpose, SampleKey, hash, independent, mix, sobol};
 use crate::math::Bits;
-use crate::simd::{Float, Words};
+use crate::simd::{Apart, Float, Words};
 
 /// A sampler that lanes can ask.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,19 +76,38 @@ impl InLanes {
         let [first, second] = match self {
             Self::Independent => independent::pcg32(key, dimension),
             Self::Hash => hash::both(key),
-            Self::Sobol => {
-                let place = match purpose {
-                    // Nobody but the camera asks for it.
-                    Purpose::Film => words.joined[0],
-                    Purpose::Bsdf | Purpose::Light => {
-                        let is_first = (bounce.up::<16>() | branch).equal(V::Bits::splat(1 << 16));
-                        V::Bits::choose(is_first, words.joined[1], sobol::own_place(key, words.sample))
-                    }
-                    _ => sobol::own_place(key, words.sample),
-                };
-                sobol::fractions(key, place)
-            }
+            Self::Sobol => return V::apart(Scrambled::<V> { key, words, bounce, branch, purpose }),
         };
+        [V::unit(first), V::unit(second)]
+    }
+}
+
+/// A pair of `sobol`, by so many operations that a call is nothing beside them.
+struct Scrambled<'a, V: Float> {
+    /// A mix of everything.
+    key: V::Bits,
+    words: &'a PathWords<V::Bits>,
+    bounce: V::Bits,
+    branch: V::Bits,
+    purpose: Purpose,
+}
+
+impl<V: Float> Apart for Scrambled<'_, V> {
+    type Output = [V; 2];
+
+    #[inline(always)]
+    fn run(self) -> [V; 2] {
+        let Self { key, words, bounce, branch, purpose } = self;
+        let place = match purpose {
+            // Nobody but the camera asks for it.
+            Purpose::Film => words.joined[0],
+            Purpose::Bsdf | Purpose::Light => {
+                let is_first = (bounce.up::<16>() | branch).equal(V::Bits::splat(1 << 16));
+                V::Bits::choose(is_first, words.joined[1], sobol::own_place(key, words.sample))
+            }
+            _ => sobol::own_place(key, words.sample),
+        };
+        let [first, second] = sobol::fractions(key, place);
         [V::unit(first), V::unit(second)]
     }
 }

@@ -150,6 +150,9 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     fn number(bits: Self::Bits) -> Self;
     /// The leading bits of a word as a number in [0, 1), as many as a number has digits: exact, and never 1.
     fn unit(bits: Self::Bits) -> Self;
+    /// Does some work in a function of its own, which is compiled once for all that call it: what takes so long that a call is nothing beside it
+    /// need not be part of each of them.
+    fn apart<W: Apart>(work: W) -> W::Output;
     /// Rows of a table by their numbers, turned so that lane k of result j is `table[rows[k]][j]`. Numbers must be whole and in the table.
     fn rows(table: &Table, rows: Self) -> [Self; 4];
 }
@@ -164,6 +167,14 @@ pub trait Work {
     /// Does it. Everything that it calls must be `#[inline(always)]`, or it is compiled without the
     /// instructions of the level.
     fn run<V: Float>(self) -> Self::Output;
+}
+
+/// What a function of its own does with the instructions of a level.
+pub trait Apart {
+    /// What it returns.
+    type Output;
+    /// Does it; the same holds as for [`Work::run`].
+    fn run(self) -> Self::Output;
 }
 
 /// The floating-point format of numbers in lanes.

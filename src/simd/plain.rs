@@ -1,6 +1,6 @@
 //! Small arrays, which compilers turn into what every processor of its kind has: SSE2 or NEON.
 
-use super::{Float, Mask, Precision, Table, Words, Work};
+use super::{Apart, Float, Mask, Precision, Table, Words, Work};
 use crate::math::{Bits, Real, single_unit, unit};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -256,6 +256,10 @@ macro_rules! float {
             #[inline(always)]
             fn unit(bits: Plain<u64>) -> Self {
                 each!(k => $unit(bits.0[k]))
+            }
+            #[inline(never)]
+            fn apart<W: Apart>(work: W) -> W::Output {
+                work.run()
             }
             #[inline(always)]
             fn rows(table: &Table, rows: Self) -> [Self; 4] {

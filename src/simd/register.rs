@@ -134,6 +134,10 @@ macro_rules! register {
             fn about_times_plus(self, factor: Self, addend: Self) -> Self {
                 Self(op!(x86::$fused(self.0, factor.0, addend.0)))
             }
+            #[inline(always)]
+            fn apart<W: crate::simd::Apart>(work: W) -> W::Output {
+                op!(super::apart(work))
+            }
             $($own)*
         }
     };

@@ -1,6 +1,6 @@
 //! Two vectors as one: each operation is done on one and then on the other, so that the second's work hides the first's latency.
 
-use super::{Float, Mask, Table, Words};
+use super::{Apart, Float, Mask, Table, Words};
 use crate::math::{Bits, Real};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
@@ -229,6 +229,10 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     #[inline(always)]
     fn unit(bits: Self::Bits) -> Self {
         Self(V::unit(bits.0), V::unit(bits.1))
+    }
+    #[inline(always)]
+    fn apart<W: Apart>(work: W) -> W::Output {
+        V::apart(work)
     }
     #[inline(always)]
     fn rows(table: &Table, rows: Self) -> [Self; 4] {

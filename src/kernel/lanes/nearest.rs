@@ -1,6 +1,7 @@
 //! The first thing that each ray meets.
 
 use super::packet::{LanesOf, Rays};
+use super::wide::Nearest;
 use super::{Lanes, Search};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3};
@@ -18,7 +19,7 @@ impl Lanes {
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
-            Search::Wide(wide) => (wide.nearest(rays, wanted, counts), 0),
+            Search::Wide(wide) => (V::apart(Nearest { wide, rays, wanted, counts }), 0),
             // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };

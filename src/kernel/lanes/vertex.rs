@@ -10,7 +10,7 @@ use crate::math::{
 };
 use crate::sampling::{Purpose, cosine_hemisphere};
 use crate::scene::{AllEffects, Scene};
-use crate::simd::{Float, MOST_LANES, Mask, Number, Words};
+use crate::simd::{Apart, Float, MOST_LANES, Mask, Number, Words};
 
 /// Where rays arrived.
 #[derive(Clone, Copy)]
@@ -326,7 +326,7 @@ fn leave<V: Float, const MATT: bool>(
     let mut splits = 0;
     if let Some(split) = split {
         splits = split.lanes & !*ended;
-        put_aside(packet, at, vertices, &split, splits);
+        V::apart(PutAside { packet, at, vertices, split: &split, lanes: splits });
     }
     packet.rays.own_root = own_root(at, scattered.wi, direction);
     packet.rays.ray = Ray { origin: at.point, direction };
@@ -341,24 +341,37 @@ fn leave<V: Float, const MATT: bool>(
     *ended |= (at.lanes & spent).bits() & !splits;
 }
 
-/// The refracted parts of paths that split.
-#[inline(never)]
-fn put_aside<V: Float>(packet: &mut Packet<V>, at: &Arrival<V>, vertices: V::Bits, split: &Split<V>, lanes: u32) {
-    let direction = at.frame.to_world(split.wi).normalized();
-    let own_root = own_root(at, split.wi, direction);
-    let throughput = packet.throughput * split.weight;
-    for lane in LanesOf(lanes) {
-        let vertices = vertices.word(lane);
-        let part = Part {
-            origin: vector(&at.point, lane),
-            direction: vector(&direction, lane),
-            from: at.primitive.lane(lane),
-            own_root: own_root.lane(lane),
-            throughput: colour(&throughput, lane),
-            vertices,
-            branch: packet.branch.word(lane) | 1 << (vertices - 1),
-        };
-        packet.push(lane, part);
+/// The refracted parts of paths that split, which are put aside.
+struct PutAside<'a, V: Float> {
+    packet: &'a mut Packet<V>,
+    at: &'a Arrival<V>,
+    vertices: V::Bits,
+    split: &'a Split<V>,
+    lanes: u32,
+}
+
+impl<V: Float> Apart for PutAside<'_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Self { packet, at, vertices, split, lanes } = self;
+        let direction = at.frame.to_world(split.wi).normalized();
+        let own_root = own_root(at, split.wi, direction);
+        let throughput = packet.throughput * split.weight;
+        for lane in LanesOf(lanes) {
+            let vertices = vertices.word(lane);
+            let part = Part {
+                origin: vector(&at.point, lane),
+                direction: vector(&direction, lane),
+                from: at.primitive.lane(lane),
+                own_root: own_root.lane(lane),
+                throughput: colour(&throughput, lane),
+                vertices,
+                branch: packet.branch.word(lane) | 1 << (vertices - 1),
+            };
+            packet.push(lane, part);
+        }
     }
 }
 

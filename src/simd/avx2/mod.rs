@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::two::{HalfMask, PairMask, Two};
-use super::{Float, Mask, Precision, REVERSED, Words, Work};
+use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
 use crate::math::Bits;
 use double::F64x4;
 use single::F32x8;
@@ -35,6 +35,12 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
 #[target_feature(enable = "avx2,fma")]
 fn enter<V: Float, W: Work>(work: W) -> W::Output {
     work.run::<V>()
+}
+
+#[target_feature(enable = "avx2,fma")]
+#[inline(never)]
+fn apart<W: Apart>(work: W) -> W::Output {
+    work.run()
 }
 
 #[derive(Clone, Copy)]

@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::two::{HalfMask, PairMask, Two};
-use super::{Float, Mask, Precision, REVERSED, Words, Work};
+use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
 use crate::math::Bits;
 use double::F64x8;
 use single::F32x16;
@@ -38,6 +38,12 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
 #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
 fn enter<V: Float, W: Work>(work: W) -> W::Output {
     work.run::<V>()
+}
+
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+#[inline(never)]
+fn apart<W: Apart>(work: W) -> W::Output {
+    work.run()
 }
 
 #[derive(Clone, Copy)]

@@ -15,7 +15,7 @@ use super::singles::Singles;
 use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
 use crate::scene::{Bounds, Plane, Scene, Tests};
-use crate::simd::{Float, Level, MOST_LANES, Mask, Precision, widths_of};
+use crate::simd::{Apart, Float, Level, MOST_LANES, Mask, Precision, widths_of};
 use blocks::{Blocks, Leaf, Making};
 use coarse::{AllCoarse, Coarse, Scale};
 use tree::{Tree, Waiting};
@@ -37,6 +37,23 @@ enum Search {
     Tree(Tree),
 }
 
+/// A search, which takes so long that it need not be part of the loop over vertices.
+pub(in crate::kernel::lanes) struct Nearest<'a, V: Float> {
+    pub(in crate::kernel::lanes) wide: &'a Wide,
+    pub(in crate::kernel::lanes) rays: &'a Rays<V>,
+    pub(in crate::kernel::lanes) wanted: u32,
+    pub(in crate::kernel::lanes) counts: &'a mut Counts,
+}
+
+impl<V: Float> Apart for Nearest<'_, V> {
+    type Output = Found<V>;
+
+    #[inline(always)]
+    fn run(self) -> Found<V> {
+        self.wide.nearest(self.rays, self.wanted, self.counts)
+    }
+}
+
 impl Wide {
     pub(in crate::kernel::lanes) fn of(scene: &Scene, level: Level, precision: Precision, enclosing: &[u32]) -> Self {
         let [lanes, width] = widths_of(level, precision);
@@ -56,12 +73,7 @@ impl Wide {
 
     /// The first thing along each of the `wanted` rays.
     #[inline(always)]
-    pub(in crate::kernel::lanes) fn nearest<V: Float>(
-        &self,
-        rays: &Rays<V>,
-        wanted: u32,
-        counts: &mut Counts,
-    ) -> Found<V> {
+    fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> Found<V> {
         let Ray { origin, direction } = rays.ray;
         let mut found = match &self.large {
             Some(large) => large.scan(rays),
