@@ -37,6 +37,11 @@ impl Effects {
         Self(self.0 | other.0)
     }
 
+    /// Whether both are the same; `==` is no constant.
+    pub const fn is(self, other: Self) -> bool {
+        self.0 == other.0
+    }
+
     /// Whether every effect of `other` is in `self`.
     pub const fn cover(self, other: Self) -> bool {
         self.0 & other.0 == other.0

@@ -1,5 +1,6 @@
 //! `--estimator bsdf`: one direction at every vertex, chosen by the surface; smallpt's transport without its splitting.
 
+use super::Compiled;
 use super::path::{Path, Rules};
 
 /// The estimator.
@@ -13,4 +14,5 @@ impl Rules for BsdfRules {
     const SPLITS: u16 = 0;
     const SPP_MULTIPLE: u32 = 1;
     const AIMS: bool = false;
+    const COMPILED: Compiled = Compiled::EveryProfile;
 }

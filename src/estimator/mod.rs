@@ -102,6 +102,17 @@ pub struct Course {
     pub roulette: Roulette,
 }
 
+/// The effect profiles that an estimator's scalar kernels are compiled for. Each is a copy of the whole path, and takes seconds to compile.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Compiled {
+    /// The profile with every effect alone.
+    WithAllEffects,
+    /// Also the profile of smallpt's effects.
+    Common,
+    /// Every profile, so that the cost of an effect can be measured, with the sampler `independent`.
+    EveryProfile,
+}
+
 /// An estimate of radiance, one sample at a time: unbiased unless it has a [`Estimator::MAX_DEPTH`] of its own.
 pub trait Estimator: Send + Sync {
     /// What it is, in a line of `pathmark list estimators`.
@@ -124,6 +135,9 @@ pub trait Estimator: Send + Sync {
 
     /// The largest number of bounces that it can be asked for.
     const LARGEST_DEPTH: u16 = u16::MAX;
+
+    /// The effect profiles that its scalar kernels are compiled for.
+    const COMPILED: Compiled = Compiled::WithAllEffects;
 
     /// How it follows paths, for kernels that follow many at once; `None` if it does something else.
     fn course(&self) -> Option<Course> {
@@ -220,6 +234,8 @@ pub struct Entry {
     pub is_one_path: bool,
     /// The largest number of bounces that it can be asked for.
     pub largest_depth: u16,
+    /// The effect profiles that its scalar kernels are compiled for.
+    pub compiled: Compiled,
 }
 
 impl Entry {
@@ -234,6 +250,7 @@ impl Entry {
             roulette: E::ROULETTE,
             is_one_path: E::IS_ONE_PATH,
             largest_depth: E::LARGEST_DEPTH,
+            compiled: E::COMPILED,
         }
     }
 }

@@ -6,7 +6,7 @@
 use super::aimed::{aimed_at_fog, aimed_at_surface, share_of_arrival};
 use super::direct::{light_at_fog, light_at_surface};
 use super::medium::Medium;
-use super::{Course, Estimator, Options, Probe, Roulette};
+use super::{Compiled, Course, Estimator, Options, Probe, Roulette};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3, dot};
@@ -28,6 +28,8 @@ pub trait Rules: Send + Sync {
     const SPP_MULTIPLE: u32;
     /// Whether vertices aim at light.
     const AIMS: bool;
+    /// The effect profiles that scalar kernels are compiled for.
+    const COMPILED: Compiled = Compiled::Common;
 }
 
 /// The rules of `nee` and `mis`. They differ in a number alone, so one kernel does for both.
@@ -87,6 +89,7 @@ impl<R: Rules> Estimator for Path<R> {
     const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;
     const ROULETTE: Option<Roulette> = Some(Roulette::SMALLPT);
     const AIMS: bool = R::AIMS;
+    const COMPILED: Compiled = R::COMPILED;
     const IS_ONE_PATH: bool = R::SPLITS == 0;
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use super::{Clamp, KERNELS, LANES, OwnEstimator, SCALAR, Spec};
 use crate::effect::Effects;
 use crate::error::{InputError, Result};
-use crate::estimator::{AnyEstimator, Course, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
+use crate::estimator::{AnyEstimator, Compiled, Course, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
 use crate::material::Diffuse;
 use crate::sampling::{Entry as SamplerEntry, InLanes as LaneSampler, SAMPLERS};
 use crate::scene::{
@@ -145,12 +145,11 @@ pub(super) fn unknown(field: &str, value: &str, names: impl Iterator<Item = &'st
 /// The sampler that every profile is compiled for.
 pub(super) const INDEPENDENT: &str = "independent";
 
-/// The profiles that kernels with a sampler are compiled for; all of them if it is empty. All samplers in all profiles would be more than a
-/// hundred kernels, which take minutes to compile.
-fn profiles_for(sampler: &SamplerEntry) -> &'static [&'static str] {
-    match sampler.name {
-        INDEPENDENT => &[],
-        _ if sampler.deterministic => &[SmallptEffects::NAME, AllEffects::NAME],
+/// The profiles that kernels of an estimator with a sampler are compiled for; all of them if it is empty.
+fn profiles_for(estimator: &EstimatorEntry, sampler: &SamplerEntry) -> &'static [&'static str] {
+    match estimator.compiled {
+        Compiled::EveryProfile if sampler.name == INDEPENDENT => &[],
+        Compiled::EveryProfile | Compiled::Common if sampler.deterministic => &[SmallptEffects::NAME, AllEffects::NAME],
         _ => &[AllEffects::NAME],
     }
 }
@@ -205,7 +204,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         height: spec.height,
         seed: spec.seed,
         clamp: spec.clamp,
-        profile: profile(effects, spec.effects.as_deref(), sampler, own.is_some())?,
+        profile: profile(effects, spec.effects.as_deref(), &estimator, sampler)?,
         estimator,
         own,
         options,
@@ -219,10 +218,10 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
 fn profile(
     effects: Effects,
     wanted: Option<&str>,
+    estimator: &EstimatorEntry,
     sampler: &SamplerEntry,
-    is_own: bool,
 ) -> Result<&'static ProfileEntry> {
-    let compiled = if is_own { &[AllEffects::NAME] } else { profiles_for(sampler) };
+    let compiled = profiles_for(estimator, sampler);
     let is_compiled = |name: &str| compiled.is_empty() || compiled.contains(&name);
     let fitting = PROFILES.iter().find(|entry| is_compiled(entry.name) && entry.effects.cover(effects));
     let fitting = fitting.map_or(AllEffects::NAME, |entry| entry.name);
@@ -235,7 +234,7 @@ fn profile(
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
     if !is_compiled(profile.name) {
-        let problem = format!("is not compiled for the sampler {}", sampler.name);
+        let problem = format!("is not compiled for {} with the sampler {}", estimator.name, sampler.name);
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
     Ok(profile)

@@ -11,7 +11,7 @@ pub mod workload;
 
 use crate::effect::EffectSet;
 use crate::error::Result;
-use crate::estimator::{Estimator, EstimatorVisitor, with_estimator};
+use crate::estimator::{Compiled, Estimator, EstimatorVisitor, with_estimator};
 use crate::film::{Bounds, Piece, TileBuffer};
 use crate::sampling::{
     Independent, SAMPLERS, Sampler, SamplerVisitor, keyed_sampler, stateful_sampler, with_keyed_sampler,
@@ -123,10 +123,10 @@ pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>>
     }
     let kernel = match stateful_sampler(name, choice.seed) {
         Some(sampler) => BySampler::<AllEffects>::new(scene, choice).visit(sampler),
-        None if name == INDEPENDENT => with_profile(choice.profile.name, ByProfile { scene, choice }).flatten(),
         None if choice.profile.name == SmallptEffects::NAME => {
             with_keyed_sampler(name, BySampler::<SmallptEffects>::new(scene, choice)).flatten()
         }
+        None if name == INDEPENDENT => with_profile(choice.profile.name, ByProfile { scene, choice }).flatten(),
         None => with_keyed_sampler(name, BySampler::<AllEffects>::new(scene, choice)).flatten(),
     };
     // Every name has been checked, so there is a kernel.
@@ -175,6 +175,15 @@ impl<X: EffectSet> SamplerVisitor for BySampler<'_, X> {
     }
 }
 
+/// Whether scalar kernels of the estimator are compiled for the profile.
+const fn is_compiled<E: Estimator, X: EffectSet>() -> bool {
+    match E::COMPILED {
+        Compiled::EveryProfile => true,
+        Compiled::Common => X::EFFECTS.is(SmallptEffects::EFFECTS) || X::EFFECTS.is(AllEffects::EFFECTS),
+        Compiled::WithAllEffects => X::EFFECTS.is(AllEffects::EFFECTS),
+    }
+}
+
 /// From the estimator's name to a type, then to a kernel.
 struct ByEstimator<'a, S, X> {
     scene: Arc<Scene>,
@@ -186,6 +195,12 @@ struct ByEstimator<'a, S, X> {
 impl<S: Sampler + 'static, X: EffectSet> EstimatorVisitor for ByEstimator<'_, S, X> {
     type Output = Box<dyn Kernel>;
     fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
-        Box::new(Scalar::<E, S, X>::new(self.scene, self.choice, estimator, self.sampler))
+        let Self { scene, choice, sampler, .. } = self;
+        // The condition is a constant: what is not compiled for takes no time to compile. `choose` asks for no such profile.
+        if const { is_compiled::<E, X>() } {
+            Box::new(Scalar::<E, S, X>::new(scene, choice, estimator, sampler))
+        } else {
+            Box::new(Scalar::<E, S, AllEffects>::new(scene, choice, estimator, sampler))
+        }
     }
 }
