@@ -33,6 +33,7 @@
 pub mod analysis;
 pub mod atomic_file;
 pub mod check;
+#[cfg(feature = "program")]
 pub mod cli;
 pub mod digest;
 pub mod disk;
@@ -50,7 +51,9 @@ pub mod material;
 pub mod math;
 pub mod measure;
 pub mod metric;
+#[cfg(feature = "program")]
 pub mod plot;
+#[cfg(feature = "program")]
 pub mod report;
 pub mod sampling;
 pub mod scene;

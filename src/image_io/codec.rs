@@ -3,6 +3,7 @@
 //! A header of 30 bytes can claim 2^32 x 2^32 pixels. So a claim is held against fixed caps and against the file's length
 //! before memory is asked for. No format here packs more than [`MAX_PIXELS_PER_BYTE`] pixels into a byte.
 
+#[cfg(feature = "program")]
 use image::{DynamicImage, ImageDecoder, Limits};
 
 use super::{Image, tone_map};
@@ -19,6 +20,7 @@ const MAX_PIXELS: u64 = 1 << 28;
 const MAX_PIXELS_PER_BYTE: u64 = 8 * 1032;
 /// More than the largest picture has in the most wasteful format (text with 16 bits a channel).
 pub(super) const MAX_FILE_LENGTH: u64 = 20 * MAX_PIXELS;
+#[cfg(feature = "program")]
 /// What a decoder may allocate for anything but pixels.
 const MAX_METADATA: u64 = 64 << 20;
 
@@ -42,6 +44,7 @@ pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()>
     Ok(())
 }
 
+#[cfg(feature = "program")]
 /// The limits that a decoder of the `image` crate is opened with.
 pub(super) fn limits() -> Limits {
     let mut limits = Limits::default();
@@ -51,6 +54,7 @@ pub(super) fn limits() -> Limits {
     limits
 }
 
+#[cfg(feature = "program")]
 /// The pixels behind a decoder that has read its header, from a file of `length` bytes.
 pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<DynamicImage> {
     let (width, height) = decoder.dimensions();
@@ -58,6 +62,7 @@ pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<Dynam
     DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())
 }
 
+#[cfg(feature = "program")]
 /// A picture of display values in linear radiance.
 pub(super) fn from_display(image: DynamicImage) -> Decoded<Image> {
     // What lies behind a transparent pixel is not in the file.
@@ -77,6 +82,7 @@ pub(super) fn from_display(image: DynamicImage) -> Decoded<Image> {
     Ok(Image { width, height, pixels })
 }
 
+#[cfg(feature = "program")]
 /// A picture of linear values, as they are.
 pub(super) fn from_linear(image: DynamicImage) -> Image {
     let (width, height) = (image.width(), image.height());

@@ -6,15 +6,20 @@
 //! A file that cannot be read is an [`InputError`] that names it, whatever is wrong inside: nothing in a file can make a reader
 //! panic, or allocate more than the file's own length justifies. Pixels that a format cannot hold are an [`Error::Check`].
 
+#[cfg(feature = "program")]
 mod bmp;
 mod codec;
 mod exposure;
+#[cfg(feature = "program")]
 mod exr;
+#[cfg(feature = "program")]
 mod hdr;
-#[cfg(test)]
+#[cfg(all(test, feature = "program"))]
 mod hostile;
 mod pfm;
+#[cfg(feature = "program")]
 mod png;
+#[cfg(feature = "program")]
 mod ppm;
 pub mod tone_map;
 
@@ -77,7 +82,11 @@ pub struct Format {
 }
 
 /// Every format, for reading and for writing.
+#[cfg(feature = "program")]
 pub const FORMATS: &[Format] = &[png::FORMAT, exr::FORMAT, hdr::FORMAT, pfm::FORMAT, ppm::FORMAT, bmp::FORMAT];
+/// Every format that needs no other library, for reading and for writing.
+#[cfg(not(feature = "program"))]
+pub const FORMATS: &[Format] = &[pfm::FORMAT];
 
 /// The format that the extension of `path` asks for, in either case; to be asked before anything is rendered.
 pub fn check_format(path: &Path) -> Result<&'static Format> {
