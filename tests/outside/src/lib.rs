@@ -1,0 +1,39 @@
+//! A pool, an estimator and a workload that Pathmark knows nothing of.
+
+mod depth;
+mod pool;
+mod primes;
+
+pub use depth::Depth;
+pub use pool::ENTRY;
+pub use primes::Primes;
+
+/// Pathmark with what this crate adds.
+pub fn lab() -> pathmark::Lab {
+    pathmark::Lab::new().strategy(ENTRY).estimator("depth", Depth).workload("primes", Primes).experiment("ours", OURS)
+}
+
+/// An experiment over what is ours and what is not: thread scaling and granularity on two workloads.
+const OURS: &str = r#"
+title = "Our pool"
+question = "Is it any good?"
+analysis = "See the figures."
+figures = ["speedup", "granularity"]
+
+[[matrix]]
+scene = ["primes", "cornell"]
+estimator = ["depth"]
+spp = [4]
+seed = [1]
+strategy = ["serial", "relay", "work-stealing"]
+threads = [1, 2]
+decomposition = ["rows", "tiles:8x8", "tiles:4x4"]
+
+[quick]
+size = [32, 24]
+repetitions = 3
+
+[full]
+size = [64, 48]
+repetitions = 3
+"#;
