@@ -4,6 +4,8 @@ mod chili;
 mod dynamic;
 mod factoring;
 mod fixed_pool;
+#[cfg(feature = "forkunion")]
+mod forkunion;
 mod guided;
 mod mutex_queue;
 #[cfg(feature = "openmp")]
@@ -57,6 +59,8 @@ pub static STRATEGIES: &[Entry] = &[
     chili::ENTRY,
     paralight::ENTRY,
     orx_parallel::ENTRY,
+    #[cfg(feature = "forkunion")]
+    forkunion::ENTRY,
     #[cfg(feature = "openmp")]
     openmp_static::ENTRY,
     #[cfg(feature = "openmp")]
