@@ -20,6 +20,9 @@
 //! # fewest samples on the way to each spp. clamp = "subpixel" clamps each subpixel's mean before averaging,
 //! # clamp = "recursion" the light of each recursion.
 //!
+//! [figure.price-list]            # optional: what a figure of the list above is told
+//! goals = [0.1, 0.01]
+//!
 //! [reference]                    # optional: measures errors
 //! estimator = "bsdf"
 //!
@@ -40,6 +43,7 @@ use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use crate::lab::Lab;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -109,6 +113,9 @@ pub struct Definition {
     pub analysis: String,
     /// Names of the figures that the report draws.
     pub figures: Vec<String>,
+    /// What figures are told about this experiment, by figure; each figure reads its own table.
+    #[serde(default)]
+    pub figure: BTreeMap<String, toml::Table>,
     /// What is kept beside the rows.
     #[serde(default)]
     pub keep: Vec<Keep>,

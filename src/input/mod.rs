@@ -7,4 +7,4 @@ pub use numbers::{
     albedo, coordinate_limit, direction, field_of_view, length, out_of_range, point, positive, radiance,
     refractive_index, roughness, share,
 };
-pub use toml_text::{locate, locate_in, parse, read_text, read_text_up_to};
+pub use toml_text::{locate, locate_in, parse, parse_within, read_text, read_text_up_to};

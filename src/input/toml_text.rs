@@ -1,8 +1,11 @@
 //! TOML files: size limits before reading, and errors that name file, line, column, field and value.
 
 use crate::error::{Error, InputError, Result};
-use serde::de::DeserializeOwned;
+use serde::Deserializer;
+use serde::de::{DeserializeOwned, DeserializeSeed, IgnoredAny, MapAccess, Visitor};
+use std::fmt;
 use std::io::Read;
+use std::marker::PhantomData;
 use std::ops::Range;
 use std::path::Path;
 
@@ -40,6 +43,44 @@ pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
 /// Reads a definition; `file` is the name to show.
 pub fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
     toml::from_str(text).map_err(|e| located(text, file, e.message(), e.span()).into())
+}
+
+/// Reads the table at the end of a path of keys, and nothing else of a definition; `None` if it has no such table.
+pub fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[&str]) -> Result<Option<T>> {
+    let found =
+        toml::Deserializer::parse(text).and_then(|definition| Within(path, PhantomData).deserialize(definition));
+    found.map_err(|e| located(text, file, e.message(), e.span()).into())
+}
+
+/// What stands at the end of a path of keys.
+struct Within<'a, T>(&'a [&'a str], PhantomData<T>);
+
+impl<'de, T: DeserializeOwned> DeserializeSeed<'de> for Within<'_, T> {
+    type Value = Option<T>;
+
+    fn deserialize<D: Deserializer<'de>>(self, table: D) -> std::result::Result<Self::Value, D::Error> {
+        if self.0.is_empty() { T::deserialize(table).map(Some) } else { table.deserialize_map(self) }
+    }
+}
+
+impl<'de, T: DeserializeOwned> Visitor<'de> for Within<'_, T> {
+    type Value = Option<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut table: A) -> std::result::Result<Self::Value, A::Error> {
+        let mut found = None;
+        while let Some(key) = table.next_key::<String>()? {
+            if key == self.0[0] {
+                found = table.next_value_seed(Within(&self.0[1..], PhantomData))?;
+            } else {
+                table.next_value::<IgnoredAny>()?;
+            }
+        }
+        Ok(found)
+    }
 }
 
 fn located(text: &str, file: &str, message: &str, span: Option<Range<usize>>) -> InputError {

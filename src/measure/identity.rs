@@ -78,6 +78,15 @@ pub struct ScheduleKey {
     pub accelerator: String,
 }
 
+impl ScheduleKey {
+    /// Clears the kernel and what is chosen to fit it.
+    pub fn forget_kernel(&mut self) {
+        let parts =
+            [&mut self.kernel, &mut self.kernel_fallback, &mut self.simd, &mut self.effects, &mut self.accelerator];
+        parts.into_iter().for_each(String::clear);
+    }
+}
+
 /// In one word without spaces, equal for equal keys alone.
 impl fmt::Display for ScheduleKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

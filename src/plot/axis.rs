@@ -44,10 +44,13 @@ impl Axis {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
 
-    /// Labels exactly these values.
+    /// Labels exactly these values, in any order and each as often as it occurs.
     #[must_use]
     pub fn ticks_at(mut self, values: impl IntoIterator<Item = f64>) -> Self {
-        self.ticks = Ticks::At(values.into_iter().collect());
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        self.ticks = Ticks::At(values);
         self
     }
 

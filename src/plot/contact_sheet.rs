@@ -11,6 +11,8 @@ use super::drawing::{Align, Drawing};
 use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
 use super::{colour_bar, font, heading, number, paint, save_bytes};
 use crate::error::{Error, Result};
+use crate::image_io::Image;
+use crate::image_io::tone_map::quantise_image;
 
 /// About how wide each image is shown.
 const SHOWN: u32 = 240;
@@ -28,6 +30,13 @@ pub struct Cell {
     pub height: u32,
     /// Red, green and blue of each pixel, rows from the top; `3 * width * height` bytes.
     pub rgb: Vec<u8>,
+}
+
+impl Cell {
+    /// An image as it is shown on a display.
+    pub fn of(image: &Image, caption: Vec<String>) -> Result<Self> {
+        Ok(Self { caption, width: image.width, height: image.height, rgb: quantise_image(image)? })
+    }
 }
 
 /// The scale of the heat maps.

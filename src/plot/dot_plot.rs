@@ -38,6 +38,13 @@ pub struct Row {
     pub dots: Vec<Option<Dot>>,
 }
 
+impl Row {
+    /// A row.
+    pub fn new(name: impl Into<String>, dots: Vec<Option<Dot>>) -> Self {
+        Self { name: name.into(), dots }
+    }
+}
+
 /// What tells the dots of a row apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
@@ -72,6 +79,14 @@ impl DotPlot {
         let groups = vec![Group { name: String::new(), look: Look::nth(0) }];
         let (subtitle, caption) = (String::new(), String::new());
         Self { title: title.into(), subtitle, caption, axis, groups, rows, guides: Vec::new() }
+    }
+
+    /// The same with a group for each name; each row has a dot for each.
+    #[must_use]
+    pub fn grouped(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        let group = |(index, name): (usize, _)| Group { name: Into::into(name), look: Look::nth(index) };
+        self.groups = names.into_iter().enumerate().map(group).collect();
+        self
     }
 
     /// The dots that belong to a group.

@@ -76,6 +76,15 @@ impl Series {
         Self { name: name.into(), points, look, spread: Spread::Bars, line: true }
     }
 
+    /// A series for each name, its points from left to right.
+    pub fn by_name(lines: impl IntoIterator<Item = (impl Into<String>, Vec<Point>)>) -> Vec<Self> {
+        let series = |(index, (name, mut points)): (usize, (_, Vec<Point>))| {
+            points.sort_by(|a, b| a.x.total_cmp(&b.x));
+            Self::new(name, Look::nth(index), points)
+        };
+        lines.into_iter().enumerate().map(series).collect()
+    }
+
     /// Shows the intervals as a band.
     #[must_use]
     pub fn banded(mut self) -> Self {

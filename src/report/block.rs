@@ -2,7 +2,7 @@
 
 use crate::atomic_file;
 use crate::error::{Error, Result};
-use crate::plot::Figure;
+use crate::plot::{ContactSheet, Figure};
 use serde::Serialize;
 use std::path::Path;
 
@@ -47,6 +47,30 @@ pub enum Block {
 }
 
 impl Block {
+    pub(super) fn finding(text: impl Into<String>) -> Self {
+        Self::Finding(text.into())
+    }
+
+    pub(super) fn figure(stem: &'static str, figure: impl Figure + 'static) -> Self {
+        Self::Figure { stem, figure: Box::new(figure) }
+    }
+
+    /// A sheet of pictures.
+    pub(super) fn sheet(stem: &'static str, sheet: &ContactSheet) -> Result<Self> {
+        Ok(Self::Picture { stem, title: sheet.title.clone(), png: sheet.png()? })
+    }
+
+    /// A table with a row for each thing; its columns follow.
+    pub(super) fn table<T>(
+        stem: &'static str,
+        title: impl Into<String>,
+        things: impl IntoIterator<Item = T>,
+    ) -> Columns<T> {
+        let things: Vec<T> = things.into_iter().collect();
+        let table = Table { title: title.into(), columns: Vec::new(), rows: vec![Vec::new(); things.len()] };
+        Columns { stem, table, things }
+    }
+
     /// Writes figure, picture or table (as CSV) into the folder.
     pub(super) fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
@@ -67,5 +91,27 @@ impl Block {
                 atomic_file::write(&path, |file| file.write_all(&bytes))
             }
         }
+    }
+}
+
+/// A table whose columns are being added.
+pub(super) struct Columns<T> {
+    stem: &'static str,
+    table: Table,
+    things: Vec<T>,
+}
+
+impl<T> Columns<T> {
+    /// A column: its head, and what it says of a thing.
+    pub(super) fn column(mut self, head: impl Into<String>, cell: impl Fn(&T) -> String) -> Self {
+        self.table.columns.push(head.into());
+        for (row, thing) in self.table.rows.iter_mut().zip(&self.things) {
+            row.push(cell(thing));
+        }
+        self
+    }
+
+    pub(super) fn end(self) -> Block {
+        Block::Table { stem: self.stem, table: self.table }
     }
 }

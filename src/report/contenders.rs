@@ -1,30 +1,30 @@
 //! The ways to render a scene that an experiment compares, as prices see them: error curves over seeds, and seconds per sample.
 
 use super::block::Block;
-use super::results::{LEVEL, Results, Schedule};
+use super::naming::{Part, needed};
+use super::results::Results;
+use super::rows::{Row, group};
+use super::schedule::{crew, strategy};
+use super::words::{LEVEL, values};
 use crate::analysis::Interval;
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::mean::geometric_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
+use crate::error::{InputError, Result};
 use crate::experiment::{EXTERNAL, law_of};
-use crate::measure::{Record, Warning};
+use crate::measure::{ImageKey, ScheduleKey, Warning};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An estimator with a sampler and a schedule, on a scene.
 pub(super) struct Contender {
     /// What tells it from the others.
     pub(super) name: String,
-    /// The scene.
-    pub(super) scene: String,
-    /// Its estimator.
-    pub(super) estimator: String,
+    /// What it renders, samples and seed aside.
+    pub(super) image: ImageKey,
+    pub(super) schedule: ScheduleKey,
     /// Its kernel, in words.
     pub(super) kernel: String,
-    /// Its workers.
-    pub(super) threads: usize,
-    /// When and how chance ends its paths.
-    pub(super) roulette: String,
     /// Its points, by samples per pixel.
     pub(super) points: Vec<CostPoint>,
     /// What its prices are made from.
@@ -56,37 +56,28 @@ pub(super) struct Check {
 }
 
 impl Contender {
-    fn of(name: String, records: &[&Record]) -> Option<Self> {
-        let first = *records.first()?;
-        let seeds = curves_of_seeds(records);
-        let law = law_of(&first.sampler);
-        let mut points = Vec::new();
-        let mut by_spp: BTreeMap<u32, Vec<&Record>> = BTreeMap::new();
-        for record in records {
-            by_spp.entry(record.spp).or_default().push(record);
-        }
-        for (spp, rows) in by_spp {
-            let mse: BTreeMap<u64, f64> = rows.iter().filter_map(|row| Some((row.seed, row.mse?))).collect();
-            let mse: Vec<f64> = mse.into_values().collect();
-            let times: Vec<f64> = rows.iter().filter_map(|row| row.makespan_s).collect();
+    fn of(name: String, rows: &[&Row]) -> Option<Self> {
+        let first = *rows.first()?;
+        let seeds = curves_of_seeds(rows);
+        let renderer = renderer(&seeds, law_of(&first.sampler))?;
+        let points = group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| {
+            let mse = one_per_seed(&rows, |row| row.mse);
+            let times = values(rows, |row| row.makespan_s);
             let error = over_seeds(&mse, LEVEL);
-            points.push(CostPoint {
+            CostPoint {
                 spp,
                 seconds: times.iter().sum::<f64>() / times.len() as f64,
-                rmse: (mse.iter().sum::<f64>() / mse.len() as f64).sqrt(),
+                rmse: root_of_mean(&mse),
                 interval: error.map(|error| error.rmse.interval),
                 variation: error.map(|error| error.variation),
-            });
-        }
-        let renderer = renderer(&seeds, law)?;
+            }
+        });
         Some(Self {
             name,
-            scene: first.scene.clone(),
-            estimator: first.estimator.clone(),
+            image: ImageKey { spp: 0, seed: 0, ..first.image.clone() },
+            schedule: first.schedule.key.clone(),
             kernel: first.kernel_name(),
-            threads: first.threads,
-            roulette: first.roulette.clone(),
-            points,
+            points: points.collect(),
             renderer,
             seeds,
         })
@@ -123,79 +114,108 @@ fn renderer(seeds: &[(Curve, f64)], law: Law) -> Option<Renderer> {
 
 /// (spp, squared error) of each seed, and its seconds for a sample in every pixel, from its longest render. An spp at which some seed's
 /// squared error is not positive, or not there, is left out for all: leaving out that seed alone would bias the rest upwards.
-fn curves_of_seeds(records: &[&Record]) -> Vec<(Curve, f64)> {
-    let seeds: BTreeSet<u64> = records.iter().map(|record| record.seed).collect();
-    let spps: BTreeSet<u32> = records.iter().map(|record| record.spp).collect();
-    let at = |seed: u64, spp: u32| records.iter().find(|record| record.seed == seed && record.spp == spp);
-    let mse = |seed: u64, spp: u32| at(seed, spp)?.mse.filter(|mse| *mse > 0.0);
-    let whole: Vec<u32> =
-        spps.iter().copied().filter(|&spp| seeds.iter().all(|&seed| mse(seed, spp).is_some())).collect();
-    let of_seed = |&seed: &u64| {
-        let curve: Curve = whole.iter().filter_map(|&spp| Some((f64::from(spp), mse(seed, spp)?))).collect();
-        let longest = spps.iter().rev().find_map(|&spp| Some(at(seed, spp)?.makespan_s? / f64::from(spp)))?;
+pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
+    let mut seeds: BTreeMap<u64, BTreeMap<u32, &Row>> = BTreeMap::new();
+    for row in rows {
+        seeds.entry(row.seed).or_default().entry(row.spp).or_insert(row);
+    }
+    let mse = |row: &Row| row.mse.filter(|mse| *mse > 0.0);
+    let has_all = |spp: &u32| seeds.values().all(|rows| rows.get(spp).copied().and_then(mse).is_some());
+    let whole: BTreeSet<u32> =
+        rows.iter().map(|row| row.spp).collect::<BTreeSet<_>>().into_iter().filter(has_all).collect();
+    let of_seed = |rows: &BTreeMap<u32, &Row>| {
+        let own = rows.iter().filter(|(spp, _)| whole.contains(spp));
+        let curve: Curve = own.filter_map(|(spp, row)| Some((f64::from(*spp), mse(row)?))).collect();
+        let longest = rows.iter().rev().find_map(|(spp, row)| Some(row.makespan_s? / f64::from(*spp)))?;
         Some((curve, longest))
     };
-    seeds.iter().filter_map(of_seed).collect()
+    seeds.values().filter_map(of_seed).collect()
+}
+
+/// A value of each seed: every schedule and repetition of a seed has the same image, so counting them again would narrow intervals falsely.
+pub(super) fn one_per_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
+    let by_seed: BTreeMap<u64, f64> = rows.iter().filter_map(|row| Some((row.seed, value(row)?))).collect();
+    by_seed.into_values().collect()
+}
+
+/// The mean first and the root last, as the cross form asks; NaN, which charts leave out, if the mean is below zero.
+pub(super) fn root_of_mean(mse: &[f64]) -> f64 {
+    (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
 }
 
 /// What is said of other programs that were not there.
 pub(super) fn missing(results: &Results) -> Option<Block> {
-    let names: BTreeSet<&str> = results
-        .records
-        .iter()
-        .filter(|record| record.warnings.contains(&Warning::NoProgram.to_string()))
-        .map(|record| record.estimator.as_str())
-        .collect();
+    let warning = Warning::NoProgram.to_string();
+    let absent = results.rows().filter(|row| row.warnings.contains(&warning));
+    let names: BTreeSet<&str> = absent.map(|row| row.estimator.as_str()).collect();
     let list: Vec<&str> = names.into_iter().collect();
     let text =
         format!("Left out, because the program is not there: {}. The definition says how it is made.", list.join(", "));
-    (!list.is_empty()).then_some(Block::Finding(text))
+    (!list.is_empty()).then_some(Block::finding(text))
 }
 
 /// The contenders of each scene, scenes by name and contenders in the order in which the estimators are listed. What cannot be priced, such as a single seed,
 /// is left out.
-pub(super) fn contenders(results: &Results) -> BTreeMap<String, Vec<Contender>> {
-    const KERNEL: usize = 6;
-    let parts: [fn(&Record) -> String; 7] = [
-        |record| record.estimator.clone(),
-        |record| record.sampler.clone(),
-        |record| record.roulette.clone(),
-        |record| record.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
-        |record| if record.biased && record.max_depth.is_none() { "biased".to_string() } else { String::new() },
-        |record| Schedule::of(record).label(),
-        Record::kernel_name,
-    ];
-    // Of another program there is nothing but its name.
-    let is_own = |record: &Record| record.strategy != EXTERNAL;
-    let rows = || results.records.iter().filter(|record| record.mse.is_some());
-    let mut differs: Vec<bool> = parts
-        .iter()
-        .map(|part| rows().filter(|row| is_own(row)).map(part).collect::<BTreeSet<_>>().len() > 1)
-        .collect();
-    // A sampler that lanes have no code for makes kernels differ that nobody compares.
-    let with_kernels: BTreeSet<_> =
-        rows().map(|row| (&row.estimator, &row.sampler, row.kernel_name(), row.threads)).collect();
-    let without: BTreeSet<_> = rows().map(|row| (&row.estimator, &row.sampler, row.threads)).collect();
-    differs[KERNEL] &= with_kernels.len() > without.len();
-    let name = |record: &Record| {
-        let shown = parts
-            .iter()
-            .zip(&differs)
-            .enumerate()
-            .filter(|(index, (_, differs))| *index == 0 || (**differs && is_own(record)));
-        let words: Vec<String> = shown.map(|(_, (part, _))| part(record)).filter(|word| !word.is_empty()).collect();
-        words.join(" + ")
-    };
+pub(super) fn contenders(results: &Results) -> Result<BTreeMap<String, Vec<Contender>>> {
+    let priced = results.rows().filter(|row| row.mse.is_some());
+    let groups = group(priced, |row| {
+        let (mut image, schedule, _) = row.key(|_, _| ());
+        (image.spp, image.seed) = (0, 0);
+        (image, schedule)
+    });
+    let groups: Vec<Vec<&Row>> = groups.into_values().collect();
+    let names = names(&groups.iter().map(|rows| rows[0]).collect::<Vec<_>>());
     let order = results.definition.estimator_names();
-    let place = |record: &Record| order.iter().position(|name| *name == record.estimator).unwrap_or(order.len());
-    let mut groups: BTreeMap<(String, usize, String), Vec<&Record>> = BTreeMap::new();
-    for record in rows() {
-        groups.entry((record.scene.clone(), place(record), name(record))).or_default().push(record);
+    let place = |row: &Row| order.iter().position(|name| *name == row.estimator).unwrap_or(order.len());
+    let mut named: BTreeMap<(&str, usize, String), Vec<&Row>> = BTreeMap::new();
+    for (rows, name) in groups.into_iter().zip(names) {
+        let (scene, cell) = (rows[0].scene.as_str(), &rows[0].cell);
+        if let Some(other) = named.insert((scene, place(rows[0]), name), rows) {
+            let problem = format!("is not told from {} by any name that figures have", other[0].cell);
+            return Err(InputError::new("cell", cell, problem).into());
+        }
     }
     let mut scenes: BTreeMap<String, Vec<Contender>> = BTreeMap::new();
-    for ((scene, _, name), records) in groups {
-        scenes.entry(scene).or_default().extend(Contender::of(name, &records));
+    for ((scene, _, name), rows) in named {
+        scenes.entry(scene.to_string()).or_default().extend(Contender::of(name, &rows));
     }
     scenes.retain(|_, contenders| !contenders.is_empty());
-    scenes
+    Ok(scenes)
+}
+
+/// The names of contenders, each by a row: the estimator and what differs, or what else is needed to tell them apart.
+fn names(rows: &[&Row]) -> Vec<String> {
+    let main: [Part<Row>; 6] = [
+        |row| row.estimator.clone(),
+        |row| row.sampler.clone(),
+        |row| row.roulette.clone(),
+        |row| row.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
+        |row| if row.biased && row.max_depth.is_none() { "biased".to_string() } else { String::new() },
+        |row| crew(strategy(row), row.threads),
+    ];
+    let rest: [Part<Row>; 8] = [
+        |row| row.clamp.clone(),
+        |row| row.precision.clone(),
+        |row| format!("{}x{}", row.width, row.height),
+        |row| row.decomposition.clone(),
+        |row| row.output.clone(),
+        |row| row.effects.clone(),
+        |row| row.accelerator.clone(),
+        |row| if row.adaptive { "adaptive".to_string() } else { String::new() },
+    ];
+    // Of another program there is nothing but its name.
+    let own: Vec<&Row> = rows.iter().copied().filter(|row| row.strategy != EXTERNAL).collect();
+    let differs = |part: &Part<Row>| own.iter().map(|row| part(row)).collect::<BTreeSet<_>>().len() > 1;
+    let mut parts: Vec<Part<Row>> = main[1..].iter().copied().filter(differs).collect();
+    // A sampler that lanes have no code for makes kernels differ that nobody compares.
+    let who = |row: &Row| (row.estimator.clone(), row.sampler.clone(), row.threads);
+    parts.extend(needed(&own, who, &[|row: &Row| row.kernel_name()]));
+    let told = |row: &Row| (row.scene.clone(), main[0](row), parts.iter().map(|part| part(row)).collect::<Vec<_>>());
+    let more = needed(&own, told, &rest);
+    let name = |row: &Row| {
+        let others = parts.iter().chain(&more).filter(|_| row.strategy != EXTERNAL).map(|part| part(row));
+        let words = std::iter::once(main[0](row)).chain(others).filter(|word| !word.is_empty());
+        words.collect::<Vec<String>>().join(" + ")
+    };
+    rows.iter().map(|row| name(row)).collect()
 }

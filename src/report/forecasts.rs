@@ -1,38 +1,36 @@
 //! Simulated and predicted schedules as tables and charts: for the figure of an experiment and for the verb `simulate`.
 
-use super::block::{Block, Table};
-use super::results::{Results, image};
+use super::block::Block;
+use super::results::Results;
+use super::rows::Row;
 use crate::error::Result;
-use crate::measure::Record;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::simulate::{Contender, DISTURBED, Forecast, Observed, Prediction, agreement, predict};
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
 /// The makespans of rows whose workers had a processor each, or that have a thread for each job, predicted from the serial run of the same
 /// pieces in the same repetition.
 pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Prediction>> {
-    let key = |record: &Record| (format!("{} {}", image(record), record.decomposition), record.repetition);
-    let mut costs: BTreeMap<(String, u32), (Vec<f64>, Option<f64>)> = BTreeMap::new();
-    for record in results.records.iter().filter(|record| record.strategy == "serial") {
-        if let Some(trace) = results.trace(record)? {
-            costs.insert(key(record), (trace.costs_s(), record.cpu_s()));
+    let serial = results.serial()?;
+    let processors = results.processors();
+    let mut costs: HashMap<(&str, u32), Vec<f64>> = HashMap::new();
+    for row in results.rows().filter(|row| row.schedule.is_serial()) {
+        if let Some(trace) = results.trace(row)? {
+            costs.insert((&row.cell, row.repetition), trace.costs_s());
         }
     }
-    let processors = results.run.machine.processors;
-    let modelled = |record: &Record| {
-        record.strategy != "serial" && (record.threads <= processors || record.threads == record.jobs)
-    };
-    let runs = results.records.iter().filter(|record| modelled(record)).filter_map(|record| {
-        let (costs, serial_cpu_s) = costs.get(&key(record))?;
+    let modelled = |row: &Row| row.threads <= processors || row.threads == row.jobs;
+    let pairs = serial.in_order(results).filter(|(row, _)| modelled(row));
+    let runs = pairs.filter_map(|(row, serial)| {
         let observed = Observed {
-            inflation: inflation(record.cpu_s(), *serial_cpu_s),
-            decomposition: record.decomposition.clone(),
-            strategy: record.strategy.clone(),
-            workers: record.threads,
-            makespan_s: record.makespan_s?,
+            inflation: inflation(row.cpu_s(), serial.cpu_s()),
+            decomposition: row.decomposition.clone(),
+            strategy: row.strategy.clone(),
+            workers: row.threads,
+            makespan_s: row.makespan_s?,
         };
-        Some((observed, costs.as_slice()))
+        Some((observed, costs.get(&(serial.cell.as_str(), serial.repetition))?.as_slice()))
     });
     Ok(predict(runs, contenders, processors))
 }
@@ -50,8 +48,8 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
     };
     let all = errors(|p| Some(p.plain_ratio)).zip(errors(|p| Some(p.ratio)));
     let Some((plain, told)) = all else { return Vec::new() };
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let (runs, quiet) = predictions.iter().fold((0, 0), |sum, p| (sum.0 + p.runs, sum.1 + p.undisturbed));
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let finding = match errors(|p| p.undisturbed_ratio) {
         None => {
             "No run was undisturbed, so there is no telling how well the simulator predicts this machine.".to_string()
@@ -70,38 +68,20 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
             percent(told.worst_absolute),
         ),
     };
-    let row = |prediction: &Prediction| {
-        vec![
-            prediction.strategy.clone(),
-            prediction.decomposition.clone(),
-            prediction.workers.to_string(),
-            prediction.runs.to_string(),
-            format!("{:.2}", prediction.predicted_s * 1e3),
-            format!("{:.2}", prediction.measured_s * 1e3),
-            prediction.undisturbed.to_string(),
-            prediction.undisturbed_ratio.map_or_else(|| "-".to_string(), |r| format!("{:+.1} %", 100.0 * (r - 1.0))),
-            format!("{:+.1} %", 100.0 * (prediction.plain_ratio - 1.0)),
-            format!("{:+.1} %", 100.0 * (prediction.ratio - 1.0)),
-        ]
-    };
-    let columns = [
-        "strategy",
-        "pieces",
-        "threads",
-        "runs",
-        "predicted ms",
-        "measured ms",
-        "undisturbed runs",
-        "error, undisturbed runs",
-        "error, all runs",
-        "error, told the CPU time",
-    ];
-    let title = "The simulator predicts this machine".to_string();
-    let rows = predictions.iter().map(row).collect();
-    vec![
-        Block::Finding(finding),
-        Block::Table { stem: "predictions", table: Table { title, columns: columns.map(String::from).to_vec(), rows } },
-    ]
+    let off = |ratio: f64| format!("{:+.1} %", 100.0 * (ratio - 1.0));
+    let table = Block::table("predictions", "The simulator predicts this machine", predictions)
+        .column("strategy", |p| p.strategy.clone())
+        .column("pieces", |p| p.decomposition.clone())
+        .column("threads", |p| p.workers.to_string())
+        .column("runs", |p| p.runs.to_string())
+        .column("predicted ms", |p| format!("{:.2}", p.predicted_s * 1e3))
+        .column("measured ms", |p| format!("{:.2}", p.measured_s * 1e3))
+        .column("undisturbed runs", |p| p.undisturbed.to_string())
+        .column("error, undisturbed runs", |p| p.undisturbed_ratio.map_or_else(|| "-".to_string(), off))
+        .column("error, all runs", |p| off(p.plain_ratio))
+        .column("error, told the CPU time", |p| off(p.ratio))
+        .end();
+    vec![Block::Finding(finding), table]
 }
 
 /// Speedup and efficiency against cores, and all numbers as a table.
@@ -114,18 +94,11 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
     let series = |value: Value| -> Vec<Series> {
         let points = |name: &str| {
             let own = rows.iter().filter(|row| row.strategy == name);
-            own.map(|row| Point::new(row.workers as f64, value(row))).collect()
+            own.map(|row| Point::new(row.workers as f64, value(row))).collect::<Vec<Point>>()
         };
-        shown
-            .iter()
-            .enumerate()
-            .map(|(index, name)| Series::new(name.as_str(), Look::nth(index), points(name)))
-            .collect()
+        Series::by_name(shown.iter().map(|name| (name, points(name))))
     };
-    let mut ticks: Vec<f64> = rows.iter().map(|row| row.workers as f64).collect();
-    ticks.sort_by(f64::total_cmp);
-    ticks.dedup();
-    let axis = || Axis::log("cores").ticks_at(ticks.clone());
+    let axis = || Axis::log("cores").ticks_at(rows.iter().map(|row| row.workers as f64));
     let mut speedup = LineChart::new("Forecast: speedup", axis(), Axis::log("speedup"), series(|row| row.speedup));
     speedup.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
     if let Some(bound) = bound {
@@ -141,37 +114,21 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
     for (stem, mut chart) in charts {
         chart.subtitle = workload.to_string();
         chart.caption = "Simulated from the jobs of one serial run. Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all.".to_string();
-        blocks.push(Block::Figure { stem, figure: Box::new(chart) });
+        blocks.push(Block::figure(stem, chart));
     }
-    let columns = [
-        "strategy",
-        "cores",
-        "makespan, s",
-        "speedup",
-        "efficiency",
-        "work / cores, s",
-        "longest job, s",
-        "Graham's bound, s",
-    ];
-    let row = |row: &Forecast| {
-        let seconds = |value: f64| format!("{value:.5}");
-        vec![
-            row.strategy.clone(),
-            row.workers.to_string(),
-            seconds(row.makespan_s),
-            format!("{:.2}", row.speedup),
-            format!("{:.3}", row.efficiency),
-            seconds(row.share_s),
-            seconds(row.longest_s),
-            seconds(row.greedy_s),
-        ]
-    };
-    let table = Table {
-        title: "Forecast".to_string(),
-        columns: columns.map(String::from).to_vec(),
-        rows: rows.iter().map(row).collect(),
-    };
-    blocks.push(Block::Table { stem: "forecast", table });
+    let seconds = |value: f64| format!("{value:.5}");
+    blocks.push(
+        Block::table("forecast", "Forecast", rows)
+            .column("strategy", |row| row.strategy.clone())
+            .column("cores", |row| row.workers.to_string())
+            .column("makespan, s", |row| seconds(row.makespan_s))
+            .column("speedup", |row| format!("{:.2}", row.speedup))
+            .column("efficiency", |row| format!("{:.3}", row.efficiency))
+            .column("work / cores, s", |row| seconds(row.share_s))
+            .column("longest job, s", |row| seconds(row.longest_s))
+            .column("Graham's bound, s", |row| seconds(row.greedy_s))
+            .end(),
+    );
     blocks
 }
 

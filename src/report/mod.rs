@@ -5,10 +5,17 @@ mod contenders;
 mod figures;
 pub mod forecasts;
 mod guards;
+mod naming;
 mod page;
 mod reference_image;
 mod results;
+mod rows;
+mod schedule;
+mod serial;
+#[cfg(test)]
+mod tests;
 pub mod timeline;
+mod words;
 
 pub use block::{Block, Table};
 pub use figures::{FIGURES, FigureEntry, check_figures};

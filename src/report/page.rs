@@ -43,8 +43,8 @@ pub(super) struct Section {
 impl Section {
     /// An experiment's.
     pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
+        let rows = results.len();
         let Definition { name, title, question, analysis, .. } = results.definition;
-        let rows = results.records.len();
         Self { name, title, question, analysis, failed: results.failed, rows, run: results.run, blocks }
     }
 }

@@ -1,19 +1,18 @@
-//! What an experiment left in its folder, and the groupings that figures need.
+//! What an experiment left in its folder.
 
-use crate::analysis::quantile::{median, median_interval};
-use crate::analysis::{Estimate, Interval};
-use crate::error::Result;
+use super::naming::{Part, joined, needed};
+use super::rows::{Row, group};
+use super::schedule::{Schedule, strategy};
+use super::serial::Serial;
+use crate::error::{InputError, Result};
 use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file, trace_file};
 use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{Record, TraceFile, schedule_name};
-use std::collections::BTreeMap;
+use crate::measure::{ImageKey, Record, TraceFile};
+use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Confidence of every interval in the report.
-pub(super) const LEVEL: f64 = 0.95;
 
 /// An experiment's definition, machine and rows.
 pub struct Results {
@@ -21,45 +20,15 @@ pub struct Results {
     pub definition: Definition,
     /// Command and machine.
     pub run: RunFile,
-    /// Rows that did not fail.
-    pub records: Vec<Record>,
     /// Rows that failed.
     pub failed: Vec<Record>,
     /// The experiment's folder.
     pub folder: PathBuf,
     /// The folder that holds all experiments and the references.
     pub out: PathBuf,
-}
-
-/// A schedule: strategy, decomposition, threads. `thread-per-row` is named as report A names it.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Schedule {
-    pub(super) strategy: String,
-    pub(super) decomposition: String,
-    pub(super) threads: usize,
-}
-
-impl Schedule {
-    /// Strategy and threads, in words.
-    pub(super) fn label(&self) -> String {
-        match self.threads {
-            1 => format!("{}, 1 thread", self.strategy),
-            threads => format!("{}, {threads} threads", self.strategy),
-        }
-    }
-
-    pub(super) fn of(record: &Record) -> Self {
-        Self {
-            strategy: schedule_name(&record.strategy, &record.decomposition).to_string(),
-            decomposition: record.decomposition.clone(),
-            threads: record.threads,
-        }
-    }
-}
-
-/// The median of some times with its distribution-free interval.
-pub(super) fn median_with_interval(values: &[f64]) -> Option<(f64, Option<Interval>)> {
-    Some((median(values)?, median_interval(values, LEVEL)))
+    rows: Vec<Row>,
+    /// What tells series of images apart, beside samples and seed.
+    image_parts: Vec<Part<ImageKey>>,
 }
 
 impl Results {
@@ -69,9 +38,13 @@ impl Results {
         let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
         let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
         let run = read_run_file(&folder.join("machine.toml"))?;
-        let rows = read_records(&folder.join("records.csv"))?;
-        let (records, failed) = rows.into_iter().partition(|record: &Record| record.error.is_empty());
-        Ok(Self { definition, run, records, failed, folder: folder.to_path_buf(), out: out.to_path_buf() })
+        let path = folder.join("records.csv");
+        let records = read_records(&path)?;
+        check_identities(&records, &path)?;
+        let (done, failed): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|row| row.error.is_empty());
+        let rows = named(done);
+        let image_parts = image_parts(&rows);
+        Ok(Self { definition, run, failed, folder: folder.to_path_buf(), out: out.to_path_buf(), rows, image_parts })
     }
 
     /// Reads an experiment's folder by itself.
@@ -80,12 +53,44 @@ impl Results {
         Self::read(lab, out, folder)
     }
 
+    /// The rows that did not fail. Whoever goes through them once for each of many groups takes a square of time: [`Results::by`] goes once.
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Row> + Clone {
+        #[cfg(test)]
+        super::tests::count_pass();
+        self.rows.iter()
+    }
+
+    /// Rows by a key, in the order of the key.
+    pub(super) fn by<'a, K: Ord>(&'a self, key: impl Fn(&'a Row) -> K) -> BTreeMap<K, Vec<&'a Row>> {
+        group(self.rows(), key)
+    }
+
+    /// Rows by schedule.
+    pub(super) fn by_schedule(&self) -> BTreeMap<&Schedule, Vec<&Row>> {
+        self.by(|row| &row.schedule)
+    }
+
+    /// The schedules beside the serial program.
+    pub(super) fn serial(&self) -> Result<Serial<'_>> {
+        Serial::of(self)
+    }
+
+    /// How many rows did not fail.
+    pub(super) fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The first row, which stands for what all have in common.
+    pub(super) fn first(&self) -> Option<&Row> {
+        self.rows.first()
+    }
+
     /// Of the serial runs whose trace was kept, the one of the most jobs, and of its repetitions the one with the median time.
     pub fn largest_serial_trace(&self) -> Result<Option<TraceFile>> {
-        let serial = || self.records.iter().filter(|record| record.strategy == "serial");
-        let most = serial().map(|record| record.jobs).max();
-        let records: Vec<&Record> = serial().filter(|record| Some(record.jobs) == most).collect();
-        Self::typical(&records).map_or(Ok(None), |record| self.trace(record))
+        let serial: Vec<&Row> = self.rows().filter(|row| row.schedule.is_serial()).collect();
+        let most = serial.iter().map(|row| row.jobs).max();
+        let rows: Vec<&Row> = serial.into_iter().filter(|row| Some(row.jobs) == most).collect();
+        Self::typical(&rows).map_or(Ok(None), |row| self.trace(row))
     }
 
     /// Quick or full.
@@ -95,11 +100,13 @@ impl Results {
 
     /// Size and machine in a line, for below a figure's title.
     pub(super) fn workload(&self) -> String {
-        let size = self
-            .records
-            .first()
-            .map_or_else(String::new, |record| format!("{}, {}x{}, ", record.scene, record.width, record.height));
+        let size = self.first().map_or_else(String::new, |row| format!("{}, {}, ", row.scene, self.size()));
         format!("{size}{}", self.machine_line())
+    }
+
+    /// Columns and rows of the images.
+    pub(super) fn size(&self) -> String {
+        self.first().map_or_else(String::new, |row| format!("{}x{}", row.width, row.height))
     }
 
     /// The machine alone, where the figure's rows differ in scene or size.
@@ -107,143 +114,120 @@ impl Results {
         self.run.machine.line()
     }
 
+    /// Processors of the machine.
+    pub(super) fn processors(&self) -> usize {
+        self.run.machine.processors
+    }
+
     /// What is rendered, apart from samples and seed, where the experiment compares several; empty where there is only one.
-    pub(super) fn series_name(&self, record: &Record) -> String {
-        let parts: [fn(&Record) -> &str; 4] = [|r| &r.scene, |r| &r.estimator, |r| &r.sampler, |r| &r.output];
-        let differs = |part: &fn(&Record) -> &str| self.records.iter().any(|other| part(other) != part(record));
-        parts.iter().filter(|part| differs(part)).map(|part| part(record)).collect::<Vec<_>>().join(", ")
+    pub(super) fn series_name(&self, row: &Row) -> String {
+        joined(self.image_parts.iter().map(|part| part(&row.image)))
     }
 
-    /// Rows by a key, in the order of the key.
-    pub(super) fn by<K: Ord>(&self, key: impl Fn(&Record) -> K) -> BTreeMap<K, Vec<&Record>> {
-        let mut groups: BTreeMap<K, Vec<&Record>> = BTreeMap::new();
-        for record in &self.records {
-            groups.entry(key(record)).or_default().push(record);
-        }
-        groups
-    }
-
-    /// How much faster each schedule is than `serial`: the median of the ratios of runs of the same image in the same repetition.
-    pub(super) fn speedups(&self) -> Vec<(Schedule, Estimate)> {
-        let serial = self.times(|schedule| schedule.strategy == "serial");
-        let schedules = self.by(Schedule::of).into_keys().filter(|schedule| schedule.strategy != "serial");
-        schedules
-            .filter_map(|schedule| {
-                // On its own pieces where serial ran on them: other pieces change the caches, if nothing else.
-                let on_same_pieces =
-                    self.times(|s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
-                let baseline = if on_same_pieces.is_empty() { &serial } else { &on_same_pieces };
-                let ratio = ratio(baseline, &self.times(|s| *s == schedule))?;
-                Some((schedule, ratio))
-            })
-            .collect()
-    }
-
-    /// How many times as long `other` takes as `schedule`, by runs of the same image in the same repetition.
-    pub(super) fn time_ratio(&self, other: &Schedule, schedule: &Schedule) -> Option<Estimate> {
-        ratio(&self.times(|s| s == other), &self.times(|s| s == schedule))
-    }
-
-    /// The speedups of a schedule against `serial` on the same pieces, one for each image and repetition that both have.
-    pub(super) fn paired_speedups(&self, schedule: &Schedule) -> Vec<f64> {
-        let serial = self.times(|s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
-        ratios(&serial, &self.times(|s| s == schedule))
-    }
-
-    /// CPU time of a schedule over that of `serial` on the same pieces, in the same repetition: what the same work costs more when several
-    /// processors do it, and what the schedule itself costs. The median of the ratios.
-    pub(super) fn work_inflation(&self, schedule: &Schedule) -> Option<f64> {
-        let serial =
-            self.values(Record::cpu_s, |s| s.strategy == "serial" && s.decomposition == schedule.decomposition);
-        median(&ratios(&self.values(Record::cpu_s, |s| s == schedule), &serial))
-    }
-
-    /// How many times as long rows of one kind take as rows of another, paired by image but for the sampler, and by repetition.
-    pub(super) fn kind_ratio(
-        &self,
-        other: impl Fn(&Record) -> bool,
-        kind: impl Fn(&Record) -> bool,
-    ) -> Option<Estimate> {
-        let times = |is_wanted: &dyn Fn(&Record) -> bool| {
-            let wanted = self.records.iter().filter(|record| is_wanted(record));
-            let key =
-                |record: &Record| (format!("{} {} {}", record.scene_hash, record.spp, record.seed), record.repetition);
-            wanted.filter_map(|record| Some((key(record), record.makespan_s?))).collect()
-        };
-        ratio(&times(&other), &times(&kind))
+    /// The estimator, and whatever else differs among the images.
+    pub(super) fn image_name(&self, row: &Row) -> String {
+        let series = self.series_name(row);
+        if series.is_empty() { row.estimator.clone() } else { series }
     }
 
     /// The trace of a row, if it was kept.
-    pub(super) fn trace(&self, record: &Record) -> Result<Option<TraceFile>> {
-        let path = self.folder.join("traces").join(trace_file(&record.cell, record.repetition));
+    pub(super) fn trace(&self, row: &Row) -> Result<Option<TraceFile>> {
+        let path = self.folder.join("traces").join(trace_file(&row.cell, row.repetition));
         if path.is_file() { TraceFile::read(&path).map(Some) } else { Ok(None) }
     }
 
     /// The images that were kept of the rows that are wanted, in the order of the rows.
-    pub(super) fn kept_images(&self, is_wanted: impl Fn(&Record) -> bool) -> Result<Vec<(&Record, Image)>> {
+    pub(super) fn kept_images(&self, is_wanted: impl Fn(&Row) -> bool) -> Result<Vec<(&Row, Image)>> {
         let cells = self.definition.cells(self.profile())?;
+        let points = cells.iter().flat_map(|cell| &cell.points);
+        let files: HashMap<&str, String> = points.map(|point| (point.id.as_str(), point.image_file())).collect();
         let mut images = Vec::new();
-        for record in self.records.iter().filter(|record| record.repetition == 0 && is_wanted(record)) {
-            let point = cells.iter().flat_map(|cell| &cell.points).find(|point| point.id == record.cell);
-            let path = point.map(|point| self.folder.join("images").join(point.image_file()));
+        for row in self.rows().filter(|row| row.repetition == 0 && is_wanted(row)) {
+            let path = files.get(row.cell.as_str()).map(|file| self.folder.join("images").join(file));
             if let Some(path) = path.filter(|path| path.is_file()) {
-                images.push((record, image_io::read(&path)?));
+                images.push((row, image_io::read(&path)?));
             }
         }
         Ok(images)
     }
 
     /// The row with the median time, the lower one of two.
-    pub(super) fn typical<'a>(records: &[&'a Record]) -> Option<&'a Record> {
-        let mut timed: Vec<&Record> = records.iter().copied().filter(|record| record.makespan_s.is_some()).collect();
-        timed.sort_by(|a, b| a.makespan_s.unwrap_or(0.0).total_cmp(&b.makespan_s.unwrap_or(0.0)));
-        timed.get(timed.len().checked_sub(1)? / 2).copied()
-    }
-
-    /// The makespans of the schedules that are wanted, by image and repetition.
-    fn times(&self, is_wanted: impl Fn(&Schedule) -> bool) -> BTreeMap<(String, u32), f64> {
-        self.values(|record| record.makespan_s, is_wanted)
-    }
-
-    /// A value of the rows of the schedules that are wanted, by image and repetition.
-    fn values(
-        &self,
-        value: fn(&Record) -> Option<f64>,
-        is_wanted: impl Fn(&Schedule) -> bool,
-    ) -> BTreeMap<(String, u32), f64> {
-        let wanted = self.records.iter().filter(|record| is_wanted(&Schedule::of(record)));
-        wanted.filter_map(|record| Some(((image(record), record.repetition), value(record)?))).collect()
+    pub(super) fn typical<'a>(rows: &[&'a Row]) -> Option<&'a Row> {
+        let mut timed: Vec<(f64, &Row)> = rows.iter().filter_map(|row| Some((row.makespan_s?, *row))).collect();
+        timed.sort_by(|a, b| a.0.total_cmp(&b.0));
+        timed.get(timed.len().checked_sub(1)? / 2).map(|(_, row)| *row)
     }
 }
 
-/// What tells images apart.
-pub(super) fn image(record: &Record) -> String {
-    let what = format!("{} {} {}", record.scene_hash, record.estimator, record.sampler);
-    format!("{what} {}x{} {} {}", record.width, record.height, record.spp, record.seed)
+/// Refuses rows that nothing tells apart: in figures one would take the other's place without a word.
+fn check_identities(records: &[Record], path: &Path) -> Result<()> {
+    let mut known = HashMap::new();
+    for (index, record) in records.iter().enumerate().filter(|(_, record)| record.error.is_empty()) {
+        let key = (record.image_key(), record.schedule_key(), record.repetition);
+        if let Some(other) = known.insert(key, &record.cell) {
+            let problem = format!(
+                "is the same image by the same schedule in the same repetition as {other}: nothing tells the two rows apart"
+            );
+            let at = Some((index + 2, 1));
+            return Err(InputError::new("cell", &record.cell, problem).in_file(path.display().to_string(), at).into());
+        }
+    }
+    Ok(())
 }
 
-fn ratios(numerator: &BTreeMap<(String, u32), f64>, denominator: &BTreeMap<(String, u32), f64>) -> Vec<f64> {
-    denominator.iter().filter_map(|(key, below)| Some(numerator.get(key)? / below)).collect()
+/// The rows with their schedules' names: the strategy, and beside it what else tells schedules of the same image apart.
+fn named(records: Vec<Record>) -> Vec<Row> {
+    let parts: [Part<Record>; 5] = [
+        |record| record.output.clone(),
+        Record::kernel_name,
+        |record| if record.kernel_fallback.is_empty() { String::new() } else { "fallback".to_string() },
+        |record| record.effects.clone(),
+        |record| record.accelerator.clone(),
+    ];
+    let told = |record: &Record| {
+        (
+            record.image_key(),
+            record.repetition,
+            strategy(record).to_string(),
+            record.decomposition.clone(),
+            record.threads,
+        )
+    };
+    let parts = needed(&records.iter().collect::<Vec<_>>(), told, &parts);
+    let row = |record: Record| {
+        let words = std::iter::once(strategy(&record).to_string()).chain(parts.iter().map(|part| part(&record)));
+        let schedule = Schedule { name: joined(words), key: record.schedule_key() };
+        Row::new(record, schedule)
+    };
+    records.into_iter().map(row).collect()
 }
 
-/// The median of the ratios of values with the same key, with its distribution-free interval.
-fn ratio(numerator: &BTreeMap<(String, u32), f64>, denominator: &BTreeMap<(String, u32), f64>) -> Option<Estimate> {
-    let (value, interval) = median_with_interval(&ratios(numerator, denominator))?;
-    Some(Estimate { value, interval: interval? })
-}
-
-/// An interval with the confidence that it really has: few values cannot reach 95 %.
-pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
-    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
-}
-
-/// The confidence of some intervals of medians, in words for a caption.
-pub(super) fn confidence(intervals: &[Interval]) -> String {
-    let least = intervals.iter().map(|interval| interval.level).reduce(f64::min);
-    least.map_or_else(
-        || "no interval, for want of repetitions".to_string(),
-        |least| {
-            format!("distribution-free interval of the median, {:.1} % confidence", (least * 1000.0).floor() / 10.0)
-        },
-    )
+/// What differs among the images. Scene, estimator and sampler are told wherever they do, the rest where nothing else tells two images apart.
+fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
+    let main: [Part<ImageKey>; 3] =
+        [|image| image.scene.clone(), |image| image.estimator.clone(), |image| image.sampler.clone()];
+    let rest: [Part<ImageKey>; 5] = [
+        |image| format!("{}x{}", image.width, image.height),
+        |image| image.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
+        |image| image.roulette.clone(),
+        |image| image.clamp.clone(),
+        |image| image.precision.clone(),
+    ];
+    let images: Vec<&ImageKey> = rows.iter().map(|row| &row.image).collect();
+    let told = |image: &ImageKey| {
+        (
+            image.scene.clone(),
+            image.scene_hash.clone(),
+            image.estimator.clone(),
+            image.sampler.clone(),
+            image.spp,
+            image.seed,
+        )
+    };
+    let differs = |part: &Part<ImageKey>| {
+        images.iter().any(|image| images.first().is_some_and(|first| part(first) != part(image)))
+    };
+    let mut parts: Vec<Part<ImageKey>> = main.into_iter().filter(differs).collect();
+    parts.extend(needed(&images, told, &rest));
+    parts
 }

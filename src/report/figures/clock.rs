@@ -1,66 +1,38 @@
 //! What `clock()` would have claimed: it adds up the CPU time of all threads, so parallelism never shows in it.
 
-use crate::analysis::quantile::median;
-use crate::error::Result;
-use crate::measure::Record;
-use crate::report::block::{Block, Table};
-use crate::report::results::{Results, Schedule};
+use super::prelude::*;
 
-/// Median wall seconds, median CPU seconds.
-type Times = (f64, f64);
-
-fn times(records: &[&Record]) -> Option<Times> {
-    let median_of = |value: fn(&Record) -> Option<f64>| {
-        median(&records.iter().filter_map(|record| value(record)).collect::<Vec<_>>())
-    };
-    Some((median_of(|r| r.makespan_s)?, median_of(Record::cpu_s)?))
+/// Median wall seconds and CPU seconds of a schedule.
+struct Times<'a> {
+    schedule: &'a Schedule,
+    wall_s: f64,
+    cpu_s: f64,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let groups = results.by(Schedule::of);
-    let timed: Vec<(&Schedule, Times)> =
-        groups.iter().filter_map(|(schedule, records)| Some((schedule, times(records)?))).collect();
-    let Some((_, serial)) = timed.iter().find(|(schedule, _)| schedule.strategy == "serial").copied() else {
-        return Ok(Vec::new());
-    };
-    let row = |(schedule, (wall_s, cpu_s)): &(&Schedule, Times)| {
-        vec![
-            schedule.strategy.clone(),
-            schedule.threads.to_string(),
-            format!("{wall_s:.4}"),
-            format!("{cpu_s:.4}"),
-            format!("{:.2}", cpu_s / wall_s),
-            format!("{:.3}", serial.0 / wall_s),
-            format!("{:.3}", serial.1 / cpu_s),
-        ]
-    };
-    let columns = [
-        "strategy",
-        "threads",
-        "wall seconds",
-        "CPU seconds, as clock() counts",
-        "CPU / wall",
-        "speedup by wall time",
-        "speedup that clock() would claim",
-    ];
-    let rows: Vec<Vec<String>> = timed.iter().map(row).collect();
-    let processors = results.run.machine.processors;
-    let parallel: Vec<f64> = timed
-        .iter()
-        .filter(|(schedule, _)| schedule.threads == processors && schedule.strategy != "serial")
-        .map(|(_, (_, cpu_s))| serial.1 / cpu_s)
-        .collect();
-    let title = "Wall time and CPU time: medians over repetitions".to_string();
-    let mut blocks = Vec::new();
-    if let Some(claimed) = median(&parallel) {
-        blocks.push(Block::Finding(format!(
+    let times = results.by_schedule().into_iter().filter_map(|(schedule, rows)| {
+        let wall_s = typical(rows.iter().copied(), |row| row.makespan_s)?;
+        Some(Times { schedule, wall_s, cpu_s: typical(rows, |row| row.cpu_s())? })
+    });
+    let times: Vec<Times<'_>> = times.collect();
+    let Some(serial) = times.iter().find(|times| times.schedule.is_serial()) else { return Ok(Vec::new()) };
+    let processors = results.processors();
+    let parallel = times.iter().filter(|t| t.schedule.key.threads == processors && !t.schedule.is_serial());
+    let claimed = median(&parallel.map(|times| serial.cpu_s / times.cpu_s).collect::<Vec<f64>>());
+    let finding = claimed.map(|claimed| {
+        Block::finding(format!(
             "Timed with clock(), which a comment in report A's listing proposes, {processors} threads would seem to bring a speedup of {claimed:.2} \
              (median over the strategies): clock() adds up the CPU time of all threads, and the work stays the same. All other numbers here are wall time."
-        )));
-    }
-    blocks.push(Block::Table {
-        stem: "clock",
-        table: Table { title, columns: columns.map(String::from).to_vec(), rows },
+        ))
     });
-    Ok(blocks)
+    let table = Block::table("clock", "Wall time and CPU time: medians over repetitions", &times)
+        .column("strategy", |times| times.schedule.name.clone())
+        .column("threads", |times| times.schedule.key.threads.to_string())
+        .column("wall seconds", |times| format!("{:.4}", times.wall_s))
+        .column("CPU seconds, as clock() counts", |times| format!("{:.4}", times.cpu_s))
+        .column("CPU / wall", |times| format!("{:.2}", times.cpu_s / times.wall_s))
+        .column("speedup by wall time", |times| format!("{:.3}", serial.wall_s / times.wall_s))
+        .column("speedup that clock() would claim", |times| format!("{:.3}", serial.cpu_s / times.cpu_s))
+        .end();
+    Ok(finding.into_iter().chain([table]).collect())
 }

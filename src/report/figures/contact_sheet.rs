@@ -1,21 +1,16 @@
 //! The renders at growing spp beside their reference, and where they are wrong.
 
-use crate::error::Result;
+use super::prelude::*;
 use crate::image_io::Image;
-use crate::image_io::tone_map::quantise_image;
-use crate::measure::Record;
 use crate::metric::heatmap;
-use crate::plot::{Cell, ColourBar, ContactSheet};
-use crate::report::block::Block;
+use crate::plot::ColourBar;
 use crate::report::reference_image::reference_image;
-use crate::report::results::Results;
-use std::collections::BTreeMap;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some(reference) = reference_image(results, None)? else {
         let text =
             "There is no contact sheet: the films of the references are not in the folder beside this experiment.";
-        return Ok(vec![Block::Finding(text.to_string())]);
+        return Ok(vec![Block::finding(text)]);
     };
     let images = renders(results)?;
     let Some((_, noisiest)) = images.first() else { return Ok(Vec::new()) };
@@ -24,33 +19,28 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let (mut pictures, mut maps) = (Vec::new(), Vec::new());
     for (record, image) in &images {
         let rmse = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {rmse:.4}"));
-        pictures.push(Some(cell(image, vec![format!("{} spp", record.spp), rmse])?));
+        pictures.push(Some(Cell::of(image, vec![format!("{} spp", record.spp), rmse])?));
         let map = heatmap(image, &reference, Some(scale))?;
         let caption = vec!["error".to_string(), record.makespan_s.map_or_else(String::new, |s| format!("{s:.2} s"))];
         let rgb = map.pixels.concat();
         maps.push(Some(Cell { caption, width: map.width, height: map.height, rgb }));
     }
-    pictures.push(Some(cell(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
+    pictures.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
     maps.push(None);
     let estimator = images.first().map_or("", |(record, _)| record.estimator.as_str());
-    let title = format!("Renders at growing samples per pixel ({estimator})");
     let sheet = ContactSheet {
-        title: title.clone(),
+        title: format!("Renders at growing samples per pixel ({estimator})"),
         subtitle: results.workload(),
         rows: vec![pictures, maps],
         bar: Some(ColourBar { label: "error of a pixel, linear radiance".to_string(), full: scale }),
     };
-    Ok(vec![Block::Picture { stem: "contact-sheet", title, png: sheet.png()? }])
-}
-
-fn cell(image: &Image, caption: Vec<String>) -> Result<Cell> {
-    Ok(Cell { caption, width: image.width, height: image.height, rgb: quantise_image(image)? })
+    Ok(vec![Block::sheet("contact-sheet", &sheet)?])
 }
 
 /// The kept image of each spp, of the first estimator and the lowest seed, with its record.
-fn renders(results: &Results) -> Result<Vec<(&Record, Image)>> {
+fn renders(results: &Results) -> Result<Vec<(&Row, Image)>> {
     let first = results.definition.first_estimator();
-    let mut by_spp: BTreeMap<u32, (&Record, Image)> = BTreeMap::new();
+    let mut by_spp: BTreeMap<u32, (&Row, Image)> = BTreeMap::new();
     for (record, image) in results.kept_images(|record| record.estimator == first)? {
         if by_spp.get(&record.spp).is_none_or(|(known, _)| record.seed < known.seed) {
             by_spp.insert(record.spp, (record, image));

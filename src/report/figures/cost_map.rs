@@ -1,14 +1,12 @@
 //! What each tile costs, over the image: the unequal pieces that schedules have to deal with.
 
-use crate::error::Result;
+use super::prelude::*;
 use crate::plot::heat_map::{HeatMap, HeatPanel, Tile};
-use crate::report::block::Block;
-use crate::report::results::{Results, Schedule};
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let groups = results.by(Schedule::of);
-    let serial = groups.iter().find(|(schedule, _)| schedule.strategy == "serial");
-    let Some(record) = serial.and_then(|(_, records)| Results::typical(records)) else { return Ok(Vec::new()) };
+    let groups = results.by_schedule();
+    let serial = groups.iter().find(|(schedule, _)| schedule.is_serial());
+    let Some(record) = serial.and_then(|(_, rows)| Results::typical(rows)) else { return Ok(Vec::new()) };
     let Some(trace) = results.trace(record)? else { return Ok(Vec::new()) };
     let (width, height) = (record.width, record.height);
     let tile = |row: &crate::measure::TraceRow| Tile {
@@ -35,5 +33,5 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         "The dearest tile takes {most:.2} ms, {:.1} times as long as the cheapest ({least:.2} ms).",
         most / least
     );
-    Ok(vec![Block::Figure { stem: "cost-map", figure: Box::new(map) }, Block::Finding(finding)])
+    Ok(vec![Block::figure("cost-map", map), Block::finding(finding)])
 }

@@ -1,35 +1,29 @@
 //! What each way to render a scene shows after about the same time.
 
-use crate::error::Result;
+use super::prelude::*;
 use crate::experiment::EXTERNAL;
 use crate::image_io::Image;
-use crate::image_io::tone_map::quantise_image;
-use crate::measure::Record;
-use crate::plot::{Cell, ContactSheet};
-use crate::report::block::Block;
 use crate::report::reference_image::reference_image;
-use crate::report::results::Results;
-use std::collections::BTreeMap;
 
 /// Images beside each other: so many fit the page.
 const COLUMNS: usize = 4;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let Some(scene) = results.records.first().map(|record| record.scene.clone()) else { return Ok(Vec::new()) };
+    let Some(scene) = results.first().map(|row| row.scene.clone()) else { return Ok(Vec::new()) };
     let order = results.definition.estimator_names();
-    let place = |record: &Record| order.iter().position(|name| *name == record.estimator).unwrap_or(order.len());
-    let mut kept: BTreeMap<(usize, String), Vec<(&Record, Image)>> = BTreeMap::new();
+    let place = |record: &Row| order.iter().position(|name| *name == record.estimator).unwrap_or(order.len());
+    let mut kept: BTreeMap<(usize, String), Vec<(&Row, Image)>> = BTreeMap::new();
     for (record, image) in results.kept_images(|record| record.scene == scene && record.makespan_s.is_some())? {
         let sampler = if record.sampler == EXTERNAL { String::new() } else { format!(" + {}", record.sampler) };
         let name = format!("{}{sampler}", record.estimator);
         kept.entry((place(record), name)).or_default().push((record, image));
     }
-    let seconds = |record: &Record| record.makespan_s.unwrap_or(0.0);
-    let longest = |images: &Vec<(&Record, Image)>| images.iter().map(|(record, _)| seconds(record)).reduce(f64::max);
+    let seconds = |record: &Row| record.makespan_s.unwrap_or(0.0);
+    let longest = |images: &Vec<(&Row, Image)>| images.iter().map(|(record, _)| seconds(record)).reduce(f64::max);
     let Some(time) = kept.values().filter_map(longest).reduce(f64::min) else {
-        return Ok(vec![Block::Finding("There are no images side by side: this experiment kept none.".to_string())]);
+        return Ok(vec![Block::finding("There are no images side by side: this experiment kept none.")]);
     };
-    let distance = |record: &Record| (libm::log(seconds(record) / time)).abs();
+    let distance = |record: &Row| (libm::log(seconds(record) / time)).abs();
     let mut cells = Vec::new();
     for ((_, name), images) in &kept {
         let Some((record, image)) = images.iter().min_by(|a, b| distance(a.0).total_cmp(&distance(b.0))) else {
@@ -37,21 +31,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         };
         let error = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {rmse:.4}, "));
         let caption = vec![name.clone(), format!("{error}{} spp, {:.2} s", record.spp, seconds(record))];
-        cells.push(Some(cell(image, caption)?));
+        cells.push(Some(Cell::of(image, caption)?));
     }
     if let Some(reference) = reference_image(results, Some(&scene))? {
-        cells.push(Some(cell(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
+        cells.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
     }
-    let title = format!("{scene} after about {time:.2} s");
     let sheet = ContactSheet {
-        title: title.clone(),
+        title: format!("{scene} after about {time:.2} s"),
         subtitle: "Of each curve the point that is nearest in time; neighbouring points differ by a factor of two. Values above 1 are white.".to_string(),
         rows: cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect(),
         bar: None,
     };
-    Ok(vec![Block::Picture { stem: "equal-time", title, png: sheet.png()? }])
-}
-
-fn cell(image: &Image, caption: Vec<String>) -> Result<Cell> {
-    Ok(Cell { caption, width: image.width, height: image.height, rgb: quantise_image(image)? })
+    Ok(vec![Block::sheet("equal-time", &sheet)?])
 }

@@ -1,33 +1,25 @@
 //! Which estimator suits which scene: seconds to the same error, against the estimator that is named first.
 
+use super::prelude::*;
 use crate::analysis::versus::equal_error;
-use crate::error::Result;
-use crate::plot::style::Look;
-use crate::plot::{Axis, Dot, DotPlot, Group, Row};
-use crate::report::block::Block;
 use crate::report::contenders::{Contender, contenders};
-use crate::report::results::Results;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let scenes = contenders(results);
+    let scenes = contenders(results)?;
     let estimators = results.definition.estimator_names();
     let Some((first, others)) = estimators.split_first() else { return Ok(Vec::new()) };
     let dot = |contenders: &[Contender], other: &str| {
-        let of = |name: &str| contenders.iter().find(|contender| contender.estimator == name);
+        let of = |name: &str| contenders.iter().find(|contender| contender.image.estimator == name);
         let (yardstick, other) = (of(first)?, of(other)?);
         let goal = [yardstick, other].iter().filter_map(|c| Some(c.points.last()?.rmse)).reduce(f64::max)?;
-        let ratio = equal_error(&yardstick.renderer, &other.renderer, goal)?;
-        Some(Dot { value: ratio.value, interval: Some((ratio.interval.low, ratio.interval.high)) })
+        Some(Told::from(equal_error(&yardstick.renderer, &other.renderer, goal)?).dot())
     };
-    let rows: Vec<Row> = scenes
+    let rows: Vec<PlotRow> = scenes
         .iter()
-        .map(|(scene, contenders)| Row {
-            name: scene.clone(),
-            dots: others.iter().map(|other| dot(contenders, other)).collect(),
-        })
+        .map(|(scene, contenders)| PlotRow::new(scene, others.iter().map(|other| dot(contenders, other)).collect()))
         .collect();
     if rows.iter().all(|row| row.dots.iter().all(Option::is_none)) {
-        return Ok(vec![Block::Finding("No two estimators were measured on the same scene.".to_string())]);
+        return Ok(vec![Block::finding("No two estimators were measured on the same scene.")]);
     }
     let found: Vec<String> = rows
         .iter()
@@ -37,18 +29,17 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             Some(format!("{} {value:.2} ({name})", row.name))
         })
         .collect();
-    let mut plot = DotPlot::new(
+    let plot = DotPlot::new(
         format!("How many times as fast as {first} to the same error"),
         Axis::log(format!("seconds of {first} / seconds")).including([1.0]),
         rows,
     );
-    plot.groups =
-        others.iter().enumerate().map(|(index, name)| Group { name: name.clone(), look: Look::nth(index) }).collect();
+    let mut plot = plot.grouped(others);
     plot.guides = vec![(1.0, format!("as fast as {first}"))];
     plot.subtitle = results.machine_line();
     plot.caption = "Bars: 95 % interval over seeds, of error and time together.".to_string();
     Ok(vec![
-        Block::Figure { stem: "estimators", figure: Box::new(plot) },
-        Block::Finding(format!("The best estimator of each scene, in times as fast as {first}: {}.", found.join(", "))),
+        Block::figure("estimators", plot),
+        Block::finding(format!("The best estimator of each scene, in times as fast as {first}: {}.", found.join(", "))),
     ])
 }

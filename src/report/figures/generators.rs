@@ -1,124 +1,108 @@
 //! One generator for all threads against one for each, or none that is shared.
 
-use crate::analysis::quantile::median;
-use crate::error::Result;
-use crate::measure::{Record, THREAD_PER_ROW};
-use crate::plot::Axis;
-use crate::plot::dot_plot::{Dot, DotPlot, Group, Row};
-use crate::plot::style::Look;
-use crate::report::block::{Block, Table};
-use crate::report::results::{Results, Schedule, confidence, median_with_interval, with_level};
-use std::collections::BTreeMap;
+use super::prelude::*;
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// The generators whose collapse on a second thread is looked at.
+    compare: Option<Compare>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Compare {
+    /// One that all threads share.
+    shared: String,
+    /// One that nobody waits for.
+    own: String,
+}
 
 /// Who renders, in words.
 fn crew(schedule: &Schedule) -> String {
-    if schedule.strategy == THREAD_PER_ROW {
-        format!("a thread for each of {} rows", schedule.threads)
+    if schedule.is_thread_per_row() {
+        format!("a thread for each of {} rows", schedule.key.threads)
     } else {
         schedule.label()
     }
 }
 
-fn switches_per_second(record: &Record) -> Option<f64> {
-    Some((record.voluntary_switches? + record.involuntary_switches?) as f64 / record.makespan_s?)
+fn switches_per_second(row: &Row) -> Option<f64> {
+    Some((row.voluntary_switches? + row.involuntary_switches?) as f64 / row.makespan_s?)
+}
+
+/// The rows of a generator under a crew.
+struct Line<'a> {
+    sampler: &'a str,
+    crew: &'a str,
+    rows: Vec<&'a Row>,
+    seconds: Told,
+}
+
+impl Line<'_> {
+    fn typical(&self, value: impl Fn(&Row) -> Option<f64>, digits: usize) -> String {
+        number(typical(self.rows.iter().copied(), value), digits)
+    }
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let mut crews: Vec<(usize, String)> =
-        results.by(Schedule::of).into_keys().map(|schedule| (schedule.threads, crew(&schedule))).collect();
-    crews.sort();
-    crews.dedup();
-    let (mut rows, mut table, mut intervals) = (Vec::new(), Vec::new(), Vec::new());
-    for (sampler, records) in results.by(|record| record.sampler.clone()) {
-        let mut by_crew: BTreeMap<String, Vec<&Record>> = BTreeMap::new();
-        for record in records {
-            by_crew.entry(crew(&Schedule::of(record))).or_default().push(record);
-        }
-        let mut dots = Vec::new();
+    let Options { compare } = options(results, "generators")?;
+    let crews: BTreeSet<(usize, String)> =
+        results.by_schedule().into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
+    let (mut dots, mut lines) = (Vec::new(), Vec::new());
+    for (sampler, rows) in results.by(|row| row.sampler.as_str()) {
+        let mut by_crew = group(rows, |row| crew(&row.schedule));
+        let mut own = Vec::new();
         for (_, crew) in &crews {
-            let records = by_crew.get(crew).map_or(&[][..], Vec::as_slice);
-            let times: Vec<f64> = records.iter().filter_map(|record| record.makespan_s).collect();
-            let found = median_with_interval(&times);
-            dots.push(found.map(|(value, interval)| Dot {
-                value: value * 1e3,
-                interval: interval.map(|i| (i.low * 1e3, i.high * 1e3)),
-            }));
-            if let Some((value, interval)) = found {
-                intervals.extend(interval);
-                table.push(row(
-                    &sampler,
-                    crew,
-                    records,
-                    value,
-                    interval.map_or_else(String::new, |i| with_level(&i, 4)),
-                ));
-            }
+            let rows = by_crew.remove(crew).unwrap_or_default();
+            let seconds = Told::median(&values(rows.iter().copied(), |row| row.makespan_s));
+            own.push(seconds.map(|seconds| seconds.times(1e3).dot()));
+            lines.extend(seconds.map(|seconds| Line { sampler, crew, rows, seconds }));
         }
-        rows.push(Row { name: sampler, dots });
+        dots.push(PlotRow::new(sampler, own));
     }
-    let mut plot = DotPlot::new("Time by random number generator", Axis::log("milliseconds"), rows);
-    plot.groups = crews
-        .iter()
-        .enumerate()
-        .map(|(index, (_, crew))| Group { name: crew.clone(), look: Look::nth(index) })
-        .collect();
+    let plot = DotPlot::new("Time by random number generator", Axis::log("milliseconds"), dots);
+    let mut plot = plot.grouped(crews.iter().map(|(_, crew)| crew));
     plot.subtitle = results.workload();
-    plot.caption = format!("Median. Bars: {}.", confidence(&intervals));
-    let columns = [
-        "generator",
-        "threads",
-        "median seconds",
-        "interval (confidence)",
-        "switches per second",
-        "CPU / wall",
-        "system share of CPU",
-    ];
-    let columns = columns.map(String::from).to_vec();
-    let title = "Generators: medians over repetitions".to_string();
-    let mut blocks = vec![Block::Figure { stem: "generators", figure: Box::new(plot) }];
-    blocks.extend(finding(results));
-    blocks.push(Block::Table { stem: "generators-table", table: Table { title, columns, rows: table } });
-    Ok(blocks)
+    let intervals = lines.iter().filter_map(|line| line.seconds.interval);
+    plot.caption = format!("Median. Bars: {}.", confidence(intervals));
+    let finding = compare.map_or(Ok(None), |compare| finding(results, &compare))?;
+    let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
+        .column("generator", |line| line.sampler.to_string())
+        .column("threads", |line| line.crew.to_string())
+        .column("median seconds", |line| format!("{:.4}", line.seconds.value))
+        .column("interval (confidence)", |line| line.seconds.interval.map_or(String::new(), |i| with_level(&i, 4)))
+        .column("switches per second", |line| line.typical(switches_per_second, 0))
+        .column("CPU / wall", |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?), 2))
+        .column("system share of CPU", |line| line.typical(|row| Some(row.cpu_system_s? / row.cpu_s()?), 2))
+        .end();
+    Ok([Block::figure("generators", plot)].into_iter().chain(finding).chain([table]).collect())
 }
 
-fn row(sampler: &str, crew: &str, records: &[&Record], seconds: f64, interval: String) -> Vec<String> {
-    let of = |value: &dyn Fn(&Record) -> Option<f64>, digits: usize| {
-        let values: Vec<f64> = records.iter().filter_map(|record| value(record)).collect();
-        median(&values).map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
+/// Two threads against one, of the same strategy.
+fn finding(results: &Results, Compare { shared, own }: &Compare) -> Result<Option<Block>> {
+    let of = |sampler: &str, threads: usize| -> Vec<&Row> {
+        let rows = results.rows().filter(|row| row.sampler == sampler && row.threads == threads);
+        rows.filter(|row| !row.schedule.is_thread_per_row()).collect()
     };
-    vec![
-        sampler.to_string(),
-        crew.to_string(),
-        format!("{seconds:.4}"),
-        interval,
-        of(&switches_per_second, 0),
-        of(&|record| Some(record.cpu_s()? / record.makespan_s?), 2),
-        of(&|record| Some(record.cpu_system_s? / record.cpu_s()?), 2),
-    ]
-}
-
-fn finding(results: &Results) -> Option<Block> {
-    let kind = |sampler: &'static str, threads: usize| {
-        move |record: &Record| {
-            record.sampler == sampler && record.threads == threads && record.strategy != "thread-per-job"
-        }
+    let ratio = |sampler: &str| {
+        let key = |row: &Row| row.key(|_, schedule| schedule.threads = 0);
+        time_ratio(of(sampler, 2), of(sampler, 1), key)
     };
-    let ratio = |sampler: &'static str| results.kind_ratio(kind(sampler, 2), kind(sampler, 1));
-    let (shared, own) = (ratio("libc-rand")?, ratio("independent")?);
-    let switches: Vec<f64> =
-        results.records.iter().filter(|record| kind("libc-rand", 2)(record)).filter_map(switches_per_second).collect();
-    let verdict = match (shared.interval.low > 1.0, own.interval.high < 1.0) {
+    let (Some(slowed), Some(free)) = (ratio(shared)?, ratio(own)?) else { return Ok(None) };
+    let Some(switches) = typical(of(shared, 2), switches_per_second) else { return Ok(None) };
+    let verdict = match (slowed.interval.low > 1.0, free.interval.high < 1.0) {
         (true, true) => {
             "a second processor makes the program with the shared generator slower, and the other one faster"
         }
         _ => "this run does not show the collapse beyond doubt",
     };
-    Some(Block::Finding(format!(
-        "Two threads take {:.2} times as long as one, {}, when both draw from the C library's rand(), with {:.0} switches per second; with addressed numbers {:.2} times, {}: {verdict}.",
-        shared.value,
-        with_level(&shared.interval, 2),
-        median(&switches)?,
-        own.value,
-        with_level(&own.interval, 2),
-    )))
+    let drawn = if shared == "libc-rand" { "the C library's rand()" } else { shared };
+    Ok(Some(Block::finding(format!(
+        "Two threads take {:.2} times as long as one, {}, when both draw from {drawn}, with {switches:.0} switches per second; with addressed numbers {:.2} times, {}: {verdict}.",
+        slowed.value,
+        with_level(&slowed.interval, 2),
+        free.value,
+        with_level(&free.interval, 2),
+    ))))
 }

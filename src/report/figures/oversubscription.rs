@@ -1,104 +1,97 @@
 //! More threads than processors: by cutting the image into more sections with a thread each, and by raising the threads alone.
 
-use crate::error::Result;
-use crate::measure::Record;
-use crate::plot::style::Look;
-use crate::plot::{Axis, LineChart, Point, Series};
-use crate::report::block::Block;
-use crate::report::results::{Results, Schedule, confidence, median_with_interval, with_level};
-use std::collections::BTreeMap;
+use super::prelude::*;
 
-/// Report D's strategy, and the one that it is compared with.
-const PER_SECTION: &str = "thread-per-job";
-const FEW: &str = "shared-counter";
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+pub(super) struct Options {
+    /// The claim that is looked at.
+    claim: Option<Claim>,
+}
 
-/// Points of time against something, by series.
+/// A claim that some numbers of sections, with a thread each, are good ones.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Claim {
+    /// The strategy that starts a thread for each section.
+    per_section: String,
+    /// The one with a thread for each processor.
+    few: String,
+    /// The numbers of sections that are said to be good, from and to.
+    sections: [usize; 2],
+    /// The decomposition that they are compared with.
+    against: String,
+}
+
+/// What ends in a number of sections of a grid.
+const GRID: &str = "grid:";
+
 type Lines = BTreeMap<String, Vec<Point>>;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let (mut by_grid, mut by_threads): (Lines, Lines) = (BTreeMap::new(), BTreeMap::new());
-    let mut intervals = Vec::new();
-    for (schedule, records) in results.by(Schedule::of) {
-        let times: Vec<f64> = records.iter().filter_map(|record| record.makespan_s).collect();
-        let Some((median, interval)) = median_with_interval(&times) else { continue };
-        intervals.extend(interval);
-        let bar = interval.map(|interval| (interval.low * 1e3, interval.high * 1e3));
-        let point = |x: usize| Point::new(x as f64, median * 1e3).with_y(bar);
-        let jobs = records.first().map_or(0, |record| record.jobs);
-        if schedule.decomposition.starts_with("grid:") {
-            let name = if schedule.strategy == PER_SECTION {
-                "a thread for each section"
-            } else {
-                "shared counter, a thread for each processor"
-            };
-            by_grid.entry(name.to_string()).or_default().push(point(jobs));
-        } else if schedule.strategy != "serial" {
-            by_threads.entry(schedule.strategy).or_default().push(point(schedule.threads));
+    let Options { claim } = options(results, "oversubscription")?;
+    let (mut by_grid, mut by_threads, mut intervals) = (Vec::new(), Vec::new(), Vec::new());
+    for (schedule, rows) in results.by_schedule() {
+        let Some(time) = Told::median(&values(rows.iter().copied(), |row| row.makespan_s)) else { continue };
+        intervals.extend(time.interval);
+        let time = time.times(1e3);
+        let (jobs, threads) = (rows[0].jobs, schedule.key.threads);
+        if schedule.key.decomposition.starts_with(GRID) {
+            let crew = if threads == jobs { "a thread for each section" } else { "a thread for each processor" };
+            let alone = claim.as_ref().is_some_and(|claim| claim.per_section == schedule.key.strategy);
+            let name = if alone { crew.to_string() } else { format!("{}, {crew}", schedule.name.replace('-', " ")) };
+            by_grid.push((name, time.above(jobs as f64)));
+        } else if !schedule.is_serial() {
+            by_threads.push((schedule.name.clone(), time.above(threads as f64)));
         }
     }
-    let caption = format!("Median. Bars: {}.", confidence(&intervals));
-    let grid_ticks: Vec<f64> = ticks(&by_grid);
-    let mut grid = LineChart::new(
-        "Time against sections of the image (report D)",
-        Axis::linear("sections").ticks_at(grid_ticks),
-        Axis::linear("milliseconds").including([0.0]),
-        series(by_grid),
-    );
-    let thread_ticks: Vec<f64> = ticks(&by_threads);
-    let mut threads = LineChart::new(
-        "Time against threads, the pieces being the same",
-        Axis::log("threads").ticks_at(thread_ticks),
-        Axis::linear("milliseconds").including([0.0]),
-        series(by_threads),
-    );
-    for chart in [&mut grid, &mut threads] {
+    let caption = format!("Median. Bars: {}.", confidence(intervals));
+    let chart = |title: &str, axis: Axis, lines: Lines| {
+        let ticks: Vec<f64> = lines.values().flatten().map(|point| point.x).collect();
+        let y = Axis::linear("milliseconds").including([0.0]);
+        let mut chart = LineChart::new(title, axis.ticks_at(ticks), y, Series::by_name(lines));
         chart.subtitle = results.workload();
         chart.caption.clone_from(&caption);
         chart.dodge = 4.0;
-    }
-    let mut blocks = vec![
-        Block::Figure { stem: "sections", figure: Box::new(grid) },
-        Block::Figure { stem: "threads", figure: Box::new(threads) },
-    ];
-    blocks.extend(finding(results));
-    Ok(blocks)
-}
-
-fn ticks(lines: &Lines) -> Vec<f64> {
-    let mut ticks: Vec<f64> = lines.values().flatten().map(|point| point.x).collect();
-    ticks.sort_by(f64::total_cmp);
-    ticks.dedup();
-    ticks
-}
-
-fn series(lines: Lines) -> Vec<Series> {
-    let sorted = |mut points: Vec<Point>| {
-        points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        points
+        chart
     };
-    let lines = lines.into_iter().enumerate();
-    lines.map(|(index, (name, points))| Series::new(name, Look::nth(index), sorted(points))).collect()
+    let (sections, threads) = (Axis::linear("sections"), Axis::log("threads"));
+    let grid = chart("Time against sections of the image (report D)", sections, gathered(by_grid));
+    let threads = chart("Time against threads, the pieces being the same", threads, gathered(by_threads));
+    let finding = claim.map_or(Ok(None), |claim| finding(results, &claim))?;
+    Ok([Block::figure("sections", grid), Block::figure("threads", threads)].into_iter().chain(finding).collect())
 }
 
-/// Report D's "around 16 to 49 is a good number", against 4 sections, and against the same pieces with a thread for each processor.
-fn finding(results: &Results) -> Option<Block> {
-    let time = |strategy: &str, decomposition: &str, repetition: u32| {
-        let same = |record: &&Record| {
-            record.strategy == strategy && record.decomposition == decomposition && record.repetition == repetition
+/// Report D's "around 16 to 49 is a good number", against few sections, and against the same pieces with a thread for each processor.
+fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
+    let Claim { per_section, few, sections: [least, most], against } = claim;
+    let key = |row: &Row, strategy: &str, decomposition: &str| {
+        let mut key = row.key(|_, schedule| {
+            schedule.threads = 0;
+            schedule.strategy = strategy.to_string();
+        });
+        key.1.decomposition = decomposition.to_string();
+        key
+    };
+    let processors = results.processors();
+    let others = results.rows().filter(|row| {
+        let is_few = row.strategy == *few && row.threads == processors;
+        row.decomposition.starts_with(GRID) && (row.strategy == *per_section || is_few)
+    });
+    let times = unique(others, |row| key(row, &row.strategy, &row.decomposition))?;
+    let own = results.rows().filter(|row| {
+        row.strategy == *per_section && row.decomposition.starts_with(GRID) && (*least..=*most).contains(&row.jobs)
+    });
+    let (mut against_sections, mut against_few) = (Vec::new(), Vec::new());
+    for row in own {
+        let ratio = |strategy: &str, decomposition: &str| {
+            Some(row.makespan_s? / times.get(&key(row, strategy, decomposition))?.makespan_s?)
         };
-        results.records.iter().find(same)?.makespan_s
-    };
-    let (mut against_four, mut against_few) = (Vec::new(), Vec::new());
-    let in_range = |record: &&Record| {
-        record.strategy == PER_SECTION && record.decomposition.starts_with("grid:") && (16..=49).contains(&record.jobs)
-    };
-    for record in results.records.iter().filter(in_range) {
-        let Some(own_s) = record.makespan_s else { continue };
-        against_four.extend(time(PER_SECTION, "grid:4", record.repetition).map(|four_s| own_s / four_s));
-        against_few.extend(time(FEW, &record.decomposition, record.repetition).map(|few_s| own_s / few_s));
+        against_sections.extend(ratio(per_section, against));
+        against_few.extend(ratio(few, &row.decomposition));
     }
     let in_words = |ratios: &[f64]| {
-        let (value, interval) = median_with_interval(ratios)?;
+        let Told { value, interval } = Told::median(ratios)?;
         let interval = interval?;
         let verdict = match (interval.low > 1.0, interval.high < 1.0) {
             (true, _) => "longer",
@@ -107,11 +100,11 @@ fn finding(results: &Results) -> Option<Block> {
         };
         Some(format!("{value:.2} times as long, {} ({verdict})", with_level(&interval, 2)))
     };
-    Some(Block::Finding(format!(
-        "A thread for each of 16 to 49 sections takes, against one for each of 4 sections, {}; against a thread for each of the {} processors on the same 16 to 49 sections, {}. \
+    let Some((sections, few)) = in_words(&against_sections).zip(in_words(&against_few)) else { return Ok(None) };
+    Ok(Some(Block::finding(format!(
+        "A thread for each of {least} to {most} sections takes, against one for each of {} sections, {sections}; against a thread for each of the {} processors on the same {least} to {most} sections, {few}. \
          The first is what report D saw; the second is what its threads, apart from the smaller pieces, gain or cost.",
-        in_words(&against_four)?,
-        results.run.machine.processors,
-        in_words(&against_few)?,
-    )))
+        against.trim_start_matches(GRID),
+        processors,
+    ))))
 }

@@ -1,46 +1,59 @@
 //! Every two ways to render a scene against each other: seconds to the same error, error after the same seconds.
 
-use crate::analysis::Estimate;
+use super::prelude::*;
 use crate::analysis::versus::{equal_error, equal_time};
-use crate::error::Result;
-use crate::report::block::{Block, Table};
 use crate::report::contenders::{Contender, contenders};
-use crate::report::results::Results;
+
+/// Two contenders, and where they are compared.
+struct Pair<'a> {
+    a: &'a Contender,
+    b: &'a Contender,
+    place: Place,
+    time: Option<Estimate>,
+    error: Option<Estimate>,
+}
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let scenes = contenders(results);
-    let (mut rows, mut findings) = (Vec::new(), Vec::new());
+    let scenes = contenders(results)?;
+    let (mut pairs, mut blocks) = (Vec::new(), Vec::new());
     for (scene, contenders) in &scenes {
         let Some(place) = Place::of(contenders) else { continue };
-        findings.extend(finding(scene, contenders, &place));
+        blocks.extend(finding(scene, contenders, &place).map(Block::finding));
         for (index, a) in contenders.iter().enumerate() {
-            for b in &contenders[index + 1..] {
-                rows.push(row(scene, a, b, &place));
-            }
+            pairs.extend(contenders[index + 1..].iter().map(|b| Pair {
+                a,
+                b,
+                place,
+                time: equal_error(&a.renderer, &b.renderer, place.rmse),
+                error: equal_time(&a.renderer, &b.renderer, place.seconds),
+            }));
         }
     }
-    if rows.is_empty() {
+    if pairs.is_empty() {
         return Ok(Vec::new());
     }
-    let columns = [
-        "scene",
-        "A",
-        "B",
-        "at RMSE",
-        "seconds of A / seconds of B",
-        "95 % interval",
-        "after seconds",
-        "RMSE of A / RMSE of B",
-        "95 % interval",
-    ];
-    let title = "A against B: at equal error, and at equal time".to_string();
-    let table = Table { title, columns: columns.map(String::from).to_vec(), rows };
-    let mut blocks: Vec<Block> = findings.into_iter().map(Block::Finding).collect();
-    blocks.push(Block::Table { stem: "pairs", table });
+    let value = |e: &Option<Estimate>| e.map_or("-".to_string(), |e| format!("{:.3}", e.value));
+    let interval = |e: &Option<Estimate>| {
+        e.map_or("-".to_string(), |e| format!("{:.3} to {:.3}", e.interval.low, e.interval.high))
+    };
+    blocks.push(
+        Block::table("pairs", "A against B: at equal error, and at equal time", pairs)
+            .column("scene", |pair| pair.a.image.scene.clone())
+            .column("A", |pair| pair.a.name.clone())
+            .column("B", |pair| pair.b.name.clone())
+            .column("at RMSE", |pair| format!("{:.4}", pair.place.rmse))
+            .column("seconds of A / seconds of B", |pair| value(&pair.time))
+            .column("95 % interval", |pair| interval(&pair.time))
+            .column("after seconds", |pair| format!("{:.3}", pair.place.seconds))
+            .column("RMSE of A / RMSE of B", |pair| value(&pair.error))
+            .column("95 % interval", |pair| interval(&pair.error))
+            .end(),
+    );
     Ok(blocks)
 }
 
 /// Where a scene's contenders are compared: the error that the least accurate one ends with, and the time at which the quickest one ends.
+#[derive(Clone, Copy)]
 struct Place {
     rmse: f64,
     seconds: f64,
@@ -52,26 +65,6 @@ impl Place {
         let rmse = ends().map(|point| point.rmse).filter(|rmse| rmse.is_finite()).reduce(f64::max)?;
         Some(Self { rmse, seconds: ends().map(|point| point.seconds).reduce(f64::min)? })
     }
-}
-
-fn row(scene: &str, a: &Contender, b: &Contender, place: &Place) -> Vec<String> {
-    let text = |estimate: Option<Estimate>| match estimate {
-        Some(e) => [format!("{:.3}", e.value), format!("{:.3} to {:.3}", e.interval.low, e.interval.high)],
-        None => ["-".to_string(), "-".to_string()],
-    };
-    let [time, time_interval] = text(equal_error(&a.renderer, &b.renderer, place.rmse));
-    let [error, error_interval] = text(equal_time(&a.renderer, &b.renderer, place.seconds));
-    vec![
-        scene.to_string(),
-        a.name.clone(),
-        b.name.clone(),
-        format!("{:.4}", place.rmse),
-        time,
-        time_interval,
-        format!("{:.3}", place.seconds),
-        error,
-        error_interval,
-    ]
 }
 
 /// The first contender, which is the yardstick, against the one that reaches the same error soonest.

@@ -1,103 +1,87 @@
 //! The price list: samples and seconds to each accuracy, and how well a part of the measurements predicts the rest.
 
-use crate::analysis::Estimate;
-use crate::error::Result;
-use crate::plot::style::Look;
-use crate::plot::{Axis, Dot, DotPlot, Group, Row};
-use crate::report::block::{Block, Table};
+use super::prelude::*;
+use crate::plot::number::short;
 use crate::report::contenders::{Check, Contender, contenders, missing};
-use crate::report::results::Results;
 
-/// The accuracies that are priced, in linear radiance.
-const GOALS: [f64; 4] = [0.1, 0.05, 0.02, 0.01];
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// The accuracies that are priced, in linear radiance.
+    goals: Vec<Positive>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { goals: [0.1, 0.05, 0.02, 0.01].map(Positive).to_vec() }
+    }
+}
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let scenes = contenders(results);
+    let Options { goals } = options(results, "price-list")?;
+    let scenes = contenders(results)?;
     let all: Vec<&Contender> = scenes.values().flatten().collect();
     if all.is_empty() {
         let text = "There is no price list: it takes errors against references from two seeds or more.";
-        return Ok(vec![Block::Finding(text.to_string())]);
+        return Ok(vec![Block::finding(text)]);
     }
-    let several = scenes.len() > 1;
     let name = |contender: &Contender| {
-        if several { format!("{}: {}", contender.scene, contender.name) } else { contender.name.clone() }
+        if scenes.len() > 1 { format!("{}: {}", contender.image.scene, contender.name) } else { contender.name.clone() }
     };
-    let mut blocks = vec![Block::Figure { stem: "price-list", figure: Box::new(plot(results, &all, &name)) }];
-    blocks.extend(missing(results));
-    blocks.extend(checked(&all));
-    let rows = all.iter().map(|contender| row(contender, name(contender))).collect();
-    let goals = GOALS.iter().map(|goal| format!("seconds to an RMSE of {goal}"));
-    let columns = ["", "variance of a sample", "s per sample and pixel", "efficiency, 1 / (variance x s)"];
-    let columns = columns.into_iter().map(String::from).chain(goals).chain([
-        "predicted for spp".to_string(),
-        "RMSE, measured / predicted".to_string(),
-        "seconds, measured / predicted".to_string(),
-    ]);
-    let title = "Price list, intervals of 95 %".to_string();
-    blocks.push(Block::Table { stem: "price-list", table: Table { title, columns: columns.collect(), rows } });
-    Ok(blocks)
-}
-
-fn plot(results: &Results, all: &[&Contender], name: &dyn Fn(&Contender) -> String) -> DotPlot {
-    let dots = |contender: &&&Contender| {
-        let dot = |goal: &f64| {
-            let seconds = contender.renderer.price(*goal)?.seconds;
-            Some(Dot { value: seconds.value, interval: Some((seconds.interval.low, seconds.interval.high)) })
-        };
-        GOALS.iter().map(dot).collect::<Vec<Option<Dot>>>()
-    };
-    let rows = all.iter().map(|contender| Row { name: name(contender), dots: dots(&contender) }).collect();
-    let mut plot = DotPlot::new("What each accuracy costs", Axis::log("seconds of rendering"), rows);
-    let group = |(index, goal): (usize, &f64)| Group { name: format!("RMSE {goal}"), look: Look::nth(index) };
-    plot.groups = GOALS.iter().enumerate().map(group).collect();
-    let size = results.records.first().map_or_else(String::new, |row| format!("{}x{}", row.width, row.height));
-    plot.subtitle = format!("{size}, {}", results.machine_line());
+    let seconds = |contender: &Contender, goal: Positive| Some(contender.renderer.price(goal.0)?.seconds);
+    let dots =
+        |contender: &Contender| goals.iter().map(|goal| Some(Told::from(seconds(contender, *goal)?).dot())).collect();
+    let rows = all.iter().map(|contender| PlotRow::new(name(contender), dots(contender))).collect();
+    let plot = DotPlot::new("What each accuracy costs", Axis::log("seconds of rendering"), rows);
+    let mut plot = plot.grouped(goals.iter().map(|goal| format!("RMSE {}", goal.0)));
+    plot.subtitle = format!("{}, {}", results.size(), results.machine_line());
     plot.caption =
         "Bars: 95 % interval of error and time together. Prices beyond the largest number of samples are extrapolated."
             .to_string();
-    plot
-}
+    let checks: Vec<(&Contender, Option<Check>)> =
+        all.iter().map(|contender| (*contender, contender.check())).collect();
+    let mut blocks = vec![Block::figure("price-list", plot)];
+    blocks.extend(missing(results));
+    blocks.extend(checked(&checks));
 
-fn row(contender: &Contender, name: String) -> Vec<String> {
-    let renderer = &contender.renderer;
-    let text = |estimate: Option<Estimate>| {
-        estimate.map_or_else(
-            || "-".to_string(),
-            |e| format!("{} ({} to {})", short(e.value), short(e.interval.low), short(e.interval.high)),
-        )
-    };
-    let per_spp = renderer.seconds_per_spp;
-    let variance = renderer.efficiency().and_then(|efficiency| efficiency.times(&per_spp)).and_then(|e| e.inverse());
-    let mut row = vec![
-        name,
-        variance.map_or_else(|| "-".to_string(), |variance| short(variance.value)),
-        text(Some(per_spp)),
-        text(renderer.efficiency()),
-    ];
-    row.extend(GOALS.iter().map(|goal| text(renderer.price(*goal).map(|price| price.seconds))));
-    match contender.check() {
-        Some(check) => {
-            row.extend([check.spp.to_string(), format!("{:.3}", check.rmse), format!("{:.3}", check.seconds)]);
-        }
-        None => row.extend(["-".to_string(), "-".to_string(), "-".to_string()]),
+    let check = |check: &Option<Check>, of: &dyn Fn(&Check) -> String| check.as_ref().map_or("-".to_string(), of);
+    let mut table = Block::table("price-list", "Price list, intervals of 95 %", checks)
+        .column("", |(contender, _)| name(contender))
+        .column("variance of a sample", |(contender, _)| variance(contender).map_or("-".to_string(), |v| short(v, 3)))
+        .column("s per sample and pixel", |(contender, _)| text(Some(contender.renderer.seconds_per_spp)))
+        .column("efficiency, 1 / (variance x s)", |(contender, _)| text(contender.renderer.efficiency()));
+    for goal in &goals {
+        let head = format!("seconds to an RMSE of {}", goal.0);
+        table = table.column(head, |(contender, _)| text(seconds(contender, *goal)));
     }
-    row
+    let table = table
+        .column("predicted for spp", |(_, found)| check(found, &|check| check.spp.to_string()))
+        .column("RMSE, measured / predicted", |(_, found)| check(found, &|check| format!("{:.3}", check.rmse)))
+        .column("seconds, measured / predicted", |(_, found)| check(found, &|check| format!("{:.3}", check.seconds)));
+    blocks.push(table.end());
+    Ok(blocks)
 }
 
-/// Three significant digits.
-fn short(value: f64) -> String {
-    crate::plot::number::short(value, 3)
+/// Three significant digits, with the interval.
+fn text(estimate: Option<Estimate>) -> String {
+    let words =
+        |e: Estimate| format!("{} ({} to {})", short(e.value, 3), short(e.interval.low, 3), short(e.interval.high, 3));
+    estimate.map_or_else(|| "-".to_string(), words)
+}
+
+fn variance(contender: &Contender) -> Option<f64> {
+    let renderer = &contender.renderer;
+    Some(renderer.efficiency()?.times(&renderer.seconds_per_spp)?.inverse()?.value)
 }
 
 /// How far predictions are off at worst.
-fn checked(all: &[&Contender]) -> Option<Block> {
-    let checks: Vec<_> = all.iter().filter_map(|contender| Some((contender, contender.check()?))).collect();
+fn checked(checks: &[(&Contender, Option<Check>)]) -> Option<Block> {
     let worst = |of: &dyn Fn(&Check) -> f64| {
-        let far = |(contender, check): &(&&Contender, Check)| (contender.name.clone(), 100.0 * (of(check) - 1.0));
-        checks.iter().map(far).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+        let off = checks.iter().filter_map(|(c, check)| Some((&c.name, 100.0 * (of(check.as_ref()?) - 1.0))));
+        off.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
     };
     let ((by_error, error), (by_time, time)) = (worst(&|check| check.rmse)?, worst(&|check| check.seconds)?);
-    Some(Block::Finding(format!(
+    Some(Block::finding(format!(
         "Half of the seeds, up to a quarter of the samples, predict RMSE and seconds of the other half at the end of its curves. At worst the RMSE came out {error:+.1} % ({by_error}) and the \
          seconds {time:+.1} % ({by_time}) of what was predicted. Half of an error costs four times the seconds with independent samples."
     )))

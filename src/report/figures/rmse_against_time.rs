@@ -1,99 +1,105 @@
 //! What accuracy costs in time: error against seconds, a line for each schedule. All schedules of one spp have the same image and so the
 //! same error; a better schedule moves the curve to the left.
 
-use crate::analysis::Interval;
-use crate::analysis::quantile::median;
-use crate::error::Result;
-use crate::plot::style::Look;
-use crate::plot::{Axis, LineChart, Point, Series};
-use crate::report::block::{Block, Table};
-use crate::report::results::{Results, Schedule, confidence, median_with_interval, with_level};
-use std::collections::BTreeMap;
+use super::prelude::*;
+use crate::report::contenders::one_per_seed;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// The RMSE whose price is extrapolated, in linear radiance.
+    goal: Positive,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { goal: Positive(0.01) }
+    }
+}
+
+/// An image's series and its schedule.
+type Key<'a> = (String, &'a Schedule);
+
+/// A schedule at some number of samples.
+struct Place<'a> {
+    key: Key<'a>,
+    spp: u32,
+    seconds: Told,
+    mse: f64,
+}
+
+impl Place<'_> {
+    fn price(&self) -> f64 {
+        self.mse * self.seconds.value
+    }
+}
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let mut lines: BTreeMap<(String, Schedule), Vec<Point>> = BTreeMap::new();
-    let mut intervals: Vec<Interval> = Vec::new();
-    let mut rows = Vec::new();
-    let mut prices: BTreeMap<(String, Schedule), Vec<f64>> = BTreeMap::new();
-    for ((key, spp), records) in results.by(|record| ((results.series_name(record), Schedule::of(record)), record.spp))
-    {
-        let by_seed: BTreeMap<u64, f64> =
-            records.iter().filter_map(|record| Some((record.seed, record.mse?))).collect();
-        let mse = by_seed.values().sum::<f64>() / by_seed.len().max(1) as f64;
-        let times: Vec<f64> = records.iter().filter_map(|record| record.makespan_s).collect();
-        let Some((seconds, interval)) = median_with_interval(&times) else { continue };
-        if mse.is_nan() || mse <= 0.0 {
-            continue;
-        }
-        let bar = interval.map(|interval| (interval.low, interval.high));
-        intervals.extend(interval);
-        rows.push(vec![
-            label(&key),
-            spp.to_string(),
-            format!("{seconds:.4}"),
-            interval.map_or_else(|| "one run".to_string(), |interval| with_level(&interval, 4)),
-            format!("{:.5}", mse.sqrt()),
-            format!("{:.3e}", mse * seconds),
-        ]);
-        prices.entry(key.clone()).or_default().push(mse * seconds);
-        lines.entry(key).or_default().push(Point::new(seconds, mse.sqrt()).with_x(bar));
-    }
-    let mut strategies: Vec<String> =
-        lines.keys().map(|(series, schedule)| format!("{series}{}", schedule.strategy)).collect();
-    strategies.dedup();
-    let mut dashes: Vec<usize> = lines.keys().map(|(_, schedule)| schedule.threads).collect();
-    dashes.sort_unstable();
-    dashes.dedup();
-    let position = |list: &[String], name: &str| list.iter().position(|item| item == name).unwrap_or(0);
-    let series: Vec<Series> = lines
-        .into_iter()
-        .map(|(key, points)| {
-            let dash = dashes.iter().position(|threads| *threads == key.1.threads).unwrap_or(0);
-            let colour = position(&strategies, &format!("{}{}", key.0, key.1.strategy));
-            Series::new(label(&key), Look::of(colour, dash), points)
-        })
-        .collect();
+    let Options { goal } = options(results, "rmse-against-time")?;
+    let groups = results.by(|row| ((results.series_name(row), &row.schedule), row.spp));
+    let places = groups.into_iter().filter_map(|((key, spp), rows)| {
+        let mse = one_per_seed(&rows, |row| row.mse);
+        let mse = mse.iter().sum::<f64>() / mse.len() as f64;
+        let seconds = Told::median(&values(rows, |row| row.makespan_s))?;
+        (mse > 0.0).then_some(Place { key, spp, seconds, mse })
+    });
+    let places: Vec<Place<'_>> = places.collect();
+    let lines = gathered(
+        places
+            .iter()
+            .map(|place| (&place.key, Point::new(place.seconds.value, place.mse.sqrt()).with_x(place.seconds.bar()))),
+    );
+    let colour = |key: &Key<'_>| format!("{}{}", key.0, key.1.name);
+    let mut colours: Vec<String> = lines.keys().map(|key| colour(key)).collect();
+    colours.dedup();
+    let dashes: BTreeSet<usize> = lines.keys().map(|(_, schedule)| schedule.key.threads).collect();
+    let series = lines.into_iter().map(|(key, points)| {
+        let dash = dashes.iter().position(|threads| *threads == key.1.key.threads).unwrap_or(0);
+        let colour = colours.iter().position(|own| *own == colour(key)).unwrap_or(0);
+        Series::new(label(key), Look::of(colour, dash), points)
+    });
     let mut chart = LineChart::new(
         "What accuracy costs in time",
         Axis::log("wall seconds"),
         Axis::log("RMSE, linear radiance"),
-        series,
+        series.collect(),
     );
     chart.subtitle = results.workload();
-    chart.caption = format!("Points along a line: growing samples per pixel. Bars: {}.", confidence(&intervals));
-    let price = price_finding(&prices);
-    let columns = ["schedule", "spp", "median seconds", "interval (confidence)", "RMSE, linear", "MSE x seconds"]
-        .map(String::from)
-        .to_vec();
-    let table = Table { title: "Price of accuracy by schedule".to_string(), columns, rows };
-    let mut blocks = vec![Block::Figure { stem: "rmse-against-time", figure: Box::new(chart) }];
-    blocks.extend(price);
-    blocks.push(Block::Table { stem: "rmse-against-time", table });
-    Ok(blocks)
+    let intervals = places.iter().filter_map(|place| place.seconds.interval);
+    chart.caption = format!("Points along a line: growing samples per pixel. Bars: {}.", confidence(intervals));
+    let price = price_finding(&gathered(places.iter().map(|place| (&place.key, place.price()))), goal.0);
+    let table = Block::table("rmse-against-time", "Price of accuracy by schedule", &places)
+        .column("schedule", |place| label(&place.key))
+        .column("spp", |place| place.spp.to_string())
+        .column("median seconds", |place| format!("{:.4}", place.seconds.value))
+        .column("interval (confidence)", |place| {
+            place.seconds.interval.map_or("one run".to_string(), |i| with_level(&i, 4))
+        })
+        .column("RMSE, linear", |place| format!("{:.5}", place.mse.sqrt()))
+        .column("MSE x seconds", |place| format!("{:.3e}", place.price()))
+        .end();
+    Ok([Block::figure("rmse-against-time", chart)].into_iter().chain(price).chain([table]).collect())
 }
 
 /// If error times the root of time is the same along a line, one number prices every accuracy: MSE times seconds.
-fn price_finding(prices: &BTreeMap<(String, Schedule), Vec<f64>>) -> Option<Block> {
-    const ACCURACY: f64 = 0.01;
+fn price_finding(prices: &BTreeMap<&Key<'_>, Vec<f64>>, goal: f64) -> Option<Block> {
     let spread = |values: &Vec<f64>| {
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         most / values.iter().copied().fold(f64::INFINITY, f64::min)
     };
     let widest = prices.values().map(spread).reduce(f64::max)?;
-    let seconds = |values: &Vec<f64>| Some(median(values)? / (ACCURACY * ACCURACY));
-    let costs = prices.iter().filter_map(|(key, values)| Some((key, seconds(values)?)));
-    let costs: Vec<(&(String, Schedule), f64)> = costs.collect();
-    let (cheapest, least) = costs.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let (dearest, most) = costs.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Block::Finding(format!(
+    let costs = || prices.iter().filter_map(|(key, values)| Some((key, median(values)? / (goal * goal))));
+    let (cheapest, least) = costs().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (dearest, most) = costs().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Block::finding(format!(
         "MSE times seconds is the price of accuracy; along no line does its largest value exceed its smallest by more than a factor of \
-         {widest:.2}. Extrapolated with its median, an RMSE of {ACCURACY} costs about {least:.0} s with {} and {most:.0} s with {}; half that \
+         {widest:.2}. Extrapolated with its median, an RMSE of {goal} costs about {least:.0} s with {} and {most:.0} s with {}; half that \
          RMSE costs four times as much. These seconds were not measured.",
         label(cheapest),
         label(dearest),
     )))
 }
 
-fn label((series, schedule): &(String, Schedule)) -> String {
-    if series.is_empty() { schedule.label() } else { format!("{series}, {}", schedule.label()) }
+fn label((series, schedule): &Key<'_>) -> String {
+    joined([series.clone(), schedule.label()])
 }

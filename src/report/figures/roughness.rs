@@ -1,149 +1,133 @@
 //! Report B's microfacet material: directions by the cosine against directions by the facets that are seen, at equal samples.
 //!
-//! Scenes whose names differ in the ending `-vndf` alone are the same image with other directions.
+//! Scenes whose names differ in their ending alone are the same image with other directions.
 
-use crate::analysis::Interval;
-use crate::analysis::quantile::median;
-use crate::error::Result;
-use crate::image_io::tone_map::quantise_image;
-use crate::measure::Record;
-use crate::plot::dot_plot::{Dot, DotPlot, Group, Row};
-use crate::plot::style::Look;
-use crate::plot::{Axis, Cell, ContactSheet};
-use crate::report::block::{Block, Table};
+use super::prelude::*;
 use crate::report::reference_image::reference_image;
-use crate::report::results::{Results, confidence, median_with_interval, with_level};
-use std::collections::BTreeMap;
 
-/// What ends the name of a scene whose directions follow the facets.
-const BY_FACETS: &str = "-vndf";
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
+pub(super) struct Options {
+    /// What ends the name of a scene whose directions follow the facets.
+    by_facets: String,
+}
 
-/// A median of ratios, facets over cosine.
-type Ratio = (f64, Option<Interval>);
+impl Default for Options {
+    fn default() -> Self {
+        Self { by_facets: "-vndf".to_string() }
+    }
+}
 
-/// One scene both ways.
+/// A scene both ways, and ratios of the facets over the cosine.
 struct Pair<'a> {
     scene: &'a str,
-    error: Ratio,
-    time: Ratio,
+    cosine: &'a [&'a Row],
+    facets: &'a [&'a Row],
+    variance: Option<Told>,
+    time: Option<Told>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let mut scenes: Vec<&str> = Vec::new();
-    for record in &results.records {
-        let scene = record.scene.strip_suffix(BY_FACETS).unwrap_or(&record.scene);
-        if !scenes.contains(&scene) {
-            scenes.push(scene);
-        }
+    let Options { by_facets } = options(results, "roughness")?;
+    let rows = results.by(|row| row.scene.as_str());
+    let base = |scene: &'_ str| scene.strip_suffix(by_facets.as_str()).unwrap_or(scene).len();
+    let scenes: BTreeSet<(usize, &str)> = rows.keys().map(|scene| (base(scene), &scene[..base(scene)])).collect();
+    let facets: BTreeMap<&str, &Vec<&Row>> =
+        rows.iter().filter_map(|(scene, rows)| Some((scene.strip_suffix(by_facets.as_str())?, rows))).collect();
+    let mut pairs = Vec::new();
+    for (_, scene) in &scenes {
+        let cosine = rows.get(scene).map_or(&[][..], Vec::as_slice);
+        let facets = facets.get(scene).map_or(&[][..], |rows| rows.as_slice());
+        let ratio = |value: &dyn Fn(&Row) -> Option<f64>| {
+            let key = |row: &Row| {
+                row.key(|image, schedule| {
+                    image.scene.clear();
+                    image.scene_hash.clear();
+                    schedule.effects.clear();
+                })
+            };
+            ratios(facets.iter().copied(), cosine.iter().copied(), key, value).map(|ratios| Told::median(&ratios))
+        };
+        let (variance, time) = (ratio(&variance)?, ratio(&|row| row.makespan_s)?);
+        pairs.push(Pair { scene, cosine, facets, variance, time });
     }
-    scenes.sort_by_key(|scene| (scene.len(), *scene));
-    let pairs: Vec<Pair<'_>> = scenes.iter().filter_map(|scene| pair(results, scene)).collect();
-    let mut blocks: Vec<Block> = sheet(results, &scenes)?.into_iter().collect();
-    if !pairs.is_empty() {
-        blocks.push(Block::Figure { stem: "roughness", figure: Box::new(plot(results, &pairs)) });
-        blocks.extend(pairs.iter().map(finding));
+    let mut blocks: Vec<Block> = sheet(results, &pairs)?.into_iter().collect();
+    let compared: Vec<(&str, Told, Told)> =
+        pairs.iter().filter_map(|pair| Some((pair.scene, pair.variance?, pair.time?))).collect();
+    if !compared.is_empty() {
+        blocks.push(Block::figure("roughness", plot(results, &compared)));
+        blocks.extend(compared.iter().map(finding));
     }
-    blocks.push(Block::Table { stem: "roughness-table", table: table(results, &scenes) });
+    blocks.push(table(&pairs));
     Ok(blocks)
 }
 
-/// A value of each run of a scene.
-fn values(results: &Results, scene: &str, value: fn(&Record) -> Option<f64>) -> BTreeMap<(u64, u32), f64> {
-    let records = results.records.iter().filter(|record| record.scene == scene);
-    records.filter_map(|record| Some(((record.seed, record.repetition), value(record)?))).collect()
-}
-
-/// The median over seeds of a value by the facets over the same by the cosine.
-fn ratio(results: &Results, scene: &str, value: fn(&Record) -> Option<f64>) -> Option<Ratio> {
-    let cosine = values(results, scene, value);
-    let facets = values(results, &format!("{scene}{BY_FACETS}"), value);
-    let ratios: Vec<f64> = cosine.iter().filter_map(|(run, cosine)| Some(facets.get(run)? / cosine)).collect();
-    median_with_interval(&ratios)
-}
-
 /// The squared error, which is the variance, as the cross form against two references gives it: free of their own noise.
-fn variance(record: &Record) -> Option<f64> {
-    record.mse.filter(|mse| *mse > 0.0)
+fn variance(row: &Row) -> Option<f64> {
+    row.mse.filter(|mse| *mse > 0.0)
 }
 
-fn pair<'a>(results: &Results, scene: &'a str) -> Option<Pair<'a>> {
-    let error = ratio(results, scene, variance)?;
-    Some(Pair { scene, error, time: ratio(results, scene, |record| record.makespan_s)? })
-}
-
-fn plot(results: &Results, pairs: &[Pair<'_>]) -> DotPlot {
-    let dot = |(value, interval): Ratio| Some(Dot { value, interval: interval.map(|i| (i.low, i.high)) });
-    let rows =
-        pairs.iter().map(|pair| Row { name: pair.scene.to_string(), dots: vec![dot(pair.error), dot(pair.time)] });
+fn plot(results: &Results, compared: &[(&str, Told, Told)]) -> DotPlot {
+    let rows = compared
+        .iter()
+        .map(|(scene, variance, time)| PlotRow::new(*scene, vec![Some(variance.dot()), Some(time.dot())]));
     let axis = Axis::log("by facets / by cosine, at equal samples").including([0.9, 1.1]);
-    let mut plot = DotPlot::new("Directions by the facets against directions by the cosine", axis, rows.collect());
-    let names = ["variance of the image", "time"];
-    let group = |(index, name): (usize, &str)| Group { name: name.to_string(), look: Look::nth(index) };
-    plot.groups = names.into_iter().enumerate().map(group).collect();
+    let plot = DotPlot::new("Directions by the facets against directions by the cosine", axis, rows.collect());
+    let mut plot = plot.grouped(["variance of the image", "time"]);
     plot.guides = vec![(1.0, "the same".to_string())];
     plot.subtitle = results.machine_line();
-    let intervals: Vec<Interval> = pairs.iter().flat_map(|pair| [pair.error.1, pair.time.1]).flatten().collect();
-    plot.caption = format!("Median of ratios of runs with the same seed. Bars: {}.", confidence(&intervals));
+    let intervals = compared.iter().flat_map(|(_, variance, time)| [variance.interval, time.interval]).flatten();
+    plot.caption = format!("Median of ratios of runs with the same seed. Bars: {}.", confidence(intervals));
     plot
 }
 
-fn finding(pair: &Pair<'_>) -> Block {
-    let told = |interval: Option<Interval>| interval.map_or_else(|| "no interval".to_string(), |i| with_level(&i, 2));
-    let (variance, time) = (pair.error, pair.time);
-    let verdict = match variance.1 {
+fn finding((scene, variance, time): &(&str, Told, Told)) -> Block {
+    let words = |interval: Option<Interval>| interval.map_or("no interval".to_string(), |i| with_level(&i, 2));
+    let verdict = match variance.interval {
         Some(interval) if interval.high < 1.0 => "the facets are the better guide",
         Some(interval) if interval.low > 1.0 => "the cosine is the better guide",
         _ => "these runs do not tell the two apart",
     };
-    Block::Finding(format!(
-        "{}: at equal samples directions by the facets leave {:.2} times the variance, {}, in {:.2} times the time, {}: {verdict}.",
-        pair.scene,
-        variance.0,
-        told(variance.1),
-        time.0,
-        told(time.1),
+    Block::finding(format!(
+        "{scene}: at equal samples directions by the facets leave {:.2} times the variance, {}, in {:.2} times the time, {}: {verdict}.",
+        variance.value,
+        words(variance.interval),
+        time.value,
+        words(time.interval),
     ))
 }
 
-fn table(results: &Results, scenes: &[&str]) -> Table {
-    let mut rows = Vec::new();
-    for (scene, directions) in scenes.iter().flat_map(|scene| [(scene, "cosine"), (scene, "facets")]) {
-        let name = if directions == "cosine" { (*scene).to_string() } else { format!("{scene}{BY_FACETS}") };
-        let records: Vec<&Record> = results.records.iter().filter(|record| record.scene == name).collect();
-        let typical = |value: &dyn Fn(&Record) -> Option<f64>| {
-            median(&records.iter().filter_map(|record| value(record)).collect::<Vec<f64>>())
-        };
-        let Some(time) = typical(&|record| Some(record.makespan_s? / record.paths? as f64 * 1e9)) else { continue };
-        let error = typical(&variance);
-        // Monte Carlo efficiency: 1/(variance x time), the time that of a sample, in microseconds.
-        let efficiency = error.map(|variance| 1.0 / (variance * time * 1e-3));
-        let number = |value: Option<f64>, digits: usize| {
-            value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
-        };
+fn table(pairs: &[Pair<'_>]) -> Block {
+    let ways = pairs.iter().flat_map(|pair| {
         // A mirror has one direction, however one looks for it.
-        let is_compared = results.records.iter().any(|record| record.scene.strip_suffix(BY_FACETS) == Some(*scene));
-        rows.push(vec![
-            (*scene).to_string(),
-            if is_compared { directions } else { "the mirror's" }.to_string(),
-            records.len().to_string(),
-            number(error.map(f64::sqrt), 4),
-            format!("{time:.0}"),
-            number(efficiency, 3),
-        ]);
-    }
-    let columns = ["scene", "directions", "runs", "RMSE, linear", "ns a sample", "1 / (variance x us a sample)"];
-    Table { title: "Roughness: medians over seeds".to_string(), columns: columns.map(String::from).to_vec(), rows }
+        let cosine = if pair.facets.is_empty() { "the mirror's" } else { "cosine" };
+        [(pair.scene, cosine, pair.cosine), (pair.scene, "facets", pair.facets)]
+    });
+    let lines = ways.filter_map(|(scene, directions, rows)| {
+        let typical = |value: &dyn Fn(&Row) -> Option<f64>| typical(rows.iter().copied(), value);
+        let time = typical(&|row| Some(row.makespan_s? / row.paths? as f64 * 1e9))?;
+        Some((scene, directions, rows.len(), typical(&variance), time))
+    });
+    // Monte Carlo efficiency: 1/(variance x time), the time that of a sample, in microseconds.
+    let efficiency = |variance: Option<f64>, time: f64| variance.map(|variance| 1.0 / (variance * time * 1e-3));
+    Block::table("roughness-table", "Roughness: medians over seeds", lines)
+        .column("scene", |(scene, ..)| (*scene).to_string())
+        .column("directions", |(_, directions, ..)| (*directions).to_string())
+        .column("runs", |(_, _, runs, ..)| runs.to_string())
+        .column("RMSE, linear", |(.., variance, _)| number(variance.map(f64::sqrt), 4))
+        .column("ns a sample", |(.., time)| format!("{time:.0}"))
+        .column("1 / (variance x us a sample)", |(.., variance, time)| number(efficiency(*variance, *time), 3))
+        .end()
 }
 
 /// The references, on which the material can be seen; the renders themselves are too short for that.
-fn sheet(results: &Results, scenes: &[&str]) -> Result<Option<Block>> {
+fn sheet(results: &Results, pairs: &[Pair<'_>]) -> Result<Option<Block>> {
     let mut cells = Vec::new();
-    for scene in scenes {
-        let Some(image) = reference_image(results, Some(scene))? else { return Ok(None) };
-        let caption = vec![(*scene).to_string(), "reference".to_string()];
-        cells.push(Some(Cell { caption, width: image.width, height: image.height, rgb: quantise_image(&image)? }));
+    for pair in pairs {
+        let Some(image) = reference_image(results, Some(pair.scene))? else { return Ok(None) };
+        cells.push(Some(Cell::of(&image, vec![pair.scene.to_string(), "reference".to_string()])?));
     }
     let title = "Report B's material by roughness".to_string();
-    let sheet = ContactSheet { title: title.clone(), subtitle: results.machine_line(), rows: vec![cells], bar: None };
-    Ok(Some(Block::Picture { stem: "roughness-images", title, png: sheet.png()? }))
+    let sheet = ContactSheet { title, subtitle: results.machine_line(), rows: vec![cells], bar: None };
+    Block::sheet("roughness-images", &sheet).map(Some)
 }

@@ -1,40 +1,40 @@
 //! Laws of speedup fitted to what was measured; where the points can't tell, the table says why.
 
+use super::prelude::*;
 use crate::analysis::scaling_law::{Fit, Law, Parameter, Point, fit};
-use crate::error::Result;
-use crate::report::block::{Block, Table};
-use crate::report::results::{LEVEL, Results, Schedule, with_level};
-use std::collections::BTreeMap;
+use crate::report::serial::Serial;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    Ok(vec![table(results, &[Law::Amdahl, Law::Universal], "scaling-laws")])
+    Ok(vec![table(results, &[Law::Amdahl, Law::Universal], "scaling-laws")?])
 }
 
 /// The fits of each law to each strategy, over worker counts that have a processor each: beyond that, more workers are no more machine.
-pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Block {
-    let processors = results.run.machine.processors;
-    let points = points(results);
-    let rows = points.iter().flat_map(|(strategy, points)| laws.iter().map(move |law| row(strategy, *law, points)));
-    let columns = ["strategy", "law", "parameters, interval (confidence)", "does it describe the points?"];
+pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Result<Block> {
+    let processors = results.processors();
+    let points = points(results, &results.serial()?);
+    let fits = points.iter().flat_map(|(name, points)| laws.iter().map(move |law| (name, law, in_words(*law, points))));
     let title = format!("Laws of speedup, up to {processors} threads on {processors} processors");
-    Block::Table { stem, table: Table { title, columns: columns.map(String::from).to_vec(), rows: rows.collect() } }
+    Ok(Block::table(stem, title, fits)
+        .column("strategy", |(strategy, ..)| (*strategy).to_string())
+        .column("law", |(_, law, _)| law.to_string())
+        .column("parameters, interval (confidence)", |(.., [parameters, _])| parameters.clone())
+        .column("does it describe the points?", |(.., [_, verdict])| verdict.clone())
+        .end())
 }
 
 /// The speedups of each strategy at worker counts that have a processor each.
-pub(super) fn points(results: &Results) -> BTreeMap<String, Vec<Point>> {
-    let mut points: BTreeMap<String, Vec<Point>> = BTreeMap::new();
-    for schedule in results.by(Schedule::of).into_keys() {
-        if schedule.strategy != "serial" && schedule.threads <= results.run.machine.processors {
-            let speedups = results.paired_speedups(&schedule);
-            points.entry(schedule.strategy).or_default().push((schedule.threads, speedups));
-        }
+pub(super) fn points<'a>(results: &Results, serial: &Serial<'a>) -> BTreeMap<&'a str, Vec<Point>> {
+    let mut points: BTreeMap<&str, Vec<Point>> = BTreeMap::new();
+    for schedule in serial.others().filter(|schedule| schedule.key.threads <= results.processors()) {
+        points.entry(&schedule.name).or_default().push((schedule.key.threads, serial.paired_speedups(schedule)));
     }
     points
 }
 
-fn row(strategy: &str, law: Law, points: &[Point]) -> Vec<String> {
-    let (parameters, verdict) = match fit(law, points, LEVEL) {
-        Fit::Unidentifiable(reason) => ("none".to_string(), format!("not identifiable: {reason}")),
+/// The parameters, and whether the law describes the points.
+fn in_words(law: Law, points: &[Point]) -> [String; 2] {
+    match fit(law, points, LEVEL) {
+        Fit::Unidentifiable(reason) => ["none".to_string(), format!("not identifiable: {reason}")],
         Fit::Found(fitted) => {
             let parameter = |parameter: &Parameter| {
                 let estimate = &parameter.estimate;
@@ -45,8 +45,7 @@ fn row(strategy: &str, law: Law, points: &[Point]) -> Vec<String> {
                 parameters.push(format!("peak at p = {:.0}, {}", peak.value, with_level(&peak.interval, 0)));
             }
             let counts = fitted.worker_counts;
-            (parameters.join("; "), format!("{}; {counts} thread counts above 1", fitted.check))
+            [parameters.join("; "), format!("{}; {counts} thread counts above 1", fitted.check)]
         }
-    };
-    vec![strategy.to_string(), law.to_string(), parameters, verdict]
+    }
 }

@@ -1,36 +1,51 @@
 //! Error by scene at the same samples per pixel: report A's claim that scenes without reflections are more accurate, and the control that
 //! exchanges the materials of one scene.
 
+use super::prelude::*;
 use crate::analysis::mean::t_interval;
 use crate::analysis::mse::over_seeds;
-use crate::analysis::quantile::median;
 use crate::analysis::rank::spearman;
-use crate::analysis::{Estimate, Interval};
-use crate::error::Result;
-use crate::measure::Record;
-use crate::plot::style::{Look, MARKERS, SERIES};
-use crate::plot::{Axis, LineChart, Point, Series};
-use crate::report::block::{Block, Table};
-use crate::report::results::{LEVEL, Results};
-use std::collections::BTreeMap;
+use crate::plot::style::{MARKERS, SERIES};
 
-/// The same box with matt balls, with a mirror and a glass ball, and with two mirror balls.
-const CONTROL: [&str; 3] = ["cornell-diffuse", "cornell", "cornell-mirror"];
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// Error at which prices are compared, relative to the mean radiance.
+    goal: Positive,
+    /// The same box with three pairs of balls.
+    control: Option<Control>,
+}
 
-/// Error at which prices are compared: a hundredth of the mean radiance.
-const GOAL: f64 = 0.01;
+impl Default for Options {
+    fn default() -> Self {
+        Self { goal: Positive(0.01), control: None }
+    }
+}
+
+/// Scenes that differ in the balls of one box and nothing else.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct Control {
+    /// With matt balls.
+    matt: String,
+    /// With a mirror and a glass ball.
+    glass: String,
+    /// With two mirror balls.
+    mirrors: String,
+}
 
 /// What is known of a scene.
 struct Accuracy {
+    /// The scene, and what else differs.
+    name: String,
     scene: String,
     spp: u32,
     /// Mean radiance over all pixels and channels, and all seeds.
     radiance: f64,
     /// Relative RMSE of each seed.
     by_seed: BTreeMap<u64, f64>,
-    /// Root of the mean of their squares, with its interval.
-    error: f64,
-    interval: Option<Interval>,
+    /// Root of the mean of their squares.
+    error: Told,
     rays: f64,
     /// Processor seconds of a sample.
     sample_s: f64,
@@ -38,76 +53,74 @@ struct Accuracy {
 }
 
 impl Accuracy {
-    /// Processor seconds until the image has an error of [`GOAL`]: the error falls with the root of the samples.
-    fn price_s(&self) -> f64 {
-        let spp = f64::from(self.spp) * (self.error / GOAL) * (self.error / GOAL);
+    /// Processor seconds until the image has that error: it falls with the root of the samples.
+    fn price_s(&self, goal: f64) -> f64 {
+        let spp = f64::from(self.spp) * (self.error.value / goal) * (self.error.value / goal);
         spp * self.pixels * self.sample_s
     }
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let Options { goal, control } = options(results, "scene-accuracy")?;
     let mut scenes = accuracies(results)?;
     if scenes.is_empty() {
         let text = "There is no accuracy by scene: it takes errors against references, and the kept images.";
-        return Ok(vec![Block::Finding(text.to_string())]);
+        return Ok(vec![Block::finding(text)]);
     }
-    scenes.sort_by(|a, b| a.error.total_cmp(&b.error));
-    let mut blocks = vec![Block::Figure { stem: "scene-accuracy", figure: Box::new(chart(results, &scenes)) }];
-    blocks.extend(claim(&scenes));
-    blocks.extend(control(&scenes));
-    blocks.push(Block::Table { stem: "scene-accuracy-table", table: table(&scenes) });
+    scenes.sort_by(|a, b| a.error.value.total_cmp(&b.error.value));
+    let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes))];
+    blocks.extend(claim(&scenes, control.as_ref()));
+    blocks.extend(control.and_then(|control| controlled(&scenes, &control)));
+    blocks.push(table(&scenes, goal.0));
     Ok(blocks)
 }
 
 fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
-    let mut radiances: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
-    for (record, image) in results.kept_images(|record| record.mse.is_some())? {
+    let radiances = results.kept_images(|row| row.mse.is_some())?.into_iter().map(|(row, image)| {
         let channels = image.pixels.iter().flatten().copied();
-        let mean = channels.sum::<f64>() / (3 * image.pixels.len()) as f64;
-        radiances.entry(&record.scene).or_default().push(mean);
-    }
-    let of_scene = |(scene, records): (String, Vec<&Record>)| {
-        let images = radiances.get(scene.as_str())?;
+        (kind(row), channels.sum::<f64>() / (3 * image.pixels.len()) as f64)
+    });
+    let radiances = gathered(radiances);
+    let of_scene = |(image, rows): (ImageKey, Vec<&Row>)| {
+        let images = radiances.get(&image)?;
         let radiance = images.iter().sum::<f64>() / images.len() as f64;
-        let first = *records.first()?;
+        let first = *rows.first()?;
         let mse: BTreeMap<u64, f64> =
-            records.iter().filter_map(|record| Some((record.seed, record.mse? / (radiance * radiance)))).collect();
+            rows.iter().filter_map(|row| Some((row.seed, row.mse? / (radiance * radiance)))).collect();
         let squares: Vec<f64> = mse.values().copied().collect();
-        let error = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
-        let median_of = |value: fn(&Record) -> Option<f64>| {
-            median(&records.iter().filter_map(|record| value(record)).collect::<Vec<f64>>())
-        };
+        let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
+        let error = Told { value: (squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval };
+        let series = results.series_name(first);
         let accuracy = Accuracy {
+            name: if series.is_empty() { image.scene.clone() } else { series },
+            scene: image.scene,
             spp: first.spp,
             radiance,
             by_seed: mse.into_iter().map(|(seed, mse)| (seed, mse.sqrt())).collect(),
             error,
-            interval: over_seeds(&squares, LEVEL).map(|error| error.rmse.interval),
-            rays: median_of(|record| Some(record.rays? as f64 / record.paths? as f64))?,
-            sample_s: median_of(|record| Some(record.cpu_s()? / record.paths? as f64))?,
+            rays: typical(rows.iter().copied(), |row| Some(row.rays? as f64 / row.paths? as f64))?,
+            sample_s: typical(rows.iter().copied(), |row| Some(row.cpu_s()? / row.paths? as f64))?,
             pixels: f64::from(first.width) * f64::from(first.height),
-            scene,
         };
-        accuracy.error.is_finite().then_some(accuracy)
+        accuracy.error.value.is_finite().then_some(accuracy)
     };
-    Ok(results.by(|record| record.scene.clone()).into_iter().filter_map(of_scene).collect())
+    Ok(results.by(kind).into_iter().filter_map(of_scene).collect())
+}
+
+/// What is rendered, the seed aside.
+fn kind(row: &Row) -> ImageKey {
+    ImageKey { seed: 0, ..row.image.clone() }
 }
 
 fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
-    let series = scenes.iter().enumerate().map(|(index, scene)| {
-        let bar = scene.interval.map(|interval| (interval.low, interval.high));
-        Series::new(&scene.scene, look(index), vec![Point::new(scene.rays, scene.error).with_y(bar)]).scattered()
-    });
-    let mut chart = LineChart::new(
-        "Error and path length by scene",
-        Axis::log("rays per sample"),
-        Axis::log("RMSE / mean radiance"),
-        series.collect(),
-    );
-    let first = results.records.first();
-    chart.subtitle = first.map_or_else(String::new, |r| {
-        format!("{}x{}, {} samples per pixel, {}", r.width, r.height, r.spp, r.estimator)
-    });
+    let point = |(index, scene): (usize, &Accuracy)| {
+        Series::new(&scene.name, look(index), vec![scene.error.above(scene.rays)]).scattered()
+    };
+    let (x, y) = (Axis::log("rays per sample"), Axis::log("RMSE / mean radiance"));
+    let series = scenes.iter().enumerate().map(point).collect();
+    let mut chart = LineChart::new("Error and path length by scene", x, y, series);
+    let samples = |row: &Row| format!("{}, {} samples per pixel, {}", results.size(), row.spp, row.estimator);
+    chart.subtitle = results.first().map_or_else(String::new, samples);
     chart.caption =
         "Bars: 95 % interval over seeds. The legend goes from the smallest error to the largest.".to_string();
     chart
@@ -119,17 +132,18 @@ fn look(index: usize) -> Look {
 }
 
 /// Over scenes that differ in everything; the two variants of the control would count one scene three times.
-fn claim(scenes: &[Accuracy]) -> Option<Block> {
-    let others: Vec<&Accuracy> =
-        scenes.iter().filter(|scene| scene.scene == CONTROL[1] || !CONTROL.contains(&scene.scene.as_str())).collect();
-    let pairs: Vec<(f64, f64)> = others.iter().map(|scene| (scene.rays, scene.error)).collect();
+fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
+    let is_variant =
+        |scene: &&Accuracy| control.is_some_and(|control| [&control.matt, &control.mirrors].contains(&&scene.scene));
+    let others: Vec<&Accuracy> = scenes.iter().filter(|scene| !is_variant(scene)).collect();
+    let pairs: Vec<(f64, f64)> = others.iter().map(|scene| (scene.rays, scene.error.value)).collect();
     let found = spearman(&pairs)?;
     let verdict = match (found.p < 1.0 - LEVEL, found.rho > 0.0) {
         (true, true) => "longer paths and larger errors go together",
         (true, false) => "scenes with longer paths even have the smaller errors",
         (false, _) => "so many scenes show no connection between path length and error",
     };
-    Some(Block::Finding(format!(
+    Some(Block::finding(format!(
         "Report A says that a scene without reflections is more accurate because its paths bounce less. Over {} different scenes the rank correlation of rays per sample and \
          relative error is {:.2} (p = {:.2}): {verdict}.",
         others.len(),
@@ -147,9 +161,9 @@ fn error_ratio(above: &Accuracy, below: &Accuracy) -> Option<Estimate> {
     Some(Estimate { value: libm::exp(found.value), interval })
 }
 
-fn control(scenes: &[Accuracy]) -> Option<Block> {
+fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
     let of = |name: &str| scenes.iter().find(|scene| scene.scene == name);
-    let (matt, own, mirrors) = (of(CONTROL[0])?, of(CONTROL[1])?, of(CONTROL[2])?);
+    let (matt, own, mirrors) = (of(&control.matt)?, of(&control.glass)?, of(&control.mirrors)?);
     let (glass, mirror) = (error_ratio(own, matt)?, error_ratio(mirrors, matt)?);
     let ratio = |found: &Estimate| {
         format!("{:.2} times ({:.2} to {:.2})", found.value, found.interval.low, found.interval.high)
@@ -161,7 +175,7 @@ fn control(scenes: &[Accuracy]) -> Option<Block> {
         (false, true) => "Mirrors cost this box accuracy, a mirror and a glass ball together do not",
     };
     let length = |scene: &Accuracy| format!("{:.2}", scene.rays);
-    Some(Block::Finding(format!(
+    Some(Block::finding(format!(
         "The control changes the balls of one box and nothing else. With a mirror and a glass ball its relative error is {} that with matt balls, with two mirror balls {}; \
          rays per sample are {} with matt balls, {} and {}. {verdict}.",
         ratio(&glass),
@@ -172,33 +186,22 @@ fn control(scenes: &[Accuracy]) -> Option<Block> {
     )))
 }
 
-fn table(scenes: &[Accuracy]) -> Table {
-    let row = |scene: &Accuracy| {
-        vec![
-            scene.scene.clone(),
-            format!("{:.4}", scene.radiance),
-            format!("{:.4}", scene.error * scene.radiance),
-            format!("{:.4}", scene.error),
-            scene.interval.map_or_else(|| "none".to_string(), |i| format!("{:.4} to {:.4}", i.low, i.high)),
-            scene.by_seed.len().to_string(),
-            format!("{:.2}", scene.rays),
-            format!("{:.0}", scene.sample_s * 1e9),
-            format!("{:.4}", 1.0 / (f64::from(scene.spp) * scene.error * scene.error * scene.sample_s * 1e6)),
-            format!("{:.2}", scene.price_s()),
-        ]
-    };
-    let columns = [
-        "scene",
-        "mean radiance",
-        "RMSE, linear",
-        "RMSE / mean radiance",
-        "95 % interval over seeds",
-        "seeds",
-        "rays per sample",
-        "ns per sample",
-        "efficiency, 1 / (relative variance of a sample x µs)",
-        "processor seconds to 1 % error",
-    ];
-    let title = "Accuracy by scene, most accurate first".to_string();
-    Table { title, columns: columns.map(String::from).to_vec(), rows: scenes.iter().map(row).collect() }
+fn table(scenes: &[Accuracy], goal: f64) -> Block {
+    let variance = |scene: &Accuracy| f64::from(scene.spp) * scene.error.value * scene.error.value;
+    Block::table("scene-accuracy-table", "Accuracy by scene, most accurate first", scenes)
+        .column("scene", |scene| scene.name.clone())
+        .column("mean radiance", |scene| format!("{:.4}", scene.radiance))
+        .column("RMSE, linear", |scene| format!("{:.4}", scene.error.value * scene.radiance))
+        .column("RMSE / mean radiance", |scene| format!("{:.4}", scene.error.value))
+        .column("95 % interval over seeds", |scene| {
+            scene.error.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.4} to {high:.4}"))
+        })
+        .column("seeds", |scene| scene.by_seed.len().to_string())
+        .column("rays per sample", |scene| format!("{:.2}", scene.rays))
+        .column("ns per sample", |scene| format!("{:.0}", scene.sample_s * 1e9))
+        .column("efficiency, 1 / (relative variance of a sample x µs)", |scene| {
+            format!("{:.4}", 1.0 / (variance(scene) * scene.sample_s * 1e6))
+        })
+        .column(format!("processor seconds to {} % error", 100.0 * goal), |scene| format!("{:.2}", scene.price_s(goal)))
+        .end()
 }

@@ -1,65 +1,53 @@
 //! A table of what each schedule did: time, balance, switches.
 
-use crate::analysis::quantile::median;
-use crate::error::Result;
-use crate::measure::Record;
-use crate::report::block::{Block, Table};
-use crate::report::results::{Results, Schedule, median_with_interval, with_level};
+use super::prelude::*;
 
-pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let columns = [
-        "image",
-        "spp",
-        "strategy",
-        "pieces",
-        "threads",
-        "jobs",
-        "runs",
-        "median seconds",
-        "interval (confidence)",
-        "CPU / wall",
-        "load imbalance",
-        "longest job, ms",
-        "voluntary switches",
-        "forced switches",
-    ];
-    let processors = results.run.machine.processors;
-    let groups = results.by(|record| (results.series_name(record), record.spp, Schedule::of(record)));
-    let row = |((series, spp, schedule), records): (&(String, u32, Schedule), &Vec<&Record>)| {
-        let image = if series.is_empty() { records.first()?.scene.clone() } else { series.clone() };
-        Some([vec![image, spp.to_string()], row(schedule, records, processors)?].concat())
-    };
-    let rows = groups.iter().filter_map(row).collect();
-    let title = "Schedules: medians over repetitions".to_string();
-    let table = Table { title, columns: columns.map(String::from).to_vec(), rows };
-    Ok(vec![Block::Table { stem: "schedules", table }])
+/// The rows of an image under a schedule, and their median time.
+struct Line<'a> {
+    image: String,
+    first: &'a Row,
+    rows: Vec<&'a Row>,
+    times: Vec<f64>,
+    seconds: Told,
 }
 
-fn row(schedule: &Schedule, records: &[&Record], processors: usize) -> Option<Vec<String>> {
-    let of = |value: &dyn Fn(&Record) -> Option<f64>| {
-        median(&records.iter().filter_map(|record| value(record)).collect::<Vec<_>>())
-    };
-    let text =
-        |value: Option<f64>, digits: usize| value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"));
-    let times: Vec<f64> = records.iter().filter_map(|record| record.makespan_s).collect();
-    let (median, interval) = median_with_interval(&times)?;
+impl Line<'_> {
+    fn typical(&self, value: impl Fn(&Row) -> Option<f64>, digits: usize) -> String {
+        number(typical(self.rows.iter().copied(), value), digits)
+    }
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let processors = results.processors();
+    let groups = results.by(|row| (results.series_name(row), row.spp, &row.schedule));
+    let lines = groups.into_iter().filter_map(|((series, ..), rows)| {
+        let first = *rows.first()?;
+        let image = if series.is_empty() { first.scene.clone() } else { series };
+        let times = values(rows.iter().copied(), |row| row.makespan_s);
+        Some(Line { image, first, seconds: Told::median(&times)?, times, rows })
+    });
     // A job's seconds include waiting for a processor: with more workers than processors they say nothing about balance.
-    let alone = |record: &Record| (record.workers_used? as usize <= processors).then_some(());
-    let imbalance = |record: &Record| {
-        alone(record).and(Some(record.busy_max_s? * f64::from(record.workers_used?) / record.busy_sum_s? - 1.0))
-    };
-    Some(vec![
-        schedule.strategy.clone(),
-        schedule.decomposition.clone(),
-        schedule.threads.to_string(),
-        records.first()?.jobs.to_string(),
-        times.len().to_string(),
-        format!("{median:.4}"),
-        interval.map_or_else(|| "one run".to_string(), |interval| with_level(&interval, 4)),
-        text(of(&|record| Some(record.cpu_s()? / record.makespan_s?)), 2),
-        text(of(&imbalance), 3),
-        text(of(&|record| alone(record).and(Some(record.job_max_s? * 1e3))), 1),
-        text(of(&|record| Some(record.voluntary_switches? as f64)), 0),
-        text(of(&|record| Some(record.involuntary_switches? as f64)), 0),
+    let alone = |row: &Row| (row.workers_used? as usize <= processors).then_some(());
+    let imbalance =
+        |row: &Row| alone(row).and(Some(row.busy_max_s? * f64::from(row.workers_used?) / row.busy_sum_s? - 1.0));
+    Ok(vec![
+        Block::table("schedules", "Schedules: medians over repetitions", lines)
+            .column("image", |line| line.image.clone())
+            .column("spp", |line| line.first.spp.to_string())
+            .column("strategy", |line| line.first.schedule.name.clone())
+            .column("pieces", |line| line.first.decomposition.clone())
+            .column("threads", |line| line.first.threads.to_string())
+            .column("jobs", |line| line.first.jobs.to_string())
+            .column("runs", |line| line.times.len().to_string())
+            .column("median seconds", |line| format!("{:.4}", line.seconds.value))
+            .column("interval (confidence)", |line| {
+                line.seconds.interval.map_or("one run".to_string(), |i| with_level(&i, 4))
+            })
+            .column("CPU / wall", |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?), 2))
+            .column("load imbalance", |line| line.typical(imbalance, 3))
+            .column("longest job, ms", |line| line.typical(|row| alone(row).and(Some(row.job_max_s? * 1e3)), 1))
+            .column("voluntary switches", |line| line.typical(|row| Some(row.voluntary_switches? as f64), 0))
+            .column("forced switches", |line| line.typical(|row| Some(row.involuntary_switches? as f64), 0))
+            .end(),
     ])
 }

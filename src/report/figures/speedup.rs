@@ -1,294 +1,250 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by which Karp and Flatt explain what is missing.
 
+use super::prelude::*;
 use super::scaling_laws;
-use crate::analysis::Estimate;
-use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, Point as LawPoint, fit};
+use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_estimate};
 use crate::analysis::superlinear::{Evidence, cause};
-use crate::error::Result;
-use crate::measure::THREAD_PER_ROW;
-use crate::plot::dot_plot::{Dot, DotPlot, Group, Row};
-use crate::plot::style::Look;
-use crate::plot::{Axis, Curve, Figure, LineChart, Overlay, Point, Series};
-use crate::report::block::{Block, Table};
-use crate::report::results::{LEVEL, Results, Schedule, median_with_interval, with_level};
-use crate::strategy::{self, Workers};
-use std::collections::{BTreeMap, BTreeSet};
-
-/// Whether the number of threads is the strategy's own rule, so that it is no place on an axis.
-fn has_a_thread_per_job(schedule: &Schedule) -> bool {
-    let name = schedule.strategy.split(':').next().unwrap_or_default();
-    schedule.strategy == THREAD_PER_ROW || strategy::find(name).is_some_and(|entry| entry.workers == Workers::PerJob)
-}
+use crate::report::serial::Serial;
 
 /// More lines than this cannot be told apart in one chart: strategies become named rows instead.
 const MOST_LINES: usize = 8;
 
+/// The speedups, and what is known beside them.
+struct Speedups<'a> {
+    results: &'a Results,
+    serial: Serial<'a>,
+    all: Vec<(&'a Schedule, Estimate)>,
+    /// Numbers of threads that were asked for. A strategy with a thread for each job has its own, which is no place on an axis.
+    asked: BTreeSet<usize>,
+    processors: usize,
+}
+
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let speedups = results.speedups();
-    let processors = results.run.machine.processors;
-    let table = Table {
-        title: "Speedup against serial, efficiency and Karp-Flatt serial fraction".to_string(),
-        columns: [
-            "strategy",
-            "pieces",
-            "threads",
-            "speedup",
-            "interval (confidence)",
-            "efficiency per thread",
-            "efficiency per processor in use",
-            "work inflation",
-            "e, p = threads (confidence)",
-            "e, p = processors in use (confidence)",
-            "remark",
-        ]
-        .map(String::from)
-        .to_vec(),
-        rows: speedups.iter().map(|(schedule, estimate)| row(results, schedule, estimate)).collect(),
-    };
-    let strategies: BTreeSet<&str> = speedups.iter().map(|(schedule, _)| schedule.strategy.as_str()).collect();
-    let figures: [(&'static str, Box<dyn Figure>); 2] = if strategies.len() > MOST_LINES {
-        let per_processor = |speedup: f64, threads: usize| speedup / in_use(threads, processors) as f64;
-        let of_speedup =
-            dots(results, &speedups, ["Speedup by strategy", "speedup against serial", "serial"], |speedup, _| speedup);
-        let of_efficiency = dots(
-            results,
-            &speedups,
-            ["Efficiency by strategy", "speedup per processor in use", "ideal"],
-            per_processor,
-        );
-        [("speedup", Box::new(of_speedup)), ("efficiency", Box::new(of_efficiency))]
-    } else {
-        [
-            ("speedup", Box::new(speedup_chart(results, &speedups))),
-            ("efficiency", Box::new(efficiency_chart(results, &speedups))),
-        ]
-    };
-    let mut blocks: Vec<Block> = figures.into_iter().map(|(stem, figure)| Block::Figure { stem, figure }).collect();
-    blocks.extend(findings(results, &speedups));
-    blocks.push(Block::Table { stem: "karp-flatt", table });
+    let serial = results.serial()?;
+    let asked = results.rows().filter(|row| row.threads != row.jobs).map(|row| row.threads).collect();
+    let all = serial.speedups();
+    let found = Speedups { results, serial, all, asked, processors: results.processors() };
+    let mut blocks = found.figures();
+    blocks.extend(found.best()?);
+    blocks.extend(found.thread_per_row());
+    blocks.push(found.table());
     Ok(blocks)
 }
 
-/// Workers that can run at the same time.
-fn in_use(threads: usize, processors: usize) -> usize {
-    threads.min(processors)
-}
-
-fn row(results: &Results, schedule: &Schedule, estimate: &Estimate) -> Vec<String> {
-    let (speedup, interval, threads) = (estimate.value, estimate.interval, schedule.threads);
-    let used = in_use(threads, results.run.machine.processors);
-    let number = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.3}"));
-    let speedups = results.paired_speedups(schedule);
-    let fraction = |workers: usize| {
-        serial_fraction_estimate(&speedups, workers, LEVEL).map_or_else(
-            || "-".to_string(),
-            |e| format!("{:.3}, {}", e.value, with_level(&e.interval, 3)),
-        )
-    };
-    let remark = match oddity(&interval, used) {
-        Some(Oddity::Superlinear) => format!("superlinear; {}", cause(&evidence(results, schedule))),
-        Some(Oddity::Slowdown) if threads > 1 => "slower than serial".to_string(),
-        _ if threads == 1 => "relative speedup: the strategy's own cost at one worker".to_string(),
-        _ => String::new(),
-    };
-    vec![
-        schedule.strategy.clone(),
-        schedule.decomposition.clone(),
-        threads.to_string(),
-        format!("{speedup:.3}"),
-        with_level(&interval, 3),
-        number(efficiency(speedup, threads)),
-        number(efficiency(speedup, used)),
-        number(results.work_inflation(schedule)),
-        fraction(threads),
-        fraction(used),
-        remark,
-    ]
-}
-
-/// What is known beside a speedup that is too good.
-fn evidence(results: &Results, schedule: &Schedule) -> Evidence {
-    let alone = Schedule { threads: 1, ..schedule.clone() };
-    let doubts = ["foreign-load", "drift", "slowed", "too-short"];
-    // The baseline's doubts count as well: a serial run that was held up makes all others look fast.
-    let concerned =
-        |own: &Schedule| own == schedule || (own.strategy == "serial" && own.decomposition == schedule.decomposition);
-    let warned = |record: &&crate::measure::Record| {
-        concerned(&Schedule::of(record)) && doubts.iter().any(|doubt| record.warnings.contains(doubt))
-    };
-    let machine = &results.run.machine;
-    Evidence {
-        at_one_worker: (schedule.threads > 1)
-            .then(|| median_with_interval(&results.paired_speedups(&alone)).and_then(|(_, interval)| interval))
-            .flatten(),
-        warnings: results.records.iter().filter(warned).count(),
-        processors: Some(machine.processors),
-        physical_cores: Some(machine.physical_cores).filter(|cores| *cores > 0),
+impl Speedups<'_> {
+    /// Workers that can run at the same time.
+    fn in_use(&self, threads: usize) -> usize {
+        threads.min(self.processors)
     }
-}
 
-/// A row for each strategy, a dot for each number of threads; strategies with a rule of their own have a single dot.
-fn dots(
-    results: &Results,
-    speedups: &[(Schedule, Estimate)],
-    [title, axis, guide]: [&str; 3],
-    value: impl Fn(f64, usize) -> f64,
-) -> DotPlot {
-    let mut threads: Vec<usize> =
-        speedups.iter().filter(|(s, _)| !has_a_thread_per_job(s)).map(|(s, _)| s.threads).collect();
-    threads.sort_unstable();
-    threads.dedup();
-    let several = speedups.iter().map(|(s, _)| &s.decomposition).collect::<BTreeSet<_>>().len() > 2;
-    let mut rows: BTreeMap<String, Vec<Option<Dot>>> = BTreeMap::new();
-    for (schedule, estimate) in speedups {
-        // One decomposition, and the rows of report A beside it, need no name.
-        let name = if several {
-            format!("{}, {}", schedule.strategy, schedule.decomposition)
-        } else {
-            schedule.strategy.clone()
+    fn has_a_thread_per_job(&self, schedule: &Schedule) -> bool {
+        !self.asked.is_empty() && !self.asked.contains(&schedule.key.threads)
+    }
+
+    fn figures(&self) -> Vec<Block> {
+        let per_processor = |speedup: f64, threads: usize| speedup / self.in_use(threads) as f64;
+        let strategies: BTreeSet<&str> = self.all.iter().map(|(schedule, _)| schedule.name.as_str()).collect();
+        if strategies.len() <= MOST_LINES {
+            let (speedup, efficiency) = (self.speedup_chart(), self.efficiency_chart(&per_processor));
+            return vec![Block::figure("speedup", speedup), Block::figure("efficiency", efficiency)];
+        }
+        let speedup = ["Speedup by strategy", "speedup against serial", "serial"];
+        let efficiency = ["Efficiency by strategy", "speedup per processor in use", "ideal"];
+        vec![
+            Block::figure("speedup", self.dots(speedup, &|speedup, _| speedup)),
+            Block::figure("efficiency", self.dots(efficiency, &per_processor)),
+        ]
+    }
+
+    fn table(&self) -> Block {
+        let fraction = |schedule: &Schedule, workers: usize| {
+            let found = serial_fraction_estimate(&self.serial.paired_speedups(schedule), workers, LEVEL);
+            found.map_or_else(|| "-".to_string(), |e| told(&e, 3))
         };
-        let dots = rows.entry(name).or_insert_with(|| vec![None; threads.len() + 1]);
-        let place = threads.iter().position(|threads| *threads == schedule.threads);
-        let group = place.filter(|_| !has_a_thread_per_job(schedule)).unwrap_or(threads.len());
-        let of = |speedup: f64| value(speedup, schedule.threads);
-        let interval = Some((of(estimate.interval.low), of(estimate.interval.high)));
-        dots[group] = Some(Dot { value: of(estimate.value), interval });
+        let used = |schedule: &Schedule| self.in_use(schedule.key.threads);
+        let title = "Speedup against serial, efficiency and Karp-Flatt serial fraction";
+        Block::table("karp-flatt", title, &self.all)
+            .column("strategy", |(schedule, _)| schedule.name.clone())
+            .column("pieces", |(schedule, _)| schedule.key.decomposition.clone())
+            .column("threads", |(schedule, _)| schedule.key.threads.to_string())
+            .column("speedup", |(_, speedup)| format!("{:.3}", speedup.value))
+            .column("interval (confidence)", |(_, speedup)| with_level(&speedup.interval, 3))
+            .column("efficiency per thread", |(s, speedup)| number(efficiency(speedup.value, s.key.threads), 3))
+            .column("efficiency per processor in use", |(s, speedup)| number(efficiency(speedup.value, used(s)), 3))
+            .column("work inflation", |(schedule, _)| number(self.serial.work_inflation(schedule), 3))
+            .column("e, p = threads (confidence)", |(schedule, _)| fraction(schedule, schedule.key.threads))
+            .column("e, p = processors in use (confidence)", |(schedule, _)| fraction(schedule, used(schedule)))
+            .column("remark", |(schedule, speedup)| self.remark(schedule, speedup))
+            .end()
     }
-    let mut rows: Vec<Row> = rows.into_iter().map(|(name, dots)| Row { name, dots }).collect();
-    let best = |row: &Row| row.dots.iter().flatten().map(|dot| dot.value).fold(0.0, f64::max);
-    rows.sort_by(|a, b| best(b).total_cmp(&best(a)));
-    let mut names: Vec<String> = threads
-        .iter()
-        .map(|threads| if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") })
-        .collect();
-    if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
-        names.push("a thread per job".to_string());
-    } else {
-        for row in &mut rows {
-            row.dots.truncate(threads.len());
+
+    fn remark(&self, schedule: &Schedule, speedup: &Estimate) -> String {
+        let threads = schedule.key.threads;
+        match oddity(&speedup.interval, self.in_use(threads)) {
+            Some(Oddity::Superlinear) => format!("superlinear; {}", cause(&self.evidence(schedule))),
+            Some(Oddity::Slowdown) if threads > 1 => "slower than serial".to_string(),
+            _ if threads == 1 => "relative speedup: the strategy's own cost at one worker".to_string(),
+            _ => String::new(),
         }
     }
-    let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows);
-    plot.groups = names.into_iter().enumerate().map(|(index, name)| Group { name, look: Look::nth(index) }).collect();
-    plot.guides = vec![(1.0, guide.to_string())];
-    plot.subtitle = results.workload();
-    plot.caption = "Median of ratios within a repetition. Bars: distribution-free interval.".to_string();
-    plot
-}
 
-/// One series a strategy, and the thread counts that occur.
-fn series(speedups: &[(Schedule, Estimate)], value: impl Fn(f64, usize) -> f64) -> (Vec<Series>, Vec<f64>) {
-    let mut lines: BTreeMap<&str, Vec<Point>> = BTreeMap::new();
-    let mut ticks = Vec::new();
-    for (schedule, estimate) in speedups.iter().filter(|(schedule, _)| !has_a_thread_per_job(schedule)) {
-        let threads = schedule.threads;
-        let interval = (value(estimate.interval.low, threads), value(estimate.interval.high, threads));
-        let point = Point::new(threads as f64, value(estimate.value, threads)).with_y(Some(interval));
-        lines.entry(&schedule.strategy).or_default().push(point);
-        ticks.push(threads as f64);
+    /// What is known beside a speedup that is too good.
+    fn evidence(&self, schedule: &Schedule) -> Evidence {
+        let mut alone = schedule.clone();
+        alone.key.threads = 1;
+        let at_one_worker = || Told::median(&self.serial.paired_speedups(&alone))?.interval;
+        let doubts = ["foreign-load", "drift", "slowed", "too-short"];
+        let doubtful = |warnings: &str| doubts.iter().any(|doubt| warnings.contains(doubt));
+        // The baseline's doubts count as well: a serial run that was held up makes all others look fast.
+        let concerned = self.serial.rows(schedule).iter().copied().chain(self.serial.on_pieces_of(schedule));
+        let machine = &self.results.run.machine;
+        Evidence {
+            at_one_worker: (schedule.key.threads > 1).then(at_one_worker).flatten(),
+            warnings: concerned.filter(|row| doubtful(&row.warnings)).count(),
+            processors: Some(machine.processors),
+            physical_cores: Some(machine.physical_cores).filter(|cores| *cores > 0),
+        }
     }
-    ticks.sort_by(f64::total_cmp);
-    ticks.dedup();
-    let series =
-        lines.into_iter().enumerate().map(|(index, (name, points))| Series::new(name, Look::nth(index), points));
-    (series.collect(), ticks)
-}
 
-fn speedup_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineChart {
-    let (mut series, ticks) = series(speedups, |speedup, _| speedup);
-    for (schedule, estimate) in speedups.iter().filter(|(schedule, _)| has_a_thread_per_job(schedule)) {
-        let interval = (estimate.interval.low, estimate.interval.high);
-        let points = ticks.iter().map(|x| Point::new(*x, estimate.value).with_y(Some(interval))).collect();
-        let name = format!("{}: always {}", schedule.strategy, schedule.threads);
-        series.push(Series::new(name, Look::nth(series.len()), points));
+    /// The strategy; with its pieces where there are several.
+    fn line(&self, schedule: &Schedule) -> String {
+        let pieces = self.all.iter().map(|(schedule, _)| &schedule.key.decomposition).collect::<BTreeSet<_>>();
+        // One decomposition, and the rows of report A beside it, need no name.
+        if pieces.len() > 2 {
+            format!("{}, {}", schedule.name, schedule.key.decomposition)
+        } else {
+            schedule.name.clone()
+        }
     }
-    let processors = results.run.machine.processors as f64;
-    let most = processors.max(1.0) * 1.25;
-    let mut chart = LineChart::new(
-        "Speedup against threads",
-        Axis::log("threads").ticks_at(ticks),
-        Axis::linear("speedup against serial").including([0.0, most]),
-        series,
-    );
-    chart.subtitle = results.workload();
-    chart.caption = "Median of ratios within a repetition. Bars: distribution-free interval. Level: a thread for each job, whatever is asked for.".to_string();
-    chart.overlays = vec![
-        Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
-        Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
-    ];
-    chart.overlays.extend(fits(results, &chart.series));
-    chart.dodge = 5.0;
-    chart
-}
 
-/// Amdahl's law where the points bear it out, in the colours of the strategies' lines.
-fn fits(results: &Results, series: &[Series]) -> Vec<Overlay> {
-    let overlay = |(name, points): (String, Vec<LawPoint>)| {
-        let Fit::Found(Fitted { parameters, check: Check::Passed { .. }, .. }) = fit(Law::Amdahl, &points, LEVEL)
-        else {
-            return None;
+    /// A row for each strategy, a dot for each number of threads; strategies with a rule of their own have a single dot.
+    fn dots(&self, [title, axis, guide]: [&str; 3], value: &dyn Fn(f64, usize) -> f64) -> DotPlot {
+        let threads: BTreeSet<usize> =
+            self.all.iter().filter(|(s, _)| !self.has_a_thread_per_job(s)).map(|(s, _)| s.key.threads).collect();
+        let mut rows: BTreeMap<String, Vec<Option<_>>> = BTreeMap::new();
+        for (schedule, speedup) in &self.all {
+            let dots = rows.entry(self.line(schedule)).or_insert_with(|| vec![None; threads.len() + 1]);
+            let place = threads.iter().position(|threads| *threads == schedule.key.threads).unwrap_or(threads.len());
+            dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)).dot());
+        }
+        let mut rows: Vec<PlotRow> = rows.into_iter().map(|(name, dots)| PlotRow::new(name, dots)).collect();
+        let best = |row: &PlotRow| row.dots.iter().flatten().map(|dot| dot.value).fold(0.0, f64::max);
+        rows.sort_by(|a, b| best(b).total_cmp(&best(a)));
+        let name = |threads: &usize| if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") };
+        let mut names: Vec<String> = threads.iter().map(name).collect();
+        if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
+            names.push("a thread per job".to_string());
+        }
+        let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
+        plot.guides = vec![(1.0, guide.to_string())];
+        plot.subtitle = self.results.workload();
+        plot.caption = "Median of ratios within a repetition. Bars: distribution-free interval.".to_string();
+        plot
+    }
+
+    /// One series a strategy, but for those with a thread for each job.
+    fn series(&self, value: &dyn Fn(f64, usize) -> f64) -> Vec<Series> {
+        let mut lines: BTreeMap<String, Vec<_>> = BTreeMap::new();
+        for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| !self.has_a_thread_per_job(schedule)) {
+            let threads = schedule.key.threads;
+            let point = Told::from(*speedup).times(value(1.0, threads)).above(threads as f64);
+            lines.entry(self.line(schedule)).or_default().push(point);
+        }
+        Series::by_name(lines)
+    }
+
+    fn chart(&self, title: &str, y: Axis, series: Vec<Series>, caption: &str) -> LineChart {
+        let ticks = series.iter().flat_map(|series| &series.points).map(|point| point.x);
+        let x = Axis::log("threads").ticks_at(ticks);
+        let mut chart = LineChart::new(title, x, y, series);
+        chart.subtitle = self.results.workload();
+        chart.caption = caption.to_string();
+        chart.dodge = 5.0;
+        chart
+    }
+
+    fn speedup_chart(&self) -> LineChart {
+        let processors = self.processors as f64;
+        let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
+        let caption = "Median of ratios within a repetition. Bars: distribution-free interval. Level: a thread for each job, whatever is asked for.";
+        let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
+        let ticks: BTreeSet<usize> =
+            chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
+        for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| self.has_a_thread_per_job(schedule)) {
+            let points = ticks.iter().map(|threads| Told::from(*speedup).above(*threads as f64)).collect();
+            let name = format!("{}: always {}", schedule.name, schedule.key.threads);
+            chart.series.push(Series::new(name, crate::plot::style::Look::nth(chart.series.len()), points));
+        }
+        chart.overlays = vec![
+            Overlay::guide(format!("{processors} processors"), Curve::Line { intercept: processors, slope: 0.0 }),
+            Overlay::guide("ideal: one per thread", Curve::Line { intercept: 0.0, slope: 1.0 }),
+        ];
+        chart.overlays.extend(self.fits(&chart.series));
+        chart
+    }
+
+    /// Amdahl's law where the points bear it out, in the colours of the strategies' lines.
+    fn fits(&self, series: &[Series]) -> Vec<Overlay> {
+        let overlay = |(name, points): (&str, Vec<_>)| {
+            let Fit::Found(Fitted { parameters, check: Check::Passed { .. }, .. }) = fit(Law::Amdahl, &points, LEVEL)
+            else {
+                return None;
+            };
+            let serial_share = parameters.first()?.estimate.value;
+            let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
+            let line = series.iter().position(|series| series.name == name)?;
+            Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
         };
-        let serial_share = parameters.first()?.estimate.value;
-        let curve = Curve::Scaling { contention: serial_share, coherence: 0.0 };
-        let line = series.iter().position(|series| series.name == name)?;
-        Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
-    };
-    scaling_laws::points(results).into_iter().filter_map(overlay).collect()
-}
+        scaling_laws::points(self.results, &self.serial).into_iter().filter_map(overlay).collect()
+    }
 
-fn efficiency_chart(results: &Results, speedups: &[(Schedule, Estimate)]) -> LineChart {
-    let processors = results.run.machine.processors;
-    let (series, ticks) = series(speedups, |speedup, threads| speedup / in_use(threads, processors) as f64);
-    let mut chart = LineChart::new(
-        "Efficiency against threads",
-        Axis::log("threads").ticks_at(ticks),
-        Axis::linear("speedup per processor in use").including([0.5, 1.05]),
-        series,
-    );
-    chart.subtitle = results.workload();
-    chart.caption =
-        "Processors in use: the smaller of threads and processors. Bars: distribution-free interval of the median."
-            .to_string();
-    chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
-    chart.dodge = 5.0;
-    chart
-}
+    fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
+        let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
+        let caption =
+            "Processors in use: the smaller of threads and processors. Bars: distribution-free interval of the median.";
+        let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
+        chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
+        chart
+    }
 
-fn findings(results: &Results, speedups: &[(Schedule, Estimate)]) -> Vec<Block> {
-    let processors = results.run.machine.processors;
-    let mut findings = Vec::new();
-    let candidates: Vec<&(Schedule, Estimate)> =
-        speedups.iter().filter(|(schedule, _)| schedule.threads == processors && processors > 1).collect();
-    if let Some((best, estimate)) = candidates.iter().max_by(|a, b| a.1.value.total_cmp(&b.1.value)) {
+    /// The fastest with a thread for each processor, and which others are told apart from it.
+    fn best(&self) -> Result<Option<Block>> {
+        let processors = self.processors;
+        let candidates = || self.all.iter().filter(|(s, _)| s.key.threads == processors && processors > 1);
+        let Some((best, speedup)) = candidates().max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else {
+            return Ok(None);
+        };
         let (mut slower, mut open) = (Vec::new(), Vec::new());
-        for (other, _) in candidates.iter().filter(|(other, _)| other != best) {
-            if let Some(ratio) = results.time_ratio(other, best) {
-                let text = format!("{} ({:.3}, {})", other.strategy, ratio.value, with_level(&ratio.interval, 3));
+        for (other, _) in candidates().filter(|(other, _)| other != best) {
+            let rows = |schedule: &Schedule| self.serial.rows(schedule).iter().copied();
+            if let Some(ratio) = time_ratio(rows(other), rows(best), |row| (&row.image, row.repetition))? {
+                let text = format!("{} ({})", other.name, told(&ratio, 3));
                 if ratio.interval.low > 1.0 { slower.push(text) } else { open.push(text) }
             }
         }
         let list = |names: Vec<String>| if names.is_empty() { "none".to_string() } else { names.join("; ") };
-        findings.push(Block::Finding(format!(
+        Ok(Some(Block::finding(format!(
             "With {processors} threads on {processors} processors the highest median speedup is that of {}: {:.3} times serial, {}, an \
              efficiency of {:.3}. Paired with it, these take longer (ratio of times, interval): {}. These are not told apart from it by this run: {}.",
-            best.strategy,
-            estimate.value,
-            with_level(&estimate.interval, 3),
-            estimate.value / processors as f64,
+            best.name,
+            speedup.value,
+            with_level(&speedup.interval, 3),
+            speedup.value / processors as f64,
             list(slower),
             list(open),
-        )));
+        ))))
     }
-    if let Some((schedule, estimate)) = speedups.iter().find(|(schedule, _)| schedule.strategy == THREAD_PER_ROW) {
-        let rows = schedule.threads;
-        let verdict = if estimate.interval.high < rows as f64 { "is refuted" } else { "is not refuted" };
-        findings.push(Block::Finding(format!(
+
+    fn thread_per_row(&self) -> Option<Block> {
+        let (schedule, speedup) = self.all.iter().find(|(schedule, _)| schedule.is_thread_per_row())?;
+        let rows = schedule.key.threads;
+        let verdict = if speedup.interval.high < rows as f64 { "is refuted" } else { "is not refuted" };
+        Some(Block::finding(format!(
             "A thread for each of {rows} rows is {:.3} times as fast as serial, {}. Report A's claim that a thread per row divides the time by \
              the number of rows {verdict} by this run.",
-            estimate.value,
-            with_level(&estimate.interval, 3),
-        )));
+            speedup.value,
+            with_level(&speedup.interval, 3),
+        )))
     }
-    findings
 }

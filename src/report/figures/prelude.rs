@@ -1,0 +1,21 @@
+//! The words that figures are written in: what they ask of rows, how they say numbers, and what they draw.
+
+pub(super) use super::options::{Positive, options, yardstick};
+pub(super) use crate::analysis::quantile::median;
+pub(super) use crate::analysis::{Estimate, Interval};
+pub(super) use crate::error::Result;
+pub(super) use crate::measure::ImageKey;
+pub(super) use crate::plot::style::Look;
+pub(super) use crate::plot::{
+    Axis, Cell, ContactSheet, Curve, DotPlot, LineChart, Overlay, Point, Row as PlotRow, Series,
+};
+pub(super) use crate::report::block::Block;
+pub(super) use crate::report::naming::joined;
+pub(super) use crate::report::results::Results;
+pub(super) use crate::report::rows::{Row, gathered, group, ratios, time_ratio, unique};
+pub(super) use crate::report::schedule::Schedule;
+pub(super) use crate::report::words::{
+    LEVEL, Told, confidence, in_table_order, number, told, typical, values, with_level,
+};
+pub(super) use serde::Deserialize;
+pub(super) use std::collections::{BTreeMap, BTreeSet};

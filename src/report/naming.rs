@@ -1,0 +1,61 @@
+//! Which properties a name needs: those without which two things that differ would have the same name.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+
+/// A property of a thing, in words.
+pub(super) type Part<T> = fn(&T) -> String;
+
+/// Of the parts, those that tell apart what everything before them leaves together; `told` is what names say anyway.
+pub(super) fn needed<T, K: Hash + Eq>(things: &[&T], told: impl Fn(&T) -> K, parts: &[Part<T>]) -> Vec<Part<T>> {
+    let mut groups = numbered(things.iter().map(|thing| told(thing)));
+    let mut count = distinct(&groups);
+    let mut needed = Vec::new();
+    for part in parts {
+        let finer = numbered(things.iter().zip(&groups).map(|(thing, group)| (*group, part(thing))));
+        let finer_count = distinct(&finer);
+        if finer_count > count {
+            (groups, count) = (finer, finer_count);
+            needed.push(*part);
+        }
+    }
+    needed
+}
+
+/// The words that are not empty, between commas.
+pub(super) fn joined(words: impl IntoIterator<Item = String>) -> String {
+    words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+/// Equal keys get equal numbers, from 0 in the order in which they come.
+fn numbered<K: Hash + Eq>(keys: impl Iterator<Item = K>) -> Vec<usize> {
+    let mut numbers = HashMap::new();
+    keys.map(|key| {
+        let next = numbers.len();
+        *numbers.entry(key).or_insert(next)
+    })
+    .collect()
+}
+
+fn distinct(numbers: &[usize]) -> usize {
+    numbers.iter().max().map_or(0, |most| most + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_needed_where_it_tells_apart_what_the_others_do_not() {
+        let parts: [Part<[&'static str; 3]>; 2] = [|thing| thing[1].to_string(), |thing| thing[2].to_string()];
+        let needed_of = |things: &[[&'static str; 3]]| {
+            let found = needed(&things.iter().collect::<Vec<_>>(), |thing| thing[0].to_string(), &parts);
+            joined(found.iter().map(|part| part(&things[0])))
+        };
+        assert_eq!(needed_of(&[["a", "x", "1"], ["b", "y", "2"]]), "");
+        assert_eq!(needed_of(&[["a", "x", "1"], ["a", "y", "1"]]), "x");
+        assert_eq!(needed_of(&[["a", "x", "1"], ["a", "y", "2"]]), "x");
+        assert_eq!(needed_of(&[["a", "x", "1"], ["a", "x", "2"], ["b", "y", "1"]]), "1");
+        assert_eq!(needed_of(&[["a", "x", "1"], ["a", "y", "1"], ["a", "x", "2"]]), "x, 1");
+    }
+}

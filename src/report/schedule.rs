@@ -1,0 +1,42 @@
+//! A schedule as figures name it.
+
+use crate::measure::{Record, ScheduleKey, THREAD_PER_ROW, schedule_name};
+
+/// A schedule with its name. Schedules are listed by name, then by pieces, then by threads.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Schedule {
+    /// The strategy, `thread-per-row` as report A names it, and what else tells it from others of the experiment.
+    pub(super) name: String,
+    pub(super) key: ScheduleKey,
+}
+
+impl Schedule {
+    /// Name and threads, in words.
+    pub(super) fn label(&self) -> String {
+        crew(&self.name, self.key.threads)
+    }
+
+    pub(super) fn is_serial(&self) -> bool {
+        self.key.strategy == SERIAL
+    }
+
+    pub(super) fn is_thread_per_row(&self) -> bool {
+        schedule_name(&self.key.strategy, &self.key.decomposition) == THREAD_PER_ROW
+    }
+}
+
+/// The strategy that others are compared with.
+pub(super) const SERIAL: &str = "serial";
+
+/// Who renders, with how many threads.
+pub(super) fn crew(strategy: &str, threads: usize) -> String {
+    match threads {
+        1 => format!("{strategy}, 1 thread"),
+        threads => format!("{strategy}, {threads} threads"),
+    }
+}
+
+/// The strategy of a row as report A names it.
+pub(super) fn strategy(record: &Record) -> &str {
+    schedule_name(&record.strategy, &record.decomposition)
+}

@@ -1,0 +1,279 @@
+use super::block::Block;
+use super::contenders::contenders;
+use super::figures::{FIGURES, blocks, check_figures};
+use super::results::Results;
+use crate::error::Error;
+use crate::experiment::{Definition, EXPERIMENTS, RunFile};
+use crate::lab::Lab;
+use crate::measure::{Record, SCHEMA};
+use std::cell::Cell;
+use std::collections::BTreeSet;
+
+thread_local!(static PASSES: Cell<usize> = const { Cell::new(0) });
+
+/// Called whenever a figure begins to go through the rows.
+pub(super) fn count_pass() {
+    PASSES.set(PASSES.get() + 1);
+}
+
+fn definition(figures: &[&str], more: &str) -> String {
+    let axes = "[matrix]\nscene = [\"cornell\"]\nestimator = [\"bsdf\"]\nspp = [4]\nseed = [1]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n";
+    let sizes = "[quick]\nsize = [8, 6]\nrepetitions = 1\n[full]\nsize = [8, 6]\nrepetitions = 1\n";
+    format!("title = \"\"\nquestion = \"\"\nanalysis = \"\"\nfigures = {figures:?}\n{more}\n{axes}{sizes}")
+}
+
+/// A row of sixteen jobs that took a second.
+fn row() -> Record {
+    let word = |word: &str| word.to_string();
+    Record {
+        schema: SCHEMA,
+        scene: word("cornell"),
+        scene_hash: word("0"),
+        effects: word("smallpt"),
+        width: 8,
+        height: 6,
+        spp: 4,
+        seed: 1,
+        estimator: word("bsdf"),
+        sampler: word("independent"),
+        kernel: word("scalar"),
+        precision: word("f64"),
+        accelerator: word("none"),
+        roulette: word("albedo:5"),
+        decomposition: word("tiles:2x2"),
+        strategy: word("serial"),
+        output: word("slots"),
+        threads: 1,
+        jobs: 16,
+        workers_used: Some(1),
+        makespan_s: Some(1.0),
+        cpu_user_s: Some(1.0),
+        cpu_system_s: Some(0.0),
+        busy_sum_s: Some(1.0),
+        paths: Some(192),
+        rays: Some(500),
+        mse: Some(0.01),
+        mean_radiance: Some(0.5),
+        ..Record::default()
+    }
+}
+
+/// The rows as a sweep leaves them, read back; each has the cell that its keys give.
+fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Result<Results> {
+    let out = tempfile::tempdir().unwrap();
+    let folder = out.path().join("an-experiment");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join("experiment.toml"), definition(figures, more)).unwrap();
+    let mut run = RunFile::of_now("pathmark run".to_string());
+    run.machine.processors = 2;
+    run.write(&folder.join("machine.toml")).unwrap();
+    let mut file = csv::Writer::from_path(folder.join("records.csv")).unwrap();
+    for (index, row) in rows.into_iter().enumerate() {
+        let cell = if row.cell.is_empty() { format!("cell {index}") } else { row.cell.clone() };
+        file.serialize(Record { cell, ..row }).unwrap();
+    }
+    file.flush().unwrap();
+    Results::read(&Lab::built_in(), out.path(), &folder)
+}
+
+/// The text of everything that is shown.
+fn words(blocks: &[Block]) -> String {
+    let of = |block: &Block| match block {
+        Block::Finding(text) => text.clone(),
+        Block::Figure { figure, .. } => figure.svg().unwrap(),
+        Block::Picture { title, .. } => title.clone(),
+        Block::Table { table, .. } => table.rows.concat().join("\n"),
+    };
+    blocks.iter().map(of).collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn rows_that_nothing_tells_apart_are_refused() {
+    let twice = || vec![Record { cell: "one".to_string(), ..row() }, Record { cell: "other".to_string(), ..row() }];
+    let Err(Error::Input(error)) = results(&["speedup"], "", twice()).map(|_| ()) else { panic!("accepted") };
+    assert_eq!((error.field.as_str(), error.value.as_str()), ("cell", "other"));
+    assert!(error.problem.contains("one") && error.to_string().contains("records.csv:3"), "{error}");
+    // A row that failed says nothing, and takes nobody's place.
+    let mut rows = twice();
+    rows[1].error = "killed".to_string();
+    assert!(results(&["speedup"], "", rows).is_ok());
+}
+
+/// One value in each axis of images that figures once forgot.
+const FORGOTTEN: [fn(&mut Record); 5] = [
+    |row| row.max_depth = Some(3),
+    |row| row.roulette = "throughput:2".to_string(),
+    |row| row.clamp = "subpixel".to_string(),
+    |row| row.precision = "f32".to_string(),
+    |row| row.width = 16,
+];
+
+#[test]
+fn speedups_compare_the_same_image_on_every_axis() {
+    for (index, change) in FORGOTTEN.iter().enumerate() {
+        // Two images, one of which takes a hundred times as long; both are twice as fast on the pool.
+        let mut rows = Vec::new();
+        for (repetition, slow) in [(0, false), (1, false), (0, true), (1, true)] {
+            for (strategy, threads, seconds) in [("serial", 1, 2.0), ("pool", 2, 1.0)] {
+                let mut row = Record { repetition, threads, strategy: strategy.to_string(), ..row() };
+                row.makespan_s = Some(if slow { 100.0 * seconds } else { seconds });
+                if slow {
+                    change(&mut row);
+                }
+                rows.push(row);
+            }
+        }
+        let results = results(&["speedup"], "", rows).unwrap();
+        let found = results.serial().unwrap().speedups();
+        assert_eq!(found.len(), 1, "axis {index}");
+        let (value, interval) = (found[0].1.value, found[0].1.interval);
+        assert_eq!((value, interval.low, interval.high), (2.0, 2.0, 2.0), "axis {index}");
+    }
+}
+
+#[test]
+fn contenders_are_told_apart_on_every_axis() {
+    let schedules: [fn(&mut Record); 4] = [
+        |row| row.output = "locked".to_string(),
+        |row| row.decomposition = "rows".to_string(),
+        |row| row.effects = "all".to_string(),
+        |row| row.accelerator = "sah".to_string(),
+    ];
+    for (index, change) in FORGOTTEN.iter().chain(&schedules).enumerate() {
+        let mut rows = Vec::new();
+        for (seed, spp) in [(1, 4), (1, 8), (2, 4), (2, 8), (3, 4), (3, 8)] {
+            let mut plain = Record { seed, spp, ..row() };
+            plain.mse = Some(0.1 / f64::from(spp) * (1.0 + seed as f64));
+            plain.makespan_s = Some(f64::from(spp) * (1.0 + 0.1 * seed as f64));
+            let mut other = plain.clone();
+            change(&mut other);
+            rows.extend([plain, other]);
+        }
+        let results = results(&["price-list"], "", rows).unwrap();
+        let names: BTreeSet<String> = contenders(&results).unwrap().into_values().flatten().map(|c| c.name).collect();
+        assert_eq!(names.len(), 2, "axis {index}: {names:?}");
+    }
+}
+
+/// Rows of so many strategies, scenes and samplers, under names that the program does not know.
+fn of_unknown_names(each: usize) -> Vec<Record> {
+    let numbered = |name: &str, index: usize| format!("{name}-{index}");
+    let mut rows = Vec::new();
+    for (seed, index) in (1..=3).flat_map(|seed| (0..each).map(move |index| (seed, index))) {
+        let names = Record { sampler: numbered("my-sampler", index), estimator: "my-estimator".to_string(), ..row() };
+        let (mse, makespan_s) = (Some(0.01 * seed as f64), Some(1.0 + 0.1 * seed as f64));
+        let image = Record { seed, mse, makespan_s, ..names };
+        for strategy in ["serial", &numbered("my-pool", index)] {
+            for scene in ["my-scene".to_string(), numbered("balls:1", index).replace('-', "")] {
+                for (accelerator, output, effects) in
+                    [("none", "slots", "smallpt"), ("my-tree", "my-output", "my-effects")]
+                {
+                    let word = |word: &str| word.to_string();
+                    rows.push(Record {
+                        scene: scene.clone(),
+                        strategy: word(strategy),
+                        threads: if strategy == "serial" { 1 } else { 2 },
+                        accelerator: word(accelerator),
+                        output: word(output),
+                        effects: word(effects),
+                        ..image.clone()
+                    });
+                }
+            }
+        }
+    }
+    rows
+}
+
+#[test]
+fn what_the_program_does_not_know_is_drawn() {
+    let shown = [
+        ("speedup", &["my-pool-0", "my-pool-1"][..]),
+        ("schedules", &["my-pool-0", "my-scene"]),
+        ("clock", &["my-pool-1"]),
+        ("granularity", &["my-pool-0"]),
+        ("outputs", &["my-output"]),
+        ("acceleration", &["my-tree"]),
+        ("generators", &["my-sampler-0"]),
+        ("time-against-spp", &["my-sampler-1"]),
+        ("rmse-against-spp", &["my-sampler-1", "my-scene"]),
+        ("price-list", &["my-estimator", "my-sampler-1"]),
+        ("error-against-time", &["my-estimator"]),
+    ];
+    for (figure, names) in shown {
+        let mut rows = of_unknown_names(2);
+        if figure == "outputs" || figure == "acceleration" {
+            // One of them is compared at a time.
+            rows.retain(|row| row.effects == "smallpt");
+            let other = |row: &Record| match figure {
+                "outputs" => Record { output: "my-output".to_string(), ..row.clone() },
+                _ => Record { accelerator: "my-tree".to_string(), ..row.clone() },
+            };
+            rows.extend(rows.clone().iter().map(other));
+        }
+        let results = results(&[figure], "", rows).unwrap();
+        let text = words(&blocks(&results).unwrap());
+        for name in names {
+            assert!(text.contains(name), "{figure} does not show {name}: {text}");
+        }
+    }
+}
+
+#[test]
+fn no_figure_goes_through_the_rows_once_for_each_of_many_groups() {
+    for entry in FIGURES {
+        let passes = |each: usize| {
+            let mut rows = of_unknown_names(each);
+            if ["outputs", "acceleration", "kernels"].contains(&entry.name) {
+                rows.retain(|row| row.effects == "smallpt");
+            }
+            let results = results(&[entry.name], "", rows).unwrap();
+            PASSES.set(0);
+            blocks(&results).unwrap();
+            PASSES.get()
+        };
+        let (few, many) = (passes(2), passes(6));
+        assert_eq!(few, many, "{}: three times the groups, and {many} instead of {few} passes", entry.name);
+    }
+}
+
+fn refusal(figures: &[&str], more: &str) -> String {
+    let text = definition(figures, more);
+    let definition = Definition::from_text(&Lab::built_in(), "mine", "mine.toml", &text).unwrap();
+    match check_figures(&definition) {
+        Err(Error::Input(error)) => error.to_string(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn options_that_a_figure_does_not_have_are_refused_at_their_line() {
+    let cases = [
+        ("[figure.price-list]\ngoal = 0.1", "mine.toml:6:1", "goals"),
+        ("[figure.price-list]\ngoals = [0.1, -2.0]", "mine.toml:6:", "positive"),
+        ("[figure.price-list]\ngoals = \"few\"", "mine.toml:6:", "goals"),
+        ("[figure.speedup]\nyardstick = \"serial\"", "mine.toml:6:1", "yardstick"),
+        ("[figure.clock]\n", "mine.toml:5:1", "price-list, speedup"),
+    ];
+    for (more, place, word) in cases {
+        let error = refusal(&["price-list", "speedup"], more);
+        assert!(error.contains(place) && error.contains(word), "{more}: {error}");
+    }
+}
+
+#[test]
+fn options_reach_the_figure_of_any_experiment() {
+    let rows = |strategy: &str| Record { strategy: strategy.to_string(), threads: 2, ..row() };
+    let rows = (0..6).flat_map(|repetition| ["mine", "other"].map(|name| Record { repetition, ..rows(name) }));
+    let results = results(&["openmp"], "[figure.openmp]\nyardstick = \"mine\"", rows.collect()).unwrap();
+    let text = words(&blocks(&results).unwrap());
+    assert!(text.contains("time / time of mine") && text.contains("other"), "{text}");
+}
+
+#[test]
+fn every_built_in_experiment_tells_its_figures_what_they_know() {
+    for (name, text) in EXPERIMENTS {
+        let definition = Definition::from_text(&Lab::built_in(), name, &format!("{name}.toml"), text).unwrap();
+        check_figures(&definition).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}

@@ -1,0 +1,115 @@
+//! Numbers and intervals as tables and sentences say them.
+
+use super::rows::Row;
+use crate::analysis::quantile::{median, median_interval};
+use crate::analysis::{Estimate, Interval};
+use crate::plot::{Dot, Point};
+use std::collections::BTreeSet;
+
+/// Confidence of every interval in the report.
+pub(super) const LEVEL: f64 = 0.95;
+
+/// A value and its interval, if there were enough of them for one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Told {
+    pub(super) value: f64,
+    pub(super) interval: Option<Interval>,
+}
+
+impl From<Estimate> for Told {
+    fn from(Estimate { value, interval }: Estimate) -> Self {
+        Self { value, interval: Some(interval) }
+    }
+}
+
+impl Told {
+    /// The median of some values with its distribution-free interval.
+    pub(super) fn median(values: &[f64]) -> Option<Self> {
+        Some(Self { value: median(values)?, interval: median_interval(values, LEVEL) })
+    }
+
+    /// In another unit.
+    pub(super) fn times(&self, factor: f64) -> Self {
+        let times = |i: Interval| Interval { low: factor * i.low, high: factor * i.high, level: i.level };
+        Self { value: factor * self.value, interval: self.interval.map(times) }
+    }
+
+    /// The ends of the interval.
+    pub(super) fn bar(&self) -> Option<(f64, f64)> {
+        self.interval.map(|interval| (interval.low, interval.high))
+    }
+
+    pub(super) fn dot(&self) -> Dot {
+        Dot { value: self.value, interval: self.bar() }
+    }
+
+    /// The point above `x`.
+    pub(super) fn above(&self, x: f64) -> Point {
+        Point::new(x, self.value).with_y(self.bar())
+    }
+
+    /// Whether it has an interval: an estimate.
+    pub(super) fn estimate(&self) -> Option<Estimate> {
+        Some(Estimate { value: self.value, interval: self.interval? })
+    }
+}
+
+/// A value of the rows that have it.
+pub(super) fn values<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
+    rows.into_iter().filter_map(value).collect()
+}
+
+/// The median of a value of some rows.
+pub(super) fn typical<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
+    median(&values(rows, value))
+}
+
+/// A number, or a dash where there is none.
+pub(super) fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
+}
+
+/// An interval with the confidence that it really has: few values cannot reach 95 %.
+pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
+    format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
+}
+
+/// A value and its interval with its confidence.
+pub(super) fn told(estimate: &Estimate, digits: usize) -> String {
+    format!("{:.digits$}, {}", estimate.value, with_level(&estimate.interval, digits))
+}
+
+/// The confidence of some intervals of medians, in words for a caption.
+pub(super) fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
+    let least = intervals.into_iter().map(|interval| interval.level).reduce(f64::min);
+    least.map_or_else(
+        || "no interval, for want of repetitions".to_string(),
+        |least| {
+            format!("distribution-free interval of the median, {:.1} % confidence", (least * 1000.0).floor() / 10.0)
+        },
+    )
+}
+
+/// Names with their places: those of a table in its order and at their places in it, then those that it does not know, by name. So a name of
+/// the table has the same colour in every experiment, and one that a user added always comes behind.
+pub(super) fn in_table_order<'a>(
+    names: impl Iterator<Item = &'a str>,
+    table: impl Iterator<Item = &'static str>,
+) -> Vec<(usize, &'a str)> {
+    let table: Vec<&str> = table.collect();
+    let names: BTreeSet<&str> = names.collect();
+    let unknown: Vec<&str> = names.iter().copied().filter(|name| !table.contains(name)).collect();
+    let ordered = table.iter().chain(&unknown).enumerate();
+    ordered.filter_map(|(place, name)| Some((place, *names.get(name)?))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_a_table_does_not_know_come_behind_it() {
+        let found = in_table_order(["mine", "sah", "beta"].into_iter(), ["none", "median", "sah"].into_iter());
+        assert_eq!(found, [(2, "sah"), (3, "beta"), (4, "mine")]);
+    }
+}
