@@ -4,7 +4,7 @@ use super::prelude::*;
 use crate::analysis::fit::{line, log_log};
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let several = results.by_schedule().len() > 1;
+    let several = results.by(|row| row.schedule.label()).len() > 1;
     // Times of different schedules are not to be thrown together.
     let lines = results.by(|row| {
         let image = results.image_name(row);
