@@ -299,7 +299,7 @@ fn lanes_for(scene: &Scene, spec: &Spec, course: Option<Course>) -> Result<std::
 }
 
 /// The level of that name, or the fastest that this processor has.
-fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> std::result::Result<Level, InputError> {
+fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Result<Level> {
     let available = || levels.iter().filter_map(LevelEntry::here);
     if let Some(level) = available().find(|level| wanted.is_none_or(|name| level.name() == name)) {
         return Ok(level);
@@ -307,9 +307,10 @@ fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> std::result::Re
     let name = wanted.unwrap_or_default();
     if levels.iter().any(|level| level.name == name) {
         let allowed: Vec<&str> = available().map(Level::name).collect();
-        return Err(InputError::new("simd", name, "is not supported by this processor").allowed(allowed.join(", ")));
+        let error = InputError::new("simd", name, "is not supported by this processor");
+        return Err(error.allowed(allowed.join(", ")).into());
     }
-    Err(unknown("simd", name, available().map(Level::name)))
+    Err(unknown("simd", name, available().map(Level::name)).into())
 }
 
 /// The format that the spec names; the scalar kernel has but one.

@@ -6,6 +6,9 @@
 //! found moves a face by less than 10 u (|o| + |b|). Rounding the terms of a ray's closest approach to a sphere's centre moves it by less than
 //! 23 u (|o| + |b|), and the comparison of both squares counts for 6 u of the radius, which is no longer than |b|. Boxes, radii and rays have a
 //! [`padding`] of 64 u |b| and 64 u |o|.
+//!
+//! In single precision the test of a sphere that is let in rounds as much as the quick one: both together less than
+//! 2 (23 + 6) u = 58 u. So what it meets is let in, and a tree finds what a test of all spheres finds.
 
 use crate::math::{Ray, Vec3};
 use crate::scene::{Bounds, padding};
