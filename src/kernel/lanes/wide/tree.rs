@@ -55,6 +55,8 @@ impl Tree {
         tests: &mut Tests,
     ) {
         let lanes = V::Single::LANES;
+        // By itself, so that it stays in a register.
+        let mut count = 0;
         let mut next = Some(0);
         while let Some(child) = next {
             if child & IS_LEAF != 0 {
@@ -67,15 +69,16 @@ impl Tree {
                 let (enter, met) = ray.coarse.enter(&self.faces[node * 6 * lanes..], best.nearest * blocks.scale.0);
                 let met = met.bits();
                 if met != 0 {
-                    if waiting.count + lanes > MOST_WAITING {
-                        waiting.put_aside();
+                    if count + lanes > MOST_WAITING {
+                        waiting.put_aside(count);
+                        count = 0;
                     }
                     enter.store(&mut waiting.met);
-                    next = Some(waiting.push(&self.children[node * lanes..(node + 1) * lanes], met));
+                    next = Some(waiting.push(&mut count, &self.children[node * lanes..(node + 1) * lanes], met));
                     continue;
                 }
             }
-            next = waiting.pop((best.nearest * blocks.scale.0) as f32);
+            next = waiting.pop(&mut count, (best.nearest * blocks.scale.0) as f32);
         }
     }
 }
@@ -87,7 +90,6 @@ const MOST_WAITING: usize = 160;
 pub(super) struct Waiting {
     children: [u32; MOST_WAITING],
     distances: [f32; MOST_WAITING],
-    count: usize,
     /// Those for which there is no place: a tree may be deeper than any scene has needed.
     aside: Vec<(u32, f32)>,
     /// Where the ray enters the boxes of one node.
@@ -97,36 +99,29 @@ pub(super) struct Waiting {
 impl Waiting {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self {
-            children: [0; MOST_WAITING],
-            distances: [0.0; MOST_WAITING],
-            count: 0,
-            aside: Vec::new(),
-            met: [0.0; MOST_LANES],
-        }
+        Self { children: [0; MOST_WAITING], distances: [0.0; MOST_WAITING], aside: Vec::new(), met: [0.0; MOST_LANES] }
     }
 
-    /// Makes room.
+    /// Makes room where so many wait.
     #[cold]
     #[inline(never)]
-    fn put_aside(&mut self) {
+    fn put_aside(&mut self, count: usize) {
         let waiting = self.children.iter().copied().zip(self.distances);
-        self.aside.extend(waiting.take(self.count));
-        self.count = 0;
+        self.aside.extend(waiting.take(count));
     }
 
     /// Keeps those of a node's children that are met, which must be one or more, but for the nearest, which is returned. The others are not sorted: to
     /// look at them in the wrong order costs less.
     #[inline(always)]
-    fn push(&mut self, children: &[u32], met: u32) -> u32 {
+    fn push(&mut self, count: &mut usize, children: &[u32], met: u32) -> u32 {
         let lane = met.trailing_zeros() as usize;
         let (mut nearest, mut distance) = (children[lane], self.met[lane]);
         for lane in LanesOf(met & (met - 1)) {
             let (child, other) = (children[lane], self.met[lane]);
             let is_nearer = other < distance;
-            self.children[self.count] = if is_nearer { nearest } else { child };
-            self.distances[self.count] = if is_nearer { distance } else { other };
-            self.count += 1;
+            self.children[*count] = if is_nearer { nearest } else { child };
+            self.distances[*count] = if is_nearer { distance } else { other };
+            *count += 1;
             nearest = if is_nearer { child } else { nearest };
             distance = if is_nearer { other } else { distance };
         }
@@ -135,11 +130,11 @@ impl Waiting {
 
     /// The last one whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
     #[inline(always)]
-    fn pop(&mut self, limit: f32) -> Option<u32> {
-        while self.count > 0 {
-            self.count -= 1;
-            if self.distances[self.count] <= limit {
-                return Some(self.children[self.count]);
+    fn pop(&mut self, count: &mut usize, limit: f32) -> Option<u32> {
+        while *count > 0 {
+            *count -= 1;
+            if self.distances[*count] <= limit {
+                return Some(self.children[*count]);
             }
         }
         while let Some((child, distance)) = self.aside.pop() {
