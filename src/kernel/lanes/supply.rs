@@ -7,7 +7,7 @@ use crate::kernel::Counts;
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::{PathWords, Purpose, SampleKey};
 use crate::scene::SUBPIXELS;
-use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
+use crate::simd::{Float, MOST_LANES, Mask, Words};
 
 /// Rays that can wait, twice: what is read begins at any of them and is as long as all.
 const SIZE: usize = 2 * MOST_LANES;
@@ -41,22 +41,6 @@ impl<V: Float> Supply<V> {
     }
 }
 
-/// The making of rays, which is rare enough that it need not be part of the loop over vertices.
-struct Produce<'a, 'b, V: Float> {
-    lanes: &'a Lanes,
-    supply: &'a mut Supply<V>,
-    window: &'a mut Window<'b>,
-}
-
-impl<V: Float> Apart for Produce<'_, '_, V> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        self.lanes.produce::<V>(self.supply, self.window);
-    }
-}
-
 impl Lanes {
     /// Gives free lanes their next samples.
     #[inline(always)]
@@ -71,7 +55,7 @@ impl Lanes {
         while free != 0 {
             if supply.count == 0 {
                 window.settle(counts);
-                V::apart(Produce { lanes: self, supply, window });
+                self.produce::<V>(supply, window);
                 if supply.count == 0 {
                     return;
                 }
