@@ -3,7 +3,9 @@
 use super::{Clamp, KERNELS, LANES, OwnEstimator, SCALAR, Spec};
 use crate::effect::Effects;
 use crate::error::{InputError, Result};
-use crate::estimator::{AnyEstimator, Compiled, Course, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
+use crate::estimator::{
+    AnyEstimator, Compiled, Course, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator,
+};
 use crate::material::Diffuse;
 use crate::sampling::{Entry as SamplerEntry, InLanes as LaneSampler, SAMPLERS};
 use crate::scene::{

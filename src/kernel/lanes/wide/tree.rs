@@ -55,8 +55,9 @@ impl Tree {
         tests: &mut Tests,
     ) {
         let lanes = V::Single::LANES;
-        // By itself, so that it stays in a register.
-        let mut count = 0;
+        waiting.count = 0;
+        // Leaves to test one after the other, when there is no more place for children to come back to.
+        let mut rest = 0;
         let mut next = Some(0);
         while let Some(child) = next {
             if child & IS_LEAF != 0 {
@@ -69,29 +70,33 @@ impl Tree {
                 let (enter, met) = ray.coarse.enter(&self.faces[node * 6 * lanes..], best.nearest * blocks.scale.0);
                 let met = met.bits();
                 if met != 0 {
-                    if count + lanes > MOST_WAITING {
-                        waiting.put_aside(count);
-                        count = 0;
+                    if waiting.count + lanes <= MOST_WAITING {
+                        enter.store(&mut waiting.met);
+                        next = Some(waiting.push(&self.children[node * lanes..(node + 1) * lanes], met));
+                        continue;
                     }
-                    enter.store(&mut waiting.met);
-                    next = Some(waiting.push(&mut count, &self.children[node * lanes..(node + 1) * lanes], met));
-                    continue;
+                    // No call for more: what is in registers would have to leave them.
+                    waiting.count = 0;
+                    rest = self.leaves.len() as u32;
                 }
             }
-            next = waiting.pop(&mut count, (best.nearest * blocks.scale.0) as f32);
+            next = waiting.pop((best.nearest * blocks.scale.0) as f32);
+            if next.is_none() && rest > 0 {
+                rest -= 1;
+                next = Some(rest | IS_LEAF);
+            }
         }
     }
 }
 
-/// Children that wait in place: some 15 a level of a tree that is six or more levels deep on the widest registers.
+/// Children that may wait for a ray: some 15 a level of a tree that is six or more levels deep on the widest registers.
 const MOST_WAITING: usize = 160;
 
-/// Children to come back to; none when a search is done.
+/// Children to come back to.
 pub(super) struct Waiting {
     children: [u32; MOST_WAITING],
     distances: [f32; MOST_WAITING],
-    /// Those for which there is no place: a tree may be deeper than any scene has needed.
-    aside: Vec<(u32, f32)>,
+    count: usize,
     /// Where the ray enters the boxes of one node.
     met: [f32; MOST_LANES],
 }
@@ -99,29 +104,21 @@ pub(super) struct Waiting {
 impl Waiting {
     #[inline(always)]
     pub(super) fn new() -> Self {
-        Self { children: [0; MOST_WAITING], distances: [0.0; MOST_WAITING], aside: Vec::new(), met: [0.0; MOST_LANES] }
-    }
-
-    /// Makes room where so many wait.
-    #[cold]
-    #[inline(never)]
-    fn put_aside(&mut self, count: usize) {
-        let waiting = self.children.iter().copied().zip(self.distances);
-        self.aside.extend(waiting.take(count));
+        Self { children: [0; MOST_WAITING], distances: [0.0; MOST_WAITING], count: 0, met: [0.0; MOST_LANES] }
     }
 
     /// Keeps those of a node's children that are met, which must be one or more, but for the nearest, which is returned. The others are not sorted: to
     /// look at them in the wrong order costs less.
     #[inline(always)]
-    fn push(&mut self, count: &mut usize, children: &[u32], met: u32) -> u32 {
+    fn push(&mut self, children: &[u32], met: u32) -> u32 {
         let lane = met.trailing_zeros() as usize;
         let (mut nearest, mut distance) = (children[lane], self.met[lane]);
         for lane in LanesOf(met & (met - 1)) {
             let (child, other) = (children[lane], self.met[lane]);
             let is_nearer = other < distance;
-            self.children[*count] = if is_nearer { nearest } else { child };
-            self.distances[*count] = if is_nearer { distance } else { other };
-            *count += 1;
+            self.children[self.count] = if is_nearer { nearest } else { child };
+            self.distances[self.count] = if is_nearer { distance } else { other };
+            self.count += 1;
             nearest = if is_nearer { child } else { nearest };
             distance = if is_nearer { other } else { distance };
         }
@@ -130,16 +127,11 @@ impl Waiting {
 
     /// The last one whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
     #[inline(always)]
-    fn pop(&mut self, count: &mut usize, limit: f32) -> Option<u32> {
-        while *count > 0 {
-            *count -= 1;
-            if self.distances[*count] <= limit {
-                return Some(self.children[*count]);
-            }
-        }
-        while let Some((child, distance)) = self.aside.pop() {
-            if distance <= limit {
-                return Some(child);
+    fn pop(&mut self, limit: f32) -> Option<u32> {
+        while self.count > 0 {
+            self.count -= 1;
+            if self.distances[self.count] <= limit {
+                return Some(self.children[self.count]);
             }
         }
         None
