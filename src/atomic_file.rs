@@ -5,8 +5,7 @@
 //! leaves the old file as it was and no temporary file behind.
 //!
 //! A destination that cannot be a file at all (a directory, a device, a name that is too long, a directory that is not there)
-//! is the user's to mend: [`InputError`] on the field `output`. A refusal of the system (permission, space, a read-only file
-//! system) is [`Error::System`].
+//! is the user's to mend: [`InputError`]. A refusal of the system (permission, space, a read-only file system) is [`Error::System`].
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -16,24 +15,38 @@ use tempfile::NamedTempFile;
 
 use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
+use crate::file_id::{folder_of, followed};
+use crate::temporary;
 
-/// Writes what `body` writes to the file `path`, or leaves `path` as it was. A symbolic link is followed, not replaced.
+/// Writes what `body` writes to the file `path`, or leaves `path` as it was. A symbolic link is followed, not replaced, also where it
+/// leads to nothing yet.
 pub fn write(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-    let target = Target::of(path)?;
+    let target = Target::of("file", path)?;
     target.replace(body).map_err(|e| Error::system("writing", path, e))
 }
 
-/// Asks whether [`write()`] to `path` could succeed, and leaves nothing behind; to be asked before hours of work depend on it.
-pub fn check_writable(path: &Path) -> Result<()> {
-    let target = Target::of(path)?;
+/// Asks whether [`write()`] to `path` could succeed, and leaves nothing behind; to be asked before hours of work depend on it. `option` is
+/// what the user gave the path for, and named in an error.
+pub fn check_writable(option: &str, path: &Path) -> Result<()> {
+    let target = Target::of(option, path)?;
     let try_it = || {
         if target.exists {
             // The rename would replace a write-protected file as well, but its owner meant it to stay.
             OpenOptions::new().write(true).open(&target.file)?;
         }
-        target.temporary().and_then(NamedTempFile::close)
+        temporary::new_in(&target.directory).and_then(NamedTempFile::close)
     };
     try_it().map_err(|e| Error::system("writing", path, e))
+}
+
+/// What keeps `found` from being replaced by a regular file.
+pub(crate) fn obstacle(found: &fs::Metadata) -> Option<&'static str> {
+    match found {
+        found if found.is_dir() => Some("is a directory"),
+        // Renaming onto a device would put a plain file in the place of, say, /dev/null.
+        found if !found.is_file() => Some("is not a regular file"),
+        _ => None,
+    }
 }
 
 /// A destination that may be a regular file.
@@ -45,48 +58,35 @@ struct Target {
 
 impl Target {
     /// Follows links, and refuses what no permission and no free space could make a file.
-    fn of(path: &Path) -> Result<Self> {
-        let refuse = |problem: &str| InputError::new("output", path.display().to_string(), problem);
+    fn of(option: &str, path: &Path) -> Result<Self> {
+        let refuse = |problem: &str| InputError::new(option, path.display().to_string(), problem);
         let text = path.as_os_str().as_encoded_bytes();
         if text.is_empty() || path.file_name().is_none() || text.ends_with(b"/") {
             return Err(refuse("is not the name of a file").into());
         }
-        let (file, exists) = match fs::metadata(path) {
-            Ok(found) if found.is_dir() => return Err(refuse("is a directory").into()),
-            // Renaming onto a device would put a plain file in the place of, say, /dev/null.
-            Ok(found) if !found.is_file() => return Err(refuse("is not a regular file").into()),
-            Ok(_) => (fs::canonicalize(path).map_err(|e| Error::system("writing", path, e))?, true),
+        let file = followed(path).map_err(|e| Error::system("writing", path, e))?;
+        let exists = match fs::metadata(&file) {
+            Ok(found) => match obstacle(&found) {
+                None => true,
+                Some(problem) => return Err(refuse(problem).into()),
+            },
             Err(e) => match e.kind() {
-                ErrorKind::NotFound => (path.to_path_buf(), false),
+                ErrorKind::NotFound => false,
                 ErrorKind::NotADirectory => return Err(refuse("a part of the path is not a directory").into()),
                 ErrorKind::InvalidFilename => return Err(refuse("the name is too long").into()),
                 ErrorKind::InvalidInput => return Err(refuse("the name holds a zero byte").into()),
                 _ => return Err(Error::system("writing", path, e)),
             },
         };
-        let directory = match file.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent.to_path_buf(),
-            _ => PathBuf::from("."),
-        };
+        let directory = folder_of(&file).to_path_buf();
         if !exists && !directory.is_dir() {
             return Err(refuse("its directory does not exist").into());
         }
         Ok(Self { file, directory, exists })
     }
 
-    /// A new file beside the destination; it deletes itself unless it is renamed.
-    fn temporary(&self) -> io::Result<NamedTempFile> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".pathmark-").suffix(".tmp");
-        // An output is as public as any file the user makes: the umask decides, not tempfile's 0600.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        step(Step::Create)?;
-        builder.tempfile_in(&self.directory)
-    }
-
     fn replace(&self, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-        let mut out = BufWriter::new(OnDisk(self.temporary()?));
+        let mut out = BufWriter::new(OnDisk(temporary::new_in(&self.directory)?));
         body(&mut out)?;
         let OnDisk(file) = out.into_inner().map_err(io::IntoInnerError::into_error)?;
         step(Step::Sync)?;

@@ -23,7 +23,7 @@
 //! ```
 //!
 //! Layers, each importing only those above it: `error`, `digest`, `effect`, `math`, `input`,
-//! `disk`, `lock`, `atomic_file`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
+//! `disk`, `file_id`, `lock`, `temporary`, `atomic_file`, `files`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
 //! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`, `check`;
 //! `plot`, `report`; `cli`.
 
@@ -41,6 +41,8 @@ pub mod effect;
 pub mod error;
 pub mod estimator;
 pub mod experiment;
+pub mod file_id;
+pub mod files;
 pub mod film;
 pub mod image_io;
 pub mod input;
@@ -59,6 +61,7 @@ pub mod sampling;
 pub mod scene;
 pub mod simd;
 pub mod simulate;
+mod temporary;
 
 pub use lab::Lab;
 #[doc(inline)]

@@ -1,11 +1,14 @@
 //! Locks against a second process that would write the same file or folder.
 //!
-//! The system lifts a lock when its process ends, however it ends: what a killed one leaves behind is a lock file that locks nothing.
+//! The system lifts a lock when its process ends, however it ends: what a killed one leaves behind is a lock file that locks nothing. Lock files
+//! have names that nobody else uses, and are empty: any other file of that name is the user's, and stays.
 
+use crate::digest;
 use crate::error::{Error, InputError, Result};
+use crate::file_id::{folder_of, followed};
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io;
-use std::os::unix::fs::MetadataExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
@@ -14,13 +17,26 @@ use std::time::Duration;
 const PATIENCE: Duration = Duration::from_secs(1);
 const PAUSE: Duration = Duration::from_millis(50);
 
+/// Who may hold a lock at the same time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sharing {
+    /// Nobody else.
+    Alone,
+    /// Others that share it.
+    Shared,
+}
+
 /// Locks an open file; whether it could be locked and `path` still leads to it. A file that has been replaced or removed while we waited is
 /// nobody's any more.
-pub fn try_lock(file: &File, path: &Path) -> io::Result<bool> {
+pub fn try_lock(file: &File, path: &Path, sharing: Sharing) -> io::Result<bool> {
     let mut waited = Duration::ZERO;
     loop {
-        match file.try_lock() {
-            Ok(()) => return Ok(is_still_there(file, path)),
+        let locked = match sharing {
+            Sharing::Alone => file.try_lock(),
+            Sharing::Shared => file.try_lock_shared(),
+        };
+        match locked {
+            Ok(()) => return Ok(leads_to(path, file)),
             Err(TryLockError::Error(e)) => return Err(e),
             Err(TryLockError::WouldBlock) if waited >= PATIENCE => return Ok(false),
             Err(TryLockError::WouldBlock) => thread::sleep(PAUSE),
@@ -29,29 +45,49 @@ pub fn try_lock(file: &File, path: &Path) -> io::Result<bool> {
     }
 }
 
-/// Whether the path still leads to the open file.
-fn is_still_there(file: &File, path: &Path) -> bool {
+/// Whether the path leads to the open file.
+pub fn leads_to(path: &Path, file: &File) -> bool {
     let same = |a: Metadata, b: Metadata| a.dev() == b.dev() && a.ino() == b.ino();
     file.metadata().and_then(|open| Ok(same(open, fs::metadata(path)?))).unwrap_or(false)
 }
 
-/// A lock file of its own, for what is replaced by renames or is a folder. It is removed when this is dropped.
+/// A lock file, for what is replaced by renames or is a folder. It is removed when the last who holds it drops it.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
     /// Locked as long as it is open.
-    _file: File,
+    file: File,
 }
 
 impl Lock {
-    /// Locks the file `path`, which is made if need be. `field` and `of` say in an error what it is that another process is writing.
-    pub fn new(path: &Path, field: &str, of: &Path) -> Result<Self> {
-        let open = || OpenOptions::new().write(true).create(true).truncate(false).open(path);
-        // Whoever held it has removed it while we waited: once more, with a file that has a name.
+    /// Locks what is to be written to a file, which need not be there. `field` names the file in an error.
+    pub fn of_file(path: &Path, field: &str) -> Result<Self> {
+        // Where the path is a link, the lock stands beside the file itself.
+        let file = followed(path).and_then(|path| path.canonicalize().or(Ok(path)));
+        let file = file.map_err(|e| Error::system("locking", path, e))?;
+        let name = digest::of_text(&file.file_name().unwrap_or_default().to_string_lossy());
+        Self::new(&folder_of(&file).join(format!(".pathmark-{name}.lock")), field, path, Sharing::Alone)
+    }
+
+    /// Locks a folder that is there. `field` names it in an error.
+    pub fn of_folder(folder: &Path, field: &str, sharing: Sharing) -> Result<Self> {
+        Self::new(&folder.join(".pathmark.lock"), field, folder, sharing)
+    }
+
+    /// Locks by the file `path`, which is made if need be. `field` and `of` say in an error what it is that another process is writing.
+    fn new(path: &Path, field: &str, of: &Path, sharing: Sharing) -> Result<Self> {
+        let system = |e| Error::system("locking", path, e);
+        let mut options = OpenOptions::new();
+        options.read(true).write(true).create(true).truncate(false).custom_flags(libc::O_NOFOLLOW);
+        // Whoever held it may have removed it while we waited: once more, with a file that has a name.
         for _ in 0..2 {
-            let file = open().map_err(|e| Error::system("locking", path, e))?;
-            if try_lock(&file, path).map_err(|e| Error::system("locking", path, e))? {
-                return Ok(Self { path: path.to_path_buf(), _file: file });
+            let file = options.open(path).map_err(system)?;
+            if file.metadata().map_err(system)?.len() > 0 {
+                let problem = format!("cannot be locked: {} is no lock file", path.display());
+                return Err(InputError::new(field, of.display().to_string(), problem).allowed("another name").into());
+            }
+            if try_lock(&file, path, sharing).map_err(system)? {
+                return Ok(Self { path: path.to_path_buf(), file });
             }
         }
         let problem = "is being written by another process";
@@ -63,7 +99,9 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // While it is still locked, so that nobody can have locked it in between. If it stays, it locks nothing.
-        fs::remove_file(&self.path).ok();
+        // While it is locked against all others, so that nobody can have locked it in between. If it stays, it locks nothing.
+        if self.file.try_lock().is_ok() && leads_to(&self.path, &self.file) {
+            fs::remove_file(&self.path).ok();
+        }
     }
 }

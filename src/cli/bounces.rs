@@ -6,6 +6,7 @@ use super::progress::Talk;
 use crate::atomic_file;
 use crate::error::Result;
 use crate::experiment::Progress;
+use crate::files::Files;
 use crate::kernel::{Inspector, LightByBounce, Spec};
 use crate::lab::Lab;
 use crate::plot::number;
@@ -47,9 +48,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let setup = lab.prepare(settings)?;
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.scene)) };
     let spec = &setup.settings().spec;
-    if let Some(path) = &arguments.csv {
-        atomic_file::check_writable(path)?;
-    }
+    let mut files = Files::default();
+    files.reads_scene(setup.files());
+    arguments.csv.as_ref().map_or(Ok(()), |path| files.writes("csv", path))?;
     let inspector = Inspector::new(scene, choice)?;
     talk.begin(&format!("{} at {} spp", scene.name, arguments.spp), u64::from(spec.height));
     let mut found = LightByBounce::default();

@@ -1,17 +1,20 @@
 //! `pathmark check`: the hard cases on this machine, and what guarding against them costs.
 
 use super::guards;
-use super::output::{print, print_json};
+use super::output::{lock_folder, print, print_json};
 use super::progress::Talk;
 use crate::check::guards::PriceRow;
 use crate::check::{self, Case, Effort, Outcome, SECTIONS};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress;
+use crate::files::Files;
 use crate::lab::Lab;
+use crate::lock::{Lock, Sharing};
 use crate::measure::available_threads;
+use crate::report;
 use clap::Args;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// `pathmark check --thorough`
@@ -42,6 +45,7 @@ struct Row<'a> {
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let cases = chosen(&arguments.cases)?;
+    let _lock = arguments.out.as_ref().map(|out| folder_for_prices(out)).transpose()?;
     let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
     talk.begin("hard cases", cases.len() as u64);
     let outcomes = check::run(&cases, effort, available_threads(), &|done| talk.advance(done));
@@ -63,10 +67,18 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     if let Some(out) = &arguments.out {
         guards::write(out, &prices)?;
-        print(&format!("report in {}", crate::report::write(lab, out)?.display()))?;
+        print(&format!("report in {}", report::write(lab, out)?.display()))?;
     }
     let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| row.id).collect();
     if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }
+}
+
+/// The folder of results, locked, if the price list and the page may be written into it.
+fn folder_for_prices(out: &Path) -> Result<Lock> {
+    let mut files = Files::default();
+    guards::claim(out, &mut files)?;
+    report::claim("out", out, &mut files)?;
+    lock_folder(out, Sharing::Shared)
 }
 
 /// The cases of these names or first letters, in the table's order.

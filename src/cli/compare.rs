@@ -1,8 +1,8 @@
 //! `pathmark compare IMAGE REFERENCE`: how far an image is from another.
 
 use super::output::{print, print_json};
-use crate::atomic_file;
 use crate::error::{InputError, Result};
+use crate::files::Files;
 use crate::film::{FilmKey, read_film};
 use crate::image_io::{self, Image};
 use crate::metric::{METRICS, heatmap};
@@ -45,7 +45,10 @@ fn check_independent(image: &FilmKey, reference: &FilmKey) -> Result<()> {
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     if let Some(path) = &arguments.heatmap {
         image_io::check_format(path)?;
-        atomic_file::check_writable(path)?;
+        let mut files = Files::default();
+        files.reads("the image", &arguments.image);
+        files.reads("the reference", &arguments.reference);
+        files.writes("heatmap", path)?;
     }
     let ((image, key), (reference, reference_key)) = (read(&arguments.image)?, read(&arguments.reference)?);
     if let (Some(key), Some(reference_key)) = (key, reference_key) {

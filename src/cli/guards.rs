@@ -2,7 +2,8 @@
 
 use crate::check::guards::{FILE, FOLDER, GUARDS, PriceRow, write_prices};
 use crate::error::{Error, Result};
-use crate::experiment::{Progress, RunFile};
+use crate::experiment::{MACHINE, Progress, RunFile, read_run_file};
+use crate::files::Files;
 use std::path::Path;
 
 /// Whether a folder of results has the list already.
@@ -22,10 +23,17 @@ pub(super) fn measure(progress: &dyn Progress) -> Vec<PriceRow> {
     rows
 }
 
+/// Enters the list into the files of a command that will write it. Refuses a folder that has one: measurements are never overwritten.
+pub(super) fn claim(out: &Path, files: &mut Files) -> Result<()> {
+    let folder = out.join(FOLDER);
+    files.renews("out", &folder.join(FILE), |_| false)?;
+    files.renews("out", &folder.join(MACHINE), |path| read_run_file(path).is_ok())
+}
+
 /// Writes the list into a folder of results, with the command and the machine.
 pub(super) fn write(out: &Path, rows: &[PriceRow]) -> Result<()> {
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-    RunFile::of_now(super::command_line()).write(&folder.join("machine.toml"))?;
+    RunFile::of_now(super::command_line()).write(&folder.join(MACHINE))?;
     write_prices(&folder.join(FILE), rows)
 }

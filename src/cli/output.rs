@@ -1,7 +1,15 @@
-//! Standard output, which a user may close at any time: `pathmark list | head -1` is no failure.
+//! Where results go: a folder, or standard output, which a user may close at any time: `pathmark list | head -1` is no failure.
 
 use crate::error::{Error, Result};
+use crate::lock::{Lock, Sharing};
 use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+/// Makes a folder of results if need be, and keeps others from it as long as the lock is held.
+pub(super) fn lock_folder(out: &Path, sharing: Sharing) -> Result<Lock> {
+    std::fs::create_dir_all(out).map_err(|e| Error::system("creating", out, e))?;
+    Lock::of_folder(out, "out", sharing)
+}
 
 /// Prints a text and a line end.
 pub(super) fn print(text: &str) -> Result<()> {

@@ -5,6 +5,7 @@ use super::output::print;
 use super::progress::Talk;
 use crate::error::{Error, Result};
 use crate::experiment::{Reference, ReferenceError, check_until, refine_reference, render_reference};
+use crate::files::Files;
 use crate::lab::Lab;
 use clap::Args;
 use std::path::PathBuf;
@@ -42,6 +43,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let (width, height) = parse_size(&arguments.size)?;
     let reference = Reference {
         scene: arguments.scene.clone(),
+        version: None,
         estimator: arguments.estimator.clone(),
         sampler: arguments.sampler.clone(),
         size: [width, height],
@@ -50,6 +52,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     arguments.until.map_or(Ok(()), check_until)?;
     reference.check(lab)?;
     reference.check_cache(lab, &arguments.out)?;
+    let mut files = Files::default();
+    files.reads_scene(&lab.load_scene(&arguments.scene)?.files);
+    for path in reference.paths(lab, &arguments.out)? {
+        files.claims("out", &path)?;
+    }
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
     let halves = match arguments.until {
         Some(rmse) => refine_reference(lab, &reference, rmse, &arguments.out, talk)?,

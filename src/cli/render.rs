@@ -5,9 +5,9 @@ use super::output::{print, print_json};
 use super::progress::Talk;
 use super::rounds;
 use super::strict::Strict;
-use crate::atomic_file;
 use crate::error::Result;
 use crate::experiment::Progress;
+use crate::files::Files;
 use crate::image_io;
 use crate::lab::Lab;
 use crate::measure::{InvalidSample, Measured, Outcome, Record, TraceFile};
@@ -59,10 +59,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.name())));
     let format = image_io::check_format(&path)?;
-    rounds::check_image(&arguments.rounds, &path)?;
-    atomic_file::check_writable(&path)?;
-    if let Some(trace) = &arguments.trace {
-        atomic_file::check_writable(trace)?;
+    let mut files = Files::default();
+    files.reads_scene(setup.files());
+    let outputs = [("image", Some(&path)), ("trace", arguments.trace.as_ref()), arguments.rounds.output()];
+    for (option, path) in outputs {
+        path.map_or(Ok(()), |path| files.writes(option, path))?;
     }
 
     let (setup, outcome) = if arguments.rounds.are_asked_for() {
@@ -115,7 +116,8 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
         || format!("no checksum: {} gives other numbers in each run", record.sampler),
         |checksum| format!("checksum {checksum}"),
     );
-    let (paths, rays) = (outcome.counts.paths as f64, outcome.counts.rays as f64);
+    let rendered = outcome.rendered();
+    let (paths, rays) = (rendered.paths as f64, rendered.rays as f64);
     let makespan_s = outcome.makespan_s;
     let how = if outcome.rounds == 0 {
         "nothing was left to render".to_string()

@@ -2,7 +2,9 @@
 
 use super::output::print;
 use crate::error::Result;
+use crate::files::Files;
 use crate::lab::Lab;
+use crate::report;
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,6 +17,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
-    let page = crate::report::write(lab, &arguments.folder)?;
+    report::claim("folder", &arguments.folder, &mut Files::default())?;
+    let page = report::write(lab, &arguments.folder)?;
     print(&page.display().to_string())
 }

@@ -1,11 +1,15 @@
 //! `pathmark reproduce`: all committed experiments.
 
+use super::output::{lock_folder, print};
 use super::progress::Talk;
-use super::{command_line, guards, output::print, strict::Strict};
+use super::{command_line, guards, strict::Strict};
 use crate::check::guards::FOLDER;
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, sweep};
+use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Sweep};
+use crate::files::Files;
 use crate::lab::Lab;
+use crate::lock::Sharing;
+use crate::report;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -49,12 +53,20 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
             false
         }
     });
+    let mut files = Files::default();
+    let sweeps = definitions.iter().map(|definition| Sweep::new(definition, &options, &mut files));
+    let sweeps = sweeps.collect::<Result<Vec<_>>>()?;
+    report::claim("out", &arguments.out, &mut files)?;
+    let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
         put_aside(&arguments.out, &definitions, talk)?;
     }
+    if !guards::are_in(&arguments.out) {
+        guards::claim(&arguments.out, &mut files)?;
+    }
     let (mut rows, mut failed, mut invalid) = (0, 0, 0);
-    for definition in &definitions {
-        let summary = sweep(definition, &options, talk)?;
+    for sweep in &sweeps {
+        let summary = sweep.run(talk)?;
         rows += summary.rows;
         failed += summary.failed;
         invalid += summary.invalid;
@@ -62,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if !guards::are_in(&arguments.out) {
         guards::write(&arguments.out, &guards::measure(talk))?;
     }
-    let page = crate::report::write(lab, &arguments.out)?;
+    let page = report::write(lab, &arguments.out)?;
     print(&format!("{rows} rows from {} experiments, report in {}", definitions.len(), page.display()))?;
     if failed > 0 {
         return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));

@@ -1,12 +1,11 @@
 //! The options of `render` that render in rounds: until an accuracy, until time is up, with checkpoints.
 
 use super::progress::Talk;
-use crate::atomic_file;
-use crate::error::{InputError, Result};
+use crate::error::Result;
 use crate::experiment::Progress as _;
 use crate::measure::{CONFIDENCE, Checkpoint, Goal, Outcome, Record, Rounds, Setup, Warning};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Seconds of rendering between two checkpoints. Writing one takes some tenths of a second.
 const PAUSE_S: f64 = 10.0;
@@ -36,6 +35,11 @@ impl Until {
         self.target_error.is_some() || self.time_limit.is_some()
     }
 
+    /// The option that names a file to be written, and the file.
+    pub(super) fn output(&self) -> (&'static str, Option<&PathBuf>) {
+        ("checkpoint", self.checkpoint.as_ref())
+    }
+
     /// Puts the goal into the record.
     pub(super) fn label(&self, record: &mut Record) {
         record.target_error = self.target_error;
@@ -43,22 +47,10 @@ impl Until {
     }
 }
 
-/// Refuses a checkpoint that the image would overwrite.
-pub(super) fn check_image(arguments: &Until, image: &Path) -> Result<()> {
-    match &arguments.checkpoint {
-        Some(checkpoint) if checkpoint == image => {
-            let error = InputError::new("checkpoint", image.display().to_string(), "is the name of the image");
-            Err(error.allowed("another name").into())
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Renders until the goal is reached.
 pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &Talk) -> Result<(Setup, Outcome)> {
     let (checkpoint, saved) = match &arguments.checkpoint {
         Some(path) => {
-            atomic_file::check_writable(path)?;
             let (checkpoint, saved) = Checkpoint::open(path, &setup, arguments.target_error)?;
             (Some(checkpoint), saved)
         }
@@ -67,7 +59,7 @@ pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &T
     let before = saved.as_ref().map(|saved| saved.position);
     let mut rounds = Rounds::new(setup)?;
     if let Some(saved) = saved {
-        rounds.adopt(saved.film);
+        rounds.adopt(saved.film, saved.history);
     }
     let goal = Goal {
         spp,

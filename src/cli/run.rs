@@ -1,11 +1,14 @@
 //! `pathmark run EXPERIMENT`: one experiment, and its report.
 
+use super::output::{lock_folder, print};
 use super::progress::Talk;
-use super::{command_line, output::print, strict::Strict};
+use super::{command_line, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, sweep};
+use crate::experiment::{Definition, Options, Profile, Sweep};
+use crate::files::Files;
 use crate::lab::Lab;
-use crate::report::check_figures;
+use crate::lock::Sharing;
+use crate::report::{self, check_figures};
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -45,8 +48,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         filters: arguments.filters.clone(),
         command: command_line(),
     };
-    let summary = sweep(&definition, &options, talk)?;
-    let page = crate::report::write(lab, &arguments.out);
+    let mut files = Files::default();
+    let sweep = Sweep::new(&definition, &options, &mut files)?;
+    report::claim("out", &arguments.out, &mut files)?;
+    // Other experiments may run into the same folder, each into its own; `reproduce` may not.
+    let _lock = lock_folder(&arguments.out, Sharing::Shared)?;
+    let summary = sweep.run(talk)?;
+    let page = report::write(lab, &arguments.out);
     // Rows that failed are worse news than a page that could not be written.
     if summary.failed > 0 {
         let problem = format!("{} of {} rows failed; their column `error` says why", summary.failed, summary.rows);

@@ -4,6 +4,7 @@ use super::output::print;
 use super::progress::Talk;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Progress, read_calibration};
+use crate::files::Files;
 use crate::lab::Lab;
 use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate};
 use crate::report::{Block, Results, forecasts, save};
@@ -58,6 +59,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     };
     for name in &names {
         lab.strategy_named(name)?;
+    }
+    let mut files = Files::default();
+    files.reads("the trace", &arguments.trace);
+    for name in forecasts::FORECAST_FILES {
+        files.claims("out", &arguments.out.join(name))?;
     }
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
     // What was measured elsewhere or earlier is explained by what handing out cost then.

@@ -3,6 +3,7 @@
 use super::output::print;
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::files::Files;
 use crate::measure::{TraceFile, chrome_trace};
 use crate::plot::Figure;
 use crate::report::timeline;
@@ -21,13 +22,15 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let write = arguments.output.as_deref().map(|path| Ok::<_, Error>((path, writer(path)?))).transpose()?;
+    let mut files = Files::default();
+    files.reads("the trace", &arguments.file);
+    arguments.output.as_ref().map_or(Ok(()), |path| files.writes("output", path))?;
     let trace = TraceFile::read(&arguments.file)?;
     let Some(balance) = timeline::balance(&trace) else {
         let problem = "has workers or times that cannot be";
         return Err(InputError::new("trace", arguments.file.display().to_string(), problem).into());
     };
     if let Some((path, write)) = write {
-        atomic_file::check_writable(path)?;
         let bytes = write(&trace)?;
         atomic_file::write(path, |file| file.write_all(&bytes))?;
     }

@@ -1,6 +1,6 @@
 //! A cell: settings that are run some number of times.
 
-use super::External;
+use super::{External, SceneVersion};
 use crate::error::{InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Settings, Setup, available_threads, schedule_name};
@@ -12,6 +12,8 @@ pub struct Cell {
     pub id: String,
     /// The settings.
     pub settings: Settings,
+    /// The scene as it was when the cell was made.
+    pub scene: SceneVersion,
     /// Its rows: one, or the points of its curve, by samples per pixel.
     pub points: Vec<CellPoint>,
     /// Samples that one of this machine's processors has to render: how long it takes, in the same unit for all cells.
@@ -76,7 +78,8 @@ impl Cell {
         let points = points.iter().map(|spp| point(*spp)).collect();
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.threads.min(available_threads()) as u64;
-        Self { id, points, weight: weight.max(1), external: None, settings }
+        let scene = SceneVersion::of(setup);
+        Self { id, points, weight: weight.max(1), external: None, scene, settings }
     }
 
     /// Whether it has the value that a filter `field=value` asks for.

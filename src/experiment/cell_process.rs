@@ -2,11 +2,12 @@
 //! and a crash is a row instead of the end of the sweep.
 //!
 //! The parent writes a [`CellJob`] as a line of JSON to the child's standard input and keeps that open; the child answers with its
-//! rows as JSON on its standard output. A child whose input ends has lost its parent and stops, so that no orphan disturbs the sweep that goes on
-//! in its place.
+//! rows as JSON on its standard output. A child whose input ends has lost its parent and stops, and with it what it started, so that no orphan
+//! disturbs the sweep that goes on in its place.
 
-use super::External;
 use super::external::filled;
+use super::process_group;
+use super::{External, HalfFile, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::film::{SAMPLE_BLOCK, read_film};
 use crate::image_io::{self, Image};
@@ -17,7 +18,7 @@ use crate::measure::{
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// What a child is asked to do.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,8 +33,10 @@ pub struct CellJob {
     pub order: u64,
     /// What to run.
     pub settings: Settings,
+    /// The scene as the experiment began with it.
+    pub scene: SceneVersion,
     /// The two half-references, if errors are to be measured.
-    pub references: Option<[PathBuf; 2]>,
+    pub references: Option<[HalfFile; 2]>,
     /// The other program that renders it, and the folder where that was made.
     pub external: Option<(External, PathBuf)>,
     /// Where to keep the trace; of a curve there is none.
@@ -78,35 +81,24 @@ impl CellJob {
     }
 
     fn child(&self) -> std::result::Result<Vec<Record>, String> {
-        let program = std::env::current_exe().map_err(|e| format!("finding this program: {e}"))?;
-        let mut child = Command::new(program)
-            .arg("cell")
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .map_err(|e| format!("starting a process for the cell: {e}"))?;
+        let mut command = Command::new(std::env::current_exe().map_err(|e| format!("finding this program: {e}"))?);
+        command.arg("cell");
         let text = serde_json::to_string(self).map_err(|e| format!("describing the cell: {e}"))?;
-        let mut input = child.stdin.take();
-        // A child that dies early closes its end; its exit status tells more than this write.
-        let written = input.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{text}"));
-        let output = child.wait_with_output().map_err(|e| format!("waiting for the cell's process: {e}"))?;
-        drop(input);
+        let output = process_group::answer(command, &text).map_err(|e| format!("running the cell's process: {e}"))?;
         if !output.status.success() {
             let said = String::from_utf8_lossy(&output.stderr);
             return Err(format!("the cell's process ended with {}: {}", output.status, said.trim()));
         }
-        written.map_err(|e| format!("telling the cell's process what to do: {e}"))?;
         serde_json::from_slice(&output.stdout).map_err(|e| format!("reading what the cell's process said: {e}"))
     }
 
     fn run(&self, lab: &Lab) -> Result<Vec<Record>> {
-        let references = self.references.as_ref().map(|paths| self.read_references(paths)).transpose()?;
+        let references = self.references.as_ref().map(|halves| self.read_references(halves)).transpose()?;
         if let Some((external, folder)) = &self.external {
             return self.other_program(lab, external, folder, references.as_ref());
         }
         if let [point] = self.points.as_slice() {
-            let setup = lab.prepare(self.settings.clone())?;
+            let setup = self.setup(lab, point.spp)?;
             let outcome = setup.run(None)?;
             if let Some(path) = &self.trace {
                 TraceFile::new(&setup, &outcome).write(path)?;
@@ -116,10 +108,17 @@ impl CellJob {
         self.curve(lab, references.as_ref())
     }
 
+    /// The setup of so many samples, of the scene that the experiment began with.
+    fn setup(&self, lab: &Lab, spp: u32) -> Result<Setup> {
+        let setup = lab.prepare(Settings { spp, ..self.settings.clone() })?;
+        self.scene.check(&setup.hash())?;
+        Ok(setup)
+    }
+
     /// The rows of a curve. Rounds that end inside a block of samples would render its samples twice and time them twice, so an image of fewer
     /// samples than a block is rendered by itself; from there on one render grows.
     fn curve(&self, lab: &Lab, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
-        let rounds = |spp: u32| Rounds::new(lab.prepare(Settings { spp, ..self.settings.clone() })?);
+        let rounds = |spp: u32| Rounds::new(self.setup(lab, spp)?);
         let mut long = rounds(self.settings.spp)?;
         let mut rows = Vec::new();
         for point in &self.points {
@@ -141,6 +140,7 @@ impl CellJob {
         let own = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
         let (spec, out) = (&self.settings.spec, own.path().join(format!("image.{}", external.format())));
         let scene = lab.load_scene(&self.settings.scene)?;
+        self.scene.check(&scene.hash)?;
         let values = [
             ("spp", self.settings.spp.to_string()),
             ("seed", spec.seed.to_string()),
@@ -184,14 +184,22 @@ impl CellJob {
         Ok(self.label(point, Record::new(setup, outcome, errors)))
     }
 
-    fn read_references(&self, paths: &[PathBuf; 2]) -> Result<[Image; 2]> {
-        let [(first_key, first), (second_key, second)] = [read_film(&paths[0])?, read_film(&paths[1])?];
+    fn read_references(&self, halves: &[HalfFile; 2]) -> Result<[Image; 2]> {
+        let read = |HalfFile { path, checksum }: &HalfFile| {
+            let (key, film) = read_film(path)?;
+            if film.checksum() != *checksum {
+                let problem = "has changed since the experiment began";
+                return Err(Error::from(InputError::new("film", path.display().to_string(), problem)));
+            }
+            Ok((key.seed, film.image()))
+        };
+        let [(first_seed, first), (second_seed, second)] = [read(&halves[0])?, read(&halves[1])?];
         let seed = self.settings.spec.seed;
-        if first_key.seed == second_key.seed || [first_key.seed, second_key.seed].contains(&seed) {
+        if first_seed == second_seed || [first_seed, second_seed].contains(&seed) {
             let problem = "the image and its two half-references must have three different seeds";
             return Err(InputError::new("seed", seed.to_string(), problem).into());
         }
-        Ok([first.image(), second.image()])
+        Ok([first, second])
     }
 }
 
@@ -204,7 +212,7 @@ pub fn child_main(lab: &Lab) -> Result<()> {
     std::thread::spawn(|| {
         // Nothing more is ever sent: this returns when the parent is gone.
         let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
-        std::process::exit(3);
+        process_group::end_own_group();
     });
     let rows = job.run(lab)?;
     let answer = serde_json::to_string(&rows).map_err(|e| Error::system("writing", "standard output", e.into()))?;

@@ -50,6 +50,9 @@ use std::sync::Arc;
 /// Name and text of the experiments that the binary carries.
 pub const EXPERIMENTS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/experiments.rs"));
 
+/// What else there is in a folder of results.
+const TAKEN: &[&str] = &["earlier", "guards", "references", "report.html"];
+
 /// The features that an experiment may require, and whether this program was built with them.
 pub(super) const FEATURES: &[(&str, bool)] = &[("openmp", cfg!(feature = "openmp"))];
 
@@ -160,6 +163,16 @@ impl Definition {
 
     /// The definition of that name, or the one in the file of that path.
     pub fn load(lab: &Arc<Lab>, name_or_path: &str) -> Result<Self> {
+        let definition = Self::find(lab, name_or_path)?;
+        let name = &definition.name;
+        if Path::new(name).file_name().is_none_or(|own| *own != **name) || TAKEN.contains(&name.as_str()) {
+            let problem = format!("would be an experiment of the name `{name}`, which cannot have a folder of its own");
+            return Err(InputError::new("experiment", name_or_path, problem).allowed("another file name").into());
+        }
+        Ok(definition)
+    }
+
+    fn find(lab: &Arc<Lab>, name_or_path: &str) -> Result<Self> {
         if let Some((name, text)) = Self::known(lab).find(|(name, _)| *name == name_or_path) {
             return Self::from_text(lab, name, &format!("{name}.toml"), text);
         }

@@ -12,7 +12,7 @@
 //! # images at 4, 8, 16 ... samples on the way to each spp, each by a run of its own.
 //! ```
 
-use super::{Cell, CellPoint, Definition, Profile, Progress};
+use super::{Cell, CellPoint, Definition, Profile, Progress, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::Settings;
@@ -148,7 +148,9 @@ impl Definition {
                 let id = format!("{what}/{width}x{height}/{spp}spp/seed{seed}");
                 let samples = u64::from(width) * u64::from(height) * u64::from(spp);
                 let points = vec![CellPoint { id: id.clone(), spp, image: id.clone() }];
-                cells.push(Cell { id, settings, points, weight: samples.max(1), external: Some(external.clone()) });
+                let version = SceneVersion { hash: scene.hash.clone(), files: scene.files.clone() };
+                let external = Some(external.clone());
+                cells.push(Cell { id, settings, scene: version, points, weight: samples.max(1), external });
             }
         }
         Ok(cells)

@@ -8,8 +8,8 @@ use super::{Progress, Reference};
 use crate::error::{Error, InputError, Result};
 use crate::film::{Film, FilmKey, GrowingFilm, SAMPLE_BLOCK, read_film, write_film};
 use crate::lab::Lab;
-use crate::lock::Lock;
-use crate::measure::{LARGEST_SPP, Rounds};
+use crate::lock::{Lock, Sharing};
+use crate::measure::{History, LARGEST_SPP, Rounds};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,7 @@ pub fn render_reference(
 
 /// Two processes in one folder would remove each other's films on the way.
 fn lock(folder: &Path) -> Result<Lock> {
-    Lock::new(&folder.join(".lock"), "references", folder)
+    Lock::of_folder(folder, "references", Sharing::Alone)
 }
 
 /// Seconds of rendering that may be lost when the program is killed.
@@ -45,7 +45,7 @@ struct Half<'a> {
 
 impl<'a> Half<'a> {
     fn new(lab: &Lab, reference: &Reference, index: u32, folder: &'a Path) -> Result<Self> {
-        Ok(Self { rounds: Rounds::new(lab.prepare(reference.half(index))?)?, index, folder })
+        Ok(Self { rounds: Rounds::new(reference.half(lab, index)?)?, index, folder })
     }
 
     fn key(&self, spp: u32) -> FilmKey {
@@ -73,7 +73,7 @@ impl<'a> Half<'a> {
         for samples in subtrees().rev().filter(|samples| (done + 1..spp).contains(samples)) {
             let parts = self.cached(samples)?.map(|film| vec![(0..samples, film)]);
             if let Some(film) = parts.and_then(|parts| GrowingFilm::from_parts(width, height, parts)) {
-                self.rounds.adopt(film);
+                self.rounds.adopt(film, History::default());
                 break;
             }
         }

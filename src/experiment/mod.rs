@@ -11,9 +11,11 @@ mod external;
 mod half;
 mod matrix;
 mod pricing;
+mod process_group;
 mod records_file;
 mod reference;
 mod run_file;
+mod scene_version;
 mod shuffle;
 mod sweep;
 
@@ -25,9 +27,10 @@ pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use pricing::{Paid, Pilot, law_of, pay};
 pub use records_file::{RecordsFile, read_records};
-pub use reference::{Reference, reference_seed, wanted_references};
-pub use run_file::{RunFile, read_run_file};
-pub use sweep::{Options, Summary, sweep};
+pub use reference::{HalfFile, Reference, reference_seed, wanted_references};
+pub use run_file::{MACHINE, RunFile, read_run_file};
+pub use scene_version::SceneVersion;
+pub use sweep::{Options, Summary, Sweep};
 
 /// Told how far long work has come. Implemented by the command line.
 pub trait Progress: Sync {

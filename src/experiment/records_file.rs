@@ -3,7 +3,7 @@
 use crate::atomic_file;
 use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
-use crate::lock;
+use crate::lock::{self, Sharing};
 use crate::measure::{Record, SCHEMA};
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
@@ -14,6 +14,8 @@ use std::path::{Path, PathBuf};
 pub struct RecordsFile {
     path: PathBuf,
     file: File,
+    /// Its length: nobody else writes to it.
+    length: u64,
 }
 
 /// Reads every row; a row that cannot be read is an error that names its line.
@@ -34,13 +36,35 @@ pub fn read_records(path: &Path) -> Result<Vec<Record>> {
     parse(complete, path)
 }
 
-/// The part of a file that ends with a finished line. What a crash left behind it need not even be text.
+/// The part of a file that ends with a finished row. What a crash left behind it need not even be text.
 fn complete_part<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str> {
-    let end = bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
-    std::str::from_utf8(&bytes[..end]).map_err(|e| {
-        let line = bytes[..e.valid_up_to()].split(|byte| *byte == b'\n').count();
-        InputError::new("row", "", "is not UTF-8 text").in_file(path.display().to_string(), Some((line, 1))).into()
-    })
+    let end = end_of_rows(bytes);
+    let refuse = |before: usize, problem: &str| {
+        let line = bytes[..before].split(|byte| *byte == b'\n').count();
+        InputError::new("row", "", problem).in_file(path.display().to_string(), Some((line, 1))).into()
+    };
+    // A crash tears one row. Whole rows behind an open quote would be dropped with it.
+    let fields = |line: &[u8]| line.split(|byte| *byte == b',').count();
+    let head = bytes.split(|byte| *byte == b'\n').next().map_or(0, fields);
+    if bytes[end..].split(|byte| *byte == b'\n').skip(1).any(|line| head > 1 && fields(line) >= head) {
+        return Err(refuse(end, "has a quote that is not closed before the next row"));
+    }
+    std::str::from_utf8(&bytes[..end]).map_err(|e| refuse(e.valid_up_to(), "is not UTF-8 text"))
+}
+
+/// Where the last finished row ends. A line end between quotes is part of a field.
+fn end_of_rows(bytes: &[u8]) -> usize {
+    let (mut quoted, mut end, mut before) = (false, 0, b'\n');
+    for (at, byte) in bytes.iter().enumerate() {
+        match byte {
+            // A quote opens a field at its beginning, and goes on with it behind another, which it doubles.
+            b'"' => quoted = !quoted && matches!(before, b'\n' | b',' | b'"'),
+            b'\n' if !quoted => end = at + 1,
+            _ => {}
+        }
+        before = *byte;
+    }
+    end
 }
 
 fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
@@ -49,23 +73,30 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
     let mut seen = HashSet::new();
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let columns = reader.headers().cloned().unwrap_or_default();
-    for row in reader.deserialize::<Record>() {
-        let record = row.map_err(|e| {
+    let schema = columns.iter().position(|column| column == "schema");
+    for row in reader.records() {
+        let broken = |column: &str, e: &csv::Error| {
             let line = e.position().map(|position| (position.line() as usize, 1));
-            let column = match e.kind() {
-                csv::ErrorKind::Deserialize { err, .. } => err.field().and_then(|at| columns.get(at as usize)),
-                _ => None,
-            };
-            InputError::new(column.unwrap_or("row"), "", format!("cannot be read: {e}")).in_file(&file, line)
-        })?;
-        let line = Some((records.len() + 2, 1));
-        if record.schema != SCHEMA {
+            Error::from(InputError::new(column, "", format!("cannot be read: {e}")).in_file(&file, line))
+        };
+        let row = row.map_err(|e| broken("row", &e))?;
+        let line = row.position().map(|position| (position.line() as usize, 1));
+        // Before anything else of the row: other versions have other columns.
+        let found = schema.and_then(|at| row.get(at)).unwrap_or_default();
+        if found != SCHEMA.to_string() {
             let problem = "was written by another version of the program";
-            return Err(InputError::new("schema", record.schema.to_string(), problem)
+            return Err(InputError::new("schema", found, problem)
                 .allowed(SCHEMA.to_string())
                 .in_file(&file, line)
                 .into());
         }
+        let record: Record = row.deserialize(Some(&columns)).map_err(|e| {
+            let column = match e.kind() {
+                csv::ErrorKind::Deserialize { err, .. } => err.field().and_then(|at| columns.get(at as usize)),
+                _ => None,
+            };
+            broken(column.unwrap_or("row"), &e)
+        })?;
         if !seen.insert((record.cell.clone(), record.repetition)) {
             let problem = format!("stands there twice for repetition {}", record.repetition);
             return Err(InputError::new("cell", &record.cell, problem).in_file(&file, line).into());
@@ -116,7 +147,8 @@ impl RecordsFile {
     /// Whether there is a finished row behind the header.
     pub fn has_rows(path: &Path) -> Result<bool> {
         let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
-        Ok(bytes.split(|byte| *byte == b'\n').count() > 2)
+        let complete = complete_part(&bytes, path)?;
+        Ok(csv::Reader::from_reader(complete.as_bytes()).records().next().is_some())
     }
 
     /// Refuses a file that a sweep is writing.
@@ -126,25 +158,45 @@ impl RecordsFile {
     }
 
     fn locked(path: &Path, file: File) -> Result<Self> {
-        if lock::try_lock(&file, path).map_err(|e| Error::system("locking", path, e))? {
-            return Ok(Self { path: path.to_path_buf(), file });
+        let system = |e| Error::system("locking", path, e);
+        if lock::try_lock(&file, path, Sharing::Alone).map_err(system)? {
+            let length = file.metadata().map_err(system)?.len();
+            return Ok(Self { path: path.to_path_buf(), file, length });
         }
         Err(InputError::new("records", path.display().to_string(), "is being written by another sweep").into())
     }
 
+    /// Refuses to go on where the file has been replaced, removed or changed by somebody who does not ask for locks: rows would go to a file
+    /// that nobody reads, or behind rows that are no longer there.
+    pub fn check_own(&self) -> Result<()> {
+        let length = self.file.metadata().map_err(|e| Error::system("writing", &self.path, e))?.len();
+        let problem = if !lock::leads_to(&self.path, &self.file) {
+            "was replaced or removed while the sweep wrote to it".to_string()
+        } else if length != self.length {
+            format!("was changed while the sweep wrote to it: {length} bytes instead of {}", self.length)
+        } else {
+            return Ok(());
+        };
+        Err(InputError::new("records", self.path.display().to_string(), problem).into())
+    }
+
     /// Appends a row and waits until the disk has it. If that fails, the file is as it was, as far as the disk lets it.
     pub fn append(&mut self, record: &Record) -> Result<()> {
-        let end = self.file.seek(SeekFrom::End(0)).map_err(|e| Error::system("writing", &self.path, e))?;
-        let outcome = row_bytes(record, end == 0).and_then(|bytes| {
+        self.check_own()?;
+        let outcome = row_bytes(record, self.length == 0).and_then(|bytes| {
+            self.file.seek(SeekFrom::Start(self.length))?;
             OnDisk(&self.file).write_all(&bytes)?;
             step(Step::Sync)?;
-            self.file.sync_data()
+            self.file.sync_data()?;
+            Ok(bytes.len() as u64)
         });
-        outcome.map_err(|e| {
+        let written = outcome.map_err(|e| {
             // Half a row would be found and dropped by the next `--resume`, but `report` would have to refuse it.
-            self.file.set_len(end).ok();
+            self.file.set_len(self.length).ok();
             Error::system("writing", &self.path, e)
-        })
+        })?;
+        self.length += written;
+        Ok(())
     }
 }
 

@@ -3,13 +3,14 @@
 //! With two halves R₁ and R₂ the mean of (T - R₁)(T - R₂) is the image's squared error without the references' own noise
 //! (METHODOLOGY: cross form).
 
-use super::{Cell, Definition, Profile};
+use super::{Cell, Definition, Profile, SceneVersion};
 use crate::error::{InputError, Result};
 use crate::film::{FilmKey, read_film};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{Settings, available_threads};
+use crate::measure::{Settings, Setup, available_threads};
 use crate::sampling::{REFERENCE_SEEDS, SAMPLERS, is_deterministic};
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// The seed of a half: above every seed that an image may have.
@@ -22,6 +23,8 @@ pub fn reference_seed(half: u32) -> u64 {
 pub struct Reference {
     /// Scene: a name or a path.
     pub scene: String,
+    /// The version of the scene that is asked for; any, if `None`.
+    pub version: Option<SceneVersion>,
     /// Estimator.
     pub estimator: String,
     /// Sampler.
@@ -32,8 +35,24 @@ pub struct Reference {
     pub spp: u32,
 }
 
+/// A half on disk, as an experiment began with it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HalfFile {
+    /// The film file.
+    pub path: PathBuf,
+    /// Its film's checksum.
+    pub checksum: String,
+}
+
 impl Reference {
-    pub(super) fn half(&self, half: u32) -> Settings {
+    /// The setup of a half.
+    pub(super) fn half(&self, lab: &Lab, half: u32) -> Result<Setup> {
+        let setup = lab.prepare(self.half_settings(half))?;
+        self.version.as_ref().map_or(Ok(()), |version| version.check(&setup.hash()))?;
+        Ok(setup)
+    }
+
+    fn half_settings(&self, half: u32) -> Settings {
         Settings {
             scene: self.scene.clone(),
             spp: self.spp,
@@ -71,12 +90,12 @@ impl Reference {
                 SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
             return Err(InputError::new("sampler", &self.sampler, problem).allowed(names.join(", ")).into());
         }
-        lab.prepare(self.half(0)).map(|_| ())
+        self.half(lab, 0).map(|_| ())
     }
 
     /// Where its two halves are cached.
     pub fn paths(&self, lab: &Lab, folder: &Path) -> Result<[PathBuf; 2]> {
-        let path = |half| -> Result<PathBuf> { Ok(reference_path(folder, &lab.prepare(self.half(half))?.film_key())) };
+        let path = |half| -> Result<PathBuf> { Ok(reference_path(folder, &self.half(lab, half)?.film_key())) };
         Ok([path(0)?, path(1)?])
     }
 
@@ -95,10 +114,12 @@ impl Reference {
 pub fn wanted_references(definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Vec<Reference>> {
     let Some((estimator, spp)) = definition.reference(profile)? else { return Ok(Vec::new()) };
     let mut wanted: Vec<Reference> = Vec::new();
-    for settings in cells.iter().map(|cell| &cell.settings) {
+    for cell in cells {
+        let settings = &cell.settings;
         if !wanted.iter().any(|reference| reference.scene == settings.scene) {
             wanted.push(Reference {
                 scene: settings.scene.clone(),
+                version: Some(cell.scene.clone()),
                 estimator: estimator.clone(),
                 sampler: "independent".to_string(),
                 size: [settings.spec.width, settings.spec.height],

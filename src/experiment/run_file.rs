@@ -8,6 +8,9 @@ use crate::measure::Machine;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
+/// Its name.
+pub const MACHINE: &str = "machine.toml";
+
 /// What is written beside the rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunFile {

@@ -7,14 +7,21 @@ use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
 use super::{
-    CellJob, CellPoint, Definition, Keep, PointJob, Profile, Progress, Reference, render_reference, wanted_references,
+    Cell, CellJob, CellPoint, Definition, HalfFile, Keep, PointJob, Profile, Progress, Reference, render_reference,
+    wanted_references,
 };
 use crate::atomic_file;
 use crate::digest;
 use crate::error::{Error, InputError, Result};
+use crate::files::Files;
+use crate::film::Film;
 use crate::measure::{Machine, Record};
+use crate::temporary;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
+
+/// What a sweep writes into its folder, beside images and traces.
+const OWN_FILES: [&str; 4] = ["records.csv", "machine.toml", "experiment.toml", "calibration.csv"];
 
 /// How to run an experiment.
 #[derive(Debug, Clone)]
@@ -46,106 +53,137 @@ pub struct Summary {
     pub invalid: u64,
 }
 
-/// Runs what is not yet in the folder. Each repetition visits all cells once, in an order of its own.
-pub fn sweep(definition: &Definition, options: &Options, progress: &dyn Progress) -> Result<Summary> {
-    let mut cells = definition.cells(options.profile)?;
-    for filter in &options.filters {
-        let matches = cells.iter().map(|cell| cell.matches(filter)).collect::<Result<Vec<bool>>>()?;
-        let mut matches = matches.into_iter();
-        cells.retain(|_| matches.next().unwrap_or(false));
-        if cells.is_empty() {
-            return Err(InputError::new("filter", filter, "leaves no cell to run").into());
-        }
-    }
-    let wanted = wanted_references(definition, options.profile, &cells)?;
-    for reference in &wanted {
-        reference.check(&definition.lab).map_err(|error| definition.reference_error(options.profile, error))?;
-        reference.check_cache(&definition.lab, &options.out.join("references"))?;
-    }
-    let folder = options.out.join(&definition.name);
-    let (mut file, done) = open(definition, options, &folder)?;
+/// An experiment that can start: everything that the user could have got wrong has been checked, and nothing has been made.
+pub struct Sweep<'a> {
+    definition: &'a Definition,
+    options: &'a Options,
+    cells: Vec<Cell>,
+    references: Vec<Reference>,
+}
 
-    let calibration = folder.join("calibration.csv");
-    if definition.keeps(Keep::Calibration) && !calibration.is_file() {
-        progress.note("calibrating: every strategy hands out empty jobs");
-        write_calibration(&definition.lab, &calibration)?;
-    }
-    let references = references(definition, &wanted, options, progress)?;
-    let programs = folder.join("external");
-    for external in &definition.external {
-        std::fs::create_dir_all(&programs).map_err(|e| Error::system("creating", &programs, e))?;
-        external.make(&programs, progress);
-    }
-    let (images, traces) = (folder.join("images"), folder.join("traces"));
-    for (wanted, folder) in [(Keep::Images, &images), (Keep::Traces, &traces)] {
-        if definition.keeps(wanted) {
-            std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
-        }
-    }
-
-    let mut checksums: HashMap<String, String> = HashMap::new();
-    let points = cells.iter().flat_map(|cell| &cell.points);
-    let known: HashMap<&str, &str> = points.map(|point| (point.id.as_str(), point.image.as_str())).collect();
-    for record in &done {
-        if let Some(image) = known.get(record.cell.as_str()) {
-            checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
-        }
-    }
-    let finished: HashSet<(&str, u32)> = done.iter().map(|record| (record.cell.as_str(), record.repetition)).collect();
-    let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
-    let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
-    let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
-    let invalid = done.iter().filter_map(|record| record.invalid_samples).sum();
-    let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0, invalid };
-    let mut drift = Drift::of(&done);
-    let mut units = 0;
-    // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
-    let mut order = done.iter().map(|record| record.order + 1).max().unwrap_or(0);
-    progress.begin(&definition.name, total);
-    for repetition in 0..repetitions {
-        for index in shuffled(cells.len(), &definition.name, repetition) {
-            let cell = &cells[index];
-            let is_missing = |id: &str| !finished.contains(&(id, repetition));
-            if cell.points.iter().any(|point| is_missing(&point.id)) {
-                // Curves have many images: those of one seed show what there is to see.
-                let shown = cell.points.len() == 1 || Some(cell.settings.spec.seed) == lowest_seed;
-                let is_kept = definition.keeps(Keep::Images) && repetition == 0 && shown;
-                let point_job = |point: &CellPoint| PointJob {
-                    cell: point.id.clone(),
-                    spp: point.spp,
-                    image: is_kept.then(|| images.join(point.image_file())),
-                };
-                let job = CellJob {
-                    experiment: definition.name.clone(),
-                    points: cell.points.iter().map(point_job).collect(),
-                    repetition,
-                    order,
-                    settings: cell.settings.clone(),
-                    references: references.get(cell.settings.scene.as_str()).cloned(),
-                    external: cell.external.clone().map(|external| (external, programs.clone())),
-                    trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
-                };
-                // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.
-                let rows = cell.points.iter().zip(job.run_in_child()).filter(|(point, _)| is_missing(&point.id));
-                for (point, record) in rows {
-                    let mut record = verified(Record { order, ..record }, &point.image, &mut checksums);
-                    drift.watch(&mut record);
-                    if !record.error.is_empty() {
-                        summary.failed += 1;
-                        progress.note(&format!("{} repetition {repetition}: {}", point.id, record.error));
-                    }
-                    file.append(&record)?;
-                    summary.invalid += record.invalid_samples.unwrap_or(0);
-                    summary.rows += 1;
-                    order += 1;
-                }
+impl<'a> Sweep<'a> {
+    /// Checks an experiment and enters its files into those of the command.
+    pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
+        let mut cells = definition.cells(options.profile)?;
+        for filter in &options.filters {
+            let matches = cells.iter().map(|cell| cell.matches(filter)).collect::<Result<Vec<bool>>>()?;
+            let mut matches = matches.into_iter();
+            cells.retain(|_| matches.next().unwrap_or(false));
+            if cells.is_empty() {
+                return Err(InputError::new("filter", filter, "leaves no cell to run").into());
             }
-            units += cell.weight;
-            progress.advance(units);
         }
+        let references = wanted_references(definition, options.profile, &cells)?;
+        for reference in &references {
+            reference.check(&definition.lab).map_err(|error| definition.reference_error(options.profile, error))?;
+            reference.check_cache(&definition.lab, &options.out.join("references"))?;
+        }
+        files.reads("the experiment", Path::new(&definition.file));
+        for cell in &cells {
+            files.reads_scene(&cell.scene.files);
+        }
+        let folder = options.out.join(&definition.name);
+        for name in OWN_FILES {
+            files.claims("out", &folder.join(name))?;
+        }
+        Ok(Self { definition, options, cells, references })
     }
-    progress.end();
-    Ok(summary)
+
+    /// Runs what is not yet in the folder. Each repetition visits all cells once, in an order of its own.
+    pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
+        let Self { definition, options, cells, references: wanted } = self;
+        let folder = options.out.join(&definition.name);
+        let (mut file, done) = open(definition, options, &folder)?;
+
+        let calibration = folder.join("calibration.csv");
+        if definition.keeps(Keep::Calibration) && !calibration.is_file() {
+            progress.note("calibrating: every strategy hands out empty jobs");
+            write_calibration(&definition.lab, &calibration)?;
+        }
+        let references = references(definition, wanted, options, progress)?;
+        let programs = folder.join("external");
+        for external in &definition.external {
+            std::fs::create_dir_all(&programs).map_err(|e| Error::system("creating", &programs, e))?;
+            external.make(&programs, progress);
+        }
+        let (images, traces) = (folder.join("images"), folder.join("traces"));
+        // Killed sweeps leave temporary files also where this one has nothing more to write.
+        for folder in [&folder, &images, &traces, &options.out.join("references")] {
+            temporary::remove_abandoned(folder);
+        }
+        for (wanted, folder) in [(Keep::Images, &images), (Keep::Traces, &traces)] {
+            if definition.keeps(wanted) {
+                std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
+            }
+        }
+
+        let mut checksums: HashMap<String, String> = HashMap::new();
+        let points = cells.iter().flat_map(|cell| &cell.points);
+        let known: HashMap<&str, &str> = points.map(|point| (point.id.as_str(), point.image.as_str())).collect();
+        for record in &done {
+            if let Some(image) = known.get(record.cell.as_str()) {
+                checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
+            }
+        }
+        let finished: HashSet<(&str, u32)> =
+            done.iter().map(|record| (record.cell.as_str(), record.repetition)).collect();
+        let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
+        let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
+        let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
+        let invalid = done.iter().filter_map(|record| record.invalid_samples).sum();
+        let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0, invalid };
+        let mut drift = Drift::of(&done);
+        let mut units = 0;
+        // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
+        let mut order = done.iter().map(|record| record.order + 1).max().unwrap_or(0);
+        progress.begin(&definition.name, total);
+        for repetition in 0..repetitions {
+            for index in shuffled(cells.len(), &definition.name, repetition) {
+                let cell = &cells[index];
+                let is_missing = |id: &str| !finished.contains(&(id, repetition));
+                if cell.points.iter().any(|point| is_missing(&point.id)) {
+                    // Curves have many images: those of one seed show what there is to see.
+                    let shown = cell.points.len() == 1 || Some(cell.settings.spec.seed) == lowest_seed;
+                    let is_kept = definition.keeps(Keep::Images) && repetition == 0 && shown;
+                    let point_job = |point: &CellPoint| PointJob {
+                        cell: point.id.clone(),
+                        spp: point.spp,
+                        image: is_kept.then(|| images.join(point.image_file())),
+                    };
+                    let job = CellJob {
+                        experiment: definition.name.clone(),
+                        points: cell.points.iter().map(point_job).collect(),
+                        repetition,
+                        order,
+                        settings: cell.settings.clone(),
+                        scene: cell.scene.clone(),
+                        references: references.get(cell.settings.scene.as_str()).cloned(),
+                        external: cell.external.clone().map(|external| (external, programs.clone())),
+                        trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
+                    };
+                    // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.
+                    let rows = cell.points.iter().zip(job.run_in_child()).filter(|(point, _)| is_missing(&point.id));
+                    for (point, record) in rows {
+                        let mut record = verified(Record { order, ..record }, &point.image, &mut checksums);
+                        drift.watch(&mut record);
+                        if !record.error.is_empty() {
+                            summary.failed += 1;
+                            progress.note(&format!("{} repetition {repetition}: {}", point.id, record.error));
+                        }
+                        file.append(&record)?;
+                        summary.invalid += record.invalid_samples.unwrap_or(0);
+                        summary.rows += 1;
+                        order += 1;
+                    }
+                }
+                units += cell.weight;
+                progress.advance(units);
+            }
+        }
+        progress.end();
+        file.check_own()?;
+        Ok(summary)
+    }
 }
 
 /// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.
@@ -185,10 +223,23 @@ fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(Re
         }
         return Ok((file, done));
     }
+    check_new(folder, &rows)?;
     std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
     let file = RecordsFile::create(&rows)?;
     describe()?;
     Ok((file, Vec::new()))
+}
+
+/// Refuses a folder of somebody else for a new sweep: what is in it would be overwritten by files of the same names.
+fn check_new(folder: &Path, rows: &Path) -> Result<()> {
+    let Ok(mut entries) = std::fs::read_dir(folder) else { return Ok(()) };
+    match entries.find_map(std::result::Result::ok) {
+        Some(entry) if !rows.exists() => {
+            let problem = format!("is not empty, and no sweep wrote what is in it: {}", entry.file_name().display());
+            Err(InputError::new("out", folder.display().to_string(), problem).allowed("another --out").into())
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The two halves of each reference, by scene.
@@ -197,13 +248,14 @@ fn references(
     wanted: &[Reference],
     options: &Options,
     progress: &dyn Progress,
-) -> Result<HashMap<String, [PathBuf; 2]>> {
+) -> Result<HashMap<String, [HalfFile; 2]>> {
     let folder = options.out.join("references");
     let mut halves = HashMap::new();
     for reference in wanted {
         std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-        let [(first, _), (second, _)] = render_reference(&definition.lab, reference, &folder, progress)?;
-        halves.insert(reference.scene.clone(), [first, second]);
+        let half = |(path, film): (PathBuf, Film)| HalfFile { path, checksum: film.checksum() };
+        let rendered = render_reference(&definition.lab, reference, &folder, progress)?;
+        halves.insert(reference.scene.clone(), rendered.map(half));
     }
     Ok(halves)
 }

@@ -2,16 +2,16 @@
 //!
 //! Layout: [`crate::film::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. What it is of stands in its header, and
 //! a file that is of anything else is refused, never overwritten. It is written between rounds, in one rename, so that a reader finds
-//! one round or the next. Two renders cannot write one file: a lock file stands beside it, `.lock` behind its name, as long as the render runs.
+//! one round or the next. Two renders cannot write one file: a lock file stands beside it as long as the render runs.
 
-use super::{Position, Rounds, Setup};
+use super::{History, Position, Rounds, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{FilmKey, GrowingFilm, SumFile, sections};
 use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-const FILE: SumFile = SumFile { magic: "pathmark checkpoint 1", field: "checkpoint" };
+const FILE: SumFile = SumFile { magic: "pathmark checkpoint 2", field: "checkpoint" };
 
 /// What a checkpoint says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,6 +25,7 @@ struct Header {
     /// The accuracy that it is on its way to, and the samples at which that is looked at next.
     target_error: Option<f64>,
     look: u32,
+    history: History,
 }
 
 /// A file for one render's checkpoints.
@@ -40,6 +41,8 @@ pub struct Saved {
     pub film: GrowingFilm,
     /// How far it was.
     pub position: Position,
+    /// What happened on the film's paths.
+    pub history: History,
 }
 
 impl Checkpoint {
@@ -50,10 +53,7 @@ impl Checkpoint {
             let problem = format!("is of no use: {} gives other numbers in each run", setup.settings().spec.sampler);
             return Err(refuse(&problem).into());
         }
-        // Where the path is a link, the lock stands beside the file itself.
-        let mut lock = path.canonicalize().unwrap_or_else(|_| path.to_path_buf()).into_os_string();
-        lock.push(".lock");
-        let lock = Lock::new(Path::new(&lock), FILE.field, path)?;
+        let lock = Lock::of_file(path, FILE.field)?;
         let checkpoint = Self { path: path.to_path_buf(), _lock: lock, target_error };
         if !path.exists() {
             return Ok((checkpoint, None));
@@ -71,13 +71,13 @@ impl Checkpoint {
                 .allowed("another name, or the same settings")
                 .into());
         }
-        let Header { film: FilmKey { width, height, spp, .. }, rendering_s, look, .. } = header;
+        let Header { film: FilmKey { width, height, spp, .. }, rendering_s, look, history, .. } = header;
         let parts = sections(&(0..spp)).into_iter().zip(films).collect();
         let film = GrowingFilm::from_parts(width, height, parts)
             .ok_or_else(|| refuse("does not have the samples that its header says"))?;
         // On the way to another accuracy, the next look is elsewhere.
         let look = if header.target_error == target_error { look } else { 0 };
-        Ok((checkpoint, Some(Saved { film, position: Position { rendering_s, look } })))
+        Ok((checkpoint, Some(Saved { film, position: Position { rendering_s, look }, history })))
     }
 
     /// Writes it, whole or not at all.
@@ -88,6 +88,7 @@ impl Checkpoint {
             rendering_s: position.rendering_s,
             target_error: self.target_error,
             look: position.look,
+            history: rounds.history().clone(),
         };
         let films: Vec<_> = rounds.growing().parts().iter().map(|(_, film)| film).collect();
         FILE.write(&self.path, &header, &films)

@@ -3,11 +3,11 @@
 
 use crate::film::{Piece, Plan};
 use crate::kernel::{Counts, Kernel, one_sample};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A sample that was NaN, infinite or negative, and where it can be had again: `pathmark replay --pixel X,Y --sample K`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct InvalidSample {
     /// Row, from the top.
     pub y: u32,

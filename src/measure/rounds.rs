@@ -5,7 +5,7 @@
 
 use super::run::{Account, RoundTimes, Watch};
 use super::settings::check_spp;
-use super::{Outcome, Setup};
+use super::{History, Outcome, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{Film, FilmKey, GrowingFilm};
 
@@ -28,9 +28,10 @@ impl Rounds {
         Ok(Self { setup, account: Account::new(), film })
     }
 
-    /// Goes on with a film of the same settings instead of what was rendered so far.
-    pub fn adopt(&mut self, film: GrowingFilm) {
+    /// Goes on with a film of the same settings, and what happened in it as far as that is known, instead of what was rendered so far.
+    pub fn adopt(&mut self, film: GrowingFilm, history: History) {
         self.film = film;
+        self.account.history = history;
     }
 
     /// Renders until there are `spp` samples a pixel. If there are as many already nothing happens: films do not shrink.
@@ -66,6 +67,11 @@ impl Rounds {
     /// The film with what is needed to go on.
     pub fn growing(&self) -> &GrowingFilm {
         &self.film
+    }
+
+    /// What happened on the paths of the film.
+    pub fn history(&self) -> &History {
+        &self.account.history
     }
 
     /// What the film so far is of.

@@ -1,5 +1,6 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
+use super::history::History;
 use super::invalid::{InvalidSample, first_invalid};
 use super::ledger::Ledger;
 use super::output::{Delivery, Output};
@@ -41,9 +42,9 @@ pub struct Outcome {
     pub trace: Trace,
     /// What happened on the paths, job by job.
     pub job_counts: Vec<Counts>,
-    /// What happened on the paths.
+    /// What happened on the paths of the film, those that earlier processes rendered included.
     pub counts: Counts,
-    /// The first samples that were NaN, infinite or negative, by row, column and number.
+    /// The first samples that were NaN, infinite or negative: round by round, by row, column and number.
     pub invalid: Vec<InvalidSample>,
     /// Threads that ran at least one job.
     pub workers_used: u32,
@@ -68,6 +69,13 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// What happened on the paths that this process rendered during the makespan.
+    pub fn rendered(&self) -> Counts {
+        let mut rendered = Counts::default();
+        self.job_counts.iter().for_each(|job| rendered.add(job));
+        rendered
+    }
+
     /// CPU seconds during the makespan, in the program and in the system.
     pub fn cpu_s(&self) -> Option<f64> {
         self.cpu.map(|usage| usage.user_s + usage.system_s)
@@ -105,6 +113,7 @@ pub(super) struct Account {
     plan: Plan,
     spans: Vec<JobSpan>,
     job_counts: Vec<Counts>,
+    pub(super) history: History,
     workers_used: u32,
     /// Fewest workers that a round should have had.
     asked: usize,
@@ -126,6 +135,7 @@ impl Account {
             plan: Plan::default(),
             spans: Vec::new(),
             job_counts: Vec::new(),
+            history: History::default(),
             workers_used: 0,
             asked: 0,
             build_s: 0.0,
@@ -158,7 +168,11 @@ impl Account {
         }
         let (width, height) = (spec.width, spec.height);
         let delivery = Delivery { plan: Arc::clone(&plan), width, height, sections: sections.to_vec() };
-        let run = Arc::new(Run { kernel, ledger: Ledger::new(plan.len()), output: setup.new_output(delivery) });
+        let run = Arc::new(Run {
+            kernel: Arc::clone(&kernel),
+            ledger: Ledger::new(plan.len()),
+            output: setup.new_output(delivery),
+        });
         let strategy = match &mut self.strategy {
             Some(strategy) => strategy,
             none => {
@@ -188,7 +202,17 @@ impl Account {
         let offset_s = self.makespan_s;
         self.rounds += 1;
         self.spans.extend(entries.iter().map(|entry| entry.span.later_by(offset_s)));
-        self.job_counts.extend(entries.iter().map(|entry| entry.counts));
+        let counts: Vec<Counts> = entries.iter().map(|entry| entry.counts).collect();
+        self.history.begin_round();
+        for (piece, counts) in plan.pieces().iter().zip(&counts) {
+            let section = sections.partition_point(|section| section.end <= piece.samples.start);
+            self.history.add(&sections[section], counts);
+        }
+        // Only a sampler that gives the same numbers again shows where they were.
+        if self.history.tells_few() && setup.is_deterministic() && counts.iter().any(|counts| counts.invalid > 0) {
+            self.history.tell(first_invalid(&*kernel, &plan, &counts));
+        }
+        self.job_counts.extend(counts);
         self.plan.append(&plan);
         self.makespan_s += timed.makespan_s;
         self.merge_s += merge_s;
@@ -205,12 +229,8 @@ impl Account {
 
     /// What it came to, with the film that was made of the rounds' films.
     pub(super) fn outcome(&self, setup: &Setup, spp: u32, film: Film) -> Outcome {
-        let mut counts = Counts::default();
-        for job in &self.job_counts {
-            counts.add(job);
-        }
+        let (counts, invalid) = (self.history.counts(), self.history.invalid.clone());
         let mut warnings = setup.warnings(&counts, spp, self.asked, self.workers_used);
-        let invalid = self.invalid_samples(setup, counts.invalid);
         if counts.invalid > 0 {
             warnings.push(Warning::InvalidSamples { count: counts.invalid, first: invalid.clone() });
         }
@@ -238,16 +258,6 @@ impl Account {
             merge_s: self.merge_s,
             started_utc: self.started_utc.clone(),
             cpu: self.cpu,
-        }
-    }
-
-    /// Where the first invalid samples are, if there are any and the sampler gives them again.
-    fn invalid_samples(&self, setup: &Setup, count: u64) -> Vec<InvalidSample> {
-        match setup.kernel() {
-            Ok((kernel, _)) if count > 0 && setup.is_deterministic() => {
-                first_invalid(&*kernel, &self.plan, &self.job_counts)
-            }
-            _ => Vec::new(),
         }
     }
 

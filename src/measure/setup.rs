@@ -15,6 +15,7 @@ use crate::simd::Precision;
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
 use std::ops::Range;
+use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
@@ -182,6 +183,11 @@ impl Setup {
             Subject::Scene { scene, .. } => scene.hash.clone(),
             Subject::Workload(workload) => digest::of_text(&format!("workload {}", workload.name)),
         }
+    }
+
+    /// The files that the scene was read from.
+    pub fn files(&self) -> &[PathBuf] {
+        self.scene().map_or(&[], |(scene, _)| &scene.files)
     }
 
     /// The scene, and what the settings come to for it; `None` for a workload.

@@ -84,6 +84,17 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
     vec![Block::Finding(finding), table]
 }
 
+/// The files that [`forecast_blocks`] are saved in.
+pub const FORECAST_FILES: &[&str] = &[
+    "forecast-speedup.svg",
+    "forecast-speedup.png",
+    "forecast-efficiency.svg",
+    "forecast-efficiency.png",
+    "forecast-makespan.svg",
+    "forecast-makespan.png",
+    "forecast.csv",
+];
+
 /// Speedup and efficiency against cores, and all numbers as a table.
 ///
 /// Graham's bound is drawn for equal cores, for which alone it holds.

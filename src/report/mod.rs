@@ -23,10 +23,20 @@ pub use results::Results;
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::files::Files;
 use crate::lab::Lab;
 use page::Section;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+/// The page's name in a folder of results.
+const PAGE: &str = "report.html";
+
+/// Enters the page of a folder into the files of a command that will write it. `option` is what the user gave the folder with. Refuses a folder
+/// with another file of that name.
+pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
+    files.renews(option, &out.join(PAGE), page::is_page)
+}
 
 /// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path.
 pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
@@ -44,7 +54,7 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
         let problem = "holds no experiment: no folder in it has a records.csv";
         return Err(InputError::new("folder", out.display().to_string(), problem).into());
     }
-    let page = out.join("report.html");
+    let page = out.join(PAGE);
     let html = page::html(&sections)?;
     atomic_file::write(&page, |file| file.write_all(html.as_bytes()))?;
     Ok(page)

@@ -8,6 +8,9 @@ use crate::measure::Record;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 
 const STYLE: &str = "
 body { font: 16px/1.55 system-ui, sans-serif; color: #222; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1.5rem; }
@@ -20,6 +23,18 @@ th { border-bottom: 2px solid #222; white-space: normal; vertical-align: bottom;
 code, pre { background: #f3f3f3; padding: .1rem .3rem; } pre { padding: .7rem 1rem; overflow-x: auto; } nav a { margin-right: 1.2rem; }
 details { margin: 1rem 0; } td.text { text-align: left; white-space: normal; }
 ";
+
+const TITLE: &str = "Pathmark: report";
+
+/// The title stands among the first bytes of a page.
+const HEAD_BYTES: u64 = 1024;
+
+/// Whether a file is such a page, and may be replaced by a new one.
+pub(super) fn is_page(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut head));
+    read.is_ok() && String::from_utf8_lossy(&head).contains(&format!("<title>{TITLE}</title>"))
+}
 
 /// Longer tables start closed.
 const OPEN_ROWS: usize = 12;
@@ -61,11 +76,11 @@ pub(super) fn html(sections: &[Section]) -> Result<String> {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Pathmark: report" }
+                title { (TITLE) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                h1 { "Pathmark: report" }
+                h1 { (TITLE) }
                 p { "How should unequal pieces of work be scheduled on many cores, and what does accuracy cost in time? "
                     "Every number below comes from the rows in " code { "records.csv" } " beside this page; " code { "METHODOLOGY.md" } " says how." }
                 nav { @for section in sections { a href={ "#" (section.name) } { (section.title) } } }

@@ -36,6 +36,7 @@ pub use source::{OwnScene, SCENES};
 use crate::effect::{EffectSet, Effects};
 use crate::material::Material;
 use crate::math::{Frame, Ray, Rgb, Vec3, dot};
+use std::path::PathBuf;
 
 /// What is known of a thing in the scene besides its surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,6 +105,8 @@ pub struct Scene {
     pub about: String,
     /// SHA-256 of everything that defines it, shortened to 16 hexadecimal digits.
     pub hash: String,
+    /// The files on disk that it was read from: its own, its bases' and its meshes'.
+    pub files: Vec<PathBuf>,
     /// The estimator that is used unless another is asked for.
     pub default_estimator: Option<String>,
     /// Where it is seen from.

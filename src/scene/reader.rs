@@ -24,7 +24,7 @@
 
 use super::generator::{Generator, Made};
 use super::shape::{AnyShape, Primitives};
-use super::source::{Files, OwnScene, Source, source};
+use super::source::{Files, Folder, OwnScene, Source, source};
 use super::{Camera, Fog, Object, PointLight, Scene};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
@@ -34,6 +34,7 @@ use crate::math::Rgb;
 use crate::scene::camera::CameraFile;
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::rc::Rc;
 
 #[derive(Deserialize)]
@@ -87,6 +88,7 @@ struct Draft {
     generator: Option<Generator>,
     parts: Vec<Part>,
     hash: Fingerprint,
+    files: Vec<PathBuf>,
 }
 
 /// A scene that is the base of a base and so on, further than this, is taken for a circle.
@@ -129,6 +131,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         name,
         about,
         hash: String::new(),
+        files: draft.files,
         default_estimator: draft.estimator,
         camera,
         primitives: Primitives::default(),
@@ -150,7 +153,7 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
     let mut owners: Vec<Vec<u32>> = vec![Vec::new(); scene.primitives.counts().len()];
     for (index, part) in (0u32..).zip(parts) {
         let before = scene.primitives.counts();
-        let mut files = Files { folder: &part.source.folder, hash };
+        let mut files = Files { folder: &part.source.folder, hash, read: &mut scene.files };
         for shape in part.shapes {
             shape
                 .add_to(&mut scene.primitives, &mut files)
@@ -202,10 +205,14 @@ fn draft(source: &Rc<Source>, depth: usize, own: &[OwnScene]) -> Result<(Draft, 
             generator: None,
             parts: Vec::new(),
             hash: Fingerprint::default(),
+            files: Vec::new(),
         },
         Some(base) => base_of(source, base, depth, own)?,
     };
     draft.hash.update(source.text.as_bytes());
+    if matches!(source.folder, Folder::Disk(_)) {
+        draft.files.push(PathBuf::from(&source.file));
+    }
     draft.estimator = file.estimator.or(draft.estimator);
     draft.background = file.background.or(draft.background);
     draft.camera = file.camera.map(Camera::from).or(draft.camera);

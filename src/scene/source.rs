@@ -35,9 +35,14 @@ pub(super) enum Folder {
 impl Folder {
     /// What to call a file of that name in errors.
     pub(super) fn place_of(&self, name: &str) -> String {
+        self.path_of(name).map_or_else(|| name.to_string(), |path| path.display().to_string())
+    }
+
+    /// Where a file of that name is on disk.
+    fn path_of(&self, name: &str) -> Option<PathBuf> {
         match self {
-            Self::Embedded => name.to_string(),
-            Self::Disk(folder) => folder.join(name).display().to_string(),
+            Self::Embedded => None,
+            Self::Disk(folder) => Some(folder.join(name)),
         }
     }
 
@@ -56,6 +61,7 @@ impl Folder {
 pub(super) struct Files<'a> {
     pub(super) folder: &'a Folder,
     pub(super) hash: &'a mut Fingerprint,
+    pub(super) read: &'a mut Vec<PathBuf>,
 }
 
 impl Files<'_> {
@@ -63,6 +69,7 @@ impl Files<'_> {
     pub(super) fn read(&mut self, name: &str) -> Result<String> {
         let text = self.folder.read(name)?;
         self.hash.update(text.as_bytes());
+        self.read.extend(self.folder.path_of(name));
         Ok(text)
     }
 }

@@ -111,6 +111,28 @@ fn rows_that_are_none_are_refused_with_their_line() {
     }
 }
 
+/// Rows of another version have other columns; what a reader needs to know is the version.
+#[test]
+fn rows_of_another_version_are_told_as_such() {
+    let (folder, records) = after_a_run();
+    let whole = fs::read_to_string(&records).unwrap();
+    let (header, rows) = whole.split_once('\n').unwrap();
+    let rows: Vec<&str> = rows.lines().map(|row| row.split_once(',').unwrap().1).collect();
+    for (columns, version) in [("a_column_that_was", "4"), ("two,columns", "6"), ("mse", "")] {
+        // Columns that there are no longer, instead of those behind the first.
+        let header = header.replacen("experiment", columns, 1);
+        let value = if columns.contains(',') { "1,2" } else { "1" };
+        let mut text = format!("{header}\n");
+        for row in &rows {
+            text += &format!("{version},{value},{}\n", row.split_once(',').unwrap().1);
+        }
+        fs::write(&records, text).unwrap();
+        let said = ["records.csv:2:", "schema", "another version"];
+        refused(folder.path(), &["report", "out"], 2, &said);
+        refused(folder.path(), &RESUME, 2, &said);
+    }
+}
+
 #[test]
 fn a_file_that_is_no_text_is_refused() {
     let (folder, records) = after_a_run();
@@ -135,7 +157,7 @@ fn a_damaged_machine_or_definition_is_refused_at_its_place() {
 }
 
 /// Waits until a running sweep has its file, and insists that a second one stays away from it.
-fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str) {
+fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str, said: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), &TINY.replace("spp = [4]", "spp = [4000]"));
     let mut sweep = pathmark(folder.path(), first).spawn().unwrap();
@@ -159,13 +181,13 @@ fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str) {
     assert!(is_there, "{} was moved away", records.display());
     for refusal in refusals {
         let message = refusal.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-        assert!(message.contains("records.csv"), "{message}");
+        assert!(message.contains(said), "{message}");
     }
 }
 
 #[test]
 fn two_sweeps_at_once_do_not_share_a_folder() {
-    second_is_refused(&RUN, &[&RUN, &RESUME], "out/tiny/records.csv");
+    second_is_refused(&RUN, &[&RUN, &RESUME], "out/tiny/records.csv", "records.csv");
 }
 
 #[test]
@@ -173,5 +195,6 @@ fn a_second_reproduction_leaves_the_first_ones_folder() {
     let reproduce: [&str; 3] = ["reproduce", "--out", "out"];
     // Experiments run in the order of their names.
     let (first, _) = EXPERIMENTS.first().unwrap();
-    second_is_refused(&reproduce, &[&reproduce], &format!("out/{first}/records.csv"));
+    let records = format!("out/{first}/records.csv");
+    second_is_refused(&reproduce, &[&reproduce], &records, "out = out: is being written by another process");
 }

@@ -108,3 +108,13 @@ fn each_wrong_reference_is_refused_at_its_place() {
     write_tiny(folder.path(), &base.replace("reference-spp = 40\n", ""));
     refused(folder.path(), &["run", "tiny.toml", "--out", "new"], 2, &["tiny.toml", "reference-spp", "from 40"]);
 }
+
+/// The experiment's folder has its name, in the folder of results: a name that leads elsewhere is refused.
+#[test]
+fn names_that_lead_elsewhere_are_refused() {
+    for name in ["...toml", "..toml", "earlier.toml", "guards.toml", "references.toml", "report.html.toml"] {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(name), TINY).unwrap();
+        refused(folder.path(), &["run", name, "--out", "results/out"], 2, &["experiment", name, "another file name"]);
+    }
+}

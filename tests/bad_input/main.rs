@@ -11,6 +11,7 @@ mod meshes;
 mod outputs;
 #[path = "../support/program.rs"]
 mod program;
+mod same_file;
 mod scenes;
 #[path = "../support/snapshot.rs"]
 mod snapshot;

@@ -16,10 +16,10 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
     fs::create_dir(folder.path().join("folder.png")).unwrap();
     let long = format!("{}.png", "x".repeat(300));
     let mut cases: Vec<(&str, &[&str])> = vec![
-        ("folder.png", &["output", "folder.png", "directory"]),
-        ("nowhere/image.png", &["output", "nowhere/image.png", "does not exist"]),
-        ("file/image.png", &["output", "file/image.png", "not a directory"]),
-        (&long, &["output", "xxx.png", "too long"]),
+        ("folder.png", &["image", "folder.png", "directory"]),
+        ("nowhere/image.png", &["image", "nowhere/image.png", "does not exist"]),
+        ("file/image.png", &["image", "file/image.png", "not a directory"]),
+        (&long, &["image", "xxx.png", "too long"]),
         ("image.tga", &["image.tga", "png", "ppm", "bmp", "hdr", "exr", "pfm"]),
         ("image", &["image", "png", "pfm"]),
         ("file", &["file", "png", "pfm"]),
@@ -27,12 +27,19 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
     ];
     if cfg!(target_os = "linux") {
         std::os::unix::fs::symlink("/dev/full", folder.path().join("full.png")).unwrap();
-        cases.push(("full.png", &["output", "full.png", "not a regular file"]));
+        cases.push(("full.png", &["image", "full.png", "not a regular file"]));
     }
     for (output, said) in cases {
         println!("{output}");
         refused(folder.path(), &[LONG.as_slice(), &["-o", output]].concat(), 2, said);
     }
+    // Each option is called by its own name.
+    for (option, field) in [("--trace", "trace"), ("--checkpoint", "checkpoint")] {
+        let said = format!("{field} = nowhere/file: its directory does not exist");
+        refused(folder.path(), &[LONG.as_slice(), &[option, "nowhere/file"]].concat(), 2, &[&said]);
+    }
+    let said = "csv = nowhere/file: its directory does not exist";
+    refused(folder.path(), &["bounces", "cornell", "--csv", "nowhere/file"], 2, &[said]);
 }
 
 /// /proc refuses new files even from root.
@@ -65,6 +72,66 @@ fn an_output_folder_that_is_a_file_is_refused() {
         refused(folder.path(), arguments, 3, &["file"]);
     }
     refused(folder.path(), &["report", "file"], 2, &["folder", "file"]);
+}
+
+/// In folders of results, too, nothing is overwritten that this program has not written, or that is an input.
+#[test]
+fn files_of_others_in_a_folder_of_results_are_kept() {
+    let run: &[&str] = &["run", "tiny.toml", "--out", "out"];
+    let check: &[&str] = &["check", "--out", "out"];
+    let cases: &[(&str, &[&str])] = &[
+        ("out/report.html", run),
+        ("out/tiny/machine.toml", run),
+        ("out/tiny/experiment.toml", run),
+        ("out/tiny/calibration.csv", run),
+        ("out/tiny/notes.txt", run),
+        ("out/tiny/machine.toml", &["run", "tiny.toml", "--out", "out", "--resume"]),
+        ("out/report.html", &["reproduce", "--out", "out"]),
+        ("out/guards/machine.toml", &["reproduce", "--out", "out", "--resume"]),
+        ("out/report.html", check),
+        ("out/guards/guards.csv", check),
+        ("out/guards/machine.toml", check),
+        ("out/report.html", &["report", "out"]),
+        ("out/report.html/file", run),
+        ("out/report.html/file", &["reproduce", "--out", "out"]),
+        ("out/report.html/file", check),
+        ("out/tiny/records.csv/file", run),
+        ("out/guards/guards.csv/file", check),
+        ("out/forecast.csv", &["simulate", "out/forecast.csv", "--out", "upper/out"]),
+        ("out/forecast-makespan.svg", &["simulate", "out/forecast-makespan.svg", "--out", "out/."]),
+    ];
+    for (file, arguments) in cases {
+        println!("{arguments:?} beside {file}");
+        let folder = tempfile::tempdir().unwrap();
+        super::experiment::write_tiny(folder.path(), super::experiment::TINY);
+        std::os::unix::fs::symlink(".", folder.path().join("upper")).unwrap();
+        let path = folder.path().join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        if arguments[0] == "simulate" {
+            let render = ["render", "cornell", "--size", "8x8", "--spp", "4", "--strategy", "serial"];
+            let trace = ["--trace", file, "-o", "image.png"];
+            finish(pathmark(folder.path(), &[&render[..], &trace].concat())).with_code(0);
+        } else {
+            fs::write(path, "the user's").unwrap();
+        }
+        refused(folder.path(), arguments, 2, &["out"]);
+    }
+    // An experiment whose copy would replace it.
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("experiment")).unwrap();
+    fs::write(folder.path().join("experiment/experiment.toml"), super::experiment::TINY).unwrap();
+    refused(folder.path(), &["run", "experiment/experiment.toml", "--out", "."], 2, &["the experiment", "overwritten"]);
+}
+
+/// What this program wrote it may replace: the page of an earlier run.
+#[test]
+fn pages_of_its_own_are_drawn_again() {
+    let folder = tempfile::tempdir().unwrap();
+    super::experiment::write_tiny(folder.path(), super::experiment::TINY);
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
+    fs::rename(folder.path().join("out/tiny"), folder.path().join("out/before")).unwrap();
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
+    finish(pathmark(folder.path(), &["report", "out"])).with_code(0);
 }
 
 /// A file that was there stays as it was when the command is refused for another reason.

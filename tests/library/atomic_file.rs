@@ -3,6 +3,7 @@
 use std::fs;
 use std::io;
 use std::path::Path;
+use std::time::{Duration, SystemTime};
 
 use pathmark::atomic_file::{check_writable, write};
 use pathmark::error::Error;
@@ -52,12 +53,12 @@ fn a_body_that_fails_anywhere_leaves_the_old_file() {
 fn asking_leaves_nothing_behind() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("out.csv");
-    check_writable(&path).unwrap();
+    check_writable("image", &path).unwrap();
     assert!(names(directory.path()).is_empty());
     fs::write(&path, "old").unwrap();
-    check_writable(&path).unwrap();
+    check_writable("image", &path).unwrap();
     assert_eq!(fs::read(&path).unwrap(), b"old");
-    check_writable(&directory.path().join("n".repeat(255))).unwrap();
+    check_writable("image", &directory.path().join("n".repeat(255))).unwrap();
 }
 
 #[test]
@@ -78,21 +79,57 @@ fn a_name_that_can_be_no_file_is_the_users_to_mend() {
         ("/".into(), "not the name of a file"),
     ];
     for (path, reason) in cases {
-        for error in [check_writable(&path).unwrap_err(), write(&path, |_| Ok(())).unwrap_err()] {
-            assert!(matches!(&error, Error::Input(input) if input.field == "output"), "{error}");
+        for (field, asked) in [("image", check_writable("image", &path)), ("file", write(&path, |_| Ok(())))] {
+            let error = asked.unwrap_err();
+            assert!(matches!(&error, Error::Input(input) if input.field == field), "{error}");
         }
         if !path.ends_with("..") {
-            assert!(check_writable(&path).unwrap_err().to_string().contains(reason), "{}", path.display());
+            assert!(check_writable("image", &path).unwrap_err().to_string().contains(reason), "{}", path.display());
         }
     }
     assert_eq!(names(root), ["file", "folder"]);
     assert_eq!(fs::read(root.join("file")).unwrap(), b"old");
 }
 
+/// What a killed writer leaves goes with the next write into its folder. A living writer's file stays, and so does one of another host that may be
+/// living: where locks do not reach from host to host, only its age tells.
+#[test]
+fn the_next_writer_removes_what_killed_ones_left() {
+    let directory = tempfile::tempdir().unwrap();
+    let (root, at) = (directory.path(), |name: &str| directory.path().join(name));
+    let another = |boot: &str| at(&format!(".pathmark-{boot}-AbCdEf.tmp"));
+    for path in [another("other"), another("older"), at(".pathmark-notes.txt"), at("pathmark-1.tmp")] {
+        fs::write(path, "x").unwrap();
+    }
+    let yesterday = SystemTime::now() - Duration::from_hours(25);
+    let file = fs::File::options().write(true).open(another("older")).unwrap();
+    file.set_modified(yesterday).unwrap();
+    drop(file);
+    // A writer in its midst, which is asked for the name of its file.
+    let mut inner = Vec::new();
+    write(&at("slow.csv"), |out| {
+        out.write_all(b"first")?;
+        inner = names(root);
+        write(&at("quick.csv"), |out| out.write_all(b"x")).unwrap();
+        // As a kill would: the file stays, and nobody has it open.
+        let own = inner.iter().find(|name| name.ends_with(".tmp") && !name.contains("other") && !name.starts_with('p'));
+        let left = own.unwrap().replace(".tmp", "-dead.tmp");
+        fs::write(at(&left), "x").unwrap();
+        assert!(names(root).contains(&left));
+        check_writable("image", &at("another.csv")).unwrap();
+        assert!(!names(root).contains(&left), "{:?}", names(root));
+        out.write_all(b", second")
+    })
+    .unwrap();
+    assert_eq!(fs::read(at("slow.csv")).unwrap(), b"first, second");
+    let expected = [".pathmark-notes.txt", ".pathmark-other-AbCdEf.tmp", "pathmark-1.tmp", "quick.csv", "slow.csv"];
+    assert_eq!(names(root), expected);
+}
+
 #[test]
 fn a_file_name_alone_is_written_here() {
     // Only asked: a test that changes the working directory would disturb the others.
-    check_writable(Path::new("a-name-alone.csv")).unwrap();
+    check_writable("image", Path::new("a-name-alone.csv")).unwrap();
 }
 
 #[cfg(unix)]
@@ -121,8 +158,16 @@ mod unix {
         assert_eq!(fs::read(root.join("far/file")).unwrap(), b"new");
         assert!(fs::symlink_metadata(root.join("link")).unwrap().is_symlink());
         assert_eq!(names(&root.join("far")), ["file"]);
+        // A link to a file that is not there yet makes that file.
+        symlink("far/later", root.join("dangling")).unwrap();
+        check_writable("image", &root.join("dangling")).unwrap();
+        write(&root.join("dangling"), |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(root.join("far/later")).unwrap(), b"new");
+        assert!(fs::symlink_metadata(root.join("dangling")).unwrap().is_symlink());
+        symlink("nowhere/file", root.join("astray")).unwrap();
+        assert_eq!(write(&root.join("astray"), |_| Ok(())).unwrap_err().exit_code(), 2);
         symlink("loop", root.join("loop")).unwrap();
-        assert!(check_writable(&root.join("loop")).is_err());
+        assert!(check_writable("image", &root.join("loop")).is_err());
     }
 
     #[test]
@@ -130,7 +175,7 @@ mod unix {
         use std::os::unix::ffi::OsStrExt;
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join(std::ffi::OsStr::from_bytes(b"out-\xff.csv"));
-        check_writable(&path).unwrap();
+        check_writable("image", &path).unwrap();
         write(&path, |out| out.write_all(b"x")).unwrap();
         assert_eq!(fs::read(path).unwrap(), b"x");
     }
@@ -139,7 +184,9 @@ mod unix {
     #[test]
     fn a_refusal_of_the_system_is_told_as_one() {
         // Nobody, root included, may create a file in /proc.
-        for error in [check_writable(Path::new("/proc/out.csv")), write(Path::new("/proc/out.csv"), |_| Ok(()))] {
+        for error in
+            [check_writable("image", Path::new("/proc/out.csv")), write(Path::new("/proc/out.csv"), |_| Ok(()))]
+        {
             let error = error.unwrap_err();
             assert!(matches!(&error, Error::System { .. }), "{error}");
             assert!(error.to_string().starts_with("writing /proc/out.csv: "), "{error}");
@@ -152,7 +199,7 @@ mod unix {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("socket");
         let _socket = std::os::unix::net::UnixListener::bind(&path).unwrap();
-        assert_eq!(check_writable(&path).unwrap_err().exit_code(), 2);
+        assert_eq!(check_writable("image", &path).unwrap_err().exit_code(), 2);
         assert_eq!(write(&path, |_| Ok(())).unwrap_err().exit_code(), 2);
         assert!(!fs::metadata(&path).unwrap().is_file());
     }

@@ -34,8 +34,11 @@ const RULES: &[Rule] = &[
     beside("input", 0, &["error", "math"]), // errors with a place; numbers that become vectors and colours
     rule("disk", 0),
     beside("simd", 0, &["math"]), // the same formulas, several numbers at once
-    beside("lock", 0, &["error"]),
-    beside("atomic_file", 0, &["error", "disk"]),
+    rule("file_id", 0),
+    beside("lock", 0, &["error", "digest", "file_id"]),
+    beside("temporary", 0, &["disk", "lock"]),
+    beside("atomic_file", 0, &["error", "disk", "file_id", "temporary"]),
+    beside("files", 0, &["error", "file_id", "atomic_file"]),
     rule("image_io", 1),
     beside("metric", 1, &["image_io"]), // metrics compare images
     only("analysis", 1, &[]),           // statistics on plain numbers, whatever was measured

@@ -4,7 +4,8 @@ use crate::scene_text::{Ball, load_scene};
 use pathmark::analysis::z_test::{critical_value, normal_quantile, z_score};
 use pathmark::film::Film;
 use pathmark::kernel::Spec;
-use pathmark::measure::{CONFIDENCE, Goal, Position, Rounds, Settings, Setup, Warning};
+use pathmark::math::Rgb;
+use pathmark::measure::{CONFIDENCE, Checkpoint, Goal, Position, Rounds, Settings, Setup, Warning};
 use pathmark::scene::{Scene, load};
 use std::sync::Arc;
 
@@ -90,6 +91,45 @@ fn a_goal_changes_no_bit() {
     }
     // Stops on the way do not move the end; a limit that nothing fits in leaves one round.
     assert_eq!((reached[0], reached[1], reached[4]), (reached[5], 1, 53));
+}
+
+/// A film that is continued, by this process or by another one from a checkpoint, has all that happened in it, and each sample once: also those of
+/// an unfinished block, which every round renders again.
+#[test]
+fn counts_are_of_the_whole_film() {
+    let mut scene = load("cornell").unwrap();
+    // The reader of scenes would refuse a lamp that shines NaN: every path that meets it is an invalid sample.
+    let lamp = scene.objects.iter_mut().find(|object| !object.emission.is_black()).unwrap();
+    lamp.emission = Rgb { r: f64::NAN, g: f64::NAN, b: f64::NAN };
+    let scene = Arc::new(scene);
+    let folder = tempfile::tempdir().unwrap();
+    let at_once = setup(&scene, 24, 16, 5, 53).run(None).unwrap();
+    assert!(at_once.counts.invalid > 20 && at_once.counts.paths == 24 * 16 * 53);
+    for (index, steps) in [&[53][..], &[1, 2, 3, 53], &[16, 48, 53], &[7, 40, 41, 53], &[52, 53]].iter().enumerate() {
+        let path = folder.path().join(index.to_string());
+        let mut alone = Rounds::new(setup(&scene, 24, 16, 5, 16)).unwrap();
+        for spp in *steps {
+            alone.extend_to(*spp, None).unwrap();
+            // A new process for each step.
+            let mut rounds = Rounds::new(setup(&scene, 24, 16, 5, 16)).unwrap();
+            let (checkpoint, saved) = Checkpoint::open(&path, rounds.setup(), None).unwrap();
+            if let Some(saved) = saved {
+                rounds.adopt(saved.film, saved.history);
+            }
+            rounds.extend_to(*spp, None).unwrap();
+            checkpoint.save(&rounds, Position { rendering_s: 1.0, look: *spp }).unwrap();
+        }
+        let mut last = Rounds::new(setup(&scene, 24, 16, 5, 16)).unwrap();
+        let saved = Checkpoint::open(&path, last.setup(), None).unwrap().1.unwrap();
+        last.adopt(saved.film, saved.history);
+        for rounds in [&alone, &last] {
+            let outcome = rounds.outcome();
+            assert_eq!(outcome.counts, at_once.counts, "{steps:?}");
+            assert_eq!(outcome.invalid.len(), at_once.invalid.len(), "{steps:?}");
+            let warning = |warning: &Warning| matches!(warning, Warning::InvalidSamples { .. });
+            assert!(outcome.warnings.iter().any(warning), "{steps:?}");
+        }
+    }
 }
 
 /// On the way to more samples than are asked for now, as a checkpoint may say: it stops where it is told to.

@@ -3,8 +3,12 @@
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{Finished, finish, pathmark};
+use crate::watchdog::Watchdog;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::time::Duration;
 
 /// Runs the small experiment with one more table; rows of `other`, and what the program said.
 fn run(folder: &Path, external: &str) -> (Vec<BTreeMap<String, String>>, Finished) {
@@ -80,4 +84,41 @@ fn a_command_without_a_place_for_the_seed_is_refused() {
     let (rows, finished) = run(folder.path(), &table(r#""renderer", "{out}", "{spp}""#));
     let refused = finished.with_code(2);
     assert!(refused.err.contains("command") && refused.err.contains("{seed}") && rows.is_empty(), "{}", refused.err);
+}
+
+/// Whether a process runs; one that has ended and that nobody waits for is no more than its number.
+fn runs(process: &str) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+    status.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with('Z'))
+}
+
+/// Neither the other program nor what it has started outlives the sweep, however that ends, nor its cell.
+#[test]
+fn it_ends_with_the_sweep() {
+    let watchdog = Watchdog::new(Duration::from_mins(2));
+    // Its own process, one that it starts, and the cell's, which is its parent.
+    let command =
+        r#""sh", "-c", "sleep 1000 & echo $$ $! $PPID > pids.tmp; mv pids.tmp pids; wait", "{out}", "{spp}", "{seed}""#;
+    for (signal, victim) in
+        [(Signal::SIGTERM, None), (Signal::SIGKILL, None), (Signal::SIGTERM, Some(2)), (Signal::SIGKILL, Some(2))]
+    {
+        watchdog.now(format!("after {signal} to {victim:?}"));
+        let folder = tempfile::tempdir().unwrap();
+        let text = TINY.replace("[quick]", &format!("{}\n[quick]", table(command).replace("[3, 4]", "[3]")));
+        write_tiny(folder.path(), &text.replace("repetitions = 3", "repetitions = 1"));
+        let mut sweep = pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"]).spawn().unwrap();
+        let path = folder.path().join("pids");
+        while !path.exists() {
+            assert!(sweep.try_wait().unwrap().is_none(), "the sweep ends with its cells");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let text = std::fs::read_to_string(path).unwrap();
+        let pids: Vec<&str> = text.split_whitespace().collect();
+        let victim = victim.map_or_else(|| sweep.id().to_string(), |index: usize| pids[index].to_string());
+        kill(Pid::from_raw(victim.parse().unwrap()), signal).unwrap();
+        while pids.iter().any(|process| runs(process)) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        sweep.wait().unwrap();
+    }
 }

@@ -1,5 +1,6 @@
 //! What the program `pathmark` does as a user runs it: one test program for all verbs.
 
+mod changed_inputs;
 mod command_line;
 #[path = "../support/experiment.rs"]
 mod experiment;

@@ -2,9 +2,10 @@
 //! cross form. Both are refused where errors are measured, whoever asks.
 
 use crate::program::{Finished, finish, pathmark, wait};
-use pathmark::experiment::{CellJob, PointJob, reference_seed};
+use pathmark::experiment::{CellJob, HalfFile, PointJob, SceneVersion, reference_seed};
+use pathmark::film::read_film;
 use pathmark::kernel::Spec;
-use pathmark::measure::Settings;
+use pathmark::measure::{Settings, Setup};
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,21 +22,24 @@ fn halves(folder: &Path) -> [PathBuf; 2] {
 
 /// What a sweep's child answers for an image of this seed against these halves.
 fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
+    let settings = Settings {
+        scene: "cornell".to_string(),
+        spp: 4,
+        spec: Spec { width: 16, height: 12, seed, estimator: "bsdf".to_string(), ..Spec::default() },
+        decomposition: "rows".to_string(),
+        strategy: "serial".to_string(),
+        threads: 1,
+        ..Settings::default()
+    };
+    let half = |path: PathBuf| HalfFile { checksum: read_film(&path).unwrap().1.checksum(), path };
     let job = CellJob {
         experiment: "shared-seeds".to_string(),
         points: vec![PointJob { cell: "one".to_string(), spp: 4, image: None }],
         repetition: 0,
         order: 0,
-        settings: Settings {
-            scene: "cornell".to_string(),
-            spp: 4,
-            spec: Spec { width: 16, height: 12, seed, estimator: "bsdf".to_string(), ..Spec::default() },
-            decomposition: "rows".to_string(),
-            strategy: "serial".to_string(),
-            threads: 1,
-            ..Settings::default()
-        },
-        references: Some(references),
+        scene: SceneVersion::of(&Setup::prepare(settings.clone()).unwrap()),
+        settings,
+        references: Some(references.map(half)),
         external: None,
         trace: None,
     };

@@ -90,11 +90,38 @@ fn killed_at_any_instant_it_goes_on_to_the_same_image() {
         }
         println!("{kills} kills on the way to {goal:?}");
         assert!(kills >= 5, "only {kills} kills");
-        // Nothing is left to do, and no temporary file is left over but those of killed processes.
+        // Nothing is left to do, and what the killed processes left is gone.
         let again = json(&run(folder.path(), &options).out);
+        let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        let left: Vec<_> = names.filter(|name| name.to_string_lossy().starts_with(".pathmark-")).collect();
+        assert!(left.is_empty(), "{left:?}");
         assert_eq!((&again["checksum"], &again["rounds"]), (&expected["checksum"], &0.into()));
         fs::remove_file(folder.path().join("box.checkpoint")).unwrap();
     }
+}
+
+/// A light beyond single precision makes invalid samples. What a checkpoint goes on from has them as well, and so does a render that finds
+/// nothing left to do.
+#[test]
+fn invalid_samples_are_not_forgotten_on_resume() {
+    let folder = tempfile::tempdir().unwrap();
+    let lamp = "[[objects]]\nname = \"light\"\nemission = [1e60, 1e60, 1e60]\n";
+    fs::write(folder.path().join("bright.toml"), format!("about = \"bright\"\nbase = \"cornell\"\n{lamp}")).unwrap();
+    let bright = ["render", "bright.toml", "--size", "24x16", "--precision", "f32", "--json"];
+    let render = |options: &[&str], code: i32| {
+        let finished = finish(pathmark(folder.path(), &[&bright, options].concat())).with_code(code);
+        assert_eq!(finished.err.contains("samples were NaN, infinite or negative"), code == 1, "{}", finished.err);
+        ["invalid_samples", "paths", "rays", "checksum"].map(|column| json(&finished.out)[column].clone())
+    };
+    let expected = render(&["--spp", "20", "--strict"], 1);
+    assert!(expected[0].as_u64() > Some(0), "{expected:?}");
+    for _ in 0..2 {
+        assert_eq!(render(&["--spp", "20", "--checkpoint", "c", "--strict"], 1), expected);
+    }
+    // Twice the samples, from the checkpoint and at once.
+    let longer = render(&["--spp", "40", "--checkpoint", "c"], 0);
+    assert_eq!(longer, render(&["--spp", "40"], 0));
+    assert!(longer[0].as_u64() > expected[0].as_u64());
 }
 
 /// A checkpoint goes on to more samples, and to nothing else.

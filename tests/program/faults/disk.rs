@@ -184,28 +184,79 @@ fn the_rows_of_a_sweep() {
 }
 
 /// F01, the model of a power cut: the log of rows ends at any of its bytes. Every whole row before that is kept, nothing else is, and the rows
-/// that follow make the log what it was.
+/// that follow make the log what it was. Fields hold all that text can hold: a line end in one ends no row.
 #[test]
 fn a_log_that_ends_at_any_byte_keeps_its_whole_rows() {
     let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
     let path = folder.path().join("records.csv");
-    let rows: Vec<Record> = (0..3).map(record).collect();
-    let mut file = RecordsFile::create(&path).unwrap();
-    for row in &rows {
-        file.append(row).unwrap();
-    }
-    drop(file);
-    let whole = fs::read(&path).unwrap();
-    for end in 0..whole.len() {
-        fs::write(&path, &whole[..end]).unwrap();
-        let (mut file, kept) = RecordsFile::resume(&path).unwrap();
-        // The first line is the header.
-        let finished = whole[..end].split(|byte| *byte == b'\n').count().saturating_sub(2);
-        assert!(kept == rows[..finished], "{end} bytes: {} rows instead of {finished}", kept.len());
-        for row in &rows[finished..] {
+    for cell in ["a cell, quoted", "two\nlines", "\n", "\"\n\"\"\n", "\r\n,\"\n,", "it said:\n\n\"no\",\n"] {
+        let rows: Vec<Record> = (0..3).map(|repetition| Record { cell: cell.into(), ..record(repetition) }).collect();
+        fs::remove_file(&path).ok();
+        let mut file = RecordsFile::create(&path).unwrap();
+        let mut ends = Vec::new();
+        for row in &rows {
             file.append(row).unwrap();
+            ends.push(fs::metadata(&path).unwrap().len());
         }
-        assert!(fs::read(&path).unwrap() == whole, "{end} bytes: another log");
+        drop(file);
+        let whole = fs::read(&path).unwrap();
+        for end in 0..whole.len() {
+            fs::write(&path, &whole[..end]).unwrap();
+            let finished = ends.iter().filter(|row| **row <= end as u64).count();
+            assert_eq!(RecordsFile::has_rows(&path).unwrap(), finished > 0, "{cell:?}, {end} bytes");
+            let (mut file, kept) = RecordsFile::resume(&path).unwrap();
+            assert!(kept == rows[..finished], "{cell:?}, {end} bytes: {} rows instead of {finished}", kept.len());
+            for row in &rows[finished..] {
+                file.append(row).unwrap();
+            }
+            assert!(fs::read(&path).unwrap() == whole, "{cell:?}, {end} bytes: another log");
+        }
+        // An open quote before whole rows is damage and no torn row: nothing behind it is dropped.
+        let mut damaged = whole.clone();
+        damaged[ends[0] as usize] = b'"';
+        fs::write(&path, &damaged).unwrap();
+        let error = RecordsFile::resume(&path).err().expect("a refusal");
+        assert_eq!(error.exit_code(), 2, "{error}");
+        assert_eq!(fs::read(&path).unwrap(), damaged);
+    }
+}
+
+/// What somebody else does to the file under a running sweep, whoever ignores its lock: no row is written any more.
+#[test]
+fn a_log_that_was_replaced_or_changed_takes_no_row() {
+    type Deed = fn(&Path);
+    let deeds: [(&str, Deed); 7] = [
+        ("removed", |path| fs::remove_file(path).unwrap()),
+        ("moved away", |path| fs::rename(path, path.with_extension("old")).unwrap()),
+        ("its folder moved away", |path| {
+            let folder = path.parent().unwrap();
+            fs::rename(folder, folder.with_extension("old")).unwrap();
+        }),
+        ("replaced by a copy", |path| {
+            let copy = path.with_extension("copy");
+            fs::copy(path, &copy).unwrap();
+            fs::rename(&copy, path).unwrap();
+        }),
+        ("cut off", |path| fs::File::options().write(true).open(path).unwrap().set_len(100).unwrap()),
+        ("emptied", |path| drop(fs::File::create(path).unwrap())),
+        ("made longer", |path| {
+            io::Write::write_all(&mut fs::File::options().append(true).open(path).unwrap(), b"x").unwrap();
+        }),
+    ];
+    for (what, deed) in deeds {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sweep/records.csv");
+        fs::create_dir(path.parent().unwrap()).unwrap();
+        let mut file = RecordsFile::create(&path).unwrap();
+        file.append(&record(0)).unwrap();
+        file.check_own().unwrap();
+        deed(&path);
+        let before = fs::read(&path).ok();
+        for refused in [file.append(&record(1)), file.check_own()] {
+            let error = refused.expect_err(what);
+            assert!(error.exit_code() == 2 && error.to_string().contains("records.csv"), "{what}: {error}");
+        }
+        assert!(fs::read(&path).ok() == before, "{what}");
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
 use crate::watchdog::Watchdog;
-use pathmark::lock::{Lock, try_lock};
+use pathmark::lock::{Lock, Sharing, try_lock};
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::Child;
@@ -19,6 +19,12 @@ fn running(folder: &Path, arguments: &[&str], file: &str) -> Child {
         std::thread::sleep(Duration::from_millis(5));
     }
     child
+}
+
+/// How many lock files of ours are in a folder.
+fn lock_files(folder: &Path) -> usize {
+    let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.starts_with(".pathmark") && name.ends_with(".lock")).count()
 }
 
 fn end(mut child: Child) {
@@ -45,12 +51,14 @@ fn two_renders_do_not_share_a_checkpoint() {
         assert!(!folder.path().join("b.pfm").exists());
     }
     end(first);
-    // A lock file that a killed process left locks nothing, and goes with the next one that ends by itself.
-    assert!(folder.path().join("render.checkpoint.lock").exists());
+    // A lock file that a killed process left locks nothing, and goes with the next one that ends by itself. No file of the user has such a name.
+    assert_eq!(lock_files(folder.path()), 1);
     fs::remove_file(folder.path().join("render.checkpoint")).unwrap();
+    fs::write(folder.path().join("render.checkpoint.lock"), "the user's").unwrap();
     let short = LONG.map(|word| if word == "4000000" { "16" } else { word });
     finish(pathmark(folder.path(), &short)).with_code(0);
-    assert!(!folder.path().join("render.checkpoint.lock").exists());
+    assert_eq!(lock_files(folder.path()), 0);
+    assert_eq!(fs::read(folder.path().join("render.checkpoint.lock")).unwrap(), b"the user's");
 }
 
 #[test]
@@ -58,7 +66,9 @@ fn two_processes_do_not_render_into_one_folder_of_references() {
     let _watchdog = Watchdog::new(Duration::from_mins(2));
     let folder = tempfile::tempdir().unwrap();
     let reference = |spp| ["reference", "cornell", "--size", "64x48", "--out", "references", "--spp", spp];
-    let first = running(folder.path(), &reference("4000000"), "references/.lock");
+    fs::create_dir(folder.path().join("references")).unwrap();
+    fs::write(folder.path().join("references/.lock"), "the user's").unwrap();
+    let first = running(folder.path(), &reference("4000000"), "references/.pathmark.lock");
     let second = finish(pathmark(folder.path(), &reference("40"))).with_code(2);
     assert!(second.err.contains("references = references: is being written by another process"), "{}", second.err);
     // So does a sweep that needs one.
@@ -68,31 +78,75 @@ fn two_processes_do_not_render_into_one_folder_of_references() {
     assert!(sweep.err.contains("is being written by another process"), "{}", sweep.err);
     end(first);
     finish(pathmark(folder.path(), &reference("40"))).with_code(0);
-    assert!(!folder.path().join("references/.lock").exists());
+    assert_eq!(lock_files(&folder.path().join("references")), 0);
+    assert_eq!(fs::read(folder.path().join("references/.lock")).unwrap(), b"the user's");
     // What is there is only read, and may be on a disk that is only read: no lock is asked for.
-    let held = Lock::new(&folder.path().join("references/.lock"), "references", folder.path()).unwrap();
+    let held = Lock::of_folder(&folder.path().join("references"), "references", Sharing::Alone).unwrap();
     finish(pathmark(folder.path(), &reference("40"))).with_code(0);
     drop(held);
 }
 
+/// `reproduce` has the folder for itself from its first look at what an earlier run left until the page is written; others share it.
 #[test]
-fn a_lock_is_taken_by_one_at_a_time() {
+fn reproduce_shares_its_folder_with_nobody() {
+    let _watchdog = Watchdog::new(Duration::from_mins(5));
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    let out = folder.path().join("out");
+    let run = ["run", "tiny.toml", "--out", "out"];
+    let refused = |arguments: &[&str]| {
+        let second = finish(pathmark(folder.path(), arguments)).with_code(2);
+        assert!(second.err.contains("out = out: is being written by another process"), "{}", second.err);
+    };
+    let first = running(folder.path(), &["reproduce", "--out", "out"], "out/.pathmark.lock");
+    for second in [&["reproduce", "--out", "out"][..], &["reproduce", "--out", "./out/.", "--resume"]] {
+        let second = finish(pathmark(folder.path(), second)).with_code(2);
+        assert!(second.err.contains("is being written by another process"), "{}", second.err);
+    }
+    refused(&run);
+    refused(&["check", "--out", "out"]);
+    assert!(!out.join("earlier").exists());
+    end(first);
+    // Without anybody in it, and with one who runs another experiment.
+    fs::remove_dir_all(&out).unwrap();
+    fs::create_dir(&out).unwrap();
+    let other = Lock::of_folder(&out, "out", Sharing::Shared).unwrap();
+    finish(pathmark(folder.path(), &run)).with_code(0);
+    refused(&["reproduce", "--out", "out"]);
+    assert!(out.join("tiny/records.csv").exists() && !out.join("earlier").exists());
+    drop(other);
+    assert_eq!(lock_files(&out), 0);
+}
+
+#[test]
+fn a_lock_is_taken_by_one_at_a_time_or_shared() {
     let _watchdog = Watchdog::new(Duration::from_mins(1));
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("lock");
-    let take = || Lock::new(&path, "field", Path::new("what"));
-    let first = take().unwrap();
-    let error = take().unwrap_err();
-    assert_eq!(error.exit_code(), 2);
-    assert!(error.to_string().starts_with("field = what: is being written by another process"), "{error}");
+    let take = |sharing| Lock::of_folder(folder.path(), "field", sharing);
+    for (held, wanted) in
+        [(Sharing::Alone, Sharing::Alone), (Sharing::Alone, Sharing::Shared), (Sharing::Shared, Sharing::Alone)]
+    {
+        let first = take(held).unwrap();
+        let error = take(wanted).unwrap_err();
+        assert_eq!(error.exit_code(), 2);
+        let said = format!("field = {}: is being written by another process", folder.path().display());
+        assert!(error.to_string().starts_with(&said), "{error}");
+        drop(first);
+    }
+    // Those that share it go in any order, and the last takes the file with it.
+    let [first, second] = [(); 2].map(|()| take(Sharing::Shared).unwrap());
     drop(first);
+    assert_eq!(lock_files(folder.path()), 1);
+    assert!(take(Sharing::Alone).is_err());
+    drop(second);
+    assert_eq!(lock_files(folder.path()), 0);
     // Many want it at once: never do two have it, and each that waits no longer than its patience may get it.
     let inside = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {
                 for _ in 0..20 {
-                    let Ok(lock) = take() else { continue };
+                    let Ok(lock) = take(Sharing::Alone) else { continue };
                     assert_eq!(inside.fetch_add(1, std::sync::atomic::Ordering::SeqCst), 0);
                     std::thread::sleep(Duration::from_millis(1));
                     inside.fetch_sub(1, std::sync::atomic::Ordering::SeqCst);
@@ -101,7 +155,18 @@ fn a_lock_is_taken_by_one_at_a_time() {
             });
         }
     });
-    assert!(!path.exists());
+    assert_eq!(lock_files(folder.path()), 0);
+}
+
+/// A file of the user that has a lock file's name is neither locked nor removed.
+#[test]
+fn a_file_that_is_no_lock_file_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(".pathmark.lock");
+    fs::write(&path, "the user's").unwrap();
+    let error = Lock::of_folder(folder.path(), "field", Sharing::Alone).unwrap_err();
+    assert!(error.exit_code() == 2 && error.to_string().contains("is no lock file"), "{error}");
+    assert_eq!(fs::read(&path).unwrap(), b"the user's");
 }
 
 /// Who waited for a file that was removed meanwhile has locked nothing: the next one makes a file of that name and locks that.
@@ -113,7 +178,7 @@ fn the_lock_of_a_removed_file_is_none() {
     let [held, waited_for] = [(); 2].map(|()| File::create(&path).unwrap());
     held.lock().unwrap();
     std::thread::scope(|scope| {
-        let waiting = scope.spawn(|| try_lock(&waited_for, &path).unwrap());
+        let waiting = scope.spawn(|| try_lock(&waited_for, &path, Sharing::Alone).unwrap());
         // Long enough for it to find the lock held, and shorter than its patience.
         std::thread::sleep(Duration::from_millis(300));
         fs::remove_file(&path).unwrap();

@@ -1,0 +1,86 @@
+//! Which file a path leads to, however it is spelled: through links, upper folders, or another name of the same file.
+
+use std::ffi::OsString;
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+/// Links that are followed one after the other; the system follows as many.
+const MOST_LINKS: usize = 40;
+
+/// A file's identity.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct FileId {
+    device: u64,
+    inode: u64,
+    /// For a file that is not there yet: its path below the nearest folder that is.
+    below: Vec<OsString>,
+}
+
+impl FileId {
+    /// Of the file that reading or writing `path` would open or make.
+    pub fn of(path: &Path) -> io::Result<Self> {
+        let path = followed(path)?;
+        match fs::metadata(&path) {
+            Ok(data) => Ok(Self { device: data.dev(), inode: data.ino(), below: Vec::new() }),
+            // Whether it can be made there is for the one who makes it to say.
+            Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+                let name = path.file_name().ok_or(e)?;
+                let mut id = Self::of(folder_of(&path))?;
+                id.below.push(name.to_os_string());
+                Ok(id)
+            }
+            Err(e) => Err(e),
+        }
+    }
+}
+
+/// The folder that a file is in.
+pub fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The path that a link leads to, also where nothing is there yet; a path that is no link stays as it is.
+pub fn followed(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_path_buf();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&path) {
+            Ok(target) => path = folder_of(&path).join(target),
+            // No link, or nothing at all.
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::from_raw_os_error(libc::ELOOP))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    #[test]
+    fn spellings_of_one_file_are_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir_all(at("sub")).unwrap();
+        fs::write(at("there"), "").unwrap();
+        fs::hard_link(at("there"), at("hard")).unwrap();
+        for (link, target) in [("link", "there"), ("far", "link"), ("dangling", "sub/new"), ("up", "sub")] {
+            symlink(target, at(link)).unwrap();
+        }
+        let id = |name: &str| FileId::of(&at(name)).unwrap();
+        for spelling in ["./there", "sub/../there", "link", "far", "hard", "up/../there"] {
+            assert_eq!(id(spelling), id("there"), "{spelling}");
+        }
+        for spelling in ["sub/./new", "dangling", "up/new", "sub/../sub/new"] {
+            assert_eq!(id(spelling), id("sub/new"), "{spelling}");
+        }
+        assert_eq!(id("no/such/folder"), id("sub/../no/such/folder"));
+        for other in ["sub", "sub/there", "new", "sub/new2"] {
+            assert!(id(other) != id("there") && id(other) != id("sub/new"), "{other}");
+        }
+        symlink("loop", at("loop")).unwrap();
+        assert!(FileId::of(&at("loop")).is_err());
+    }
+}
