@@ -1,9 +1,16 @@
 //! What a surface does with light. One effect a file; this file is their table.
 //!
-//! To add one: write its file with a type that implements [`Bsdf`] and `Deserialize`, and give it a line in `materials!` below.
+//! To add one: write its file with a type that implements [`Bsdf`] and `Deserialize`, and give it its `mod` and a line in `materials!` below.
 
 mod angular;
+mod conductor;
+mod dielectric;
+mod diffuse;
+mod fresnel_mirror;
 mod ggx;
+mod kd_ks;
+mod mirror;
+mod polished;
 
 use crate::effect::{EffectSet, Effects, Entry};
 use crate::math::{Rgb, Vec3};
@@ -72,7 +79,7 @@ pub trait Bsdf {
 
 macro_rules! materials {
     ($($module:ident :: $Type:ident, $name:literal, $about:literal;)*) => {
-        $(mod $module; pub use $module::$Type;)*
+        $(pub use $module::$Type;)*
 
         #[derive(Clone, Copy)]
         enum Index { $($Type),* }

@@ -5,6 +5,12 @@
 //!
 //! To add one: a file with its `ENTRY` and a type that is an [`Output`], and its line in `outputs!` below.
 
+mod channel_piece;
+mod channel_pixel;
+mod locked;
+mod row_progress;
+mod slots;
+
 use crate::film::{Film, Plan, Sections};
 use crate::kernel::{Counts, Kernel};
 use std::ops::Range;
@@ -49,8 +55,6 @@ pub struct Entry {
 
 macro_rules! outputs {
     ($($module:ident),* $(,)?) => {
-        $(mod $module;)*
-
         /// The outputs, in the order in which they are listed; the first is the default.
         pub static OUTPUTS: &[Entry] = &[$($module::ENTRY),*];
     };

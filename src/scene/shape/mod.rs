@@ -9,7 +9,10 @@
 
 mod mesh;
 mod obj;
+mod plane;
 mod quad;
+mod sphere;
+mod triangle;
 
 use super::hierarchy::{Bounds, Hierarchy, Tests};
 use super::{HIERARCHY, Standpoint};
@@ -63,7 +66,7 @@ pub struct Nearest {
 
 macro_rules! primitives {
     ($($module:ident :: $Type:ident, $field:ident, $name:literal, $about:literal;)*) => {
-        $(mod $module; pub use $module::$Type;)*
+        $(pub use $module::$Type;)*
 
         #[derive(Clone, Copy)]
         enum Index { $($Type),* }
