@@ -46,6 +46,8 @@ impl Conductor {
 }
 
 impl Bsdf for Conductor {
+    const EXAMPLES: &'static [&'static str] = &["{ conductor = { alpha = ROUGHNESS, f0 = [1.0, 0.77, 0.34] } }"];
+
     /// By the normals that are seen; the weight is F G2/G1, at most 1. `None` where the facet points below the surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {

@@ -74,6 +74,11 @@ impl Dielectric {
 }
 
 impl Bsdf for Dielectric {
+    const EXAMPLES: &'static [&'static str] = &[
+        "{ dielectric = { eta = 1.5, tint = [0.9, 0.8, 0.7], fresnel = 'schlick' } }",
+        "{ dielectric = { eta = 1.5, tint = [0.9, 0.8, 0.7], fresnel = 'exact' } }",
+    ];
+
     /// Reflects with probability 1/4 + R/2 (smallpt's), so that neither lobe's weight exceeds 4/3.
     #[inline(always)]
     fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample> {

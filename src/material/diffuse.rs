@@ -21,6 +21,8 @@ pub struct Diffuse {
 }
 
 impl Bsdf for Diffuse {
+    const EXAMPLES: &'static [&'static str] = &["{ diffuse = { albedo = [0.75, 0.5, 0.25] } }"];
+
     #[inline(always)]
     fn sample(&self, _wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let wi = cosine_hemisphere(u);

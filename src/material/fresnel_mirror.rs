@@ -32,6 +32,8 @@ impl FresnelMirror {
 }
 
 impl Bsdf for FresnelMirror {
+    const EXAMPLES: &'static [&'static str] = &["{ fresnel-mirror = { eta = 12.85 } }"];
+
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, _u: [f64; 2]) -> Option<BsdfSample> {
         Some(self.reflected(wo))

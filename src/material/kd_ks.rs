@@ -92,6 +92,12 @@ impl KdKs {
 }
 
 impl Bsdf for KdKs {
+    const EXAMPLES: &'static [&'static str] = &[
+        "{ kd-ks = { kd = [0.3, 0.3, 0.25], eta = 1.5, roughness = ROUGHNESS, sampling = 'cosine' } }",
+        "{ kd-ks = { kd = [0.3, 0.3, 0.25], eta = 1.5, roughness = ROUGHNESS, sampling = 'vndf' } }",
+    ];
+    const IS_RECIPROCAL: bool = false;
+
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let fresnel = self.fresnel(wo);

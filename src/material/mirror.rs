@@ -19,6 +19,8 @@ pub struct Mirror {
 }
 
 impl Bsdf for Mirror {
+    const EXAMPLES: &'static [&'static str] = &["{ mirror = { albedo = [0.75, 0.5, 0.25] } }"];
+
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, _u: [f64; 2]) -> Option<BsdfSample> {
         Some(BsdfSample { wi: reflect(wo), weight: self.albedo, density: Density::Delta })

@@ -42,6 +42,13 @@ pub struct BsdfSample {
 
 /// Scattering at a point. Directions are unit, local (z is the shading normal on the side of `wo`) and point away from the surface.
 pub trait Bsdf {
+    /// Instances as scene files write them, at which every hard case of materials is tried; where one says `ROUGHNESS`, at many of them and
+    /// smooth.
+    const EXAMPLES: &'static [&'static str];
+
+    /// Whether its value is the same with `wo` and `wi` exchanged, as Helmholtz demands.
+    const IS_RECIPROCAL: bool = true;
+
     /// Scatters light that leaves along `wo`. `inside` tells that `wo` is on the inner side of the shape. `None` absorbs.
     fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample>;
 
@@ -100,6 +107,16 @@ macro_rules! materials {
         }
 
         impl Material {
+            /// [`Bsdf::EXAMPLES`] of all materials.
+            pub fn examples() -> Vec<&'static str> {
+                [$($Type::EXAMPLES),*].concat()
+            }
+
+            /// [`Bsdf::IS_RECIPROCAL`] of the material.
+            pub const fn is_reciprocal(&self) -> bool {
+                match self { $(Self::$Type(_) => $Type::IS_RECIPROCAL),* }
+            }
+
             /// The effect that it stands for.
             pub const fn effect(&self) -> Effects {
                 match self { $(Self::$Type(_) => $Type::EFFECT),* }

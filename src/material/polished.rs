@@ -39,6 +39,12 @@ impl Polished {
 }
 
 impl Bsdf for Polished {
+    const EXAMPLES: &'static [&'static str] = &[
+        "{ polished = { albedo = [0.75, 0.5, 0.25], reflectivity = 0.0 } }",
+        "{ polished = { albedo = [0.75, 0.5, 0.25], reflectivity = 0.3 } }",
+        "{ polished = { albedo = [0.75, 0.5, 0.25], reflectivity = 0.8 } }",
+    ];
+
     /// Mirrors with the probability `reflectivity`; what is left of the first number then serves the base.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, [u, v]: [f64; 2]) -> Option<BsdfSample> {

@@ -29,8 +29,10 @@ pub struct Entry {
     pub about: &'static str,
     /// Whether it measures linear radiance; otherwise what a display shows.
     pub linear: bool,
+    /// Its value for equal pictures.
+    pub best: f64,
     /// Picture, reference, which are of one size.
-    formula: fn(&Image, &Image) -> f64,
+    formula: Formula,
 }
 
 impl Entry {
@@ -41,59 +43,35 @@ impl Entry {
     }
 }
 
+type Formula = fn(&Image, &Image) -> f64;
+
+/// An error of linear radiance, 0 for equal pictures.
+const fn error(name: &'static str, about: &'static str, formula: Formula) -> Entry {
+    Entry { name, about, linear: true, best: 0.0, formula }
+}
+
+/// A number about what a display shows.
+const fn displayed(name: &'static str, about: &'static str, best: f64, formula: Formula) -> Entry {
+    Entry { name, about, linear: false, best, formula }
+}
+
 /// Every metric.
 pub const METRICS: &[Entry] = &[
-    Entry { name: "mse", about: "mean squared error over pixels and channels", linear: true, formula: pointwise::mse },
-    Entry {
-        name: "rmse",
-        about: "root of the mean squared error over pixels and channels",
-        linear: true,
-        formula: pointwise::rmse,
-    },
-    Entry {
-        name: "rel-mse",
-        about: "mean of the squared error over (squared reference + 0.01)",
-        linear: true,
-        formula: pointwise::rel_mse,
-    },
-    Entry { name: "mae", about: "mean absolute error over pixels and channels", linear: true, formula: pointwise::mae },
-    Entry {
-        name: "error-50",
-        about: "half of the pixels have at most this error (root of its mean square over channels)",
-        linear: true,
-        formula: percentile::half,
-    },
-    Entry {
-        name: "error-90",
-        about: "90 % of the pixels have at most this error",
-        linear: true,
-        formula: percentile::nine_tenths,
-    },
-    Entry {
-        name: "error-99",
-        about: "99 % of the pixels have at most this error",
-        linear: true,
-        formula: percentile::all_but_a_hundredth,
-    },
-    Entry { name: "error-100", about: "the largest error of a pixel", linear: true, formula: percentile::largest },
-    Entry {
-        name: "rmse-display",
-        about: "rmse of display values in [0, 1]",
-        linear: false,
-        formula: pointwise::rmse_display,
-    },
-    Entry {
-        name: "psnr",
-        about: "peak signal-to-noise ratio of display values, in dB",
-        linear: false,
-        formula: pointwise::psnr,
-    },
-    Entry {
-        name: "ssim",
-        about: "structural similarity of display luma; 1 is equal, NaN below 11 x 11 pixels",
-        linear: false,
-        formula: ssim::ssim,
-    },
+    error("mse", "mean squared error over pixels and channels", pointwise::mse),
+    error("rmse", "root of the mean squared error over pixels and channels", pointwise::rmse),
+    error("rel-mse", "mean of the squared error over (squared reference + 0.01)", pointwise::rel_mse),
+    error("mae", "mean absolute error over pixels and channels", pointwise::mae),
+    error(
+        "error-50",
+        "half of the pixels have at most this error (root of its mean square over channels)",
+        percentile::half,
+    ),
+    error("error-90", "90 % of the pixels have at most this error", percentile::nine_tenths),
+    error("error-99", "99 % of the pixels have at most this error", percentile::all_but_a_hundredth),
+    error("error-100", "the largest error of a pixel", percentile::largest),
+    displayed("rmse-display", "rmse of display values in [0, 1]", 0.0, pointwise::rmse_display),
+    displayed("psnr", "peak signal-to-noise ratio of display values, in dB", f64::INFINITY, pointwise::psnr),
+    displayed("ssim", "structural similarity of display luma; 1 is equal, NaN below 11 x 11 pixels", 1.0, ssim::ssim),
 ];
 
 /// The metric called `name`.
