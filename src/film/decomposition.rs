@@ -1,6 +1,6 @@
 //! How a film is cut into jobs: `--decomposition rows | bands:N | grid:N | tiles:WxH[:ORDER] | samples:B[:WxH]`.
 //!
-//! To add one: give it a line in `DECOMPOSITIONS` and a function that makes its plan.
+//! To add one: give it a line in `DECOMPOSITIONS` and a function that reads how it cuts.
 
 use super::order::ORDERS;
 use super::{Plan, SAMPLE_BLOCK, TileOrder};
@@ -48,13 +48,23 @@ pub const DECOMPOSITIONS: &[Entry] = &[
     },
 ];
 
+/// What a name and its parameters mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Cut {
-    Rows,
-    Bands(u32),
-    Grid(u32),
-    Tiles { width: u32, height: u32, order: TileOrder },
-    Samples { block: u32, width: u32, height: u32 },
+struct Cut {
+    columns: Parts,
+    rows: Parts,
+    order: TileOrder,
+    /// Samples of a pixel in one job; all of them if `None`.
+    block: Option<u32>,
+}
+
+/// How a side of the film is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Parts {
+    /// Into so many parts, no two of which differ by more than one.
+    Even(u32),
+    /// After every so many pixels, the last part taking what is left.
+    Every(u32),
 }
 
 /// A way to cut a film.
@@ -64,24 +74,28 @@ pub struct Decomposition {
     cut: Cut,
 }
 
+fn cut(columns: Parts, rows: Parts) -> Cut {
+    Cut { columns, rows, order: TileOrder::Scanline, block: None }
+}
+
 fn parse_rows(parameter: Option<&str>) -> Option<Cut> {
-    parameter.is_none().then_some(Cut::Rows)
+    parameter.is_none().then_some(cut(Parts::Even(1), Parts::Every(1)))
 }
 
 fn parse_bands(parameter: Option<&str>) -> Option<Cut> {
-    count(parameter.unwrap_or("20")).map(Cut::Bands)
+    Some(cut(Parts::Even(1), Parts::Even(count(parameter.unwrap_or("20"))?)))
 }
 
 fn parse_grid(parameter: Option<&str>) -> Option<Cut> {
-    count(parameter.unwrap_or("16")).map(Cut::Grid)
+    let (columns, rows) = nearly_square_factors(count(parameter.unwrap_or("16"))?);
+    Some(cut(Parts::Even(columns), Parts::Even(rows)))
 }
 
 fn parse_tiles(parameter: Option<&str>) -> Option<Cut> {
     let parameter = parameter.unwrap_or("32x32");
     let (size, order) = parameter.split_once(':').unwrap_or((parameter, "scanline"));
-    let (width, height) = tile_size(size)?;
     let order = ORDERS.iter().find(|(name, _)| *name == order)?.1;
-    Some(Cut::Tiles { width, height, order })
+    Some(Cut { order, ..tiles(size)? })
 }
 
 fn parse_samples(parameter: Option<&str>) -> Option<Cut> {
@@ -89,13 +103,12 @@ fn parse_samples(parameter: Option<&str>) -> Option<Cut> {
     let (block, size) = parameter.split_once(':').unwrap_or((parameter, "32x32"));
     // Other numbers of samples are no subtree of a pixel's sum.
     let block = count(block).filter(|block| block.is_power_of_two() && *block >= SAMPLE_BLOCK)?;
-    let (width, height) = tile_size(size)?;
-    Some(Cut::Samples { block, width, height })
+    Some(Cut { block: Some(block), ..tiles(size)? })
 }
 
-fn tile_size(text: &str) -> Option<(u32, u32)> {
-    let (width, height) = text.split_once('x')?;
-    Some((count(width)?, count(height)?))
+fn tiles(size: &str) -> Option<Cut> {
+    let (width, height) = size.split_once('x')?;
+    Some(cut(Parts::Every(count(width)?), Parts::Every(count(height)?)))
 }
 
 fn count(text: &str) -> Option<u32> {
@@ -124,7 +137,7 @@ impl Decomposition {
 
     /// Whether the jobs should come in the order of [`Plan::longest_first`].
     pub fn is_by_cost(&self) -> bool {
-        matches!(self.cut, Cut::Tiles { order: TileOrder::Cost, .. })
+        self.cut.order == TileOrder::Cost
     }
 
     /// Whether a pixel's samples may belong to several jobs.
@@ -134,40 +147,30 @@ impl Decomposition {
 
     /// Samples of a pixel in one job, where they may belong to several.
     pub(super) fn sample_block(&self) -> Option<u32> {
-        if let Cut::Samples { block, .. } = self.cut { Some(block) } else { None }
+        self.cut.block
     }
 
     /// Cuts a film of `width` x `height` pixels with the samples in `samples`.
     pub fn plan(&self, width: u32, height: u32, samples: &Range<u32>) -> Plan {
-        match self.cut {
-            Cut::Rows => Plan::from_boundaries(&[0, width], &even(height, height), samples),
-            Cut::Bands(bands) => Plan::from_boundaries(&[0, width], &even(height, bands), samples),
-            Cut::Grid(cells) => {
-                let (columns, rows) = nearly_square_factors(cells);
-                Plan::from_boundaries(&even(width, columns), &even(height, rows), samples)
-            }
-            Cut::Tiles { width: tile_width, height: tile_height, order } => {
-                let (columns, rows) = (steps(width, tile_width), steps(height, tile_height));
-                let order = order.permutation(columns.len() - 1, rows.len() - 1);
-                Plan::from_boundaries(&columns, &rows, samples).reordered(&order)
-            }
-            Cut::Samples { block, width: tile_width, height: tile_height } => {
-                let (columns, rows) = (steps(width, tile_width), steps(height, tile_height));
-                Plan::from_boundaries(&columns, &rows, samples).split_samples(block)
-            }
-        }
+        let (columns, rows) = (self.cut.columns.boundaries(width), self.cut.rows.boundaries(height));
+        let order = self.cut.order.permutation(columns.len() - 1, rows.len() - 1);
+        let plan = Plan::from_boundaries(&columns, &rows, samples).reordered(&order);
+        if let Some(block) = self.cut.block { plan.split_samples(block) } else { plan }
     }
 }
 
-/// Boundaries of `parts` parts of `length`, no two of which differ by more than one: boundary k is k · length / parts, rounded up.
-fn even(length: u32, parts: u32) -> Vec<u32> {
-    let parts = parts.min(length);
-    (0..=parts).map(|k| (u64::from(length) * u64::from(k)).div_ceil(u64::from(parts)) as u32).collect()
-}
-
-/// Boundaries every `step`, the last part taking what is left.
-fn steps(length: u32, step: u32) -> Vec<u32> {
-    (0..length).step_by(step as usize).chain(std::iter::once(length)).collect()
+impl Parts {
+    /// Where the parts of a side begin, and where the last one ends.
+    fn boundaries(self, length: u32) -> Vec<u32> {
+        match self {
+            // Boundary k is k · length / parts, rounded up.
+            Self::Even(parts) => {
+                let parts = parts.min(length);
+                (0..=parts).map(|k| (u64::from(length) * u64::from(k)).div_ceil(u64::from(parts)) as u32).collect()
+            }
+            Self::Every(step) => (0..length).step_by(step as usize).chain(std::iter::once(length)).collect(),
+        }
+    }
 }
 
 /// The two factors of `n` that are nearest to each other, the larger first: more columns than rows, as images are wider than high.
@@ -183,7 +186,7 @@ mod tests {
     /// Report D's own numbers (P16): 815 pixels over a 4 x 4 grid.
     #[test]
     fn report_d_grid() {
-        assert_eq!(even(815, 4), [0, 204, 408, 612, 815]);
+        assert_eq!(Parts::Even(4).boundaries(815), [0, 204, 408, 612, 815]);
         assert_eq!(
             (nearly_square_factors(16), nearly_square_factors(12), nearly_square_factors(7)),
             ((4, 4), (4, 3), (7, 1))

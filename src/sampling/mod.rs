@@ -112,19 +112,23 @@ pub struct Entry {
     pub about: &'static str,
     /// Whether a number depends on its address alone. Images of other samplers have no checksum.
     pub deterministic: bool,
+    /// Checksum of `cornell` at 96x64, 8 spp, seed 7, by the estimator `bsdf` and the scalar kernel. It is this program's own output and proves
+    /// nothing about light: case P18 compares it, so a build or a machine that changes a bit is noticed. A deliberate change of the
+    /// arithmetic raises `kernel::REVISION` and replaces it. None if the sampler is not deterministic.
+    pub checksum: Option<&'static str>,
 }
 
 macro_rules! samplers {
     (
-        keyed { $($keyed:literal, $keyed_about:literal => $Keyed:ident;)* }
-        spread { $($spread:literal, $spread_about:literal => $Spread:ident;)* }
+        keyed { $($keyed:literal, $keyed_about:literal, $keyed_checksum:literal => $Keyed:ident;)* }
+        spread { $($spread:literal, $spread_about:literal, $spread_checksum:literal => $Spread:ident;)* }
         stateful { $($stateful:literal, $stateful_about:literal => $new_stateful:expr;)* }
     ) => {
         /// The samplers, in the order in which they are listed.
         pub const SAMPLERS: &[Entry] = &[
-            $(Entry { name: $keyed, about: $keyed_about, deterministic: true },)*
-            $(Entry { name: $spread, about: $spread_about, deterministic: true },)*
-            $(Entry { name: $stateful, about: $stateful_about, deterministic: false },)*
+            $(Entry { name: $keyed, about: $keyed_about, deterministic: true, checksum: Some($keyed_checksum) },)*
+            $(Entry { name: $spread, about: $spread_about, deterministic: true, checksum: Some($spread_checksum) },)*
+            $(Entry { name: $stateful, about: $stateful_about, deterministic: false, checksum: None },)*
         ];
 
         /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them, and ask which one it is at
@@ -171,12 +175,12 @@ macro_rules! samplers {
 
 samplers! {
     keyed {
-        "independent", "uniform and independent numbers from PCG32, keyed by a mixed hash of the address" => Independent;
-        "hash", "uniform numbers from one 64-bit hash of the address: independent down to 2^-32, and faster" => Hash;
+        "independent", "uniform and independent numbers from PCG32, keyed by a mixed hash of the address", "b1ebf84aaad23140" => Independent;
+        "hash", "uniform numbers from one 64-bit hash of the address: independent down to 2^-32, and faster", "00916d15f783380b" => Hash;
     }
     spread {
-        "stratified", "4x4 jittered strata for each 16 samples, in an order of its own for each use" => Stratified;
-        "sobol", "Owen-scrambled Sobol pairs, each use with a scrambling and an order of its own" => Sobol;
+        "stratified", "4x4 jittered strata for each 16 samples, in an order of its own for each use", "0d0de625fc782297" => Stratified;
+        "sobol", "Owen-scrambled Sobol pairs, each use with a scrambling and an order of its own", "6c0274abd78ac137" => Sobol;
     }
     stateful {
         "libc-rand", "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;

@@ -15,7 +15,7 @@ mod shape;
 mod source;
 
 pub use angular_emission::AngularEmission;
-pub use camera::{CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
+pub use camera::{CAMERA_EXAMPLES, CAMERAS, Camera, Filter, Lens, SUBPIXELS, View};
 pub use feature::{ANGULAR_EMISSION, BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 pub use fog::Fog;
 pub use generator::GENERATORS;

@@ -1,7 +1,8 @@
 //! Where a scene is seen from. A camera and its pixel filter belong together. One kind a file; this file is their table and what they
 //! have in common: rows lie level, sample k of a pixel is one ray.
 //!
-//! To add one: write its file with a type that implements `Into<Camera>` and `Deserialize`, and give it a line in `cameras!` below.
+//! To add one: write its file with a type that implements `Into<Camera>` and `Deserialize` and has an `EXAMPLE`, and give it its `mod` and a
+//! line in `cameras!` below.
 
 mod pinhole;
 mod smallpt;
@@ -57,6 +58,9 @@ macro_rules! cameras {
     ($($module:ident :: $Type:ident, $name:literal, $about:literal;)*) => {
         /// Name and description of the cameras, in the order in which they are listed.
         pub const CAMERAS: &[(&str, &str)] = &[$(($name, $about)),*];
+
+        /// One of each kind, as scene files write it: the hard cases try them.
+        pub const CAMERA_EXAMPLES: &[&str] = &[$($module::$Type::EXAMPLE),*];
 
         /// A camera as scene files name it.
         #[derive(Deserialize)]

@@ -30,6 +30,11 @@ struct PinholeText {
 /// The camera, its directions checked against each other.
 pub(in crate::scene) struct Pinhole(Camera);
 
+impl Pinhole {
+    pub(super) const EXAMPLE: &str =
+        "[camera.pinhole]\nposition = [50.0, 52.0, 295.6]\nlook-at = [50.0, 40.0, 60.0]\nfield-of-view = 39.3\n";
+}
+
 pub(super) fn upwards() -> Vec3 {
     Vec3::new(0.0, 1.0, 0.0)
 }

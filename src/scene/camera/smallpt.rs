@@ -27,6 +27,10 @@ pub(in crate::scene) struct Smallpt {
     advance: f64,
 }
 
+impl Smallpt {
+    pub(super) const EXAMPLE: &str = "[camera.smallpt]\nposition = [50.0, 52.0, 295.6]\ndirection = [0.0, -0.042612, -1.0]\nfield = 0.5135\nadvance = 140.0\n";
+}
+
 /// Rows lie along the x axis, so a camera that looks along it would have no upward direction.
 fn view_direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     let d = direction(deserializer)?;

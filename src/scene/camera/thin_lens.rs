@@ -38,6 +38,10 @@ struct ThinLensText {
 /// The camera, its directions checked against each other.
 pub(in crate::scene) struct ThinLens(Camera);
 
+impl ThinLens {
+    pub(super) const EXAMPLE: &str = "[camera.thin-lens]\nposition = [50.0, 48.0, 165.0]\nlook-at = [50.0, 40.0, 60.0]\nfield-of-view = 50.0\nradius = 4.0\nfocus = 90.0\n";
+}
+
 impl<'de> Deserialize<'de> for ThinLens {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let text = ThinLensText::deserialize(deserializer)?;
