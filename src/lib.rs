@@ -22,43 +22,77 @@
 //! # Ok::<(), pathmark::error::Error>(())
 //! ```
 //!
-//! Layers, each importing only those above it: `error`, `digest`, `effect`, `math`, `input`,
-//! `disk`, `file_id`, `lock`, `temporary`, `atomic_file`, `files`; `image_io`, `metric`, `sampling`, `analysis`; `material`;
-//! `scene`; `film`, `estimator`; `kernel`; `strategy` (which imports nothing of ours); `measure`; `simulate`; `experiment`, `check`;
-//! `plot`, `report`; `cli`.
+//! # Where to start
+//!
+//! * To put a pool, an estimator, a workload, a scene or an experiment of your own beside ours: [`Lab`]. The package's `examples/own_*.rs` are
+//!   such programs.
+//! * To test a pool of your own: [`strategy`], a crate without the renderer, and its contract.
+//! * To render from a program, as above: [`measure::Setup`]; [`image_io`] writes the picture, [`metric`] compares two.
+//! * To judge what was measured: [`analysis`], and [`simulate`] for workers that the machine does not have.
+//!
+//! | module | what is in it |
+//! |--|--|
+//! | [`lab`] | the tables as a value: what there is to choose from, and what a program adds |
+//! | [`strategy`] | who runs which job, and when; the contract that every strategy keeps |
+//! | [`measure`] | settings, runs, traces, records: where a strategy meets a kernel and a clock is read |
+//! | [`kernel`] | how a piece of the film is rendered; workloads besides the path tracer |
+//! | [`film`] | how a film is cut into pieces, and added up to the same bits |
+//! | [`scene`] | scenes from text and from files: shapes, lights, cameras, hierarchies |
+//! | [`estimator`] | how the radiance along a path is estimated |
+//! | [`material`] | what a surface does with light |
+//! | [`sampling`] | random numbers by address, and warps with their densities |
+//! | [`effect`] | sets of effects that kernels are compiled for |
+//! | [`math`] | vectors, colours, rays, and formulas that round alike on every machine |
+//! | [`image_io`] | pictures in files |
+//! | [`metric`] | how far one picture is from another |
+//! | [`analysis`] | statistics: intervals, speedup, scaling laws, prices |
+//! | [`simulate`] | measured job costs on virtual workers |
+//! | [`experiment`] | questions in TOML files, the cells that answer them, and their rows |
+//! | [`check`] | the hard cases as a table |
+//! | [`error`] | what can go wrong, and who has to act |
+//!
+//! Modules that are not listed serve the program `pathmark` and may change at any time.
 
 // A test may unwrap; the library tells its user what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 pub mod analysis;
+#[doc(hidden)]
 pub mod atomic_file;
 pub mod check;
 #[cfg(feature = "program")]
-pub mod cli;
-pub mod digest;
+mod cli;
+mod digest;
+#[doc(hidden)]
 pub mod disk;
 pub mod effect;
 pub mod error;
 pub mod estimator;
 pub mod experiment;
+#[doc(hidden)]
 pub mod file_id;
+#[doc(hidden)]
 pub mod files;
 pub mod film;
 pub mod image_io;
-pub mod input;
+mod input;
 pub mod kernel;
 pub mod lab;
+#[doc(hidden)]
 pub mod lock;
 pub mod material;
 pub mod math;
 pub mod measure;
 pub mod metric;
 #[cfg(feature = "program")]
+#[doc(hidden)]
 pub mod plot;
 #[cfg(feature = "program")]
+#[doc(hidden)]
 pub mod report;
 pub mod sampling;
 pub mod scene;
+#[doc(hidden)]
 pub mod simd;
 pub mod simulate;
 mod temporary;

@@ -3,8 +3,8 @@
 mod numbers;
 mod toml_text;
 
-pub use numbers::{
+pub(crate) use numbers::{
     albedo, coordinate_limit, direction, field_of_view, length, out_of_range, point, positive, radiance,
     refractive_index, roughness, share,
 };
-pub use toml_text::{locate, locate_in, parse, parse_within, read_text, read_text_up_to};
+pub(crate) use toml_text::{locate, locate_in, parse, parse_within, read_text, read_text_up_to};

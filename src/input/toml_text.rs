@@ -14,12 +14,12 @@ use std::path::Path;
 const LARGEST_DEFINITION: u64 = 3 << 20;
 
 /// The text of a definition.
-pub fn read_text(path: &Path) -> Result<String> {
+pub(crate) fn read_text(path: &Path) -> Result<String> {
     read_text_up_to(path, LARGEST_DEFINITION)
 }
 
 /// The text of a user's file of so many bytes at most.
-pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
+pub(crate) fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
     let name = path.display().to_string();
     let file = std::fs::File::open(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => InputError::new("file", &name, "there is no such file").into(),
@@ -41,12 +41,12 @@ pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
 }
 
 /// Reads a definition; `file` is the name to show.
-pub fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
+pub(crate) fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
     toml::from_str(text).map_err(|e| located(text, file, e.message(), e.span()).into())
 }
 
 /// Reads the table at the end of a path of keys, and nothing else of a definition; `None` if it has no such table.
-pub fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[&str]) -> Result<Option<T>> {
+pub(crate) fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[&str]) -> Result<Option<T>> {
     let found =
         toml::Deserializer::parse(text).and_then(|definition| Within(path, PhantomData).deserialize(definition));
     found.map_err(|e| located(text, file, e.message(), e.span()).into())
@@ -117,7 +117,7 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
 }
 
 /// [`locate`] within the table of that name, as far as the next table.
-pub fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
+pub(crate) fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
     let head = format!("[{table}]");
     let is_line = |at: &usize| text[..*at].is_empty() || text[..*at].ends_with('\n');
     let start = text.match_indices(&head).map(|(at, _)| at).find(is_line)?;
@@ -127,7 +127,7 @@ pub fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usi
 }
 
 /// Line and column of a value that was found wrong after parsing: its first appearance behind the key.
-pub fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
+pub(crate) fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
     let at_key = text.match_indices(key).map(|(at, _)| at).find(|at| {
         let starts_line = text[..*at].rsplit('\n').next().is_some_and(|before| before.trim().is_empty());
         starts_line && text[*at + key.len()..].trim_start().starts_with('=')

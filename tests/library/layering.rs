@@ -1,76 +1,58 @@
 //! Each module imports only modules above it (CONTRIBUTING, Layers), so that a part can be understood, tested and replaced without those that
 //! use it. The compiler does not mind cycles among modules; this test does.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a module of `src/` may import: everything of a lower layer and what is in `beside`, or, if there is an `only`, just that.
-struct Rule {
-    module: &'static str,
-    layer: u8,
-    beside: &'static [&'static str],
-    only: Option<&'static [&'static str]>,
+/// What some modules may import: besides the layers above, some of their own; or nothing but what is named.
+enum Exception {
+    Besides(&'static [&'static str]),
+    Only(&'static [&'static str]),
 }
 
-const fn rule(module: &'static str, layer: u8) -> Rule {
-    Rule { module, layer, beside: &[], only: None }
-}
+use Exception::{Besides, Only};
 
-const fn beside(module: &'static str, layer: u8, beside: &'static [&'static str]) -> Rule {
-    Rule { module, layer, beside, only: None }
-}
-
-const fn only(module: &'static str, layer: u8, only: &'static [&'static str]) -> Rule {
-    Rule { module, layer, beside: &[], only: Some(only) }
-}
-
-/// A new module gets its line here, and the line is where to argue about its place.
-const RULES: &[Rule] = &[
-    rule("error", 0),
-    rule("math", 0),
-    rule("digest", 0),
-    rule("effect", 0),
-    beside("input", 0, &["error", "math"]), // errors with a place; numbers that become vectors and colours
-    rule("disk", 0),
-    beside("simd", 0, &["math"]), // the same formulas, several numbers at once
-    rule("file_id", 0),
-    beside("lock", 0, &["error", "digest", "file_id"]),
-    beside("temporary", 0, &["disk", "lock"]),
-    beside("atomic_file", 0, &["error", "disk", "file_id", "temporary"]),
-    beside("files", 0, &["error", "file_id", "atomic_file"]),
-    rule("image_io", 1),
-    beside("metric", 1, &["image_io"]), // metrics compare images
-    only("analysis", 1, &[]),           // statistics on plain numbers, whatever was measured
-    rule("sampling", 1),
-    rule("material", 2),
-    rule("scene", 3),
-    // How a film is cut and added up is nobody's business who estimates radiance, and the other way round.
-    rule("film", 4),
-    rule("estimator", 4),
-    rule("kernel", 5),
-    beside("lab", 5, &["kernel", "strategy"]), // what there is to choose from
+/// The layers are the table in CONTRIBUTING.md. An exception to them gets its line here, and the line is where to argue about it.
+const EXCEPTIONS: &[(&str, Exception)] = &[
+    ("input", Besides(&["error", "math"])), // errors with a place; numbers that become vectors and colours
+    ("simd", Besides(&["math"])),           // the same formulas, several numbers at once
+    ("lock", Besides(&["error", "digest", "file_id"])),
+    ("temporary", Besides(&["disk", "lock"])),
+    ("atomic_file", Besides(&["error", "disk", "file_id", "temporary"])),
+    ("files", Besides(&["error", "file_id", "atomic_file"])),
+    ("metric", Besides(&["image_io"])),        // metrics compare images
+    ("analysis", Only(&[])),                   // statistics on plain numbers, whatever was measured
+    ("lab", Besides(&["kernel", "strategy"])), // what there is to choose from
     // A strategy schedules integers: in a crate of its own it cannot see a pixel. It shares the kernel's layer, so that only `measure`
     // and what uses it can bring the two together.
-    only("strategy", 5, &[]),
-    rule("measure", 6),
-    only("simulate", 7, &["analysis", "lab", "measure", "strategy"]), // numbers in, numbers out: no pixel, no thread, no clock
-    rule("experiment", 8),
-    beside("check", 8, &["experiment"]), // tries all that the renderer is made of
-    only("plot", 9, &["error", "atomic_file", "metric", "image_io"]), // draws numbers, whatever they were measured on
-    beside("report", 9, &["plot"]),
-    rule("cli", 10),
+    ("strategy", Only(&[])),
+    ("simulate", Only(&["analysis", "lab", "measure", "strategy"])), // numbers in, numbers out: no pixel, no thread, no clock
+    ("check", Besides(&["experiment"])),                             // tries all that the renderer is made of
+    ("plot", Only(&["error", "atomic_file", "metric", "image_io"])), // draws numbers, whatever they were measured on
+    ("report", Besides(&["plot"])),
 ];
 
-impl Rule {
-    fn of(module: &str) -> Option<&'static Self> {
-        RULES.iter().find(|rule| rule.module == module)
-    }
+/// The modules and the rows of the table in CONTRIBUTING.md in which they stand.
+fn layers() -> BTreeMap<String, usize> {
+    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let (_, section) = text.split_once("\n## Layers\n").unwrap();
+    let section = section.split_once("\n## ").map_or(section, |(section, _)| section);
+    let rows = section.lines().filter(|line| line.starts_with('|')).skip(2);
+    let cells = rows.filter_map(|row| row.split('|').nth(1));
+    let modules = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_string).collect::<Vec<_>>();
+    cells.enumerate().flat_map(|(row, cell)| modules(cell).into_iter().map(move |module| (module, row))).collect()
+}
 
-    fn allows(&self, target: &str) -> bool {
-        let lower = Self::of(target).is_some_and(|rule| rule.layer < self.layer);
-        target == self.module || self.only.map_or(lower || self.beside.contains(&target), |only| only.contains(&target))
-    }
+fn may_import(layers: &BTreeMap<String, usize>, module: &str, target: &str) -> bool {
+    let is_above = layers.get(target).is_some_and(|layer| *layer < layers[module]);
+    let exception = EXCEPTIONS.iter().find(|(name, _)| *name == module).map(|(_, exception)| exception);
+    target == module
+        || match exception {
+            Some(Only(only)) => only.contains(&target),
+            Some(Besides(besides)) => is_above || besides.contains(&target),
+            None => is_above,
+        }
 }
 
 fn root() -> &'static Path {
@@ -155,7 +137,7 @@ fn imports_are_found_wherever_they_stand() {
 
 #[test]
 fn modules_import_only_those_above() {
-    let source = root().join("src");
+    let (source, layers) = (root().join("src"), layers());
     let (mut wrong, mut seen) = (Vec::new(), BTreeSet::new());
     for file in rust_files("src") {
         let inner = file.strip_prefix(&source).unwrap();
@@ -165,23 +147,42 @@ fn modules_import_only_those_above() {
         if ["lib", "main"].contains(&module) {
             continue;
         }
-        let Some(rule) = Rule::of(module) else {
-            wrong.push(format!("{shown}: module {module} has no line in the table of this test"));
+        if !layers.contains_key(module) {
+            wrong.push(format!("{shown}: module {module} has no place in CONTRIBUTING.md's table of layers"));
             continue;
-        };
-        seen.insert(rule.module);
+        }
+        seen.insert(module.to_string());
         let parts = inner.components().count();
         let depth = if inner.ends_with("mod.rs") { parts - 1 } else { parts };
         let targets = imports(&fs::read_to_string(&file).unwrap(), depth);
-        wrong.extend(targets.iter().filter(|t| !rule.allows(t)).map(|t| format!("{shown}: {module} imports {t}")));
+        let refused = targets.iter().filter(|target| !may_import(&layers, module, target));
+        wrong.extend(refused.map(|target| format!("{shown}: {module} imports {target}")));
     }
-    for rule in RULES.iter().filter(|rule| !seen.contains(rule.module)) {
-        let is_crate = home(rule.module).is_some_and(|home| home.starts_with(root().join("crates")));
+    for module in layers.keys().filter(|module| !seen.contains(*module)) {
+        let is_crate = home(module).is_some_and(|home| home.starts_with(root().join("crates")));
         if !is_crate {
-            wrong.push(format!("the table has {}, which src/ has not", rule.module));
+            wrong.push(format!("CONTRIBUTING.md has the layer of {module}, which src/ has not"));
         }
     }
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+/// The front page of `cargo doc` has a row for each module that is shown, and for no other.
+#[test]
+fn the_front_page_lists_the_public_modules() {
+    let text = fs::read_to_string(root().join("src/lib.rs")).unwrap();
+    let rows = text.lines().filter_map(|line| line.strip_prefix("//! | [`")?.split_once("`]"));
+    let listed: Vec<&str> = rows.map(|(module, _)| module).collect();
+    let mut shown = BTreeSet::from(["strategy"]);
+    let mut is_hidden = false;
+    for line in text.lines() {
+        if let Some(module) = line.strip_prefix("pub mod ").filter(|_| !is_hidden) {
+            shown.insert(module.trim_end_matches(';'));
+        }
+        is_hidden = line == "#[doc(hidden)]";
+    }
+    assert_eq!(listed.iter().copied().collect::<BTreeSet<_>>(), shown);
+    assert_eq!(listed.len(), shown.len(), "a module is listed twice");
 }
 
 /// A lint is satisfied or argued about in Cargo.toml, where it is seen.
