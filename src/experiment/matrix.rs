@@ -4,12 +4,13 @@ use super::definition::FEATURES;
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::{Clamp, Spec};
-use crate::measure::{LARGEST_SEED, Settings, available_threads};
+use crate::measure::{ImageKey, LARGEST_SEED, ScheduleKey, Settings, Setup, available_threads};
 use crate::sampling::{SAMPLERS, is_deterministic};
 use crate::simd::{Level, levels};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
+use std::collections::HashSet;
 use std::fmt;
 use std::path::Path;
 
@@ -142,6 +143,26 @@ impl Threads {
     }
 }
 
+/// Cells that differ. Two words may mean the same run, as the profile that fits a scene and its name do; a point that two curves share is one.
+#[derive(Default)]
+struct Cells {
+    list: Vec<Cell>,
+    known: HashSet<(ImageKey, ScheduleKey)>,
+}
+
+impl Cells {
+    /// Adds what a setup gives and is not there yet.
+    fn add(&mut self, setup: &Setup, is_curve: bool) {
+        let mut cell = if is_curve { Cell::curve(setup) } else { Cell::new(setup) };
+        let (image, schedule) = (setup.image_key(), setup.schedule_key());
+        let known = &mut self.known;
+        cell.points.retain(|point| known.insert((ImageKey { spp: point.spp, ..image.clone() }, schedule.clone())));
+        if !cell.points.is_empty() {
+            self.list.push(cell);
+        }
+    }
+}
+
 impl Definition {
     /// The cells, each once, in the order of the matrix. Every one has been checked: nothing that the definition says can fail later.
     pub fn cells(&self, profile: Profile) -> Result<Vec<Cell>> {
@@ -159,16 +180,16 @@ impl Definition {
                 self.located(profile, error.allowed(format!("cargo run --release --features {feature} -- ...")))
             );
         }
-        let mut cells: Vec<Cell> = Vec::new();
+        let mut cells = Cells::default();
         for matrix in &self.matrix {
             self.add_images(profile, matrix, &mut cells)?;
         }
-        cells.extend(self.external_cells(profile)?);
-        Ok(cells)
+        cells.list.extend(self.external_cells(profile)?);
+        Ok(cells.list)
     }
 
     /// The cells of one matrix.
-    fn add_images(&self, profile: Profile, matrix: &Matrix, cells: &mut Vec<Cell>) -> Result<()> {
+    fn add_images(&self, profile: Profile, matrix: &Matrix, cells: &mut Cells) -> Result<()> {
         let scale = self.scale(profile);
         let size = matrix.size.unwrap_or(scale.size);
         let (spps, seeds) = (scale.spp.as_ref().unwrap_or(&matrix.spp), scale.seed.as_ref().unwrap_or(&matrix.seed));
@@ -264,7 +285,7 @@ impl Definition {
     }
 
     /// The cells of one image: everything that may not change its checksum.
-    fn add_schedules(&self, profile: Profile, matrix: &Matrix, image: &Settings, cells: &mut Vec<Cell>) -> Result<()> {
+    fn add_schedules(&self, profile: Profile, matrix: &Matrix, image: &Settings, cells: &mut Cells) -> Result<()> {
         let scale = self.scale(profile);
         if image.spec.seed > LARGEST_SEED {
             let error = InputError::new("seed", image.spec.seed.to_string(), "belongs to the references");
@@ -288,10 +309,7 @@ impl Definition {
                             Error::Input(input) if input.place.is_none() => self.located(profile, *input),
                             other => other,
                         })?;
-                        let cell = if matrix.curve { Cell::curve(&setup) } else { Cell::new(&setup) };
-                        if !cells.iter().any(|known| known.id == cell.id) {
-                            cells.push(cell);
-                        }
+                        cells.add(&setup, matrix.curve);
                     }
                 }
             }

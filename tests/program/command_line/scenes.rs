@@ -93,11 +93,36 @@ fn with_rows(
     reader.records().map(|row| cells(row.unwrap())).map(|row| (row[0].clone(), row)).collect()
 }
 
+/// What the figure is told of an effect.
+const GLASS: &str = r#"
+[[figure.effects.price]]
+effect = "mirror and glass"
+absent = { scene = "cornell-diffuse", profile = "diffuse" }
+unused = { scene = "cornell-diffuse", profile = "smallpt" }
+used = { scene = "cornell", profile = "smallpt" }
+"#;
+
+/// The profile that fits and its name are one run, and a short curve is the beginning of a long one.
+#[test]
+fn two_words_for_one_run_are_one_cell() {
+    let ids = |text: &str| {
+        let definition = Definition::from_text(&Lab::built_in(), "tiny", "tiny.toml", text).unwrap();
+        let cells = definition.cells(Profile::Quick).unwrap();
+        cells.iter().flat_map(|cell| &cell.points).map(|point| point.id.clone()).collect::<Vec<String>>()
+    };
+    let scalar = tiny("[\"cornell\"]", "effects", "").replace("spp = [4]", "spp = [4]\nkernel = [\"scalar\"]");
+    let once = ids(&scalar);
+    assert_eq!(once, ids(&scalar.replace("spp = [4]", "spp = [4]\neffects = [\"fitting\", \"smallpt\"]")));
+    let curves =
+        |spp: &str| tiny("[\"cornell\"]", "effects", "").replace("spp = [4]", &format!("spp = {spp}\ncurve = true"));
+    assert_eq!((ids(&curves("[16]")).len(), ids(&curves("[8, 16]")).len(), ids(&curves("[16, 8]")).len()), (3, 3, 3));
+}
+
 /// Times are put into the rows, so the ratios are known.
 #[test]
 fn the_price_of_an_effect_is_a_ratio_of_times() {
     let folder = tempfile::tempdir().unwrap();
-    let text = tiny("[\"cornell\", \"cornell-diffuse\"]", "effects", "")
+    let text = tiny("[\"cornell\", \"cornell-diffuse\"]", "effects", GLASS)
         .replace("spp = [4]", "spp = [4]\nkernel = [\"scalar\"]\neffects = [\"fitting\", \"smallpt\", \"all\"]");
     // A sample takes 1000 ns where the profile fits, 1100 in the next and 1250 in the largest, and each repetition is slower by itself.
     let change = |row: &mut BTreeMap<String, String>| {
@@ -127,7 +152,8 @@ fn the_price_of_an_effect_is_a_ratio_of_times() {
 fn accuracy_by_scene_is_relative_to_its_brightness() {
     let folder = tempfile::tempdir().unwrap();
     let scenes = "[\"cornell\", \"cornell-diffuse\", \"cornell-mirror\", \"forest\", \"wada\"]";
-    let text = tiny(scenes, "scene-accuracy", "keep = [\"images\"]\n").replace("seed = [1]", "seed = [1, 2, 3]");
+    let more = "keep = [\"images\"]\n[figure.scene-accuracy.control]\nmatt = \"cornell-diffuse\"\nglass = \"cornell\"\nmirrors = \"cornell-mirror\"\n";
+    let text = tiny(scenes, "scene-accuracy", more).replace("seed = [1]", "seed = [1, 2, 3]");
     let rmse = |scene: &str, seed: f64| match scene {
         "cornell" => 0.2 * seed,
         // Half of the box's, but for a factor whose logarithms sum to nothing.
