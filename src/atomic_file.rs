@@ -49,6 +49,20 @@ pub(crate) fn obstacle(found: &fs::Metadata) -> Option<&'static str> {
     }
 }
 
+/// The longest name of a file that all the usual file systems take, in bytes.
+const LONGEST_NAME: usize = 255;
+
+/// Refuses a path that ends in a name which no file can have: for a file whose folder is made later.
+pub fn check_name(path: &Path) -> Result<()> {
+    let name = path.file_name().unwrap_or_default();
+    if name.len() <= LONGEST_NAME {
+        return Ok(());
+    }
+    let problem = format!("would need a file with a name of {} bytes", name.len());
+    let error = InputError::new("output", name.to_string_lossy(), problem);
+    Err(error.allowed(format!("up to {LONGEST_NAME} bytes")).into())
+}
+
 /// A destination that may be a regular file.
 struct Target {
     file: PathBuf,

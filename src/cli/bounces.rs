@@ -1,7 +1,7 @@
 //! `pathmark bounces SCENE`: the light of an image by the bounces that it made, and how long its paths are.
 
 use super::axes::{What, no_paths};
-use super::output::{print, print_json};
+use super::output::{number, print, print_json};
 use super::progress::Talk;
 use crate::atomic_file;
 use crate::error::Result;
@@ -9,7 +9,7 @@ use crate::experiment::Progress;
 use crate::files::Files;
 use crate::kernel::{Inspector, LightByBounce, Spec};
 use crate::lab::Lab;
-use crate::plot::number;
+use crate::plot::number::short;
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -78,8 +78,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         return print_json(&json!({
             "scene": scene.name, "width": spec.width, "height": spec.height, "spp": arguments.spp, "seed": spec.seed,
             "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
-            "mean": total(&found), "samples": found.samples, "rays": found.rays, "invalid_samples": found.invalid,
-            "parts": found.parts(), "mean_length": found.mean_length(), "longest": found.longest(),
+            "mean": total(&found).map(number), "samples": found.samples, "rays": found.rays, "invalid_samples": found.invalid,
+            "parts": found.parts(), "mean_length": found.mean_length().map(number), "longest": found.longest(),
             "bounces": rows.iter().map(object).collect::<Vec<Value>>(),
         }));
     }
@@ -126,7 +126,7 @@ fn rows(found: &LightByBounce) -> Vec<Row> {
 
 fn object(row: &Row) -> Value {
     json!({
-        "bounces": row.bounces, "light": row.light, "share": row.share, "running_share": row.running,
+        "bounces": row.bounces, "light": row.light.map(number), "share": number(row.share), "running_share": number(row.running),
         "ended": row.ended, "ended_share": row.ended_share, "running_ended_share": row.ended_running,
     })
 }
@@ -134,7 +134,7 @@ fn object(row: &Row) -> Value {
 fn text(name: &str, spec: &Spec, spp: u32, found: &LightByBounce, rows: &[Row]) -> String {
     let percent = |share: f64| format!("{:.3}", 100.0 * share);
     let line = |bounces: String, row: &Row| {
-        let light = row.light.map(|value| format!("{:>12}", number::short(value, 4))).join("");
+        let light = row.light.map(|value| format!("{:>12}", short(value, 4))).join("");
         let shares = [row.share, row.running, row.ended_share, row.ended_running].map(percent);
         let [share, running, ended, ended_running] = shares;
         format!("{bounces:>7}{light}{share:>10}{running:>10}{ended:>10}{ended_running:>10}")

@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let _lock = arguments.out.as_ref().map(|out| folder_for_prices(out)).transpose()?;
     let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
     talk.begin("hard cases", cases.len() as u64);
-    let outcomes = check::run(&cases, effort, available_threads(), &|done| talk.advance(done));
+    let outcomes = check::run(&cases, effort, available_threads(), &|done| talk.advance(done))?;
     talk.end();
     let rows: Vec<Row<'_>> = cases
         .iter()

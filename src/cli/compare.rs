@@ -1,6 +1,6 @@
 //! `pathmark compare IMAGE REFERENCE`: how far an image is from another.
 
-use super::output::{print, print_json};
+use super::output::{number, print, print_json};
 use crate::error::{InputError, Result};
 use crate::files::Files;
 use crate::film::{FilmKey, read_film};
@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     if arguments.json {
         let object: serde_json::Map<String, serde_json::Value> =
-            values.iter().map(|(metric, value)| (metric.name.to_string(), serde_json::Value::from(*value))).collect();
+            values.iter().map(|(metric, value)| (metric.name.to_string(), number(*value))).collect();
         return print_json(&object);
     }
     let width = values.iter().map(|(metric, _)| metric.name.len()).max().unwrap_or(0);

@@ -8,6 +8,7 @@ mod check;
 mod compare;
 mod guards;
 mod list;
+mod out_of_memory;
 mod output;
 mod price;
 mod progress;
@@ -22,10 +23,11 @@ mod simulate;
 mod strict;
 mod trace;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::lab::Lab;
 use clap::{Parser, Subcommand};
 use progress::Talk;
+use std::io::ErrorKind;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -76,7 +78,11 @@ enum Verb {
 impl Lab {
     /// The whole command line with these tables: runs the program with the process's arguments.
     pub fn main(self) -> ExitCode {
-        let cli = Cli::parse();
+        out_of_memory::watch();
+        let cli = match Cli::try_parse() {
+            Ok(cli) => cli,
+            Err(told) => return tell(&told),
+        };
         let talk = Talk::new(cli.quiet);
         match self.check().and_then(|()| run_verb(cli.verb, &Arc::new(self), &talk)) {
             Ok(()) => ExitCode::SUCCESS,
@@ -85,6 +91,18 @@ impl Lab {
                 ExitCode::from(error.exit_code())
             }
         }
+    }
+}
+
+/// Prints what clap has to say instead of running: what is wrong, or the help and the version that were asked for.
+fn tell(told: &clap::Error) -> ExitCode {
+    match told.print() {
+        Err(e) if !told.use_stderr() && e.kind() != ErrorKind::BrokenPipe => {
+            let error = Error::system("writing", "standard output", e);
+            Talk::new(false).error(&error);
+            ExitCode::from(error.exit_code())
+        }
+        _ => u8::try_from(told.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from),
     }
 }
 
@@ -111,10 +129,4 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
 fn command_line() -> String {
     let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
     std::iter::once("pathmark".to_string()).chain(arguments).collect::<Vec<_>>().join(" ")
-}
-
-/// Whether the program takes the words of a line.
-#[cfg(test)]
-fn is_command(line: &str) -> bool {
-    Cli::try_parse_from(line.split(' ')).is_ok()
 }

@@ -2,6 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::lock::{Lock, Sharing};
+use serde::Serialize;
+use serde_json::Value;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
@@ -19,8 +21,66 @@ pub(super) fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Prints a value as one line of JSON.
-pub(super) fn print_json(value: &impl serde::Serialize) -> Result<()> {
-    let text = serde_json::to_string(value).map_err(|e| Error::system("writing", "standard output", e.into()))?;
-    print(&text)
+/// Prints a value as one line of JSON. What is absent is `null`; NaN and infinities, for which JSON has no numbers, are the texts "NaN", "inf"
+/// and "-inf".
+pub(super) fn print_json(value: &impl Serialize) -> Result<()> {
+    let failed = |e: serde_json::Error| Error::system("writing", "standard output", e.into());
+    let mut json = serde_json::to_value(value).map_err(failed)?;
+    // TOML has all numbers, and no null.
+    let named = toml::Value::try_from(value).is_ok_and(|exact| name_odd_numbers(&mut json, &exact));
+    // Fields stay in their order where nothing has to be replaced.
+    print(&if named { json.to_string() } else { serde_json::to_string(value).map_err(failed)? })
+}
+
+/// Puts texts in the place of nulls that were numbers; whether there were any.
+fn name_odd_numbers(json: &mut Value, exact: &toml::Value) -> bool {
+    match (json, exact) {
+        (json @ Value::Null, toml::Value::Float(found)) => {
+            *json = number(*found);
+            true
+        }
+        (Value::Array(values), toml::Value::Array(exact)) => {
+            values.iter_mut().zip(exact).fold(false, |named, (json, exact)| name_odd_numbers(json, exact) | named)
+        }
+        (Value::Object(values), toml::Value::Table(exact)) => exact.iter().fold(false, |named, (field, exact)| {
+            values.get_mut(field).is_some_and(|json| name_odd_numbers(json, exact)) | named
+        }),
+        _ => false,
+    }
+}
+
+/// A number as [`print_json`] prints it, for values that are put together by hand.
+pub(super) fn number(value: f64) -> Value {
+    if value.is_finite() { Value::from(value) } else { Value::from(value.to_string()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize)]
+    struct Row {
+        name: &'static str,
+        values: Vec<f64>,
+        absent: Option<f64>,
+        there: Option<f64>,
+    }
+
+    #[test]
+    fn absent_nan_and_infinite_are_told_apart() {
+        let rows = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.5].map(|value| Row {
+            name: "a",
+            values: vec![1.0, value],
+            absent: None,
+            there: Some(value),
+        });
+        let mut json = serde_json::to_value(&rows).unwrap();
+        assert!(name_odd_numbers(&mut json, &toml::Value::try_from(&rows).unwrap()));
+        let found: Vec<_> = json.as_array().unwrap().iter().map(|row| [&row["there"], &row["values"][1]]).collect();
+        let expected = [Value::from("NaN"), Value::from("inf"), Value::from("-inf"), Value::from(0.5)];
+        assert_eq!(found, expected.each_ref().map(|value| [value, value]));
+        assert!(json.as_array().unwrap().iter().all(|row| row["absent"].is_null() && row["name"] == "a"));
+        let mut fine = serde_json::to_value(&rows[3]).unwrap();
+        assert!(!name_odd_numbers(&mut fine, &toml::Value::try_from(&rows[3]).unwrap()));
+    }
 }

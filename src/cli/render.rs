@@ -3,14 +3,14 @@
 use super::axes::Axes;
 use super::output::{print, print_json};
 use super::progress::Talk;
-use super::rounds;
 use super::strict::Strict;
+use super::{replay, rounds};
 use crate::error::Result;
 use crate::experiment::Progress;
 use crate::files::Files;
 use crate::image_io;
 use crate::lab::Lab;
-use crate::measure::{InvalidSample, Measured, Outcome, Record, TraceFile};
+use crate::measure::{Measured, Outcome, Record, TraceFile};
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -58,7 +58,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         setup.check_adaptive()?;
     }
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.name())));
-    let format = image_io::check_format(&path)?;
+    let spec = &setup.settings().spec;
+    let format = image_io::check_picture(&path, spec.width, spec.height)?;
     let mut files = Files::default();
     files.reads_scene(setup.files());
     let outputs = [("image", Some(&path)), ("trace", arguments.trace.as_ref()), arguments.rounds.output()];
@@ -89,7 +90,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         talk.note(&format!("warning: {warning}"));
     }
     for sample in &outcome.invalid {
-        talk.note(&replay_command(&arguments.scene, &record, *sample));
+        talk.note(&replay::command(&arguments.scene, &setup.settings().spec, *sample));
     }
     if arguments.json {
         print_json(&record)?;
@@ -97,14 +98,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         print(&format!("{}: {}", path.display(), summary(&record, &outcome)))?;
     }
     arguments.strict.check(outcome.counts.invalid)
-}
-
-/// The command that shows a sample again.
-fn replay_command(scene: &str, record: &Record, InvalidSample { y, x, sample }: InvalidSample) -> String {
-    let Record { width, height, estimator, sampler, seed, .. } = record;
-    format!(
-        "pathmark replay {scene} --size {width}x{height} --estimator {estimator} --sampler {sampler} --seed {seed} --pixel {x},{y} --sample {sample}"
-    )
 }
 
 /// What a reader wants to know first.
@@ -129,23 +122,4 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
         )
     };
     format!("{what}{noise}\n{how}\n{checksum}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::kernel::Spec;
-    use crate::measure::{Settings, Setup};
-
-    /// The command is one that the program takes, and names the sample's place.
-    #[test]
-    fn an_invalid_sample_can_be_replayed() {
-        let spec = Spec { width: 8, height: 6, estimator: "bsdf".into(), ..Spec::default() };
-        let settings = Settings { scene: "cornell".into(), spp: 4, spec, ..Settings::default() };
-        let setup = Setup::prepare(settings).unwrap();
-        let record = Record::new(&setup, &setup.run(None).unwrap(), Measured::default());
-        let command = replay_command("cornell", &record, InvalidSample { y: 5, x: 7, sample: 3 });
-        assert!(crate::cli::is_command(&command), "{command}");
-        assert!(command.contains("--size 8x6") && command.contains("--pixel 7,5 --sample 3"), "{command}");
-    }
 }

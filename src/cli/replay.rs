@@ -1,14 +1,15 @@
 //! `pathmark replay SCENE`: one sample's path, bounce by bounce.
 
 use super::axes::{What, no_paths};
-use super::output::{print, print_json};
+use super::output::{self, print, print_json};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::{self, Choice, Event, Inspector, PathLog, Spec};
 use crate::lab::Lab;
 use crate::math::{Rgb, Vec3};
-use crate::measure::LARGEST_SPP;
+use crate::measure::{InvalidSample, LARGEST_SPP};
 use crate::plot::number;
 use crate::scene::Scene;
+use crate::simd::Precision;
 use clap::Args;
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -50,29 +51,53 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let spec = &setup.settings().spec;
     let (x, y) = pixel(&arguments.pixel, spec)?;
 
-    let mut log = PathLog::default();
-    let radiance = Inspector::new(scene, choice)?.estimate(x, y, sample, &mut log);
-    check(scene, choice, (x, y, sample), radiance)?;
+    let (given, counts) = kernel::one_sample(&*kernel::construct(scene, choice)?, [x, y], sample);
+    let is_valid = counts.invalid == 0;
+    let precision = choice.precision();
+    // Lanes keep no log, and they alone have other precisions.
+    let path = if precision == Precision::F64 { Some(path(scene, choice, (x, y, sample), given)?) } else { None };
+    let radiance = path.as_ref().map_or(given, |(_, radiance)| radiance.channels());
     if arguments.json {
+        let events = path.map(|(log, _)| log.events.iter().map(|event| object(scene, event)).collect::<Vec<Value>>());
         return print_json(&json!({
             "scene": scene.name, "width": spec.width, "height": spec.height, "seed": spec.seed,
             "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
-            "pixel": [x, y], "sample": sample, "rays": log.rays, "radiance": radiance.channels(),
-            "events": log.events.iter().map(|event| object(scene, event)).collect::<Vec<Value>>(),
+            "roulette": choice.roulette().map(|rule| rule.to_string()), "precision": precision.name(),
+            "pixel": [x, y], "sample": sample, "rays": counts.rays, "valid": is_valid,
+            "radiance": radiance.map(output::number), "events": events,
         }));
     }
     let Spec { width, height, seed, estimator, .. } = spec;
-    let [r, g, b] = radiance.channels();
+    let what = path.map_or_else(
+        || format!("{} is rendered in SIMD lanes, which do not tell what a path does.", precision.name()),
+        |(log, _)| table(&lines(scene, &log.events)),
+    );
+    let [r, g, b] = radiance;
     print(&format!(
-        "{}, {width}x{height}, {estimator}, seed {seed}: pixel {x},{y}, sample {sample}\n\n{}\n\nradiance {r} {g} {b}\n{}",
+        "{}, {width}x{height}, {estimator}, seed {seed}: pixel {x},{y}, sample {sample}\n\n{what}\n\nradiance {r} {g} {b}\n{}",
         scene.name,
-        table(&lines(scene, &log.events)),
-        if radiance.is_valid_radiance() {
+        if is_valid {
             "This is what the image is given, bit for bit."
         } else {
             "This is no radiance: the image is given nothing, and counts it as invalid."
         },
     ))
+}
+
+/// The command that shows a sample of an image again: with every option that changes what the sample is.
+pub(super) fn command(scene: &str, spec: &Spec, at: InvalidSample) -> String {
+    let Spec { width, height, seed, estimator, sampler, precision, max_depth, roulette, .. } = spec;
+    let scene = if scene.contains(char::is_whitespace) { format!("'{scene}'") } else { scene.to_string() };
+    let option = |name: &str, value: Option<String>| value.map_or(String::new(), |value| format!(" --{name} {value}"));
+    format!(
+        "pathmark replay {scene} --size {width}x{height} --estimator {estimator} --sampler {sampler} --seed {seed}{}{}{} --pixel {},{} --sample {}",
+        option("precision", (*precision != Spec::default().precision).then(|| precision.clone())),
+        option("max-depth", max_depth.map(|depth| depth.to_string())),
+        option("roulette", roulette.clone()),
+        at.x,
+        at.y,
+        at.sample,
+    )
 }
 
 fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
@@ -85,12 +110,13 @@ fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
     })
 }
 
-/// Renders the sample once more as an image does, with the kernel that fits the scene.
-fn check(scene: &Arc<Scene>, choice: &Choice, (x, y, sample): (u32, u32, u32), radiance: Rgb) -> Result<()> {
-    let (given, _) = kernel::one_sample(&*kernel::construct(scene, choice)?, [x, y], sample);
+/// Follows the path once more and writes it down, and makes sure that it is the one that the kernel which fits the scene followed.
+fn path(scene: &Arc<Scene>, choice: &Choice, at: (u32, u32, u32), given: [f64; 3]) -> Result<(PathLog, Rgb)> {
+    let mut log = PathLog::default();
+    let radiance = Inspector::new(scene, choice)?.estimate(at.0, at.1, at.2, &mut log);
     let expected = if radiance.is_valid_radiance() { radiance } else { Rgb::BLACK };
     if given.map(f64::to_bits) == expected.channels().map(f64::to_bits) {
-        return Ok(());
+        return Ok((log, radiance));
     }
     Err(Error::Check(format!("the path gives {radiance:?}, and the image is given {given:?}")))
 }
@@ -104,19 +130,20 @@ fn name(scene: &Scene, object: u32) -> &str {
 }
 
 fn object(scene: &Scene, event: &Event) -> Value {
-    let vector = |v: Vec3| [v.x, v.y, v.z];
+    let numbers = |values: [f64; 3]| values.map(output::number);
+    let vector = |v: Vec3| numbers([v.x, v.y, v.z]);
     match *event {
         Event::Surface { bounces, origin, hit, throughput } => json!({
             "event": "surface", "bounces": bounces, "object": name(scene, hit.object), "primitive": hit.primitive,
-            "side": side(hit.inside), "distance": hit.t, "origin": vector(origin), "point": vector(hit.point),
-            "normal": vector(hit.normal), "throughput": throughput.channels(),
+            "side": side(hit.inside), "distance": output::number(hit.t), "origin": vector(origin), "point": vector(hit.point),
+            "normal": vector(hit.normal), "throughput": numbers(throughput.channels()),
         }),
         Event::Fog { bounces, origin, point, distance, throughput } => json!({
-            "event": "fog", "bounces": bounces, "distance": distance, "origin": vector(origin),
-            "point": vector(point), "throughput": throughput.channels(),
+            "event": "fog", "bounces": bounces, "distance": output::number(distance), "origin": vector(origin),
+            "point": vector(point), "throughput": numbers(throughput.channels()),
         }),
         Event::Light { bounces, radiance } => {
-            json!({ "event": "light", "bounces": bounces, "radiance": radiance.channels() })
+            json!({ "event": "light", "bounces": bounces, "radiance": numbers(radiance.channels()) })
         }
         Event::Split { bounces } => json!({ "event": "split", "bounces": bounces }),
         Event::Escaped => json!({ "event": "escaped" }),
@@ -197,4 +224,61 @@ fn table(lines: &[Line]) -> String {
         cells.join("  ").trim_end().to_string()
     };
     all().map(row).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Replay {
+        #[command(flatten)]
+        arguments: Arguments,
+    }
+
+    /// What the program takes a told command for.
+    fn read(command: &str) -> Arguments {
+        let words = command.strip_prefix("pathmark ").expect("the program's name");
+        Replay::try_parse_from(words.split(' ')).expect("a command that the program takes").arguments
+    }
+
+    /// Each axis that changes the image, changed.
+    #[test]
+    fn a_told_command_is_of_the_same_sample_on_every_axis() {
+        let base = || Spec { width: 8, height: 6, estimator: "bsdf".into(), ..Spec::default() };
+        // A new axis has to be put on the list below, unless it changes no sample, as the last five here.
+        let Spec {
+            width: _,
+            height: _,
+            seed: _,
+            estimator: _,
+            sampler: _,
+            precision: _,
+            max_depth: _,
+            roulette: _,
+            ..
+        } = base();
+        let Spec { kernel: _, simd: _, effects: _, accelerator: _, clamp: _, .. } = base();
+        let others = [
+            Spec { width: 9, ..base() },
+            Spec { height: 7, ..base() },
+            Spec { seed: 2, ..base() },
+            Spec { estimator: "mis".into(), ..base() },
+            Spec { sampler: "sobol".into(), ..base() },
+            Spec { precision: "f32".into(), ..base() },
+            Spec { max_depth: Some(3), ..base() },
+            Spec { roulette: Some("never".into()), ..base() },
+        ];
+        for spec in others {
+            assert_ne!(spec, base());
+            let told = read(&command("cornell", &spec, InvalidSample { y: 5, x: 7, sample: 3 }));
+            let Arguments { scene, pixel, sample, seed, what, .. } = told;
+            assert_eq!((scene.as_str(), pixel.as_str(), sample), ("cornell", "7,5", 3));
+            assert_eq!(what.settings(&Lab::new(), &scene, 4, seed).unwrap().spec, spec);
+        }
+        assert!(
+            command("my scene.toml", &base(), InvalidSample { y: 0, x: 0, sample: 0 }).contains(" 'my scene.toml' ")
+        );
+    }
 }

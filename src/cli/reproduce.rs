@@ -9,11 +9,11 @@ use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Swe
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
+use crate::measure::utc_now;
 use crate::report;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::SystemTime;
 
 /// `pathmark reproduce --full --out results-here`
 #[derive(Args)]
@@ -90,7 +90,13 @@ fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> 
             RecordsFile::check_idle(&rows)?;
         }
     }
-    let stamp = humantime::format_rfc3339_seconds(SystemTime::now()).to_string().replace(':', "-");
+    let stamp = utc_now().replace(':', "-");
+    if stamp.is_empty() {
+        let problem = std::io::Error::other(
+            "it shows no date from 1970 to 9999, and the folder for earlier results has one in its name",
+        );
+        return Err(Error::system("reading", "the system's clock", problem));
+    }
     let earlier = out.join("earlier").join(stamp);
     for name in definitions.iter().map(|definition| definition.name.as_str()).chain([FOLDER]) {
         let folder = out.join(name);

@@ -53,6 +53,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         })?,
         None => TraceFile::read(&arguments.trace)?,
     };
+    let costs = trace.costs_s();
+    check_noise(arguments, &hardware, costs.iter().sum())?;
     let names = match &arguments.strategies[..] {
         [] => lab.strategies().iter().map(|entry| entry.name.to_string()).collect(),
         names => names.to_vec(),
@@ -75,7 +77,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         calibrate(lab, &names)?
     };
     let mut contenders = contenders(lab, &rows);
-    let costs = trace.costs_s();
 
     if !arguments.no_check {
         let predictions = match &measured {
@@ -179,6 +180,25 @@ fn parse_noise(text: &str) -> Result<Noise> {
             .allowed(format!("SHARE[:MILLISECONDS], up to {MOST_NOISE}, from {SHORTEST_MS} ms, like 0.02:0.5"))
             .into()
     })
+}
+
+/// Interruptions in one replay, each of which is drawn: strategies times numbers of workers of so many take some seconds.
+const MOST_INTERRUPTIONS: f64 = 1e6;
+
+/// Refuses noise that takes longer to draw than anyone waits for.
+fn check_noise(arguments: &Arguments, hardware: &Hardware, work_s: f64) -> Result<()> {
+    let slowest = match hardware.speeds {
+        Speeds::Identical => 1.0,
+        Speeds::OneSlow(speed) | Speeds::Mixed { efficient: speed, .. } => speed,
+    };
+    let (Some(text), Some(noise)) = (&arguments.noise, hardware.noise) else { return Ok(()) };
+    let interruptions = noise.interruptions(work_s / slowest);
+    if interruptions <= MOST_INTERRUPTIONS {
+        return Ok(());
+    }
+    let problem = format!("would interrupt the {work_s:.3} s of the trace {interruptions:.0} times");
+    let error = InputError::new("noise", text, problem);
+    Err(error.allowed(format!("longer or fewer interruptions, at most {MOST_INTERRUPTIONS:.0} of them")).into())
 }
 
 /// Seconds after which no further round of predictions is begun.

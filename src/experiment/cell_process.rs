@@ -154,6 +154,11 @@ impl CellJob {
             let Some(run) = &found else {
                 return Ok(self.label(point, missing_external(&self.settings, &scene.hash)));
             };
+            let (size, found) = ([spec.width, spec.height], [run.image.width, run.image.height]);
+            if size != found {
+                let problem = format!("is the size of the image, not {}x{}", size[0], size[1]);
+                return Err(InputError::new("size", format!("{}x{}", found[0], found[1]), problem).into());
+            }
             if let Some(path) = &point.image {
                 image_io::write(path, &run.image)?;
             }
@@ -209,11 +214,13 @@ pub fn child_main(lab: &Lab) -> Result<()> {
     std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
     let job: CellJob = serde_json::from_str(&text)
         .map_err(|e| InputError::new("standard input", "", format!("is no description of a cell: {e}")))?;
-    std::thread::spawn(|| {
+    let wait_for_the_end = || {
         // Nothing more is ever sent: this returns when the parent is gone.
         let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
         process_group::end_own_group();
-    });
+    };
+    let started = std::thread::Builder::new().spawn(wait_for_the_end);
+    started.map_err(|e| Error::system("starting", "the thread that waits for the parent's end", e))?;
     let rows = job.run(lab)?;
     let answer = serde_json::to_string(&rows).map_err(|e| Error::system("writing", "standard output", e.into()))?;
     writeln!(std::io::stdout(), "{answer}").map_err(|e| Error::system("writing", "standard output", e))

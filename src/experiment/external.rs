@@ -150,7 +150,18 @@ impl Definition {
                 let points = vec![CellPoint { id: id.clone(), spp, image: id.clone() }];
                 let version = SceneVersion { hash: scene.hash.clone(), files: scene.files.clone() };
                 let external = Some(external.clone());
-                cells.push(Cell { id, settings, scene: version, points, weight: samples.max(1), external });
+                let cell = Cell { id, settings, scene: version, points, weight: samples.max(1), external };
+                match cells.iter().find(|known: &&Cell| known.id == cell.id) {
+                    None => cells.push(cell),
+                    // Curves share their beginnings, and a list may name a number twice.
+                    Some(known) if known.external == cell.external => {}
+                    Some(_) => {
+                        let problem = "is the name of another program of the same images";
+                        return Err(
+                            self.located(profile, InputError::new("name", &cell.settings.spec.estimator, problem))
+                        );
+                    }
+                }
             }
         }
         Ok(cells)

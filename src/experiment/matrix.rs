@@ -305,10 +305,14 @@ impl Definition {
                             threads,
                             ..image.clone()
                         };
-                        let setup = self.lab.prepare(settings).map_err(|error| match error {
+                        let at_field = |error| match error {
                             Error::Input(input) if input.place.is_none() => self.located(profile, *input),
                             other => other,
-                        })?;
+                        };
+                        let setup = self.lab.prepare(settings).map_err(at_field)?;
+                        if matrix.curve {
+                            setup.check_rounds().map_err(at_field)?;
+                        }
                         cells.add(&setup, matrix.curve);
                     }
                 }

@@ -4,6 +4,7 @@
 //! (METHODOLOGY: cross form).
 
 use super::{Cell, Definition, Profile, SceneVersion};
+use crate::atomic_file;
 use crate::error::{InputError, Result};
 use crate::film::{FilmKey, read_film};
 use crate::kernel::Spec;
@@ -99,9 +100,15 @@ impl Reference {
         Ok([path(0)?, path(1)?])
     }
 
-    /// Refuses a damaged film in the cache. It is never quietly replaced: it may be the user's only copy.
+    /// Whether it is what images of these settings are measured against.
+    pub(super) fn is_for(&self, settings: &Settings) -> bool {
+        self.scene == settings.scene && self.size == [settings.spec.width, settings.spec.height]
+    }
+
+    /// Refuses names that no file can have, and a damaged film in the cache. It is never quietly replaced: it may be the user's only copy.
     pub fn check_cache(&self, lab: &Lab, folder: &Path) -> Result<()> {
         for path in self.paths(lab, folder)? {
+            atomic_file::check_name(&path)?;
             if path.is_file() {
                 read_film(&path)?;
             }
@@ -110,13 +117,13 @@ impl Reference {
     }
 }
 
-/// The references that an experiment's cells call for: one for each scene.
+/// The references that an experiment's cells call for: one for each scene and size.
 pub fn wanted_references(definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Vec<Reference>> {
     let Some((estimator, spp)) = definition.reference(profile)? else { return Ok(Vec::new()) };
     let mut wanted: Vec<Reference> = Vec::new();
     for cell in cells {
         let settings = &cell.settings;
-        if !wanted.iter().any(|reference| reference.scene == settings.scene) {
+        if !wanted.iter().any(|reference| reference.is_for(settings)) {
             wanted.push(Reference {
                 scene: settings.scene.clone(),
                 version: Some(cell.scene.clone()),

@@ -73,6 +73,7 @@ impl<'a> Sweep<'a> {
                 return Err(InputError::new("filter", filter, "leaves no cell to run").into());
             }
         }
+        check_names(definition, options, &cells)?;
         let references = wanted_references(definition, options.profile, &cells)?;
         for reference in &references {
             reference.check(&definition.lab).map_err(|error| definition.reference_error(options.profile, error))?;
@@ -157,7 +158,10 @@ impl<'a> Sweep<'a> {
                         order,
                         settings: cell.settings.clone(),
                         scene: cell.scene.clone(),
-                        references: references.get(cell.settings.scene.as_str()).cloned(),
+                        references: references
+                            .iter()
+                            .find(|(of, _)| of.is_for(&cell.settings))
+                            .map(|(_, halves)| halves.clone()),
                         external: cell.external.clone().map(|external| (external, programs.clone())),
                         trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
                     };
@@ -242,20 +246,37 @@ fn check_new(folder: &Path, rows: &Path) -> Result<()> {
     }
 }
 
-/// The two halves of each reference, by scene.
-fn references(
+/// The two halves of each reference.
+fn references<'a>(
     definition: &Definition,
-    wanted: &[Reference],
+    wanted: &'a [Reference],
     options: &Options,
     progress: &dyn Progress,
-) -> Result<HashMap<String, [HalfFile; 2]>> {
+) -> Result<Vec<(&'a Reference, [HalfFile; 2])>> {
     let folder = options.out.join("references");
-    let mut halves = HashMap::new();
-    for reference in wanted {
+    let render = |reference: &'a Reference| {
         std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
         let half = |(path, film): (PathBuf, Film)| HalfFile { path, checksum: film.checksum() };
         let rendered = render_reference(&definition.lab, reference, &folder, progress)?;
-        halves.insert(reference.scene.clone(), rendered.map(half));
+        Ok((reference, rendered.map(half)))
+    };
+    wanted.iter().map(render).collect()
+}
+
+/// Refuses paths that no cell's process could be told, and names that no file can have.
+fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Result<()> {
+    if options.out.to_str().is_none() {
+        let problem = "is not UTF-8 text, which the cells of a sweep are told it in";
+        return Err(InputError::new("out", options.out.to_string_lossy(), problem).into());
     }
-    Ok(halves)
+    for cell in cells {
+        if definition.keeps(Keep::Traces) {
+            // No repetition has a longer number.
+            atomic_file::check_name(Path::new(&trace_file(&cell.id, u32::MAX)))?;
+        }
+        if definition.keeps(Keep::Images) {
+            cell.points.iter().try_for_each(|point| atomic_file::check_name(Path::new(&point.image_file())))?;
+        }
+    }
+    Ok(())
 }

@@ -4,6 +4,7 @@
 //! waits here for the subtree beside it, and both become their parent. So the film depends on the pieces, not on their order.
 
 use super::{Bounds, Film, TileBuffer};
+use crate::error::Result;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
@@ -17,9 +18,9 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// An empty film whose pixels will have the samples in `samples`.
-    pub fn new(width: u32, height: u32, samples: Range<u32>) -> Self {
-        Self { film: Film::new(width, height), samples, waiting: HashMap::new() }
+    /// An empty film whose pixels will have the samples in `samples`, if the system has the memory.
+    pub fn new(width: u32, height: u32, samples: Range<u32>) -> Result<Self> {
+        Ok(Self { film: Film::try_new(width, height)?, samples, waiting: HashMap::new() })
     }
 
     /// Adds a piece that was rendered into `tile`. Every piece must come once.
@@ -87,7 +88,7 @@ mod tests {
                     parts.iter().cloned().partition(|part| (part.start / block) % 2 == 0);
                 let orders = [parts.clone(), parts.into_iter().rev().collect(), [odd, even].concat()];
                 for order in orders {
-                    let mut assembly = Assembly::new(1, 1, 0..spp);
+                    let mut assembly = Assembly::new(1, 1, 0..spp).unwrap();
                     for samples in &order {
                         assembly.add(samples, part(samples.clone()));
                     }

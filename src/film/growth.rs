@@ -5,6 +5,7 @@
 //! without the samples in it, so its up to 15 samples are rendered again.
 
 use super::{Assembly, Film, SAMPLE_BLOCK, TileBuffer};
+use crate::error::Result;
 use std::ops::Range;
 
 /// Cuts samples into subtrees: 16 · 2^k samples that start at a multiple of their number, the largest that fit, and what is left of a
@@ -35,10 +36,11 @@ pub struct Sections {
 }
 
 impl Sections {
-    /// Empty films for ranges of samples that follow one another.
-    pub fn new(width: u32, height: u32, sections: &[Range<u32>]) -> Self {
-        let assemblies = sections.iter().map(|samples| Assembly::new(width, height, samples.clone())).collect();
-        Self { ends: sections.iter().map(|samples| samples.end).collect(), assemblies }
+    /// Empty films for ranges of samples that follow one another, if the system has the memory.
+    pub fn new(width: u32, height: u32, sections: &[Range<u32>]) -> Result<Self> {
+        let assembly = |samples: &Range<u32>| Assembly::new(width, height, samples.clone());
+        let assemblies = sections.iter().map(assembly).collect::<Result<_>>()?;
+        Ok(Self { ends: sections.iter().map(|samples| samples.end).collect(), assemblies })
     }
 
     /// Adds a piece that was rendered into `tile`, all of whose samples lie in one section. Every piece must come once.
@@ -137,14 +139,14 @@ mod tests {
     }
 
     fn rendered(samples: Range<u32>) -> Film {
-        let mut assembly = Assembly::new(1, 1, samples.clone());
+        let mut assembly = Assembly::new(1, 1, samples.clone()).unwrap();
         assembly.add(&samples.clone(), part(samples));
         assembly.finish()
     }
 
     fn extend(film: &mut GrowingFilm, spp: u32) {
         let missing = film.missing(spp);
-        let mut sections = Sections::new(1, 1, &missing);
+        let mut sections = Sections::new(1, 1, &missing).unwrap();
         // Backwards: they come in any order.
         missing.iter().rev().for_each(|samples| sections.add(samples, part(samples.clone())));
         for (samples, part) in missing.into_iter().zip(sections.finish()) {

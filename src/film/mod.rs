@@ -26,4 +26,4 @@ pub use sample_grid::SampleGrid;
 pub use sum::{PixelSum, SAMPLE_BLOCK, SampleSum};
 pub use sum_file::SumFile;
 pub use tile_buffer::TileBuffer;
-pub use whole::{Film, LARGEST_SIDE, check_memory, check_size};
+pub use whole::{Film, LARGEST_SIDE, Reserve, check_size};

@@ -114,7 +114,7 @@ mod tests {
                 *pixel = sum.total();
             }
         }
-        let mut assembly = Assembly::new(width, height, 0..SAMPLE_BLOCK);
+        let mut assembly = Assembly::new(width, height, 0..SAMPLE_BLOCK).unwrap();
         assembly.add(&(0..SAMPLE_BLOCK), tile);
         assembly.finish()
     }

@@ -4,16 +4,21 @@
 //! Layout: a line that names the kind, a line of JSON, 52 bytes for each pixel (three sums, three sums of squares as little-endian f64,
 //! the count as u32) of one image after the other, and the SHA-256 of all that.
 
+use super::whole::room;
 use super::{Film, PixelSum, check_size};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Take};
 use std::path::Path;
 
 const PIXEL_BYTES: usize = 52;
 const DIGEST_BYTES: usize = 32;
+/// Names and numbers.
+const LONGEST_HEADER: usize = 1 << 16;
 
 /// A kind of file.
 pub struct SumFile {
@@ -28,59 +33,127 @@ impl SumFile {
         InputError::new(self.field, path.display().to_string(), problem).into()
     }
 
-    /// Writes a header and images, whole or not at all.
+    /// Writes a header and images, whole or not at all. Nothing is copied: there may be no memory left for it.
     pub fn write(&self, path: &Path, header: &impl Serialize, films: &[&Film]) -> Result<()> {
-        let pixels: usize = films.iter().map(|film| film.pixels().len()).sum();
-        let mut bytes = Vec::with_capacity(pixels * PIXEL_BYTES + 1024);
-        bytes.extend_from_slice(self.magic.as_bytes());
-        bytes.push(b'\n');
-        bytes.extend_from_slice(serde_json::to_string(header).unwrap_or_default().as_bytes());
-        bytes.push(b'\n');
-        for pixel in films.iter().flat_map(|film| film.pixels()) {
-            for value in pixel.sum.iter().chain(&pixel.square) {
-                bytes.extend_from_slice(&value.to_le_bytes());
+        let header = serde_json::to_string(header).map_err(|e| Error::system("writing", path, e.into()))?;
+        atomic_file::write(path, |out| {
+            let mut digest = Sha256::new();
+            let mut put = |bytes: &[u8]| {
+                digest.update(bytes);
+                out.write_all(bytes)
+            };
+            put(format!("{}\n{header}\n", self.magic).as_bytes())?;
+            for pixel in films.iter().flat_map(|film| film.pixels()) {
+                put(&bytes_of(pixel))?;
             }
-            bytes.extend_from_slice(&pixel.count.to_le_bytes());
-        }
-        let digest = Sha256::digest(&bytes);
-        bytes.extend_from_slice(&digest);
-        atomic_file::write(path, |out| out.write_all(&bytes))
+            out.write_all(&digest.finalize())
+        })
     }
 
-    /// Reads a header, and as many images of one size as `shape` says by it: width, height and number.
+    /// Reads a header, and as many images of one size as `shape` says by it: width, height and number. Asks for no more memory than the file
+    /// is long.
     pub fn read<H: DeserializeOwned>(
         &self,
         path: &Path,
         shape: impl FnOnce(&H) -> (u32, u32, usize),
     ) -> Result<(H, Vec<Film>)> {
-        let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
-        let Some((body, digest)) = bytes.len().checked_sub(DIGEST_BYTES).map(|at| bytes.split_at(at)) else {
+        let file = File::open(path).map_err(|e| Error::system("reading", path, e))?;
+        let data = file.metadata().map_err(|e| Error::system("reading", path, e))?;
+        if !data.is_file() {
+            return Err(self.broken(path, "is not a regular file"));
+        }
+        let Some(length) = data.len().checked_sub(DIGEST_BYTES as u64) else {
             return Err(self.broken(path, &format!("is too short to be a {} file", self.field)));
         };
-        let Some(rest) = body.strip_prefix(self.magic.as_bytes()).and_then(|rest| rest.strip_prefix(b"\n")) else {
-            return Err(self.broken(path, &format!("does not begin with the line \"{}\"", self.magic)));
+        let truncated = || self.broken(path, "is truncated or damaged: its checksum does not hold");
+        let unreadable = |e: io::Error| match e.kind() {
+            ErrorKind::UnexpectedEof => truncated(),
+            _ => Error::system("reading", path, e),
         };
-        if Sha256::digest(body).as_slice() != digest {
-            return Err(self.broken(path, "is truncated or damaged: its checksum does not hold"));
+        let mut body = Body { file: BufReader::new(file).take(length), digest: Sha256::new() };
+        if body.line(self.magic.len()).map_err(unreadable)? != self.magic.as_bytes() {
+            return Err(self.broken(path, &format!("does not begin with the line \"{}\"", self.magic)));
         }
-        let end = rest.iter().position(|byte| *byte == b'\n').ok_or_else(|| self.broken(path, "has no header"))?;
-        let header: H = serde_json::from_slice(&rest[..end])
-            .map_err(|e| self.broken(path, &format!("has a header that cannot be read: {e}")))?;
-        let (width, height, images) = shape(&header);
-        check_size(width, height)?;
-        let area = width as usize * height as usize;
-        let data = &rest[end + 1..];
-        if area.checked_mul(PIXEL_BYTES).and_then(|size| size.checked_mul(images)) != Some(data.len()) {
-            return Err(self.broken(path, "does not have as many pixels as its header says"));
+        let line = body.line(LONGEST_HEADER).map_err(unreadable)?;
+        let header: std::result::Result<H, _> = serde_json::from_slice(&line);
+        let films = match &header {
+            // What a damaged header says is not read, let alone allocated.
+            Err(_) => Vec::new(),
+            Ok(header) => {
+                let (width, height, images) = shape(header);
+                check_size(width, height)?;
+                let size = (u64::from(width) * u64::from(height) * PIXEL_BYTES as u64).checked_mul(images as u64);
+                if size != Some(body.file.limit()) {
+                    return Err(self.broken(path, "does not have as many pixels as its header says"));
+                }
+                (0..images).map(|_| body.film(width, height, unreadable)).collect::<Result<_>>()?
+            }
+        };
+        if !body.ends_whole().map_err(unreadable)? {
+            return Err(truncated());
         }
-        let image =
-            |bytes: &[u8]| Film::from_pixels(width, height, bytes.chunks_exact(PIXEL_BYTES).map(pixel).collect());
-        let films = data.chunks_exact(area * PIXEL_BYTES).map(image).collect();
+        let header = header.map_err(|e| self.broken(path, &format!("has a header that cannot be read: {e}")))?;
         Ok((header, films))
     }
 }
 
-fn pixel(bytes: &[u8]) -> PixelSum {
+/// What a file's checksum is of, on its way through it.
+struct Body {
+    file: Take<BufReader<File>>,
+    digest: Sha256,
+}
+
+impl Body {
+    fn bytes(&mut self, bytes: &mut [u8]) -> io::Result<()> {
+        self.file.read_exact(bytes)?;
+        self.digest.update(bytes);
+        Ok(())
+    }
+
+    /// A line without its end, which must come after so many bytes at most.
+    fn line(&mut self, most: usize) -> io::Result<Vec<u8>> {
+        let mut line = Vec::new();
+        self.file.by_ref().take(most as u64 + 1).read_until(b'\n', &mut line)?;
+        self.digest.update(&line);
+        if line.pop() == Some(b'\n') { Ok(line) } else { Ok(Vec::new()) }
+    }
+
+    fn film(&mut self, width: u32, height: u32, unreadable: impl Fn(io::Error) -> Error) -> Result<Film> {
+        let mut pixels = room(width, height)?;
+        for _ in 0..u64::from(width) * u64::from(height) {
+            let mut bytes = [0; PIXEL_BYTES];
+            self.bytes(&mut bytes).map_err(&unreadable)?;
+            pixels.push(pixel(&bytes));
+        }
+        Ok(Film::from_pixels(width, height, pixels))
+    }
+
+    /// Whether the rest of the file, which is passed over, and its checksum are what was written.
+    fn ends_whole(mut self) -> io::Result<bool> {
+        let mut chunk = [0; 4096];
+        loop {
+            let count = self.file.read(&mut chunk)?;
+            if count == 0 {
+                break;
+            }
+            self.digest.update(&chunk[..count]);
+        }
+        let mut found = [0; DIGEST_BYTES];
+        self.file.into_inner().read_exact(&mut found)?;
+        Ok(self.digest.finalize().as_slice() == found)
+    }
+}
+
+fn bytes_of(pixel: &PixelSum) -> [u8; PIXEL_BYTES] {
+    let mut bytes = [0; PIXEL_BYTES];
+    for (place, value) in bytes.chunks_exact_mut(8).zip(pixel.sum.iter().chain(&pixel.square)) {
+        place.copy_from_slice(&value.to_le_bytes());
+    }
+    bytes[48..].copy_from_slice(&pixel.count.to_le_bytes());
+    bytes
+}
+
+fn pixel(bytes: &[u8; PIXEL_BYTES]) -> PixelSum {
     let number = |at: usize| f64::from_le_bytes(std::array::from_fn(|k| bytes[at + k]));
     PixelSum {
         sum: std::array::from_fn(|k| number(8 * k)),

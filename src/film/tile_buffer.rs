@@ -1,6 +1,8 @@
 //! The sums of one piece's pixels: what a kernel writes, and nobody else.
 
+use super::whole::room;
 use super::{Bounds, PixelSum};
+use crate::error::Result;
 
 /// The pixels of a rectangle, row by row.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,6 +15,13 @@ impl TileBuffer {
     /// An empty buffer for the rectangle.
     pub fn new(bounds: Bounds) -> Self {
         Self { bounds, pixels: vec![PixelSum::default(); bounds.area()] }
+    }
+
+    /// An empty buffer for the rectangle, if the system has the memory.
+    pub fn try_new(bounds: Bounds) -> Result<Self> {
+        let mut pixels = room(bounds.width(), bounds.height())?;
+        pixels.resize(bounds.area(), PixelSum::default());
+        Ok(Self { bounds, pixels })
     }
 
     /// The rectangle.

@@ -22,15 +22,31 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
         .into())
 }
 
-/// Asks the system for the memory that rendering a film of this size takes, and gives it back: its sums, and as much for the pieces on their
-/// way. Without it the program would be ended at the first allocation that fails, hours later perhaps.
-pub fn check_memory(width: u32, height: u32) -> Result<()> {
-    let mut sums: Vec<[PixelSum; 2]> = Vec::new();
-    let refused = sums.try_reserve_exact(width as usize * height as usize).err();
-    refused.map_or(Ok(()), |e| {
-        let what = format!("an image of {width}x{height} pixels");
-        Err(Error::system("reserving memory for", what, io::Error::new(io::ErrorKind::OutOfMemory, e)))
-    })
+/// Room for a value per pixel of a rectangle of this size. Where the system refuses it, that is an error here; an allocation anywhere else would
+/// end the program.
+pub(super) fn room<T>(width: u32, height: u32) -> Result<Vec<T>> {
+    let mut room = Vec::new();
+    room.try_reserve_exact(width as usize * height as usize).map_err(|e| {
+        let what = format!("{width}x{height} pixels");
+        Error::system("reserving memory for", what, io::Error::new(io::ErrorKind::OutOfMemory, e))
+    })?;
+    Ok(room)
+}
+
+/// Memory that is kept free during hours of rendering for what is made of a film in the end: pictures, and their files.
+#[derive(Debug, Default)]
+pub struct Reserve(Vec<[PixelSum; 2]>);
+
+impl Reserve {
+    /// As much as is needed for an image of this size, until it is dropped.
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        room(width, height).map(Self)
+    }
+
+    /// How many pixels it is for.
+    pub fn pixels(&self) -> usize {
+        self.0.capacity()
+    }
 }
 
 /// Sums of all pixels, row 0 at the top.
@@ -45,6 +61,13 @@ impl Film {
     /// An empty film.
     pub fn new(width: u32, height: u32) -> Self {
         Self { width, height, pixels: vec![PixelSum::default(); width as usize * height as usize] }
+    }
+
+    /// An empty film, if the system has the memory.
+    pub fn try_new(width: u32, height: u32) -> Result<Self> {
+        let mut pixels = room(width, height)?;
+        pixels.resize(width as usize * height as usize, PixelSum::default());
+        Ok(Self { width, height, pixels })
     }
 
     pub(super) fn from_pixels(width: u32, height: u32, pixels: Vec<PixelSum>) -> Self {

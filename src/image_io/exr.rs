@@ -11,8 +11,14 @@ use super::codec::{self, Decoded};
 use super::{Format, Image};
 use crate::error::{InputError, Result};
 
-pub(super) const FORMAT: Format =
-    Format { name: "exr", about: "linear radiance in f32, compressed, lossless", linear: true, decode, encode };
+pub(super) const FORMAT: Format = Format {
+    name: "exr",
+    about: "linear radiance in f32, compressed, lossless",
+    linear: true,
+    forbidden_width: None,
+    decode,
+    encode,
+};
 
 /// Bits of the version field that ask for more than one picture of plain pixels: deep data, several parts.
 const UNSUPPORTED: u32 = 0x800 | 0x1000;

@@ -13,8 +13,14 @@ use super::tone_map::bad_pixel;
 use super::{Format, Image};
 use crate::error::{InputError, Result};
 
-pub(super) const FORMAT: Format =
-    Format { name: "hdr", about: "linear radiance, 8 bits and a common exponent", linear: true, decode, encode };
+pub(super) const FORMAT: Format = Format {
+    name: "hdr",
+    about: "linear radiance, 8 bits and a common exponent",
+    linear: true,
+    forbidden_width: Some(UNREADABLE_WIDTH),
+    decode,
+    encode,
+};
 
 /// Values of this size and more do not fit: the exponent byte ends at 2^127.
 const TOO_LARGE: f64 = 1.7e38;
@@ -43,10 +49,6 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
 }
 
 fn encode(image: &Image) -> Result<Vec<u8>> {
-    if image.width == UNREADABLE_WIDTH {
-        let problem = "a hdr picture may have any width but this one";
-        return Err(InputError::new("width", UNREADABLE_WIDTH.to_string(), problem).into());
-    }
     let mut samples = Vec::with_capacity(image.pixels.len() * 12);
     for (index, &pixel) in image.pixels.iter().enumerate() {
         if !pixel.iter().all(|value| (0.0..TOO_LARGE).contains(value)) {

@@ -75,6 +75,8 @@ pub struct Format {
     pub about: &'static str,
     /// Whether values are linear radiance; otherwise 8 bits of what a display shows.
     pub linear: bool,
+    /// A width that its pictures cannot have.
+    forbidden_width: Option<u32>,
     /// The picture in a file's bytes, or what is wrong with them.
     decode: fn(&[u8]) -> std::result::Result<Image, String>,
     /// The bytes of the file; the picture has the number of pixels it says.
@@ -98,6 +100,18 @@ pub fn check_format(path: &Path) -> Result<&'static Format> {
     })
 }
 
+/// [`check_format`], and whether the format takes pictures of this size.
+pub fn check_picture(path: &Path, width: u32, height: u32) -> Result<&'static Format> {
+    let format = check_format(path)?;
+    let size = format!("{width}x{height}");
+    codec::check_size(u64::from(width), u64::from(height)).map_err(|e| InputError::new("size", &size, e))?;
+    if format.forbidden_width == Some(width) {
+        let problem = format!("is no size of a {} picture", format.name);
+        return Err(InputError::new("size", size, problem).allowed(format!("any other width than {width}")).into());
+    }
+    Ok(format)
+}
+
 /// Reads the picture in `path`.
 pub fn read(path: &Path) -> Result<Image> {
     let format = check_format(path)?;
@@ -118,11 +132,9 @@ pub fn read(path: &Path) -> Result<Image> {
 
 /// Writes `image` to `path`, whole or not at all.
 pub fn write(path: &Path, image: &Image) -> Result<()> {
-    let format = check_format(path)?;
     let (width, height, count) = (image.width, image.height, image.pixels.len());
     assert_eq!(width as usize * height as usize, count, "a picture of {width} x {height} holds {count} pixels");
-    codec::check_size(u64::from(width), u64::from(height))
-        .map_err(|problem| InputError::new("size", format!("{width}x{height}"), problem))?;
+    let format = check_picture(path, width, height)?;
     let bytes = (format.encode)(image)?;
     atomic_file::write(path, |out| out.write_all(&bytes))
 }

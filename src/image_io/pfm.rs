@@ -8,8 +8,14 @@ use super::codec::{self, Decoded};
 use super::{Format, Image};
 use crate::error::Result;
 
-pub(super) const FORMAT: Format =
-    Format { name: "pfm", about: "linear radiance in f32, uncompressed, lossless", linear: true, decode, encode };
+pub(super) const FORMAT: Format = Format {
+    name: "pfm",
+    about: "linear radiance in f32, uncompressed, lossless",
+    linear: true,
+    forbidden_width: None,
+    decode,
+    encode,
+};
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
     let mut rest = bytes;

@@ -9,8 +9,14 @@ use super::codec::{self, Decoded};
 use super::{Format, Image, tone_map};
 use crate::error::{InputError, Result};
 
-pub(super) const FORMAT: Format =
-    Format { name: "png", about: "what a display shows, 8 bits, compressed", linear: false, decode, encode };
+pub(super) const FORMAT: Format = Format {
+    name: "png",
+    about: "what a display shows, 8 bits, compressed",
+    linear: false,
+    forbidden_width: None,
+    decode,
+    encode,
+};
 
 /// The chunk that ends a PNG: length 0, its name, its checksum.
 const END: [u8; 12] = *b"\0\0\0\0IEND\xAE\x42\x60\x82";

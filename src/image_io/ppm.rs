@@ -9,8 +9,14 @@ use super::codec::{self, Decoded};
 use super::{Format, Image, tone_map};
 use crate::error::{InputError, Result};
 
-pub(super) const FORMAT: Format =
-    Format { name: "ppm", about: "what a display shows, 8 bits, uncompressed", linear: false, decode, encode };
+pub(super) const FORMAT: Format = Format {
+    name: "ppm",
+    about: "what a display shows, 8 bits, uncompressed",
+    linear: false,
+    forbidden_width: None,
+    decode,
+    encode,
+};
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
     let mut source = Cursor::new(bytes);

@@ -1,10 +1,12 @@
 //! Reading what users write: TOML with the place of every mistake, and numbers with the range they may have.
 
 mod numbers;
+mod text;
 mod toml_text;
 
 pub(crate) use numbers::{
     albedo, coordinate_limit, direction, field_of_view, length, out_of_range, point, positive, radiance,
     refractive_index, roughness, share,
 };
-pub(crate) use toml_text::{locate, locate_in, parse, parse_within, read_text, read_text_up_to};
+pub(crate) use text::{Limits, open_text, read_text, read_text_up_to, unreadable};
+pub(crate) use toml_text::{locate, locate_in, parse, parse_within};

@@ -1,44 +1,11 @@
-//! TOML files: size limits before reading, and errors that name file, line, column, field and value.
+//! TOML text, and errors that name file, line, column, field and value.
 
-use crate::error::{Error, InputError, Result};
+use crate::error::{InputError, Result};
 use serde::Deserializer;
 use serde::de::{DeserializeOwned, DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use std::fmt;
-use std::io::Read;
 use std::marker::PhantomData;
 use std::ops::Range;
-use std::path::Path;
-
-/// No scene or experiment comes near this; a device file or a mistaken path does. Once parsed, a definition takes 70 times its length of
-/// memory: more objects than fit here belong in a mesh or a generator.
-const LARGEST_DEFINITION: u64 = 3 << 20;
-
-/// The text of a definition.
-pub(crate) fn read_text(path: &Path) -> Result<String> {
-    read_text_up_to(path, LARGEST_DEFINITION)
-}
-
-/// The text of a user's file of so many bytes at most.
-pub(crate) fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
-    let name = path.display().to_string();
-    let file = std::fs::File::open(path).map_err(|e| match e.kind() {
-        std::io::ErrorKind::NotFound => InputError::new("file", &name, "there is no such file").into(),
-        _ => Error::system("reading", path, e),
-    })?;
-    if file.metadata().is_ok_and(|data| data.is_dir()) {
-        return Err(InputError::new("file", name, "is a directory").into());
-    }
-    let mut bytes = Vec::new();
-    file.take(most + 1).read_to_end(&mut bytes).map_err(|e| Error::system("reading", path, e))?;
-    if bytes.len() as u64 > most {
-        let allowed = format!("up to {} MiB", most >> 20);
-        return Err(InputError::new("file", name, "is larger than such a file can be").allowed(allowed).into());
-    }
-    String::from_utf8(bytes).map_err(|e| {
-        let at = e.utf8_error().valid_up_to();
-        InputError::new("file", name, format!("is not UTF-8 text at byte {at}")).into()
-    })
-}
 
 /// Reads a definition; `file` is the name to show.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
@@ -109,6 +76,13 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
         return (spanned.to_string(), String::new());
     }
     let before = text.get(..span.start).unwrap_or("");
+    // A table that begins with its header is named there, and has no value on one line.
+    let is_header =
+        before.ends_with('[') && before.rsplit('\n').next().is_some_and(|line| line.trim_matches('[').is_empty());
+    if is_header && spanned.starts_with(char::is_alphabetic) {
+        let header = text[span.start..].split([']', '\n']).next().unwrap_or("");
+        return (header.trim().to_string(), String::new());
+    }
     let owner = before.rfind('=').map(|at| before[..at].trim_end()).unwrap_or_default();
     let start = owner.char_indices().rev().find(|(_, c)| !is_key(*c)).map_or(0, |(at, c)| at + c.len_utf8());
     let field = owner[start..].to_string();
@@ -134,4 +108,43 @@ pub(crate) fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize
     })?;
     let at_value = text[at_key + key.len()..].find(value).filter(|_| !value.is_empty());
     Some(line_and_column(text, at_value.map_or(at_key, |at| at_key + key.len() + at)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde::Deserialize;
+    use serde::de::{Deserializer, Error};
+
+    /// A table that is wrong as a whole.
+    #[derive(Debug)]
+    struct Wrong;
+
+    impl<'de> Deserialize<'de> for Wrong {
+        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
+            serde::de::IgnoredAny::deserialize(deserializer)?;
+            Err(D::Error::custom("is wrong"))
+        }
+    }
+
+    #[derive(Debug, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    struct File {
+        #[serde(rename = "title")]
+        _title: String,
+        #[serde(rename = "table")]
+        _table: std::collections::BTreeMap<String, Wrong>,
+    }
+
+    /// The field is the one that is wrong, and not the one that stands above it.
+    #[test]
+    fn a_wrong_table_is_named() {
+        let said = |text: &str| parse::<File>(text, "f.toml").unwrap_err().to_string();
+        let header = said("title = 'a'\n[table.one]\nx = 1\n");
+        assert!(header.starts_with("f.toml:2:") && header.contains(" table.one: is wrong"), "{header}");
+        let inline = said("title = 'a'\ntable = { one = { x = 1 } }\n");
+        assert!(inline.starts_with("f.toml:2:") && inline.contains(" one = { x = 1 }: is wrong"), "{inline}");
+        let value = said("title = 'a'\n[table]\none = [\n  [0.5],\n]\n");
+        assert!(value.starts_with("f.toml:3:") && value.contains(" one = ["), "{value}");
+    }
 }

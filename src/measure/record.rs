@@ -1,6 +1,6 @@
 //! One row of `records.csv`: one repetition of one cell, with everything that is needed to repeat it.
 
-use super::{Outcome, Settings, Setup, Warning};
+use super::{Outcome, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
@@ -8,7 +8,6 @@ use crate::kernel::Clamp;
 use crate::kernel::workload::WORKLOAD;
 use crate::metric;
 use serde::{Deserialize, Serialize};
-use std::time::SystemTime;
 
 /// Version of the columns.
 pub const SCHEMA: u32 = 5;
@@ -160,7 +159,7 @@ pub struct Record {
     pub commit: String,
     /// Whether they had uncommitted changes.
     pub dirty: bool,
-    /// When it started.
+    /// When it started; empty if the system's clock shows no date from 1970 to 9999.
     pub started_utc: String,
 }
 
@@ -210,7 +209,7 @@ fn described(settings: &Settings) -> Record {
         threads: settings.threads,
         commit: env!("PATHMARK_COMMIT").to_string(),
         dirty: env!("PATHMARK_DIRTY") == "true",
-        started_utc: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+        started_utc: utc_now(),
         ..Record::default()
     }
 }

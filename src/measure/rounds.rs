@@ -19,11 +19,8 @@ pub struct Rounds {
 impl Rounds {
     /// Nothing rendered yet. The samples that the settings ask for do not matter.
     pub fn new(setup: Setup) -> Result<Self> {
+        setup.check_rounds()?;
         let spec = &setup.settings().spec;
-        if let Some(clamp) = spec.clamp {
-            let problem = "needs all samples of a pixel at once, and so cannot be rendered in rounds";
-            return Err(InputError::new(format!("{}-clamp", clamp.name()), "true", problem).into());
-        }
         let film = GrowingFilm::new(spec.width, spec.height);
         Ok(Self { setup, account: Account::new(), film })
     }
@@ -87,5 +84,14 @@ impl Rounds {
     /// What all rounds came to.
     pub fn outcome(&self) -> Outcome {
         self.account.outcome(&self.setup, self.spp(), self.film())
+    }
+}
+
+impl Setup {
+    /// Refuses settings that cannot be rendered in rounds.
+    pub fn check_rounds(&self) -> Result<()> {
+        let Some(clamp) = self.settings().spec.clamp else { return Ok(()) };
+        let problem = "needs all samples of a pixel at once, and so cannot be rendered in rounds";
+        Err(InputError::new(format!("{}-clamp", clamp.name()), "true", problem).into())
     }
 }

@@ -5,16 +5,18 @@ use super::invalid::{InvalidSample, first_invalid};
 use super::ledger::Ledger;
 use super::output::{Delivery, Output};
 use super::usage::Usage;
-use super::{JobSpan, Setup, Trace, Warning, available_threads};
+use super::{JobSpan, Setup, Trace, Warning, available_threads, utc_now};
 use crate::error::{Error, Result};
-use crate::film::{Film, Plan, check_memory};
+use crate::film::{Film, Plan, Reserve, Sections};
 use crate::kernel::{Counts, Kernel};
 use crate::strategy::Strategy;
+use std::cell::Cell;
 use std::ops::Range;
 use std::slice::from_ref;
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
-use std::time::{Duration, Instant, SystemTime};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// In shorter runs the start of threads and a single interruption weigh more than the schedule.
 const SHORTEST_S: f64 = 5e-3;
@@ -62,7 +64,7 @@ pub struct Outcome {
     pub checksum: Option<String>,
     /// What a reader should know.
     pub warnings: Vec<Warning>,
-    /// When it started.
+    /// When it started; empty if the system's clock shows no date from 1970 to 9999.
     pub started_utc: String,
     /// What the system counted during the makespan.
     pub(super) cpu: Option<Usage>,
@@ -125,6 +127,8 @@ pub(super) struct Account {
     cpu: Option<Usage>,
     started_utc: String,
     pub(super) last: RoundTimes,
+    /// For what is made of the film when all rounds are done.
+    reserve: Cell<Reserve>,
 }
 
 impl Account {
@@ -144,8 +148,9 @@ impl Account {
             makespan_s: 0.0,
             merge_s: 0.0,
             cpu: None,
-            started_utc: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            started_utc: utc_now(),
             last: RoundTimes::default(),
+            reserve: Cell::default(),
         }
     }
 
@@ -158,7 +163,12 @@ impl Account {
         watch: Watch<'_>,
     ) -> Result<Vec<Film>> {
         let spec = &setup.settings().spec;
-        check_memory(spec.width, spec.height)?;
+        let (width, height) = (spec.width, spec.height);
+        // All that is known to be needed comes first: a refusal after hours of work would lose them.
+        let films = Sections::new(width, height, sections)?;
+        if self.reserve.get_mut().pixels() == 0 {
+            self.reserve.set(Reserve::new(width, height)?);
+        }
         let (kernel, build_s) = setup.kernel()?;
         self.build_s = build_s;
         let before_pilot = Instant::now();
@@ -166,13 +176,8 @@ impl Account {
         if setup.is_by_cost() {
             self.pilot_s += before_pilot.elapsed().as_secs_f64();
         }
-        let (width, height) = (spec.width, spec.height);
-        let delivery = Delivery { plan: Arc::clone(&plan), width, height, sections: sections.to_vec() };
-        let run = Arc::new(Run {
-            kernel: Arc::clone(&kernel),
-            ledger: Ledger::new(plan.len()),
-            output: setup.new_output(delivery),
-        });
+        let output = setup.new_output(Delivery { plan: Arc::clone(&plan), films })?;
+        let run = Arc::new(Run { kernel: Arc::clone(&kernel), ledger: Ledger::new(plan.len()), output });
         let strategy = match &mut self.strategy {
             Some(strategy) => strategy,
             none => {
@@ -184,14 +189,16 @@ impl Account {
         };
         let timed = watched(&run, watch, || run.timed(setup, strategy.as_mut(), plan.len()))?;
 
-        let entries = run.ledger.close().map_err(|problem| {
+        let broken = |problem: &str| {
             Error::Check(format!("strategy {} broke its contract: {problem}", setup.settings().strategy))
-        })?;
+        };
+        let Run { ledger, output, .. } = Arc::into_inner(run).ok_or_else(|| broken("it has kept the job"))?;
+        let entries = ledger.close().map_err(|problem| broken(&problem))?;
         let before_merge = Instant::now();
-        let films = run.output.films();
+        let films = output.films();
         let merge_s = before_merge.elapsed().as_secs_f64();
 
-        let workers = run.ledger.workers_used();
+        let workers = ledger.workers_used();
         let asked = setup.strategy().workers.at_once(setup.settings().threads, plan.len());
         // The round that missed its workers by most speaks for all.
         if self.plan.is_empty()
@@ -229,12 +236,16 @@ impl Account {
 
     /// What it came to, with the film that was made of the rounds' films.
     pub(super) fn outcome(&self, setup: &Setup, spp: u32, film: Film) -> Outcome {
+        self.reserve.take();
         let (counts, invalid) = (self.history.counts(), self.history.invalid.clone());
         let mut warnings = setup.warnings(&counts, spp, self.asked, self.workers_used);
         if counts.invalid > 0 {
             warnings.push(Warning::InvalidSamples { count: counts.invalid, first: invalid.clone() });
         }
         warnings.extend(self.time_warnings());
+        if self.started_utc.is_empty() {
+            warnings.push(Warning::NoDate);
+        }
         if cfg!(debug_assertions) {
             warnings.push(Warning::DebugBuild);
         }
@@ -277,17 +288,20 @@ impl Account {
     }
 }
 
-/// Does `work` while a thread beside it tells how far the run is.
-fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> T) -> T {
+/// Does `work` while a thread beside it tells how far the run is. Where the system gives no such thread, the work is not begun: it would most
+/// likely get no workers either.
+fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let Some(watch) = watch else { return work() };
-    std::thread::scope(|scope| {
+    thread::scope(|scope| {
         let (stop, stopped) = channel::<()>();
-        scope.spawn(move || {
+        let tell = move || {
             while stopped.recv_timeout(Duration::from_millis(100)) == Err(RecvTimeoutError::Timeout) {
                 watch(run.ledger.done());
             }
-        });
-        let done = work();
+        };
+        let started = thread::Builder::new().spawn_scoped(scope, tell);
+        let done =
+            started.map_err(|e| Error::system("starting", "the thread that shows progress", e)).and_then(|_| work());
         drop(stop);
         done
     })

@@ -306,7 +306,7 @@ impl Setup {
         if self.is_by_cost() { plan.clone().longest_first(&pilot::costs(&plan, kernel)) } else { plan }
     }
 
-    pub(super) fn new_output(&self, delivery: Delivery) -> Box<dyn Output> {
+    pub(super) fn new_output(&self, delivery: Delivery) -> Result<Box<dyn Output>> {
         (self.output.new)(delivery)
     }
 

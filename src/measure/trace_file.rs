@@ -10,12 +10,14 @@ use super::{JobSpan, Outcome, Settings, Setup, Trace};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::film::{Bounds, Piece};
-use crate::input::read_text_up_to;
+use crate::input::{Limits, open_text, unreadable};
 use serde::{Deserialize, Serialize};
+use std::io::ErrorKind::OutOfMemory;
+use std::io::{self, BufRead};
 use std::path::Path;
 
-/// A row has some 60 bytes: room for more jobs than a film can have pixels.
-const LARGEST_FILE: u64 = 1 << 33;
+/// A row has some 60 bytes: room for more jobs than a film can have pixels. The header has as many as the longest path of a scene and some 700.
+const LIMITS: Limits = Limits { bytes: 1 << 33, line: 1 << 14 };
 
 /// What was run and how long it took.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -109,14 +111,15 @@ impl TraceFile {
 
     /// Reads a file that [`TraceFile::write`] wrote.
     pub fn read(path: &Path) -> Result<Self> {
-        let text = read_text_up_to(path, LARGEST_FILE)?;
+        let mut table = open_text(path, LIMITS)?;
+        let mut first = String::new();
+        table.read_line(&mut first).map_err(|e| unreadable(path, e))?;
         let wrong = |line: usize, field: &str, value: &str, problem: String| -> Error {
             InputError::new(field, value, problem).in_file(path.display().to_string(), Some((line, 1))).into()
         };
-        let (first, table) = text.split_once('\n').unwrap_or((&text, ""));
         let Some(json) = first.strip_prefix("# ") else {
             let problem = "is not the first line of a trace, which begins with `# {`".to_string();
-            return Err(wrong(1, "header", first.get(..40).unwrap_or(first), problem));
+            return Err(wrong(1, "header", &first.trim_end().chars().take(40).collect::<String>(), problem));
         };
         let header: TraceHeader =
             serde_json::from_str(json).map_err(|e| wrong(1, "header", "", format!("cannot be read: {e}")))?;
@@ -124,7 +127,7 @@ impl TraceFile {
             return Err(wrong(1, "makespan_s", &header.makespan_s.to_string(), "is no time".to_string()));
         }
         let mut rows = Vec::new();
-        for (index, row) in csv::Reader::from_reader(table.as_bytes()).deserialize::<TraceRow>().enumerate() {
+        for (index, row) in csv::Reader::from_reader(table).deserialize::<TraceRow>().enumerate() {
             let line = index + 3;
             let row = row.map_err(|e| wrong(line, "row", "", format!("cannot be read: {e}")))?;
             let ordered = row.start_s >= 0.0 && row.stop_s >= row.start_s && row.stop_s.is_finite();
@@ -138,6 +141,7 @@ impl TraceFile {
                 let problem = format!("is no worker of a run that had {}", header.workers);
                 return Err(wrong(line, "worker", &row.worker.to_string(), problem));
             }
+            rows.try_reserve(1).map_err(|e| Error::system("reading", path, io::Error::new(OutOfMemory, e)))?;
             rows.push(row);
         }
         if rows.is_empty() {

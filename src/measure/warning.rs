@@ -60,6 +60,8 @@ pub enum Warning {
     },
     /// The other program that was to be run is not there.
     NoProgram,
+    /// The system's clock shows no date from 1970 to 9999.
+    NoDate,
     /// The program was built without optimisation for measuring.
     DebugBuild,
 }
@@ -86,6 +88,7 @@ impl fmt::Display for Warning {
                 write!(f, "invalid-samples({count}{at})")
             }
             Self::NoProgram => f.write_str("no-program"),
+            Self::NoDate => f.write_str("no-date"),
             Self::DebugBuild => f.write_str("debug-build"),
         }
     }

@@ -50,6 +50,11 @@ impl Noise {
         let sensible = (0.0..1.0).contains(&fraction) && length_s > 0.0 && length_s.is_finite();
         sensible.then_some(Self { fraction, length_s, seed })
     }
+
+    /// How often work of so many seconds is interrupted on average: r times a second, where r L / (1 + r L) of the time is lost.
+    pub fn interruptions(&self, work_s: f64) -> f64 {
+        work_s * self.fraction / ((1.0 - self.fraction) * self.length_s)
+    }
 }
 
 impl Hardware {
@@ -89,8 +94,7 @@ struct Interruptions {
 impl Processor {
     pub(super) fn new(hardware: &Hardware, processor: usize) -> Self {
         let interruptions = hardware.noise.filter(|noise| noise.fraction > 0.0).map(|noise| {
-            // With r interruptions per second of work, r L / (1 + r L) of the time is lost: solved for 1 / r.
-            let mean_s = noise.length_s * (1.0 - noise.fraction) / noise.fraction;
+            let mean_s = 1.0 / noise.interruptions(1.0);
             let mut random = Pcg32::new(noise.seed, processor as u64);
             let next_s = exponential(&mut random, mean_s);
             Interruptions { length_s: noise.length_s, mean_s, next_s, random }

@@ -27,7 +27,7 @@ fn bases_that_are_not_there_are_refused() {
     for (base, said) in [
         ("nowhere", &["base = nowhere", "cornell", "path of a .toml file"][..]),
         ("nowhere.toml", &["base = nowhere.toml", "no such file"]),
-        ("/dev/zero", &["base = /dev/zero", "3 MiB"]),
+        ("/dev/zero", &["base = /dev/zero", "byte 0 is zero"]),
         (".", &["base = ."]),
         ("cornell:5", &["base = cornell:5", "no scene of that name"]),
     ] {

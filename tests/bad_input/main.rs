@@ -3,6 +3,7 @@
 
 mod arguments;
 mod bases;
+mod before_work;
 mod damaged;
 #[path = "../support/experiment.rs"]
 mod experiment;

@@ -78,6 +78,51 @@ fn one_that_fails_or_writes_another_size_is_a_failed_row() {
     }
 }
 
+/// A number that is named twice, as by the curves of two lists, is one row; what is resumed has all of them.
+#[test]
+fn a_doubled_number_of_samples_is_one_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = table(BLACK).replace("spp = [8]", "spp = [8, 16, 8]\ncurve = true\nfewest-spp = 4");
+    let (rows, finished) = run(folder.path(), &table);
+    finished.with_code(0);
+    // 4, 8 and 16 samples, two seeds each.
+    assert_eq!(rows.len(), 6);
+    let rows = || std::fs::read(folder.path().join("out/tiny/records.csv")).unwrap();
+    let before = rows();
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out", "--resume"])).with_code(0);
+    assert!(rows() == before, "there was nothing to resume");
+}
+
+/// Also where there is no reference that the image would not fit.
+#[test]
+fn an_image_of_another_size_is_a_failed_row_without_references() {
+    let folder = tempfile::tempdir().unwrap();
+    let small = r#""sh", "-c", "printf 'PF\\n1 1\\n-1.0\\n000000000000' > $0", "{out}", "{spp}", "{seed}""#;
+    let text = TINY.replace("[quick]\n", &format!("{}\n[quick]\n", table(small)));
+    write_tiny(folder.path(), &text);
+    let failed = finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(1);
+    assert!(failed.err.contains("size = 1x1") && failed.err.contains("24x16"), "{}", failed.err);
+}
+
+/// Images of two sizes are each measured against a reference of their own.
+#[test]
+fn every_size_has_its_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, matrix) = TINY.split_once("[matrix]").unwrap();
+    let (matrix, _) = matrix.split_once("[quick]").unwrap();
+    let two = format!("[[matrix]]{matrix}\n[[matrix]]\nsize = [8, 6]{matrix}");
+    let reference = "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n";
+    let text = TINY.replace(&format!("[matrix]{matrix}"), &two).replace("[quick]\n", reference);
+    write_tiny(folder.path(), &text);
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
+    let rows = csv::Reader::from_path(folder.path().join("out/tiny/records.csv")).unwrap().into_deserialize();
+    let rows: Vec<BTreeMap<String, String>> = rows.map(Result::unwrap).collect();
+    for width in ["8", "24"] {
+        let of: Vec<_> = rows.iter().filter(|row| row["width"] == width).collect();
+        assert!(!of.is_empty() && of.iter().all(|row| row["error"].is_empty() && !row["mse"].is_empty()), "{width}");
+    }
+}
+
 #[test]
 fn a_command_without_a_place_for_the_seed_is_refused() {
     let folder = tempfile::tempdir().unwrap();

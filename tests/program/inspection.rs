@@ -264,3 +264,76 @@ fn what_cannot_be_replayed_is_refused() {
     let error = run(&["bounces", "cornell", "--spp", "3"], 2).1;
     assert!(error.contains("spp = 3"), "{error}");
 }
+
+/// A lamp too bright for f32, whose samples are invalid there. Whatever else the image is rendered with, the command that is told for one of them
+/// shows it again.
+#[test]
+fn a_told_command_shows_the_invalid_sample_on_every_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "about = 'a test'\nbase = 'cornell'\n[[objects]]\nname = 'light'\nemission = [1e39, 1e39, 1e39]\n";
+    std::fs::write(folder.path().join("bright.toml"), scene).unwrap();
+    let axes: [&[&str]; 8] = [
+        &[],
+        &["--size", "20x31"],
+        &["--seed", "77"],
+        &["--estimator", "mis"],
+        &["--sampler", "sobol"],
+        &["--max-depth", "2"],
+        &["--roulette", "throughput:3"],
+        &["--estimator", "bsdf", "--roulette", "never", "--max-depth", "40"],
+    ];
+    for axis in axes {
+        let base = ["render", "bright.toml", "--spp", "16", "--precision", "f32", "-o", "image.pfm"];
+        let size = if axis.contains(&"--size") { vec![] } else { vec!["--size", "32x24"] };
+        let render = finish(pathmark(folder.path(), &[&base[..], &size, axis].concat())).with_code(0);
+        let told: Vec<&str> = render.err.lines().filter_map(|line| line.strip_prefix("pathmark replay ")).collect();
+        assert!((1..=10).contains(&told.len()), "{axis:?}: {}", render.err);
+        for command in told {
+            let arguments: Vec<&str> = ["replay"].into_iter().chain(command.split(' ')).collect();
+            let replay = finish(pathmark(folder.path(), &arguments)).with_code(0);
+            assert!(replay.out.contains("This is no radiance"), "{command}: {}", replay.out);
+            let json = finish(pathmark(folder.path(), &[&arguments[..], &["--json"]].concat())).with_code(0).out;
+            let json: Value = serde_json::from_str(&json).unwrap();
+            assert_eq!((&json["valid"], &json["precision"]), (&false.into(), &"f32".into()), "{command}");
+        }
+    }
+}
+
+/// In f32 a replay shows what the image is given, and nothing of its path; light by bounces is refused.
+#[test]
+fn single_precision_is_looked_into_as_far_as_it_can_be() {
+    let base = ["replay", "cornell", "--size", "64x48", "--pixel", "40,38", "--seed", "4", "--precision", "f32"];
+    let scene = Arc::new(load("cornell").unwrap());
+    let single = Spec { precision: "f32".into(), ..spec("smallpt", (64, 48), 4) };
+    let double = spec("smallpt", (64, 48), 4);
+    let mut others = 0;
+    for sample in 0..8 {
+        let text = sample.to_string();
+        let arguments = [&base[..], &["--sample", &text, "--json"]].concat();
+        let json: Value = serde_json::from_str(&run(&arguments, 0).0).unwrap();
+        let expected = given(&scene, &single, (40, 38), sample);
+        assert_eq!(numbers(&json["radiance"]), expected);
+        assert!(json["events"].is_null() && json["valid"] == true, "{json}");
+        others += u32::from(expected != given(&scene, &double, (40, 38), sample));
+        assert!(run(&arguments[..arguments.len() - 1], 0).0.contains("SIMD lanes"));
+    }
+    assert!(others > 0, "f64 gives the same samples");
+    let refused = run(&["bounces", "cornell", "--size", "8x6", "--precision", "f32"], 2).1;
+    assert!(refused.contains("precision = f32") && refused.contains("allowed: f64"), "{refused}");
+    // What lanes have no code for is rendered in f64, whatever was asked for.
+    let fog = ["bounces", "cornell-fog", "--size", "8x6", "--precision", "f32", "--json"];
+    let same = ["bounces", "cornell-fog", "--size", "8x6", "--json"];
+    assert_eq!(run(&fog, 0).0, run(&same, 0).0);
+}
+
+/// Equal images have an infinite ratio of signal to noise, which JSON has no number for and which is not absent.
+#[test]
+fn infinity_is_told_from_nothing_in_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "cornell", "--size", "32x24", "--spp", "4", "-o", "a.pfm", "--json"];
+    let record: Value = serde_json::from_str(&finish(pathmark(folder.path(), &render)).with_code(0).out).unwrap();
+    assert!(record["rmse"].is_null() && record["mean_radiance"].is_number(), "{record}");
+    let compared = finish(pathmark(folder.path(), &["compare", "a.pfm", "a.pfm", "--json"])).with_code(0).out;
+    let compared: Value = serde_json::from_str(&compared).unwrap();
+    assert_eq!((&compared["psnr"], &compared["mse"]), (&"inf".into(), &0.0.into()), "{compared}");
+}

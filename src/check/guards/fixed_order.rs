@@ -54,7 +54,7 @@ fn as_they_arrive(parts: &[Part]) -> f64 {
 }
 
 fn as_a_film(parts: &[Part]) -> f64 {
-    let mut assembly = Assembly::new(1, 1, 0..BLOCKS * SAMPLE_BLOCK);
+    let mut assembly = Assembly::new(1, 1, 0..BLOCKS * SAMPLE_BLOCK).expect("memory for a pixel");
     for part in parts {
         assembly.add(&(part.first..part.first + SAMPLE_BLOCK), part.tile.clone());
     }

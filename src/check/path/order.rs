@@ -51,7 +51,7 @@ fn orders(trials: &mut Trials) {
     for _ in 0..count {
         shuffle(&mut pieces, &mut random);
         shuffle(&mut shuffled, &mut random);
-        let mut assembly = Assembly::new(1, 1, 0..4096);
+        let mut assembly = Assembly::new(1, 1, 0..4096).expect("memory for a pixel");
         for (samples, tile) in &pieces {
             assembly.add(samples, tile.clone());
         }

@@ -1,6 +1,7 @@
 //! Who draws must not matter, or must be told: R08, R12.
 
 use crate::check::chi_square::critical;
+use crate::check::run::on_threads;
 use crate::check::{Case, Trials};
 use crate::kernel::{KERNELS, Spec};
 use crate::measure::{Settings, Setup};
@@ -74,12 +75,14 @@ fn shared(trials: &mut Trials) {
         let at =
             Address { key: SampleKey { seed: 1, pixel: 0, sample: 0 }, bounce: 0, branch: 0, purpose: Purpose::Film };
         let threads = 8;
-        let all: Vec<Vec<[f64; 2]>> = std::thread::scope(|scope| {
-            let sampler = &sampler;
-            let draw = move || (0..draws).map(|_| sampler.pair(at)).collect();
-            let handles: Vec<_> = (0..threads).map(|_| scope.spawn(draw)).collect();
-            handles.into_iter().map(|handle| handle.join().expect("a thread that draws")).collect()
-        });
+        let drawn = on_threads(threads as usize, || (0..draws).map(|_| sampler.pair(at)).collect::<Vec<[f64; 2]>>());
+        let all = match drawn {
+            Ok(all) => all,
+            Err(refused) => {
+                trials.skip(format!("{}: {refused}", entry.name));
+                continue;
+            }
+        };
         let numbers = || all.iter().flatten().flatten();
         let outside = numbers().filter(|u| !(0.0..1.0).contains(*u)).count() as u64;
         trials.never(

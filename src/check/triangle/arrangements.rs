@@ -4,10 +4,10 @@ use super::hierarchies::{any_ray, in_cube};
 use crate::check::bare_scene::{intersect, scene_of, scene_of_spheres, searches};
 use crate::check::random::Random;
 use crate::check::refusals::refuses_shape;
+use crate::check::run::on_threads;
 use crate::check::{Case, Trials};
 use crate::math::{Ray, Vec3};
 use crate::scene::{Hit, Plane, Primitives, Scene, Sphere};
-use std::thread;
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -108,12 +108,14 @@ fn one_tree(trials: &mut Trials) {
     let threads = trials.times(8, 64);
     let rays = trials.times(20_000, 1_000_000);
     for ((name, tree), (_, other)) in searches(&all).zip(searches(&shuffled)) {
-        let differ = thread::scope(|scope| {
-            let build = || all.accelerated(name).and_then(|scene| scene.hierarchy) == tree.hierarchy;
-            let built: Vec<_> = (0..threads).map(|_| scope.spawn(build)).collect();
-            built.into_iter().filter_map(|built| built.join().ok()).filter(|same| !same).count()
-        });
-        trials.never(format!("accelerator {name}"), "other trees", differ as u64, threads);
+        let build = || all.accelerated(name).and_then(|scene| scene.hierarchy) == tree.hierarchy;
+        match on_threads(threads as usize, build) {
+            Ok(same) => {
+                let differ = same.into_iter().filter(|same| !same).count();
+                trials.never(format!("accelerator {name}"), "other trees", differ as u64, threads);
+            }
+            Err(refused) => trials.skip(format!("accelerator {name}: {refused}")),
+        }
         let differ = (0..rays).filter(|_| {
             let ray = any_ray(&mut random, &all.primitives);
             let (one, two) = (intersect(&tree, &ray, None), intersect(&other, &ray, None));

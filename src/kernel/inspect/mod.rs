@@ -1,5 +1,6 @@
 //! Looking into single samples. What runs is the estimator's own code behind a pointer, with every effect in it; an effect that a scene does not
-//! call for changes no bit, so a sample here is what the image was given.
+//! call for changes no bit, so a sample here is what the image was given. That holds in f64; in f32, which lanes alone have, nothing can be looked
+//! into but a sample's value ([`super::one_sample`]).
 
 mod by_bounce;
 mod path_log;
@@ -10,6 +11,7 @@ use crate::estimator::{AnyEstimator, Probe, camera_ray};
 use crate::math::Rgb;
 use crate::sampling::{SAMPLERS, SampleKey, Sampler, keyed_sampler};
 use crate::scene::{AllEffects, Scene, View};
+use crate::simd::Precision;
 pub use by_bounce::{BounceRow, LightByBounce};
 pub use path_log::{Event, PathLog};
 use std::sync::Arc;
@@ -27,6 +29,11 @@ pub struct Inspector {
 impl Inspector {
     /// For the samples of an image.
     pub fn new(scene: &Arc<Scene>, choice: &Choice) -> Result<Self> {
+        if choice.precision() != Precision::F64 {
+            let name = choice.precision().name();
+            let problem = "exists in SIMD lanes alone, which do not tell what a path does";
+            return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
+        }
         let Some(sampler) = keyed_sampler(choice.sampler.name) else {
             let problem = "gives other numbers in each run, so that no sample can be had again";
             let names: Vec<&str> =

@@ -12,7 +12,7 @@ pub(super) const ENTRY: Entry = Entry {
     about: "a message for each piece through one channel",
     new: |delivery| {
         let (sender, receiver) = unbounded();
-        Box::new(ChannelPiece { delivery, sender, receiver })
+        Ok(Box::new(ChannelPiece { delivery, sender, receiver }))
     },
 };
 
@@ -32,12 +32,11 @@ impl Output for ChannelPiece {
         counts
     }
 
-    fn films(&self) -> Vec<Film> {
-        let plan = &self.delivery.plan;
-        let mut assembly = self.delivery.assembly();
+    fn films(self: Box<Self>) -> Vec<Film> {
+        let Delivery { plan, mut films } = self.delivery;
         for (index, tile) in self.receiver.try_iter() {
-            assembly.add(&plan.pieces()[index].samples, tile);
+            films.add(&plan.pieces()[index].samples, tile);
         }
-        assembly.finish()
+        films.finish()
     }
 }

@@ -13,7 +13,7 @@ pub(super) const ENTRY: Entry = Entry {
     about: "a message for each pixel through one channel (report D)",
     new: |delivery| {
         let (sender, receiver) = unbounded();
-        Box::new(ChannelPixel { delivery, sender, receiver })
+        Ok(Box::new(ChannelPixel { delivery, sender, receiver }))
     },
 };
 
@@ -46,17 +46,16 @@ impl Output for ChannelPixel {
         counts
     }
 
-    fn films(&self) -> Vec<Film> {
-        let plan = &self.delivery.plan;
+    fn films(self: Box<Self>) -> Vec<Film> {
+        let Delivery { plan, mut films } = self.delivery;
         let mut tiles: Vec<TileBuffer> = plan.pieces().iter().map(|piece| TileBuffer::new(piece.bounds)).collect();
         for Pixel { job, x, y, sum } in self.receiver.try_iter() {
             let left = tiles[job].bounds().x0;
             tiles[job].row_mut(y)[(x - left) as usize] = sum;
         }
-        let mut assembly = self.delivery.assembly();
         for (piece, tile) in plan.pieces().iter().zip(tiles) {
-            assembly.add(&piece.samples, tile);
+            films.add(&piece.samples, tile);
         }
-        assembly.finish()
+        films.finish()
     }
 }

@@ -4,42 +4,32 @@
 //! for it more often.
 
 use super::{Delivery, Entry, Output};
-use crate::film::{Film, Sections, TileBuffer};
+use crate::film::{Film, Plan, Sections, TileBuffer};
 use crate::kernel::{Counts, Kernel};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "locked",
     about: "one framebuffer behind one lock",
-    new: |delivery| {
-        let film = Mutex::new(delivery.assembly());
-        Box::new(Locked { delivery, film })
-    },
+    new: |Delivery { plan, films }| Ok(Box::new(Locked { plan, films: Mutex::new(films) })),
 };
 
 struct Locked {
-    delivery: Delivery,
-    film: Mutex<Sections>,
-}
-
-impl Locked {
-    /// Nothing can panic while the lock is held but a failed allocation, which ends the process.
-    fn lock(&self) -> MutexGuard<'_, Sections> {
-        self.film.lock().unwrap_or_else(PoisonError::into_inner)
-    }
+    plan: Arc<Plan>,
+    films: Mutex<Sections>,
 }
 
 impl Output for Locked {
     fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts {
-        let piece = &self.delivery.plan.pieces()[index];
+        let piece = &self.plan.pieces()[index];
         let mut tile = TileBuffer::new(piece.bounds);
         let counts = kernel.render(piece, &mut tile);
-        self.lock().add(&piece.samples, tile);
+        // Nothing can panic while the lock is held but a failed allocation, which ends the process.
+        self.films.lock().unwrap_or_else(PoisonError::into_inner).add(&piece.samples, tile);
         counts
     }
 
-    fn films(&self) -> Vec<Film> {
-        let empty = Sections::new(0, 0, &[]);
-        std::mem::replace(&mut *self.lock(), empty).finish()
+    fn films(self: Box<Self>) -> Vec<Film> {
+        self.films.into_inner().unwrap_or_else(PoisonError::into_inner).finish()
     }
 }

@@ -11,9 +11,9 @@ mod locked;
 mod row_progress;
 mod slots;
 
+use crate::error::Result;
 use crate::film::{Film, Plan, Sections};
 use crate::kernel::{Counts, Kernel};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// What the workers of one run deliver to.
@@ -21,27 +21,16 @@ pub(super) trait Output: Send + Sync {
     /// Renders the piece of job `index` and delivers it. No two calls have the same index.
     fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts;
 
-    /// A film for each section, when all pieces have been delivered. Called once.
-    fn films(&self) -> Vec<Film>;
+    /// A film for each section, when all pieces have been delivered.
+    fn films(self: Box<Self>) -> Vec<Film>;
 }
 
 /// What an output is made for.
 pub(super) struct Delivery {
     /// The pieces.
     pub(super) plan: Arc<Plan>,
-    /// Columns of the film.
-    pub(super) width: u32,
-    /// Rows of the film.
-    pub(super) height: u32,
-    /// The sections of samples that pieces belong to.
-    pub(super) sections: Vec<Range<u32>>,
-}
-
-impl Delivery {
-    /// Empty films for what is delivered.
-    fn assembly(&self) -> Sections {
-        Sections::new(self.width, self.height, &self.sections)
-    }
+    /// Empty films for them: made before the run, so that the system's refusal comes before the work.
+    pub(super) films: Sections,
 }
 
 /// One line of the table of outputs.
@@ -50,7 +39,7 @@ pub struct Entry {
     pub name: &'static str,
     /// What it is, in a line.
     pub about: &'static str,
-    pub(super) new: fn(Delivery) -> Box<dyn Output>,
+    pub(super) new: fn(Delivery) -> Result<Box<dyn Output>>,
 }
 
 macro_rules! outputs {

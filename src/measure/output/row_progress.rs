@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 pub(super) const ENTRY: Entry = Entry {
     name: "row-progress",
     about: "as slots, and a progress counter behind a lock at each row (report B)",
-    new: |delivery| Box::new(RowProgress { slots: Slots::new(delivery), rows: Mutex::new(0) }),
+    new: |delivery| Ok(Box::new(RowProgress { slots: Slots::new(delivery)?, rows: Mutex::new(0) })),
 };
 
 struct RowProgress {
@@ -35,7 +35,7 @@ impl Output for RowProgress {
         })
     }
 
-    fn films(&self) -> Vec<Film> {
-        self.slots.films()
+    fn films(self: Box<Self>) -> Vec<Film> {
+        Box::new(self.slots).films()
     }
 }

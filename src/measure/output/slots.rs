@@ -1,14 +1,15 @@
 //! `--output slots`: each job has a buffer of its own, made before the run, and nobody waits for anybody.
 
 use super::{Delivery, Entry, Output};
-use crate::film::{Film, TileBuffer};
+use crate::error::Result;
+use crate::film::{Film, Piece, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use crossbeam::atomic::AtomicCell;
 
 pub(super) const ENTRY: Entry = Entry {
     name: "slots",
     about: "a buffer for each job, made before the run: no worker waits for another (the default)",
-    new: |delivery| Box::new(Slots::new(delivery)),
+    new: |delivery| Ok(Box::new(Slots::new(delivery)?)),
 };
 
 /// The buffers. One is missing while its job renders into it.
@@ -19,10 +20,10 @@ pub(super) struct Slots {
 
 impl Slots {
     /// Empty buffers for every piece: allocated and touched here, so that no job does.
-    pub(super) fn new(delivery: Delivery) -> Self {
-        let buffer = |bounds| AtomicCell::new(Some(Box::new(TileBuffer::new(bounds))));
-        let cells = delivery.plan.pieces().iter().map(|piece| buffer(piece.bounds)).collect();
-        Self { delivery, cells }
+    pub(super) fn new(delivery: Delivery) -> Result<Self> {
+        let buffer = |piece: &Piece| Ok(AtomicCell::new(Some(Box::new(TileBuffer::try_new(piece.bounds)?))));
+        let cells = delivery.plan.pieces().iter().map(buffer).collect::<Result<_>>()?;
+        Ok(Self { delivery, cells })
     }
 
     /// Lets `work` fill the buffer of job `index`.
@@ -40,14 +41,13 @@ impl Output for Slots {
         self.fill(index, |tile| kernel.render(&self.delivery.plan.pieces()[index], tile))
     }
 
-    fn films(&self) -> Vec<Film> {
-        let plan = &self.delivery.plan;
-        let mut assembly = self.delivery.assembly();
-        for (piece, cell) in plan.pieces().iter().zip(&self.cells) {
+    fn films(self: Box<Self>) -> Vec<Film> {
+        let Delivery { plan, mut films } = self.delivery;
+        for (piece, cell) in plan.pieces().iter().zip(self.cells) {
             if let Some(tile) = cell.take() {
-                assembly.add(&piece.samples, *tile);
+                films.add(&piece.samples, *tile);
             }
         }
-        assembly.finish()
+        films.finish()
     }
 }

@@ -45,7 +45,7 @@ fn film(width: u32, height: u32, seed: u64) -> Film {
             *pixel = PixelSum { sum: [0, 1, 2].map(value), square: [3, 4, 5].map(value), count: 7 };
         }
     }
-    let mut assembly = Assembly::new(width, height, 0..7);
+    let mut assembly = Assembly::new(width, height, 0..7).unwrap();
     assembly.add(&(0..7), tile);
     assembly.finish()
 }

@@ -64,6 +64,8 @@ fn options_that_contradict_are_refused() {
     refused(folder.path(), &["--checkpoint", "c", "--sampler", "locked"], &["checkpoint", "locked"]);
 }
 
+const FEWEST_KILLS: u64 = 5;
+
 /// Killed (SIGKILL) at growing delays until it gets through: the image of one that nobody disturbed.
 #[test]
 fn killed_at_any_instant_it_goes_on_to_the_same_image() {
@@ -84,12 +86,16 @@ fn killed_at_any_instant_it_goes_on_to_the_same_image() {
                 assert!(output.status.success(), "after {kills} kills: {:?}", output.status);
                 let found = json(&String::from_utf8(output.stdout).unwrap());
                 assert_eq!((&found["checksum"], &found["spp"]), (&expected["checksum"], &expected["spp"]));
-                break;
+                if kills >= FEWEST_KILLS {
+                    break;
+                }
+                // The machine is fast, or was busy while this one slept: from the start.
+                fs::remove_file(folder.path().join("box.checkpoint")).unwrap();
+                continue;
             }
             kills += 1;
         }
         println!("{kills} kills on the way to {goal:?}");
-        assert!(kills >= 5, "only {kills} kills");
         // Nothing is left to do, and what the killed processes left is gone.
         let again = json(&run(folder.path(), &options).out);
         let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());

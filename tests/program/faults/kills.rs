@@ -134,10 +134,10 @@ fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
     let whole = start.elapsed();
     let expected = fs::read(&image).unwrap();
     let mut killer = Killer::new(folder.path(), whole);
-    let mut resumed = 0;
     for ending in endings() {
-        let (mut kills, mut renders) = (0, 0);
-        while kills < Killer::kills() {
+        let (mut kills, mut renders, mut resumed) = (0, 0, 0);
+        // Which instant a kill meets is chance: until one has met each thing to be met.
+        while kills < Killer::kills() || resumed == 0 {
             fs::remove_file(&checkpoint).ok();
             fs::remove_file(&image).ok();
             loop {
@@ -158,7 +158,6 @@ fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
         println!(
             "{ending:?}: {kills} kills, {resumed} with a checkpoint to go on from, {renders} renders to their end"
         );
-        assert!(resumed > 0, "{ending:?}: no render has gone on from a checkpoint");
     }
     println!("whole render {whole:?}");
     assert_eq!(leftovers(folder.path()), 0, "unfinished files that kills left");

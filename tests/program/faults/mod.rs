@@ -6,6 +6,7 @@ mod kills;
 mod limits;
 mod locks;
 mod sweep;
+mod threads;
 
 /// Whether the full counts are asked for.
 fn is_thorough() -> bool {

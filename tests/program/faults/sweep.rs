@@ -63,7 +63,8 @@ fn a_sweep_killed_at_any_instant_is_resumed_to_the_same_rows() {
     let (mut torn, mut resumed) = (0, 0);
     for ending in endings() {
         let (mut kills, mut sweeps) = (0, 0);
-        while kills < Killer::kills() {
+        // Which instant a kill meets is chance: until one has met each thing to be met.
+        while kills < Killer::kills() || resumed == 0 {
             fs::remove_dir_all(folder.join("out")).unwrap();
             let mut before = 0;
             loop {
@@ -89,7 +90,6 @@ fn a_sweep_killed_at_any_instant_is_resumed_to_the_same_rows() {
         println!("{ending:?}: {kills} kills, {sweeps} sweeps to their end");
     }
     println!("{resumed} kills left rows to go on from");
-    assert!(resumed > 0, "no sweep has gone on from a row");
     println!("whole sweep {whole:?}, {torn} rows torn");
     finish(pathmark(folder, &RESUME)).with_code(0);
     for kept in ["out", "out/tiny", "out/tiny/images", "out/references"] {

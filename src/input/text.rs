@@ -1,0 +1,147 @@
+//! Text files of the user's, with a limit on everything: a device, a pipe or a mistaken path is refused before it has filled the memory.
+
+use crate::error::{Error, InputError, Result};
+use std::fs::File;
+use std::io::{self, BufReader, ErrorKind, Read};
+use std::path::Path;
+
+/// No scene or experiment comes near this; a device file or a mistaken path does. Once parsed, a definition takes 70 times its length of
+/// memory: more objects than fit here belong in a mesh or a generator.
+const LARGEST_DEFINITION: u64 = 3 << 20;
+
+/// What a text file may be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Bytes in all.
+    pub(crate) bytes: u64,
+    /// Bytes of a line, its end included.
+    pub(crate) line: u64,
+}
+
+/// The text of a definition.
+pub(crate) fn read_text(path: &Path) -> Result<String> {
+    read_text_up_to(path, LARGEST_DEFINITION)
+}
+
+/// The text of a user's file of so many bytes at most.
+pub(crate) fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
+    let mut bytes = Vec::new();
+    let limits = Limits { bytes: most, line: u64::MAX };
+    open_text(path, limits)?.read_to_end(&mut bytes).map_err(|e| unreadable(path, e))?;
+    String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        refused(path, format!("is not UTF-8 text at byte {at}")).into()
+    })
+}
+
+/// Opens a user's text file. Its errors become the program's by [`unreadable`].
+pub(crate) fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
+    let file = File::open(path).map_err(|e| match e.kind() {
+        ErrorKind::NotFound => refused(path, "there is no such file").into(),
+        ErrorKind::NotADirectory => refused(path, "a part of the path is not a directory").into(),
+        ErrorKind::InvalidFilename => refused(path, "the name is too long").into(),
+        ErrorKind::InvalidInput => refused(path, "the name holds a zero byte").into(),
+        _ => Error::system("reading", path, e),
+    })?;
+    let data = file.metadata().map_err(|e| Error::system("reading", path, e))?;
+    if data.is_dir() {
+        return Err(refused(path, "is a directory").into());
+    }
+    if data.len() > limits.bytes {
+        return Err(refused(path, too_large("such a file", limits.bytes)).into());
+    }
+    Ok(BufReader::new(Text { file, is_regular: data.is_file(), limits, bytes: 0, line: 0 }))
+}
+
+/// The error of a file that cannot be read: the user's if what is in it is wrong, the system's otherwise.
+pub(crate) fn unreadable(path: &Path, error: io::Error) -> Error {
+    match error.kind() {
+        ErrorKind::InvalidData => refused(path, error.to_string()).into(),
+        _ => Error::system("reading", path, error),
+    }
+}
+
+fn too_large(what: &str, most: u64) -> String {
+    let (most, unit) = if most < 1 << 20 { (most >> 10, "KiB") } else { (most >> 20, "MiB") };
+    format!("is larger than {what} can be (allowed: up to {most} {unit})")
+}
+
+fn refused(path: &Path, problem: impl Into<String>) -> InputError {
+    InputError::new("file", path.display().to_string().replace('\0', "\\0"), problem)
+}
+
+/// A file that is read as long as it can be text within its limits.
+#[derive(Debug)]
+pub(crate) struct Text {
+    file: File,
+    /// Of other files, such as devices, nobody knows how long they are.
+    is_regular: bool,
+    limits: Limits,
+    bytes: u64,
+    /// Bytes of the line so far.
+    line: u64,
+}
+
+impl Read for Text {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        for &byte in &buffer[..count] {
+            if byte == 0 && !self.is_regular {
+                let problem = format!("is not text: byte {} is zero", self.bytes);
+                return Err(io::Error::new(ErrorKind::InvalidData, problem));
+            }
+            self.bytes += 1;
+            self.line = if byte == b'\n' { 0 } else { self.line + 1 };
+            let problem = if self.bytes > self.limits.bytes {
+                too_large("such a file", self.limits.bytes)
+            } else if self.line >= self.limits.line {
+                too_large("a line of such a file", self.limits.line)
+            } else {
+                continue;
+            };
+            return Err(io::Error::new(ErrorKind::InvalidData, problem));
+        }
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::io::BufRead;
+
+    /// No device is read for longer than it takes to see that it is none of ours.
+    #[test]
+    fn devices_and_other_files_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("text");
+        let refusal = |path: &Path| read_text_up_to(path, 1 << 50).unwrap_err();
+        assert_eq!(read_text_up_to(Path::new("/dev/null"), 0).unwrap(), "");
+        assert!(refusal(Path::new("/dev/zero")).to_string().contains("byte 0 is zero"));
+        assert!(refusal(Path::new("a\0b")).to_string().contains("file = a\\0b: the name holds a zero byte"));
+        assert!(refusal(&folder.path().join("x".repeat(300))).to_string().contains("too long"));
+        assert!(refusal(folder.path()).to_string().contains("is a directory"));
+        // Where a zero byte stands in a text, its parser tells.
+        fs::write(&path, b"fine\nbut\0").unwrap();
+        assert_eq!(read_text_up_to(&path, 9).unwrap(), "fine\nbut\0");
+        fs::write(&path, b"fine\xff").unwrap();
+        assert!(refusal(&path).to_string().contains("not UTF-8 text at byte 4"));
+        assert!(refusal(&path.join("below")).to_string().contains("not a directory"));
+        assert!([&path, Path::new("a\0b")].iter().all(|path| refusal(path).exit_code() == 2));
+    }
+
+    #[test]
+    fn bytes_and_lines_are_counted() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("text");
+        fs::write(&path, "1234\n1234\n").unwrap();
+        assert_eq!(read_text_up_to(&path, 10).unwrap().len(), 10);
+        assert!(read_text_up_to(&path, 9).unwrap_err().to_string().contains("larger than such a file"));
+        let lines =
+            |line| open_text(&path, Limits { bytes: 10, line }).unwrap().lines().collect::<io::Result<Vec<_>>>();
+        assert_eq!(lines(5).unwrap(), ["1234", "1234"]);
+        let error = unreadable(&path, lines(4).unwrap_err());
+        assert!(error.exit_code() == 2 && error.to_string().contains("a line of such a file"), "{error}");
+    }
+}

@@ -1,0 +1,137 @@
+//! What can be known before any work is refused before it: each of these commands would otherwise render for hours, or reads what has no end.
+
+use super::experiment::{TINY, write_tiny};
+use super::program::{finish, pathmark};
+use super::refused;
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::os::unix::ffi::OsStringExt;
+use std::process::Command;
+
+/// Nobody would wait for this.
+const LONG: [&str; 4] = ["render", "cornell", "--spp", "4000000"];
+/// A reference that takes hours.
+const REFERENCE: &str = "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 16000000\n";
+const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
+
+#[test]
+fn a_picture_of_a_size_that_its_format_lacks() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = [&LONG[..], &["--size", "32768x8", "-o", "a.hdr"]].concat();
+    refused(folder.path(), &arguments, 2, &["size = 32768x8", "hdr"]);
+}
+
+/// A scene's name is part of the names of references, images and traces.
+#[test]
+fn a_name_too_long_for_the_files_to_come() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = format!("{}.toml", "x".repeat(220));
+    fs::write(folder.path().join(&scene), "about = 'a test'\nbase = 'cornell'\n").unwrap();
+    let reference = ["reference", &scene, "--spp", "16000000", "--out", "."];
+    refused(folder.path(), &reference, 2, &["xxx", "up to 255 bytes"]);
+    for text in [
+        TINY.replace("[quick]\n", REFERENCE),
+        TINY.replace("[matrix]", "keep = [\"images\"]\n\n[matrix]").replace("spp = [4]", "spp = [16000000]"),
+        TINY.replace("[matrix]", "keep = [\"traces\"]\n\n[matrix]").replace("spp = [4]", "spp = [16000000]"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join(&scene), "about = 'a test'\nbase = 'cornell'\n").unwrap();
+        write_tiny(folder.path(), &text.replace("\"cornell\"", &format!("\"{scene}\"")));
+        refused(folder.path(), &RUN, 2, &["xxx", "up to 255 bytes"]);
+    }
+}
+
+/// The cells' processes are told where to write in JSON.
+#[test]
+fn a_folder_whose_name_is_no_text() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), &TINY.replace("[quick]\n", REFERENCE));
+    let out = OsString::from_vec(b"out-\xff".to_vec());
+    let arguments = [OsStr::new("run"), OsStr::new("tiny.toml"), OsStr::new("--out"), &out];
+    refused(folder.path(), &arguments, 2, &["out = out-", "UTF-8"]);
+}
+
+#[test]
+fn a_curve_that_cannot_be_rendered_in_rounds() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = TINY.replace("[matrix]\n", "[matrix]\ncurve = true\nclamp = \"subpixel\"\n");
+    write_tiny(folder.path(), &text.replace("[quick]\n", REFERENCE));
+    refused(folder.path(), &RUN, 2, &["tiny.toml:", "subpixel-clamp", "rounds"]);
+}
+
+/// Two programs of one name would write rows that nobody can tell apart.
+#[test]
+fn two_other_programs_of_one_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let external = |program: &str| {
+        let command = format!("command = [\"{program}\", \"{{out}}\", \"{{spp}}\", \"{{seed}}\"]\n");
+        format!("[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [8]\nseed = [3]\n{command}")
+    };
+    let text = TINY.replace("[quick]\n", &format!("{}{}{REFERENCE}", external("a"), external("b")));
+    write_tiny(folder.path(), &text);
+    refused(folder.path(), &RUN, 2, &["tiny.toml:", "name = other"]);
+}
+
+/// The jobs of a long run, and interruptions so short that there are billions of them.
+#[test]
+fn noise_that_takes_for_ever_to_draw() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "cornell", "--size", "8x8", "--spp", "4", "--strategy", "serial", "--trace", "run.csv"];
+    finish(pathmark(folder.path(), &render)).with_code(0);
+    let text = fs::read_to_string(folder.path().join("run.csv")).unwrap();
+    let job = text.lines().nth(2).unwrap();
+    let mut fields: Vec<&str> = job.split(',').collect();
+    fields[3] = "100000.0";
+    fs::write(folder.path().join("run.csv"), text.replace(job, &fields.join(","))).unwrap();
+    let arguments = ["simulate", "run.csv", "--no-check", "--out", "new", "--noise", ".9:.001"];
+    refused(folder.path(), &arguments, 2, &["noise = .9:.001", "times"]);
+}
+
+/// Files that never end, and others that are none, under a limit of memory that a reader without bounds would reach.
+#[test]
+fn files_without_an_end() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("zero.toml"), "about = 'a test'\nbase = '/dev/zero'\n").unwrap();
+    fs::write(folder.path().join("nul.toml"), "about = 'a test'\nbase = \"a\\u0000.toml\"\n").unwrap();
+    let mesh = |file: &str| {
+        let shape = format!("{{ mesh = {{ file = \"{file}\" }} }}");
+        let material = "{ diffuse = { albedo = [0.5, 0.5, 0.5] } }";
+        format!("about = 'a test'\nbase = 'cornell'\n[[objects]]\nname = 'm'\nshape = {shape}\nmaterial = {material}\n")
+    };
+    fs::write(folder.path().join("mesh.toml"), mesh("/dev/zero")).unwrap();
+    fs::write(folder.path().join("nul-mesh.toml"), mesh("a\\u0000.obj")).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero.film")).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero.png")).unwrap();
+    let checkpoint = [&LONG[..], &["--checkpoint", "zero.film"]].concat();
+    let cases: [(&[&str], &[&str]); 12] = [
+        (&["trace", "/dev/zero"], &["/dev/zero", "byte 0 is zero"]),
+        (&["trace", "."], &["directory"]),
+        (&["simulate", "/dev/zero", "--out", "new"], &["/dev/zero", "byte 0 is zero"]),
+        (&["render", "/dev/zero"], &["/dev/zero", "zero"]),
+        (&["render", "zero.toml"], &["zero.toml:2:", "base = /dev/zero", "byte 0 is zero"]),
+        (&["render", "nul.toml"], &["nul.toml:2:", "base", "zero byte"]),
+        (&["render", "mesh.toml"], &["mesh.toml:4:", "/dev/zero", "byte 0 is zero"]),
+        (&["render", "nul-mesh.toml"], &["nul-mesh.toml:4:", "zero byte"]),
+        (&["run", "/dev/../dev/zero.toml"], &["no such file"]),
+        (&["compare", "zero.png", "zero.png"], &["zero.png", "regular file"]),
+        (&["compare", "zero.film", "zero.film"], &["zero.film"]),
+        (&checkpoint, &["zero.film", "regular file"]),
+    ];
+    for (arguments, said) in cases {
+        println!("{arguments:?}");
+        refused(folder.path(), arguments, 2, said);
+    }
+}
+
+/// Help that nobody can have got is a failure like any other output's; help that nobody wants to the end is none.
+#[test]
+fn help_onto_a_full_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    for arguments in [&["--help"][..], &["--version"], &["render", "--help"], &["list"]] {
+        let mut command: Command = pathmark(folder.path(), arguments);
+        command.stdout(fs::File::options().write(true).open("/dev/full").unwrap());
+        let finished = finish(command).with_code(3);
+        assert!(finished.err.contains("writing standard output"), "{arguments:?}: {}", finished.err);
+        assert!(!finish(pathmark(folder.path(), arguments)).with_code(0).out.is_empty());
+    }
+}
