@@ -3,7 +3,7 @@
 use super::{External, SceneVersion};
 use crate::error::{InputError, Result};
 use crate::kernel::Spec;
-use crate::measure::{Settings, Setup, available_threads, schedule_name};
+use crate::measure::{ImageKey, Settings, Setup, available_threads, schedule_name};
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Cell {
             }
         }
         let point = |spp: u32| {
-            let image = image_word(setup, spp);
+            let image = ImageKey { spp, ..setup.image_key() }.to_string();
             CellPoint { id: format!("{image}/{schedule}{of}"), spp, image }
         };
         let id = point(settings.spp).id;
@@ -117,16 +117,4 @@ impl Cell {
 /// The file name of the trace of a cell's repetition.
 pub fn trace_file(cell: &str, repetition: u32) -> String {
     format!("{}-r{repetition}.csv", cell.replace(['/', ':'], "-"))
-}
-
-/// The scene's hash is in it: two scene files may have the same name, and one may be edited between two runs.
-fn image_word(setup: &Setup, spp: u32) -> String {
-    let spec = &setup.settings().spec;
-    let what = format!("{}-{}/{}/{}", setup.name(), setup.hash(), spec.estimator, spec.sampler);
-    let depth = spec.max_depth.map(|depth| format!("/depth{depth}")).unwrap_or_default();
-    let roulette = spec.roulette.as_ref().map(|rule| format!("/{rule}")).unwrap_or_default();
-    let clamp = spec.clamp.map(|what| format!("/{}-clamp", what.name())).unwrap_or_default();
-    let precision = Some(&spec.precision).filter(|format| **format != Spec::default().precision);
-    let precision = precision.map(|format| format!("/{format}")).unwrap_or_default();
-    format!("{what}/{}x{}/{spp}spp/seed{}{depth}{roulette}{clamp}{precision}", spec.width, spec.height, spec.seed)
 }

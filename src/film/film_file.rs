@@ -32,7 +32,7 @@ pub struct FilmKey {
     /// Where paths are cut, if they are.
     #[serde(default)]
     pub max_depth: Option<u16>,
-    /// How chance ends paths, if not by the estimator's own rule.
+    /// How chance ends paths, the estimator's own rule included; films of revision 1 leave that out.
     #[serde(default)]
     pub roulette: Option<String>,
     /// Floating-point format of the paths; older files have but one.

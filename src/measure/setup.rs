@@ -11,7 +11,6 @@ use crate::kernel::workload::Entry as Workload;
 use crate::kernel::{self, Choice, Clamp, Counts, Kernel, OwnEstimator, Spec};
 use crate::lab::{Lab, THREAD_PER_ROW};
 use crate::scene::{Filter, SUBPIXELS, Scene};
-use crate::simd::Precision;
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -242,20 +241,20 @@ impl Setup {
 
     /// What the film will be of.
     pub fn film_key(&self) -> FilmKey {
-        let spec = &self.settings.spec;
+        let key = self.image_key();
         FilmKey {
-            scene: self.name().to_string(),
-            scene_hash: self.hash(),
-            estimator: spec.estimator.clone(),
-            sampler: spec.sampler.clone(),
-            seed: spec.seed,
-            spp: self.settings.spp,
-            width: spec.width,
-            height: spec.height,
-            max_depth: spec.max_depth,
-            roulette: spec.roulette.clone(),
-            precision: self.scene().map_or(Precision::F64, |(_, choice)| choice.precision()).name().to_string(),
-            adaptive: false,
+            scene: key.scene,
+            scene_hash: key.scene_hash,
+            estimator: key.estimator,
+            sampler: key.sampler,
+            seed: key.seed,
+            spp: key.spp,
+            width: key.width,
+            height: key.height,
+            max_depth: key.max_depth,
+            roulette: Some(key.roulette).filter(|rule| !rule.is_empty()),
+            precision: key.precision,
+            adaptive: key.adaptive,
             revision: kernel::REVISION,
         }
     }
