@@ -3,6 +3,7 @@
 //! Glass is followed both ways at the first two vertices; roulette by the largest albedo channel starts after the fifth vertex; samples
 //! go to 2x2 subpixels in turn, so their number must be a multiple of four (smallpt drops the rest without a word).
 
+use super::Compiled;
 use super::path::{Path, Rules};
 
 /// The estimator.
@@ -16,4 +17,5 @@ impl Rules for SmallptRules {
     const SPLITS: u16 = 2;
     const SPP_MULTIPLE: u32 = 4;
     const AIMS: bool = false;
+    const COMPILED: Compiled = Compiled::EveryProfile;
 }

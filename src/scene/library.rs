@@ -44,7 +44,7 @@ pub fn load(name_or_path: &str) -> Result<Scene> {
 }
 
 impl Scene {
-    /// Reads a scene from its text; files that it names are looked for in the binary.
+    /// Reads a scene from its text; files that it names are looked for from the current folder on.
     ///
     /// ```
     /// use pathmark::scene::Scene;
@@ -55,6 +55,6 @@ impl Scene {
     /// ```
     pub fn from_toml(text: &str) -> Result<Self> {
         let (name, file) = ("scene".to_string(), "scene.toml".to_string());
-        scene_from_text(Source { name, file, text: text.to_string(), folder: Folder::Embedded }, None, &[])
+        scene_from_text(Source { name, file, text: text.to_string(), folder: Folder::Disk(PathBuf::new()) }, None, &[])
     }
 }

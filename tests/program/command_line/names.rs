@@ -5,8 +5,9 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 18] = [
+const KINDS: [&str; 19] = [
     "scenes",
+    "workloads",
     "strategies",
     "decompositions",
     "outputs",
@@ -94,7 +95,7 @@ fn every_listed_name_runs_as_it_is() {
             assert_eq!(record(folder.path(), "cornell", &[option, &name])[column], name.as_str());
         }
     }
-    for scene in names("scenes") {
+    for scene in [names("scenes"), names("workloads")].concat() {
         assert_eq!(record(folder.path(), &scene, &[])["scene"], scene.as_str());
     }
 }
