@@ -142,7 +142,7 @@ fn contenders_are_told_apart_on_every_axis() {
     for (index, change) in FORGOTTEN.iter().chain(&schedules).enumerate() {
         let mut rows = Vec::new();
         for (seed, spp) in [(1, 4), (1, 8), (2, 4), (2, 8), (3, 4), (3, 8)] {
-            let mut plain = Record { seed, spp, ..row() };
+            let mut plain = Record { spp, seed, ..row() };
             plain.mse = Some(0.1 / f64::from(spp) * (1.0 + seed as f64));
             plain.makespan_s = Some(f64::from(spp) * (1.0 + 0.1 * seed as f64));
             let mut other = plain.clone();
@@ -162,7 +162,7 @@ fn of_unknown_names(each: usize) -> Vec<Record> {
     for (seed, index) in (1..=3).flat_map(|seed| (0..each).map(move |index| (seed, index))) {
         let names = Record { sampler: numbered("my-sampler", index), estimator: "my-estimator".to_string(), ..row() };
         let (mse, makespan_s) = (Some(0.01 * seed as f64), Some(1.0 + 0.1 * seed as f64));
-        let image = Record { seed, mse, makespan_s, ..names };
+        let image = Record { seed, makespan_s, mse, ..names };
         for strategy in ["serial", &numbered("my-pool", index)] {
             for scene in ["my-scene".to_string(), numbered("balls:1", index).replace('-', "")] {
                 for (accelerator, output, effects) in

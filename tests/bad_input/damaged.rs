@@ -122,11 +122,9 @@ fn rows_of_another_version_are_told_as_such() {
         // Columns that there are no longer, instead of those behind the first.
         let header = header.replacen("experiment", columns, 1);
         let value = if columns.contains(',') { "1,2" } else { "1" };
-        let mut text = format!("{header}\n");
-        for row in &rows {
-            text += &format!("{version},{value},{}\n", row.split_once(',').unwrap().1);
-        }
-        fs::write(&records, text).unwrap();
+        let rest = rows.iter().map(|row| row.split_once(',').unwrap().1);
+        let lines: Vec<String> = rest.map(|rest| format!("{version},{value},{rest}")).collect();
+        fs::write(&records, format!("{header}\n{}\n", lines.join("\n"))).unwrap();
         let said = ["records.csv:2:", "schema", "another version"];
         refused(folder.path(), &["report", "out"], 2, &said);
         refused(folder.path(), &RESUME, 2, &said);

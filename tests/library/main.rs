@@ -24,6 +24,6 @@ mod scene_identity;
 mod scene_text;
 mod schedule_invariance;
 mod slopes;
-mod workloads;
 #[path = "../support/watchdog.rs"]
 mod watchdog;
+mod workloads;

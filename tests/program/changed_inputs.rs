@@ -134,7 +134,7 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
         let mut text = fs::read_to_string(folder.path().join(name)).unwrap();
         text.push('\n');
         fs::write(folder.path().join(name), text).unwrap();
-        let error = sweep.run(&Silence).err().expect("a refusal");
+        let error = sweep.run(&Silence).expect_err("a refusal");
         assert_eq!(error.exit_code(), 2, "{error}");
         let said = error.to_string();
         assert!(said.contains("has changed since the experiment began") && said.contains(name), "{said}");

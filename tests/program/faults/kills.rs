@@ -105,7 +105,9 @@ impl<'a> Killer<'a> {
 /// Files that a killed process was writing, and that the next one that wrote there did not remove.
 pub(crate) fn leftovers(folder: &Path) -> usize {
     let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    names.filter(|name| name.starts_with(".pathmark-") && name.ends_with(".tmp")).count()
+    names
+        .filter(|name| name.starts_with(".pathmark-") && name.rsplit_once('.').is_some_and(|(_, end)| end == "tmp"))
+        .count()
 }
 
 const RENDER: [&str; 14] = [

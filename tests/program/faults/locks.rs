@@ -24,7 +24,9 @@ fn running(folder: &Path, arguments: &[&str], file: &str) -> Child {
 /// How many lock files of ours are in a folder.
 fn lock_files(folder: &Path) -> usize {
     let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
-    names.filter(|name| name.starts_with(".pathmark") && name.ends_with(".lock")).count()
+    names
+        .filter(|name| name.starts_with(".pathmark") && name.rsplit_once('.').is_some_and(|(_, end)| end == "lock"))
+        .count()
 }
 
 fn end(mut child: Child) {
