@@ -18,7 +18,7 @@ fn wrong(case: &Case, outcome: &Outcome) -> Vec<String> {
 #[test]
 fn all_cases_pass() {
     let all: Vec<&'static Case> = cases().collect();
-    let outcomes = run(&all, effort(), available_threads(), &|_| ());
+    let outcomes = run(&all, effort(), available_threads(), &|_| ()).unwrap();
     for (case, outcome) in all.iter().zip(&outcomes) {
         println!("{} {}: {} trials", case.id, case.tries, outcome.trials.len());
         outcome.skipped.iter().for_each(|why| println!("  not tried: {why}"));

@@ -67,7 +67,7 @@ fn scene(content: Content, primitives: usize) -> Arc<Scene> {
         let is_sphere = match content {
             Content::Spheres | Content::Twins => true,
             Content::Triangles => false,
-            Content::Both => scene.objects.len() % 2 == 0,
+            Content::Both => scene.objects.len().is_multiple_of(2),
         };
         let center = random.point(low, high);
         if is_sphere {
