@@ -9,8 +9,10 @@ mod plane_distance;
 #[cfg(test)]
 mod plane_distance_tests;
 mod planes;
+mod seams;
 mod single;
 mod slabs;
+mod slivers;
 pub(super) mod unguarded;
 
 use super::Section;
@@ -26,5 +28,7 @@ pub(super) const SECTION: Section = Section {
         arrangements::CASES,
         planes::CASES,
         contact::CASES,
+        seams::CASES,
+        slivers::CASES,
     ],
 };

@@ -19,7 +19,7 @@ impl Lanes {
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
-            Search::Wide(wide) => (V::apart(Nearest { wide, rays, wanted, counts }), 0),
+            Search::Wide(wide) => V::apart(Nearest { wide, tables: &self.tables, rays, wanted, counts }),
             // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };
@@ -41,7 +41,7 @@ impl Lanes {
         let [mut nearest, mut primitive] = [[V::One::default(); MOST_LANES]; 2];
         found.nearest.store(&mut nearest);
         found.primitive.store(&mut primitive);
-        all.ask(&self.scene, wanted, [&mut nearest, &mut primitive], V::one, counts);
+        all.ask(&self.scene, wanted, [&mut nearest, &mut primitive], (V::one, V::SIGNIFICAND), counts);
         found.nearest = V::load(&nearest);
         found.primitive = V::load(&primitive);
     }
@@ -60,7 +60,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
         scene: &Scene,
         wanted: u32,
         [nearest, primitive]: [&mut [T; MOST_LANES]; 2],
-        one: fn(f64) -> T,
+        (one, digits): (fn(f64) -> T, u32),
         counts: &mut Counts,
     ) {
         let mut tests = Tests::default();
@@ -70,7 +70,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
             // Only what goes inside has another root; what is flat has none on either side.
             let inside = !own_root.is_nan();
             let from = (from >= 0.0).then_some(Standpoint { primitive: from as u32, inside });
-            let found = scene.nearest(&ray, from, &mut tests);
+            let found = scene.nearest(&ray, from, digits, &mut tests);
             nearest[lane] = one(found.t);
             primitive[lane] = one(if found.primitive == u32::MAX { -1.0 } else { found.primitive.into() });
         }

@@ -2,7 +2,7 @@
 
 use crate::material::{Fresnel, Material};
 use crate::math::{Curved, Rgb, Vec3};
-use crate::scene::{AllEffects, Scene};
+use crate::scene::{AllEffects, Bounds, Primitive, Scene};
 use crate::simd::{Precision, Table};
 
 /// Surfaces by how lanes shade them, as a number in a table.
@@ -36,8 +36,11 @@ pub(super) const GIVES_OFF: f64 = 8.0;
 
 /// The tables of a scene.
 pub(super) struct Tables {
-    /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of what is flat.
+    /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of a plane; the normal of
+    /// a triangle and its largest coordinate, below 0.
     pub(super) surfaces: Table,
+    /// The lowest and the highest coordinates of triangles, in double precision.
+    pub(super) boxes: Option<[Table; 2]>,
     /// The radiance.
     pub(super) emissions: Table,
     /// The albedo, and the [`Kind`], by [`GIVES_OFF`] more for what gives off light.
@@ -53,7 +56,6 @@ pub(super) struct Tables {
 impl Tables {
     pub(super) fn of(scene: &Scene, precision: Precision) -> Self {
         let primitives = &scene.primitives;
-        let flat = |normal: Vec3| [normal.x, normal.y, normal.z, 0.0];
         let round = primitives.spheres.iter().map(|sphere| {
             let (Vec3 { x, y, z }, number) = match precision {
                 Precision::F64 => (sphere.center, sphere.radius),
@@ -66,9 +68,23 @@ impl Tables {
         });
         let first_flat = primitives.spheres.len() as u32;
         let nowhere = Vec3::new(0.0, 0.0, 0.0);
-        let flats = (first_flat..scene.owners.len() as u32)
-            .map(|primitive| flat(primitives.normal::<AllEffects>(primitive, nowhere)));
+        let everywhere = Bounds { low: [f64::NEG_INFINITY; 3], high: [f64::INFINITY; 3] };
+        let bounds = primitives.bounds();
+        let flats = (first_flat..scene.owners.len() as u32).map(|primitive| {
+            let Vec3 { x, y, z } = primitives.normal::<AllEffects>(primitive, nowhere);
+            [x, y, z, bounds[primitive as usize].map_or(0.0, |bounds| -bounds.largest())]
+        });
         let surfaces = Table::new(round.chain(flats).collect());
+        let boxes = (precision == Precision::F64 && !primitives.triangles.is_empty()).then(|| {
+            let of_triangles = bounds.iter().enumerate().map(|(primitive, bounds)| match bounds {
+                Some(bounds) if primitive >= first_flat as usize => *bounds,
+                _ => everywhere,
+            });
+            let side = |side: fn(&Bounds) -> [f64; 3]| {
+                Table::new(of_triangles.clone().map(|bounds| side(&bounds)).map(|[x, y, z]| [x, y, z, 0.0]).collect())
+            };
+            [side(|bounds| bounds.low), side(|bounds| bounds.high)]
+        });
 
         let of_objects = |row: fn(&crate::scene::Object) -> [f64; 4]| {
             Table::new(scene.owners.iter().map(|owner| row(&scene.objects[*owner as usize])).collect())
@@ -92,6 +108,7 @@ impl Tables {
         let has_others = scene.objects.iter().any(|object| Kind::of(&object.material) == Kind::Other);
         Self {
             surfaces,
+            boxes,
             emissions,
             materials,
             interfaces,

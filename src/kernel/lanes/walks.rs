@@ -24,7 +24,7 @@ impl Random {
 
 /// What the scalar search finds: a distance and a number, -1 for nothing.
 pub(super) fn nearest(scene: &Scene, (ray, from): &Start) -> (f64, f64) {
-    let found = scene.nearest(ray, *from, &mut Tests::default());
+    let found = scene.nearest(ray, *from, f64::MANTISSA_DIGITS, &mut Tests::default());
     (found.t, if found.primitive == u32::MAX { -1.0 } else { found.primitive.into() })
 }
 

@@ -1,9 +1,9 @@
 //! A bounding volume hierarchy over the primitives, so that a ray is tested against few of them: `--accelerator median` and `sah`, which
 //! report B describes.
 //!
-//! It finds what testing every primitive finds, to the bit: boxes have a padding that covers the rounding of box and primitive (but for a
-//! triangle seen edge on, whose distance is rounding alone), a box as far as the nearest hit is still opened, and among equally near
-//! primitives the lowest number wins. It is built by one thread from total orders, so the same scene gives the same tree.
+//! It finds what testing every primitive finds, to the bit: boxes have a padding that covers the rounding of box and primitive (hits of
+//! triangles that it may not cover are looked at again, `shape/doubt.rs`), a box as far as the nearest hit is still opened, and among
+//! equally near primitives the lowest number wins. It is built by one thread from total orders, so the same scene gives the same tree.
 //!
 //! To add a way of splitting: write its file with a type that implements [`Split`], and give it a line in `accelerators!` below.
 

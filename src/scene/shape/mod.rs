@@ -7,6 +7,7 @@
 //! Primitives are numbered kind by kind, in the order of the table, and within a kind in the order of the scene. Among equally near ones
 //! the lowest number is hit, whatever structure accelerates the search.
 
+mod doubt;
 mod mesh;
 mod obj;
 mod plane;
@@ -20,6 +21,7 @@ use crate::effect::{EffectSet, Effects, Entry};
 use crate::error::Result;
 use crate::math::{Ray, Vec3};
 use crate::scene::source::Files;
+pub use doubt::nearness;
 pub(super) use mesh::Mesh;
 pub(super) use quad::Quad;
 use serde::Deserialize;
@@ -276,22 +278,17 @@ impl Primitives {
         if X::EFFECTS.cover(HIERARCHY)
             && let Some(hierarchy) = hierarchy
         {
-            return self.search::<X>(hierarchy, ray, from, none, tests);
+            let endless = self.endless::<X>(ray, from, none);
+            let prepared = Self::prepare(ray);
+            return hierarchy
+                .nearest(ray, endless, tests, |primitive| self.distance::<X>(primitive, ray, &prepared, from));
         }
         self.scan::<X>(ray, from, none, |_| true)
     }
 
-    /// What is in the hierarchy and, one by one, what is too large for it.
-    fn search<X: EffectSet>(
-        &self,
-        hierarchy: &Hierarchy,
-        ray: &Ray,
-        from: Option<Standpoint>,
-        none: Nearest,
-        tests: &mut Tests,
-    ) -> Nearest {
-        let endless = self.scan::<X>(ray, from, none, |kind| kind == Plane::EFFECT);
-        let prepared = Self::prepare(ray);
-        hierarchy.nearest(ray, endless, tests, |primitive| self.distance::<X>(primitive, ray, &prepared, from))
+    /// The nearest of what is too large for a hierarchy.
+    #[inline(always)]
+    fn endless<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, none: Nearest) -> Nearest {
+        self.scan::<X>(ray, from, none, |kind| kind == Plane::EFFECT)
     }
 }
