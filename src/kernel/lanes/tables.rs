@@ -2,7 +2,7 @@
 
 use crate::material::{Fresnel, Material};
 use crate::math::{Curved, Rgb, Vec3};
-use crate::scene::{AllEffects, Bounds, Primitive, Scene};
+use crate::scene::{AllEffects, Bounds, Scene};
 use crate::simd::{Precision, Table};
 
 /// Surfaces by how lanes shade them, as a number in a table.
