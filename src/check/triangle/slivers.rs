@@ -150,7 +150,7 @@ fn same_images(trials: &mut Trials) {
                 for kernel in KERNELS.iter().take(if precision == Precision::F64 { KERNELS.len() } else { 1 }) {
                     let (accelerator, kernel) = (Some(accelerator.name.to_string()), kernel.name.to_string());
                     let precision = precision.name().to_string();
-                    let spec = Spec { accelerator, kernel, precision, ..spec.clone() };
+                    let spec = Spec { kernel, precision, accelerator, ..spec.clone() };
                     checksums.push(image_mean::run(&scene, spec, 64).checksum);
                 }
             }

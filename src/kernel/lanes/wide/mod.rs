@@ -50,11 +50,16 @@ pub(in crate::kernel::lanes) struct Nearest<'a, V: Float> {
 }
 
 impl<V: Float> Apart for Nearest<'_, V> {
+    /// And the lanes that are to be searched again, because they may not surely meet what was found.
     type Output = (Found<V>, u32);
 
     #[inline(always)]
     fn run(self) -> (Found<V>, u32) {
-        self.wide.nearest(self.tables, self.rays, self.wanted, self.counts)
+        let Self { wide, tables, rays, wanted, counts } = self;
+        let found = wide.nearest(rays, wanted, counts);
+        let has_triangles = wide.blocks.has_triangles;
+        let left = if has_triangles { wanted & are_doubtful(tables, &rays.ray, &found).bits() } else { 0 };
+        (found, left)
     }
 }
 
@@ -75,9 +80,9 @@ impl Wide {
         Self { large, planes, blocks, search }
     }
 
-    /// The first thing along each of the `wanted` rays, and the lanes that are to be searched again because they may not surely meet it.
+    /// The first thing along each of the `wanted` rays.
     #[inline(always)]
-    fn nearest<V: Float>(&self, tables: &Tables, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> (Found<V>, u32) {
+    fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> Found<V> {
         let Ray { origin, direction } = rays.ray;
         let mut found = match &self.large {
             Some(large) => large.scan(rays),
@@ -113,9 +118,7 @@ impl Wide {
         }
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
-        let found = Found { nearest: V::load(&rows[7]), primitive: V::load(&rows[8]) };
-        let left = if self.blocks.has_triangles { wanted & are_doubtful(tables, &rays.ray, &found).bits() } else { 0 };
-        (found, left)
+        Found { nearest: V::load(&rows[7]), primitive: V::load(&rows[8]) }
     }
 }
 
@@ -205,7 +208,8 @@ mod tests {
             for starts in starts.chunks_exact(V::LANES) {
                 let wanted = u32::MAX >> (MOST_LANES - V::LANES);
                 let rays = side_by_side::<V>(scene, starts);
-                let (found, left) = wide.nearest(&tables, &rays, wanted, &mut Counts::default());
+                let counts = &mut Counts::default();
+                let (found, left) = Nearest { wide, tables: &tables, rays: &rays, wanted, counts }.run();
                 all_left += left.count_ones() as usize;
                 for (lane, start) in starts.iter().enumerate().filter(|(lane, _)| left >> lane & 1 == 0) {
                     let (t, primitive) = nearest(scene, start);
@@ -301,7 +305,7 @@ mod tests {
         assert!(starts.iter().filter(line_passes).count() > 500);
         for level in levels() {
             let wide = Wide::of(&scene, level, Precision::F64, &[]);
-            assert_eq!(on_level(level, Precision::F64, Compare(&scene, &wide, &starts)), Some(0));
+            assert_eq!(on_level(level, Precision::F64, Compare(&scene, &wide, &starts)), 0);
         }
     }
 }
