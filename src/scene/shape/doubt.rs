@@ -109,15 +109,11 @@ impl Primitives {
             if is_sure { t } else { f64::NAN }
         };
         let none = Nearest::than(limit);
-        match hierarchy {
-            Some(hierarchy) => {
-                let endless = self.endless::<AllEffects>(ray, from, none);
-                hierarchy.nearest(ray, endless, tests, distance)
-            }
-            None => {
-                let all = 0..self.counts().iter().sum::<usize>() as u32;
-                all.fold(none, |nearest, primitive| nearest.or_in_any_order(distance(primitive), primitive))
-            }
+        if let Some(hierarchy) = hierarchy {
+            let endless = self.endless::<AllEffects>(ray, from, none);
+            return hierarchy.nearest(ray, endless, tests, distance);
         }
+        let all = 0..self.counts().iter().sum::<usize>() as u32;
+        all.fold(none, |nearest, primitive| nearest.or_in_any_order(distance(primitive), primitive))
     }
 }
