@@ -10,7 +10,7 @@
 //! In single precision the test of a sphere that is let in rounds as much as the quick one: both together less than
 //! 2 (23 + 6) u = 58 u. So what it meets is let in, and a tree finds what a test of all spheres finds.
 //!
-//! It also covers what triangles are tested with in single precision, slivers included. A corner as the ray sees it is off by at most 5 u (|o| + |b|).
+//! The padding also covers what triangles are tested with in single precision, slivers included. A corner as the ray sees it is off by at most 5 u (|o| + |b|).
 //! Of such corners the edge functions are right within 2 u of themselves, whatever cancels, so their signs are right, and the weights that they give
 //! the corners' distances, none of which is negative, within 4 u: the point at the distance that comes out is within 16 u (|o| + |b|) of the triangle,
 //! and the ray enters the box of the triangle no farther than there.
