@@ -77,10 +77,12 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
     }
     let before = text.get(..span.start).unwrap_or("");
     // A table that begins with its header is named there, and has no value on one line.
-    let is_header =
-        before.ends_with('[') && before.rsplit('\n').next().is_some_and(|line| line.trim_matches('[').is_empty());
-    if is_header && spanned.starts_with(char::is_alphabetic) {
-        let header = text[span.start..].split([']', '\n']).next().unwrap_or("");
+    let brackets = text[span.start..].len() - text[span.start..].trim_start_matches('[').len();
+    let inside = &text[span.start + brackets..];
+    let line = before.rsplit('\n').next().unwrap_or("");
+    let is_header = (brackets > 0 || !line.is_empty()) && line.chars().all(|c| c == '[');
+    if is_header && inside.starts_with(char::is_alphabetic) {
+        let header = inside.split([']', '\n']).next().unwrap_or("");
         return (header.trim().to_string(), String::new());
     }
     let owner = before.rfind('=').map(|at| before[..at].trim_end()).unwrap_or_default();
