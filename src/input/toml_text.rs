@@ -120,7 +120,9 @@ mod tests {
 
     /// A table that is wrong as a whole.
     #[derive(Debug)]
-    struct Wrong(#[expect(dead_code, reason = "it is never made")] u8);
+    struct Wrong {
+        _never_made: u8,
+    }
 
     impl<'de> Deserialize<'de> for Wrong {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {

@@ -208,3 +208,11 @@ fn files_hold_one_idea() {
     let long: Vec<_> = files.filter(|file| lines(file) > 400).collect();
     assert!(long.is_empty(), "more than 400 lines: {long:?}");
 }
+
+/// `rustfmt` does not see modules that a macro declares.
+#[test]
+fn modules_are_declared_openly() {
+    let declares = |file: &PathBuf| code(&fs::read_to_string(file).unwrap()).contains(concat!("mod ", "$"));
+    let hidden: Vec<_> = FOLDERS.into_iter().flat_map(rust_files).filter(declares).collect();
+    assert!(hidden.is_empty(), "a macro declares modules: {hidden:?}");
+}
