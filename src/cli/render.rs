@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::experiment::Progress;
 use crate::files::Files;
 use crate::image_io;
+use crate::kernel::workload::WORKLOAD;
 use crate::lab::Lab;
 use crate::measure::{Measured, Outcome, Record, TraceFile};
 use clap::Args;
@@ -103,7 +104,10 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 /// What a reader wants to know first.
 fn summary(record: &Record, outcome: &Outcome) -> String {
     let Record { width, height, spp, estimator, effects, strategy, decomposition, .. } = record;
-    let what = format!("{width}x{height}, {spp} spp, {estimator}, effects {effects}");
+    // A workload has neither estimator nor effects, and traces no rays.
+    let is_workload = record.kernel == WORKLOAD;
+    let light = if is_workload { String::new() } else { format!(", {estimator}, effects {effects}") };
+    let what = format!("{width}x{height}, {spp} spp{light}");
     let noise = record.estimated_rmse.map_or_else(String::new, |rmse| format!(", estimated RMSE {rmse:.3e}"));
     let checksum = outcome.checksum.as_ref().map_or_else(
         || format!("no checksum: {} gives other numbers in each run", record.sampler),
@@ -118,7 +122,8 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
         let (speed, length) = (paths / makespan_s * 1e-6, rays / paths);
         let workers = outcome.workers_used;
         format!(
-            "{strategy} on {decomposition}, {workers} workers: {makespan_s:.3} s, {speed:.3} Msamples/s, {length:.2} rays per sample"
+            "{strategy} on {decomposition}, {workers} workers: {makespan_s:.3} s, {speed:.3} Msamples/s{}",
+            if is_workload { String::new() } else { format!(", {length:.2} rays per sample") }
         )
     };
     format!("{what}{noise}\n{how}\n{checksum}")
