@@ -104,9 +104,13 @@ impl What {
                 .into());
         }
         let default = Spec::default();
+        let is_workload = lab.workload_named(scene).is_some();
+        if is_workload {
+            self.check_for_workload(scene, &default)?;
+        }
         let estimator = match &self.estimator {
             Some(estimator) => estimator.clone(),
-            None if lab.workload_named(scene).is_some() => String::new(),
+            None if is_workload => String::new(),
             None => default_estimator(lab, scene)?.unwrap_or(default.estimator),
         };
         Ok(Spec {
@@ -124,6 +128,29 @@ impl What {
             roulette: self.roulette.clone(),
             clamp: None,
         })
+    }
+
+    /// Refuses options that a workload, which has nothing to do with light, would not look at.
+    fn check_for_workload(&self, workload: &str, default: &Spec) -> Result<()> {
+        let unless_default = |value: &String, default: &String| Some(value.clone()).filter(|value| value != default);
+        let options = [
+            ("estimator", self.estimator.clone()),
+            ("sampler", unless_default(&self.sampler, &default.sampler)),
+            ("kernel", unless_default(&self.kernel, &default.kernel)),
+            ("simd", self.simd.clone()),
+            ("precision", unless_default(&self.precision, &default.precision)),
+            ("effects", self.effects.clone()),
+            ("accelerator", self.accelerator.clone()),
+            ("max-depth", self.max_depth.map(|depth| depth.to_string())),
+            ("roulette", self.roulette.clone()),
+        ];
+        match options.into_iter().find_map(|(option, value)| Some((option, value?))) {
+            None => Ok(()),
+            Some((option, value)) => {
+                let problem = format!("has no meaning for {workload}, which is a workload");
+                Err(InputError::new(option, value, problem).allowed("none").into())
+            }
+        }
     }
 
     /// Settings under which samples are looked into, by nobody in particular.

@@ -1,7 +1,7 @@
 //! What the formats share: limits that hold before anything is allocated, and the way to and from the `image` crate.
 //!
 //! A header of 30 bytes can claim 2^32 x 2^32 pixels. So a claim is held against fixed caps and against the file's length
-//! before memory is asked for. No format here packs more than [`MAX_PIXELS_PER_BYTE`] pixels into a byte.
+//! before memory is asked for. No format here packs more than `MAX_PIXELS_PER_BYTE` pixels into a byte.
 
 #[cfg(feature = "program")]
 use image::{DynamicImage, ImageDecoder, Limits};
@@ -16,6 +16,7 @@ pub(super) type Decoded<T> = std::result::Result<T, String>;
 const MAX_SIDE: u64 = 1 << 16;
 /// The most pixels: 6 GiB in memory.
 const MAX_PIXELS: u64 = 1 << 28;
+#[cfg(feature = "program")]
 /// Deflate expands a byte into at most 1032, which is 8 pixels each when a pixel is one bit.
 const MAX_PIXELS_PER_BYTE: u64 = 8 * 1032;
 /// More than the largest picture has in the most wasteful format (text with 16 bits a channel).
@@ -35,6 +36,7 @@ pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {
     }
 }
 
+#[cfg(feature = "program")]
 /// [`check_size`], and whether a file of `length` bytes can hold that many pixels at all.
 pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()> {
     check_size(width, height)?;

@@ -9,4 +9,6 @@ pub(crate) use numbers::{
     refractive_index, roughness, share,
 };
 pub(crate) use text::{Limits, open_text, read_text, read_text_up_to, unreadable};
-pub(crate) use toml_text::{locate, locate_in, parse, parse_within};
+#[cfg(feature = "program")]
+pub(crate) use toml_text::parse_within;
+pub(crate) use toml_text::{locate, locate_in, parse};

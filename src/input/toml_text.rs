@@ -1,17 +1,19 @@
 //! TOML text, and errors that name file, line, column, field and value.
 
 use crate::error::{InputError, Result};
-use serde::Deserializer;
-use serde::de::{DeserializeOwned, DeserializeSeed, IgnoredAny, MapAccess, Visitor};
-use std::fmt;
-use std::marker::PhantomData;
+use serde::de::DeserializeOwned;
+#[cfg(feature = "program")]
+use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, Visitor};
 use std::ops::Range;
+#[cfg(feature = "program")]
+use std::{fmt, marker::PhantomData};
 
 /// Reads a definition; `file` is the name to show.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
     toml::from_str(text).map_err(|e| located(text, file, e.message(), e.span()).into())
 }
 
+#[cfg(feature = "program")]
 /// Reads the table at the end of a path of keys, and nothing else of a definition; `None` if it has no such table.
 pub(crate) fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[&str]) -> Result<Option<T>> {
     let found =
@@ -19,9 +21,11 @@ pub(crate) fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[
     found.map_err(|e| located(text, file, e.message(), e.span()).into())
 }
 
+#[cfg(feature = "program")]
 /// What stands at the end of a path of keys.
 struct Within<'a, T>(&'a [&'a str], PhantomData<T>);
 
+#[cfg(feature = "program")]
 impl<'de, T: DeserializeOwned> DeserializeSeed<'de> for Within<'_, T> {
     type Value = Option<T>;
 
@@ -30,6 +34,7 @@ impl<'de, T: DeserializeOwned> DeserializeSeed<'de> for Within<'_, T> {
     }
 }
 
+#[cfg(feature = "program")]
 impl<'de, T: DeserializeOwned> Visitor<'de> for Within<'_, T> {
     type Value = Option<T>;
 

@@ -107,3 +107,23 @@ fn a_cell_that_is_no_cell_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     refused(folder.path(), &["cell"], 2, &["standard input", "description of a cell"]);
 }
+
+/// What a workload would not look at is refused, not ignored.
+#[test]
+fn a_workload_takes_no_options_of_light() {
+    let folder = tempfile::tempdir().unwrap();
+    for (option, value) in [
+        ("estimator", "mis"),
+        ("sampler", "sobol"),
+        ("kernel", "scalar"),
+        ("simd", "baseline"),
+        ("precision", "f32"),
+        ("effects", "all"),
+        ("accelerator", "sah"),
+        ("max-depth", "3"),
+        ("roulette", "never"),
+    ] {
+        let arguments = ["render", "mandelbrot", &format!("--{option}"), value, "--size", "8x8"];
+        refused(folder.path(), &arguments, 2, &[option, value, "workload"]);
+    }
+}
