@@ -1,4 +1,4 @@
-//! Stamps the binary with what it was built from, and embeds every scene and experiment in `experiments/`.
+//! Stamps the binary with what it was built from, and embeds every experiment in `experiments/`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -32,9 +32,7 @@ fn main() -> io::Result<()> {
     );
 
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
-    embed("experiments/scenes", "toml", &out.join("scenes.rs"))?;
-    embed("experiments/scenes", "obj", &out.join("meshes.rs"))?;
-    embed("experiments", "toml", &out.join("experiments.rs"))
+    embed("experiments", &out.join("experiments.rs"))
 }
 
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
@@ -42,18 +40,16 @@ fn output(program: &str, arguments: &[&str]) -> Option<String> {
     Some(String::from_utf8_lossy(&output.stdout).trim().to_string())
 }
 
-/// Writes an array of (name, text) over the files of a folder with that extension, sorted by name. Definitions go by their stems; files
-/// that definitions name keep their extension.
-fn embed(folder: &str, extension: &str, target: &Path) -> io::Result<()> {
+/// Writes an array of (name, text) over the definitions in a folder, sorted by name.
+fn embed(folder: &str, target: &Path) -> io::Result<()> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join(folder);
     let mut files: Vec<PathBuf> =
         fs::read_dir(root)?.map(|entry| entry.map(|e| e.path())).collect::<io::Result<_>>()?;
-    files.retain(|path| path.extension().is_some_and(|own| own == extension));
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
     files.sort();
     let mut code = String::from("&[");
     for file in files {
-        let name = if extension == "toml" { file.file_stem() } else { file.file_name() };
-        let name = name.unwrap_or_default().to_string_lossy();
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
         // Writing to a string cannot fail.
         let _ = write!(code, "({name:?}, include_str!({:?})),", file.display().to_string());
     }

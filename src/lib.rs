@@ -37,6 +37,7 @@
 //! | [`measure`] | settings, runs, traces, records: where a strategy meets a kernel and a clock is read |
 //! | [`kernel`] | how a piece of the film is rendered; workloads besides the path tracer |
 //! | [`film`] | how a film is cut into pieces, and added up to the same bits |
+//! | [`film_file`] | sums of a film in a file, and what they are of |
 //! | [`scene`] | scenes from text and from files: shapes, lights, cameras, hierarchies |
 //! | [`estimator`] | how the radiance along a path is estimated |
 //! | [`material`] | what a surface does with light |
@@ -62,26 +63,18 @@ pub mod atomic_file;
 pub mod check;
 #[cfg(feature = "program")]
 mod cli;
-mod digest;
 #[doc(hidden)]
 pub mod disk;
-pub mod effect;
-pub mod error;
-pub mod estimator;
 pub mod experiment;
 #[doc(hidden)]
 pub mod file_id;
 #[doc(hidden)]
 pub mod files;
-pub mod film;
+pub mod film_file;
 pub mod image_io;
-mod input;
-pub mod kernel;
 pub mod lab;
 #[doc(hidden)]
 pub mod lock;
-pub mod material;
-pub mod math;
 pub mod measure;
 pub mod metric;
 #[cfg(feature = "program")]
@@ -90,13 +83,14 @@ pub mod plot;
 #[cfg(feature = "program")]
 #[doc(hidden)]
 pub mod report;
-pub mod sampling;
-pub mod scene;
-#[doc(hidden)]
-pub mod simd;
 pub mod simulate;
 mod temporary;
 
 pub use lab::Lab;
 #[doc(inline)]
 pub use pathmark_strategy as strategy;
+#[doc(hidden)]
+pub use pathmark_tracer::simd;
+#[doc(inline)]
+pub use pathmark_tracer::{effect, error, estimator, film, kernel, material, math, sampling, scene};
+use pathmark_tracer::{digest, input};

@@ -3,7 +3,7 @@
 use super::output::{number, print, print_json};
 use crate::error::{InputError, Result};
 use crate::files::Files;
-use crate::film::{FilmKey, read_film};
+use crate::film_file::{FilmKey, read_film};
 use crate::image_io::{self, Image};
 use crate::metric::{METRICS, heatmap};
 use clap::Args;

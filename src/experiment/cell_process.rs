@@ -9,7 +9,8 @@ use super::external::filled;
 use super::process_group;
 use super::{External, HalfFile, SceneVersion};
 use crate::error::{Error, InputError, Result};
-use crate::film::{SAMPLE_BLOCK, read_film};
+use crate::film::SAMPLE_BLOCK;
+use crate::film_file::read_film;
 use crate::image_io::{self, Image};
 use crate::lab::Lab;
 use crate::measure::{

@@ -6,7 +6,8 @@
 use super::reference::reference_path;
 use super::{Progress, Reference};
 use crate::error::{Error, InputError, Result};
-use crate::film::{Film, FilmKey, GrowingFilm, SAMPLE_BLOCK, read_film, write_film};
+use crate::film::{Film, GrowingFilm, SAMPLE_BLOCK};
+use crate::film_file::{FilmKey, read_film, write_film};
 use crate::lab::Lab;
 use crate::lock::{Lock, Sharing};
 use crate::measure::{History, LARGEST_SPP, Rounds};

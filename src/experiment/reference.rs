@@ -6,7 +6,7 @@
 use super::{Cell, Definition, Profile, SceneVersion};
 use crate::atomic_file;
 use crate::error::{InputError, Result};
-use crate::film::{FilmKey, read_film};
+use crate::film_file::{FilmKey, read_film};
 use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{Settings, Setup, available_threads};

@@ -8,7 +8,8 @@
 use super::run::{Account, Watch};
 use super::{Outcome, Settings, Setup};
 use crate::error::{InputError, Result};
-use crate::film::{Film, FilmKey, SampleGrid};
+use crate::film::{Film, SampleGrid};
+use crate::film_file::FilmKey;
 use crate::scene::SUBPIXELS;
 use std::slice::from_ref;
 use std::time::Instant;

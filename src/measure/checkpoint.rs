@@ -1,12 +1,13 @@
 //! A render on disk that can go on: `render --checkpoint FILE`.
 //!
-//! Layout: [`crate::film::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. What it is of stands in its header, and
+//! Layout: [`crate::film_file::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. What it is of stands in its header, and
 //! a file that is of anything else is refused, never overwritten. It is written between rounds, in one rename, so that a reader finds
 //! one round or the next. Two renders cannot write one file: a lock file stands beside it as long as the render runs.
 
 use super::{History, Position, Rounds, Setup};
 use crate::error::{InputError, Result};
-use crate::film::{FilmKey, GrowingFilm, SumFile, sections};
+use crate::film::{GrowingFilm, sections};
+use crate::film_file::{FilmKey, SumFile};
 use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

@@ -7,7 +7,8 @@ use super::run::{Account, RoundTimes, Watch};
 use super::settings::check_spp;
 use super::{History, Outcome, Setup};
 use crate::error::{InputError, Result};
-use crate::film::{Film, FilmKey, GrowingFilm};
+use crate::film::{Film, GrowingFilm};
+use crate::film_file::FilmKey;
 
 /// A render that can go on.
 pub struct Rounds {

@@ -3,7 +3,7 @@
 use super::results::Results;
 use crate::error::Result;
 use crate::experiment::wanted_references;
-use crate::film::read_film;
+use crate::film_file::read_film;
 use crate::image_io::Image;
 
 /// The mean of the two half-references of a scene, or of the first scene; `None` if they are not there, as in a copied folder.

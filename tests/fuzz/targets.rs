@@ -5,7 +5,7 @@ use pathmark::error::Result;
 use pathmark::experiment::{
     Definition, EXPERIMENTS, Profile, RecordsFile, read_calibration, read_records, read_run_file,
 };
-use pathmark::film::read_film;
+use pathmark::film_file::read_film;
 use pathmark::image_io::{self, Image};
 use pathmark::kernel::Spec;
 use pathmark::measure::{Checkpoint, Measured, Position, Record, Rounds, Settings, Setup, TraceFile};

@@ -3,7 +3,7 @@
 
 use crate::program::{Finished, finish, pathmark, wait};
 use pathmark::experiment::{CellJob, HalfFile, PointJob, SceneVersion, reference_seed};
-use pathmark::film::read_film;
+use pathmark::film_file::read_film;
 use pathmark::kernel::Spec;
 use pathmark::measure::{Settings, Setup};
 use std::fs;

@@ -4,7 +4,8 @@
 use pathmark::disk::{Step, with_faults};
 use pathmark::error::Result;
 use pathmark::experiment::RecordsFile;
-use pathmark::film::{Film, write_film};
+use pathmark::film::Film;
+use pathmark::film_file::write_film;
 use pathmark::image_io::{self, FORMATS, Image};
 use pathmark::kernel::Spec;
 use pathmark::measure::{Checkpoint, Position, Record, Rounds, Settings, Setup, TraceFile};
@@ -268,7 +269,7 @@ fn what_was_written_can_be_read() {
         write(&folder.path().join(name)).unwrap();
     }
     let at = |name: &str| folder.path().join(name);
-    let (_, film): (_, Film) = pathmark::film::read_film(&at("half.film")).unwrap();
+    let (_, film): (_, Film) = pathmark::film_file::read_film(&at("half.film")).unwrap();
     assert_eq!(film.checksum(), setup().run(None).unwrap().film.checksum());
     let (_, saved) = Checkpoint::open(&at("render.checkpoint"), &setup(), None).unwrap();
     assert_eq!(saved.unwrap().film.film(), film);

@@ -47,7 +47,7 @@ impl Scene {
     /// Reads a scene from its text; files that it names are looked for from the current folder on.
     ///
     /// ```
-    /// use pathmark::scene::Scene;
+    /// use pathmark_tracer::scene::Scene;
     ///
     /// let scene = Scene::from_toml("about = 'a room with green walls'\nbase = 'cornell'\nwithout = ['glass ball']")?;
     /// assert_eq!(scene.objects.len(), 8);

@@ -4,10 +4,9 @@
 //! Layout: a line that names the kind, a line of JSON, 52 bytes for each pixel (three sums, three sums of squares as little-endian f64,
 //! the count as u32) of one image after the other, and the SHA-256 of all that.
 
-use super::whole::room;
-use super::{Film, PixelSum, check_size};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::film::{Film, PixelSum, check_size, room};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};

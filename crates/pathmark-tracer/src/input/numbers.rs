@@ -30,32 +30,32 @@ fn checked_triple<'de, D: Deserializer<'de>>(
 }
 
 /// Whether a coordinate is within bounds; not so NaN.
-pub(crate) fn coordinate_limit(x: f64) -> bool {
+pub fn coordinate_limit(x: f64) -> bool {
     x.abs() <= LARGEST
 }
 
 /// The error of a number that is not.
-pub(crate) fn out_of_range<E: Error>(value: f64, allowed: &str) -> E {
+pub fn out_of_range<E: Error>(value: f64, allowed: &str) -> E {
     E::custom(format_args!("{value:?} is out of range (allowed: {allowed})"))
 }
 
 /// Three shares between 0 and 1.
-pub(crate) fn albedo<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
+pub fn albedo<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
     checked_triple(deserializer, |x| (0.0..=1.0).contains(&x), "0 to 1 in each channel").map(Rgb::from)
 }
 
 /// Three radiances, zero or more.
-pub(crate) fn radiance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
+pub fn radiance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
     checked_triple(deserializer, |x| (0.0..=LARGEST).contains(&x), "0 to 1e100 in each channel").map(Rgb::from)
 }
 
 /// Three coordinates.
-pub(crate) fn point<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
+pub fn point<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     checked_triple(deserializer, coordinate_limit, "-1e100 to 1e100 in each coordinate").map(Vec3::from)
 }
 
 /// A direction of any length; it is normalised here.
-pub(crate) fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
+pub fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     let d = point(deserializer)?;
     let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
     if largest < SMALLEST {
@@ -65,33 +65,33 @@ pub(crate) fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Ve
 }
 
 /// A length above zero.
-pub(crate) fn length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub fn length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (SMALLEST..=LARGEST).contains(&x), "1e-100 to 1e100")
 }
 
 /// A distance, zero or more.
-pub(crate) fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (0.0..=LARGEST).contains(&x), "0 to 1e100")
 }
 
 /// A ratio of indices of refraction.
-pub(crate) fn refractive_index<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub fn refractive_index<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (0.01..=100.0).contains(&x), "0.01 to 100")
 }
 
 /// A number from 0 to 1.
-pub(crate) fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (0.0..=1.0).contains(&x), "0 to 1")
 }
 
 /// The roughness of a microfacet surface, alpha of GGX: 0, which is smooth, or from 1e-4, below which the lobe is narrower than directions
 /// are exact.
-pub(crate) fn roughness<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub fn roughness<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| x == 0.0 || (1e-4..=1.0).contains(&x), "0, or 1e-4 to 1")
 }
 
 /// A vertical field of view in degrees, turned into the height of the image plane at distance 1.
-pub(crate) fn field_of_view<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub fn field_of_view<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let degrees = checked(deserializer, |x| (1e-6..=179.0).contains(&x), "1e-6 to 179 degrees")?;
     Ok(2.0 * libm::tan(degrees.to_radians() / 2.0))
 }

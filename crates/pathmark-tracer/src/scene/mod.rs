@@ -24,7 +24,7 @@ pub use hierarchy::{
 };
 pub use library::{Library, load};
 pub use light::{Aim, Lights, one_minus_cos};
-pub(crate) use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
+pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
 pub use point_light::PointLight;
 pub use profile::{
     AllEffects, DiffuseOnly, FogEffects, LensEffects, PROFILES, ProfileEntry, ProfileVisitor, SceneryEffects,

@@ -13,8 +13,8 @@ use reach::{Part, Walls};
 use sphere::SphereTarget;
 
 pub use sphere::one_minus_cos;
-pub(crate) use sphere::towards_cap;
-pub(crate) use triangle::{TriangleTarget, per_steradian, point_of};
+pub use sphere::towards_cap;
+pub use triangle::{TriangleTarget, per_steradian, point_of};
 
 /// A direction towards a light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,8 +41,10 @@ trait Target {
 
 /// Anything that can be aimed at.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum AnyTarget {
+pub enum AnyTarget {
+    /// A sphere, or the cap of it that can be seen.
     Sphere(SphereTarget),
+    /// A whole triangle.
     Triangle(TriangleTarget),
 }
 
@@ -62,7 +64,8 @@ impl AnyTarget {
         primitives.triangles.get(index).and_then(TriangleTarget::new).map(Self::Triangle)
     }
 
-    pub(crate) fn area(&self) -> f64 {
+    /// The area that light is sampled from.
+    pub fn area(&self) -> f64 {
         match self {
             Self::Sphere(target) => target.area(),
             Self::Triangle(target) => target.area(),
@@ -72,13 +75,13 @@ impl AnyTarget {
 
 /// A light, and how it is chosen.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Light {
-    pub(crate) target: AnyTarget,
-    pub(crate) primitive: u32,
+pub struct Light {
+    pub target: AnyTarget,
+    pub primitive: u32,
     /// How often it is chosen.
-    pub(crate) chance: f64,
+    pub chance: f64,
     /// How often it or one before it is.
-    pub(crate) up_to: f64,
+    pub up_to: f64,
 }
 
 /// Pairs of a light and a wall that are looked at; with more of them spheres are aimed at as wholes.
@@ -87,13 +90,14 @@ const MOST_PAIRS: usize = 1 << 24;
 /// The lights of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lights {
-    pub(crate) lights: Vec<Light>,
+    /// Every light that estimators aim at.
+    pub lights: Vec<Light>,
     /// The light of each primitive, or [`NO_LIGHT`].
-    pub(crate) of_primitive: Vec<u32>,
+    pub of_primitive: Vec<u32>,
 }
 
 /// Of a primitive that is none.
-pub(crate) const NO_LIGHT: u32 = u32::MAX;
+pub const NO_LIGHT: u32 = u32::MAX;
 
 impl Lights {
     /// The lights of a scene whose camera rays start at `origins`. Half of the time a light is chosen by its power, half of the time evenly, so

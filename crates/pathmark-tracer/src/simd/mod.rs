@@ -207,7 +207,7 @@ pub struct Entry {
     /// What it is, in a line.
     pub about: &'static str,
     set: Set,
-    pub(crate) is_available: fn() -> bool,
+    pub is_available: fn() -> bool,
 }
 
 impl Entry {

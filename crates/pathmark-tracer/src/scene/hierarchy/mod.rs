@@ -108,7 +108,7 @@ impl Entry {
     }
 
     /// Builds the structure over primitives with these boxes; `None` if there is nothing to build.
-    pub(crate) fn build(&self, bounds: &[Option<Bounds>]) -> Option<Hierarchy> {
+    pub fn build(&self, bounds: &[Option<Bounds>]) -> Option<Hierarchy> {
         self.build?(bounds)
     }
 }

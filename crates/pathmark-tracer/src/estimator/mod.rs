@@ -208,7 +208,7 @@ impl<E: Estimator> Estimator for Arc<E> {
 }
 
 /// A function over estimators: how the name on the command line becomes a type in a kernel.
-pub(crate) trait EstimatorVisitor {
+pub trait EstimatorVisitor {
     /// What it returns.
     type Output;
     /// Called with the estimator that was named.
@@ -276,7 +276,7 @@ macro_rules! estimators {
             &[$(Entry::of::<$estimator>($name, $about)),*];
 
         /// Calls the visitor with the estimator of that name; `None` if there is none.
-        pub(crate) fn with_estimator<V: EstimatorVisitor>(name: &str, options: Options, visitor: V) -> Option<V::Output> {
+        pub fn with_estimator<V: EstimatorVisitor>(name: &str, options: Options, visitor: V) -> Option<V::Output> {
             match name {
                 $($name => Some(visitor.visit($new(options))),)*
                 _ => None,

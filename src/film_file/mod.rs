@@ -1,11 +1,13 @@
-//! The film file: sums in full precision, for references. Layout: [`super::sum_file`], the JSON being the [`FilmKey`].
+//! The film file: sums in full precision, for references. Layout: [`SumFile`], the JSON being the [`FilmKey`].
 
-use super::Film;
-use super::sum_file::SumFile;
+mod sum_file;
+
 use crate::error::Result;
+use crate::film::Film;
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+pub use sum_file::SumFile;
 
 const FILE: SumFile = SumFile { magic: "pathmark film 1", field: "film" };
 

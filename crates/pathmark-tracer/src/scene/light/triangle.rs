@@ -7,23 +7,26 @@ use crate::scene::{Hit, Primitive, Triangle};
 
 /// The triangle with what aiming at it needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TriangleTarget {
-    pub(crate) corner: Vec3,
-    pub(crate) edges: [Vec3; 2],
-    pub(crate) normal: Vec3,
+pub struct TriangleTarget {
+    /// The corner that the edges start from.
+    pub corner: Vec3,
+    /// From there to the other corners.
+    pub edges: [Vec3; 2],
+    /// Of unit length.
+    pub normal: Vec3,
     area: f64,
 }
 
 /// A point of the triangle with that corner and the edges from there.
 #[inline(always)]
-pub(crate) fn point_of<T: Real>(corner: Vec3<T>, [e, f]: [Vec3<T>; 2], [u, v]: [T; 2]) -> Vec3<T> {
+pub fn point_of<T: Real>(corner: Vec3<T>, [e, f]: [Vec3<T>; 2], [u, v]: [T; 2]) -> Vec3<T> {
     let root = u.sqrt();
     corner + e * (root * (T::splat(1.0) - v)) + f * (root * v)
 }
 
 /// How likely a direction is that leads to a point of a flat light of that area and normal, whose distance has that square.
 #[inline(always)]
-pub(crate) fn per_steradian<T: Real>(square: T, direction: Vec3<T>, normal: Vec3<T>, area: T) -> T {
+pub fn per_steradian<T: Real>(square: T, direction: Vec3<T>, normal: Vec3<T>, area: T) -> T {
     square / (dot(direction, normal).abs() * area)
 }
 

@@ -9,16 +9,16 @@ use std::f64::consts::PI;
 
 /// The part of a sphere around an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Cap {
+pub struct Cap {
     /// The direction from the sphere's centre to the middle of the cap.
-    pub(crate) axis: Vec3,
+    pub axis: Vec3,
     /// Its height, from 0 to the sphere's diameter.
-    pub(crate) height: f64,
+    pub height: f64,
 }
 
 /// The sphere, or the part of it that can be reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SphereTarget {
+pub struct SphereTarget {
     sphere: Sphere,
     cap: Option<Cap>,
 }
@@ -44,7 +44,7 @@ pub fn one_minus_cos<T: Real>(radius: T, distance: T) -> T {
 
 /// A direction evenly in the cone around an axis whose half angle has this 1 - cos.
 #[inline(always)]
-pub(crate) fn towards_cap<T: Real>(axis: Vec3<T>, one_minus_cos: T, u: [T; 2]) -> Vec3<T> {
+pub fn towards_cap<T: Real>(axis: Vec3<T>, one_minus_cos: T, u: [T; 2]) -> Vec3<T> {
     let z = u[1] * one_minus_cos;
     let (sin, cos) = sin_cos_turns(u[0]);
     let r = (z * (T::splat(2.0) - z)).sqrt();
@@ -57,7 +57,7 @@ impl SphereTarget {
     }
 
     /// The sphere, and the part of it that is aimed at, if that is not all.
-    pub(crate) fn parts(&self) -> (Sphere, Option<Cap>) {
+    pub fn parts(&self) -> (Sphere, Option<Cap>) {
         (self.sphere, self.cap)
     }
 

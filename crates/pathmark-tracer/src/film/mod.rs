@@ -4,26 +4,24 @@
 
 mod assembly;
 mod decomposition;
-mod film_file;
 mod growth;
+mod image;
 mod noise;
 mod order;
 mod plan;
 mod sample_grid;
 mod sum;
-mod sum_file;
 mod tile_buffer;
 mod whole;
 
 pub use assembly::Assembly;
 pub use decomposition::{DECOMPOSITIONS, Decomposition, Entry};
-pub use film_file::{FilmKey, read_film, write_film};
 pub use growth::{GrowingFilm, Sections, sections};
+pub use image::Image;
 pub use noise::{FEWEST_PIXELS, Noise};
 pub use order::TileOrder;
 pub use plan::{Bounds, Piece, Plan};
 pub use sample_grid::SampleGrid;
 pub use sum::{PixelSum, SAMPLE_BLOCK, SampleSum};
-pub use sum_file::SumFile;
 pub use tile_buffer::TileBuffer;
-pub use whole::{Film, LARGEST_SIDE, Reserve, check_size};
+pub use whole::{Film, LARGEST_SIDE, Reserve, check_size, room};

@@ -1,9 +1,8 @@
 //! The whole image as sums.
 
-use super::{PixelSum, TileBuffer};
+use super::{Image, PixelSum, TileBuffer};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
-use crate::image_io::Image;
 use std::io;
 
 /// Largest width and height.
@@ -24,7 +23,7 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
 
 /// Room for a value per pixel of a rectangle of this size. Where the system refuses it, that is an error here; an allocation anywhere else would
 /// end the program.
-pub(super) fn room<T>(width: u32, height: u32) -> Result<Vec<T>> {
+pub fn room<T>(width: u32, height: u32) -> Result<Vec<T>> {
     let mut room = Vec::new();
     room.try_reserve_exact(width as usize * height as usize).map_err(|e| {
         let what = format!("{width}x{height} pixels");
@@ -70,7 +69,8 @@ impl Film {
         Ok(Self { width, height, pixels })
     }
 
-    pub(super) fn from_pixels(width: u32, height: u32, pixels: Vec<PixelSum>) -> Self {
+    /// A film of these sums, row by row.
+    pub fn from_pixels(width: u32, height: u32, pixels: Vec<PixelSum>) -> Self {
         Self { width, height, pixels }
     }
 

@@ -5,16 +5,16 @@ use std::fmt::Write;
 
 /// Collects bytes and names them.
 #[derive(Default)]
-pub(crate) struct Fingerprint(Sha256);
+pub struct Fingerprint(Sha256);
 
 impl Fingerprint {
     /// Adds bytes.
-    pub(crate) fn update(&mut self, bytes: &[u8]) {
+    pub fn update(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
 
     /// The name: 16 hexadecimal digits.
-    pub(crate) fn finish(self) -> String {
+    pub fn finish(self) -> String {
         let mut text = String::with_capacity(16);
         for byte in self.0.finalize().iter().take(8) {
             // Writing to a string cannot fail.
@@ -25,7 +25,7 @@ impl Fingerprint {
 }
 
 /// The name of a text.
-pub(crate) fn of_text(text: &str) -> String {
+pub fn of_text(text: &str) -> String {
     let mut fingerprint = Fingerprint::default();
     fingerprint.update(text.as_bytes());
     fingerprint.finish()

@@ -2,30 +2,25 @@
 
 use crate::error::{InputError, Result};
 use serde::de::DeserializeOwned;
-#[cfg(feature = "program")]
 use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, Visitor};
 use std::ops::Range;
-#[cfg(feature = "program")]
 use std::{fmt, marker::PhantomData};
 
 /// Reads a definition; `file` is the name to show.
-pub(crate) fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
+pub fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
     toml::from_str(text).map_err(|e| located(text, file, e.message(), e.span()).into())
 }
 
-#[cfg(feature = "program")]
 /// Reads the table at the end of a path of keys, and nothing else of a definition; `None` if it has no such table.
-pub(crate) fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[&str]) -> Result<Option<T>> {
+pub fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[&str]) -> Result<Option<T>> {
     let found =
         toml::Deserializer::parse(text).and_then(|definition| Within(path, PhantomData).deserialize(definition));
     found.map_err(|e| located(text, file, e.message(), e.span()).into())
 }
 
-#[cfg(feature = "program")]
 /// What stands at the end of a path of keys.
 struct Within<'a, T>(&'a [&'a str], PhantomData<T>);
 
-#[cfg(feature = "program")]
 impl<'de, T: DeserializeOwned> DeserializeSeed<'de> for Within<'_, T> {
     type Value = Option<T>;
 
@@ -34,7 +29,6 @@ impl<'de, T: DeserializeOwned> DeserializeSeed<'de> for Within<'_, T> {
     }
 }
 
-#[cfg(feature = "program")]
 impl<'de, T: DeserializeOwned> Visitor<'de> for Within<'_, T> {
     type Value = Option<T>;
 
@@ -98,7 +92,7 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
 }
 
 /// [`locate`] within the table of that name, as far as the next table.
-pub(crate) fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
+pub fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
     let head = format!("[{table}]");
     let is_line = |at: &usize| text[..*at].is_empty() || text[..*at].ends_with('\n');
     let start = text.match_indices(&head).map(|(at, _)| at).find(is_line)?;
@@ -108,7 +102,7 @@ pub(crate) fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Opti
 }
 
 /// Line and column of a value that was found wrong after parsing: its first appearance behind the key.
-pub(crate) fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
+pub fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
     let at_key = text.match_indices(key).map(|(at, _)| at).find(|at| {
         let starts_line = text[..*at].rsplit('\n').next().is_some_and(|before| before.trim().is_empty());
         starts_line && text[*at + key.len()..].trim_start().starts_with('=')

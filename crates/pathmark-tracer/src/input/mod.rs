@@ -4,11 +4,10 @@ mod numbers;
 mod text;
 mod toml_text;
 
-pub(crate) use numbers::{
+pub use numbers::{
     albedo, coordinate_limit, direction, field_of_view, length, out_of_range, point, positive, radiance,
     refractive_index, roughness, share,
 };
-pub(crate) use text::{Limits, open_text, read_text, read_text_up_to, unreadable};
-#[cfg(feature = "program")]
-pub(crate) use toml_text::parse_within;
-pub(crate) use toml_text::{locate, locate_in, parse};
+pub use text::{Limits, open_text, read_text, read_text_up_to, unreadable};
+pub use toml_text::parse_within;
+pub use toml_text::{locate, locate_in, parse};

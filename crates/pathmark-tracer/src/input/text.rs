@@ -11,20 +11,20 @@ const LARGEST_DEFINITION: u64 = 3 << 20;
 
 /// What a text file may be.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
+pub struct Limits {
     /// Bytes in all.
-    pub(crate) bytes: u64,
+    pub bytes: u64,
     /// Bytes of a line, its end included.
-    pub(crate) line: u64,
+    pub line: u64,
 }
 
 /// The text of a definition.
-pub(crate) fn read_text(path: &Path) -> Result<String> {
+pub fn read_text(path: &Path) -> Result<String> {
     read_text_up_to(path, LARGEST_DEFINITION)
 }
 
 /// The text of a user's file of so many bytes at most.
-pub(crate) fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
+pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
     let mut bytes = Vec::new();
     let limits = Limits { bytes: most, line: u64::MAX };
     open_text(path, limits)?.read_to_end(&mut bytes).map_err(|e| unreadable(path, e))?;
@@ -35,7 +35,7 @@ pub(crate) fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
 }
 
 /// Opens a user's text file. Its errors become the program's by [`unreadable`].
-pub(crate) fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
+pub fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
     let file = File::open(path).map_err(|e| match e.kind() {
         ErrorKind::NotFound => refused(path, "there is no such file").into(),
         ErrorKind::NotADirectory => refused(path, "a part of the path is not a directory").into(),
@@ -54,7 +54,7 @@ pub(crate) fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> 
 }
 
 /// The error of a file that cannot be read: the user's if what is in it is wrong, the system's otherwise.
-pub(crate) fn unreadable(path: &Path, error: io::Error) -> Error {
+pub fn unreadable(path: &Path, error: io::Error) -> Error {
     match error.kind() {
         ErrorKind::InvalidData => refused(path, error.to_string()).into(),
         _ => Error::system("reading", path, error),
@@ -72,7 +72,7 @@ fn refused(path: &Path, problem: impl Into<String>) -> InputError {
 
 /// A file that is read as long as it can be text within its limits.
 #[derive(Debug)]
-pub(crate) struct Text {
+pub struct Text {
     file: File,
     /// Of other files, such as devices, nobody knows how long they are.
     is_regular: bool,
