@@ -6,7 +6,7 @@ use super::{Lanes, Search};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3};
 use crate::scene::{Scene, Standpoint, Tests};
-use crate::simd::{Float, MOST_LANES, Mask};
+use crate::simd::{Apart, Float, MOST_LANES, Mask};
 
 impl Lanes {
     /// Distance and number of the first primitive along each ray; the number is -1 where there is none. What is in lanes that are not `wanted`
@@ -19,7 +19,7 @@ impl Lanes {
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
-            Search::Wide(wide) => V::apart(Nearest { wide, tables: &self.tables, rays, wanted, counts }),
+            Search::Wide(wide) => Nearest { wide, tables: &self.tables, rays, wanted, counts }.run(),
             // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };

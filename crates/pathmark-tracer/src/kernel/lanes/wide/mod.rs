@@ -16,12 +16,12 @@ use super::singles::Singles;
 use super::tables::Tables;
 use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
-use crate::scene::{Bounds, Plane, Scene, Tests};
+use crate::scene::{Bounds, Child, Plane, Scene, Tests};
 use crate::simd::{Apart, Float, Level, MOST_LANES, Mask, Precision, widths_of};
 use blocks::{Blocks, Leaf, Making};
 use coarse::{AllCoarse, Coarse, Scale};
 use doubt::are_doubtful;
-use tree::{Tree, Waiting};
+use tree::{Tree, Waiting, is_shallow};
 
 /// The primitives of a scene.
 pub(in crate::kernel::lanes) struct Wide {
@@ -38,6 +38,17 @@ enum Search {
     /// All of them, or none if there are none.
     All(Leaf),
     Tree(Tree),
+}
+
+impl Search {
+    /// A search of so many primitives by a tree of these nodes. One so deep that a ray may leave more for later than there is place for is not used:
+    /// to ask for place at each node costs every search a tenth of its time, and such trees are of scenes made for it.
+    fn of(nodes: Option<&[Vec<Child>]>, count: usize, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
+        match nodes.filter(|nodes| is_shallow(nodes)) {
+            Some(nodes) => Self::Tree(Tree::of(nodes, width, scale, making)),
+            None => Self::All(making.add(0..count as u32)),
+        }
+    }
 }
 
 /// A search, which takes so long that it need not be part of the loop over vertices.
@@ -70,10 +81,8 @@ impl Wide {
         let bounds = scene.primitives.bounds();
         let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
         let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, lanes]);
-        let search = match &scene.hierarchy {
-            None => Search::All(making.add(0..scene.owners.len() as u32)),
-            Some(hierarchy) => Search::Tree(Tree::of(&hierarchy.gathered(width), width, scale, &mut making)),
-        };
+        let nodes = scene.hierarchy.as_ref().map(|hierarchy| hierarchy.gathered(width));
+        let search = Search::of(nodes.as_deref(), scene.owners.len(), width, scale, &mut making);
         let blocks = making.made(precision);
         let first_plane = scene.primitives.spheres.len() as u32;
         let planes = (first_plane..).map(f64::from).zip(scene.primitives.planes.iter().copied()).collect();

@@ -56,8 +56,6 @@ impl Tree {
     ) {
         let lanes = V::Single::LANES;
         waiting.count = 0;
-        // Leaves to test one after the other, when there is no more place for children to come back to.
-        let mut rest = 0;
         let mut next = Some(0);
         while let Some(child) = next {
             if child & IS_LEAF != 0 {
@@ -70,27 +68,31 @@ impl Tree {
                 let (enter, met) = ray.coarse.enter(&self.faces[node * 6 * lanes..], best.nearest * blocks.scale.0);
                 let met = met.bits();
                 if met != 0 {
-                    if waiting.count + lanes <= MOST_WAITING {
-                        enter.store(&mut waiting.met);
-                        next = Some(waiting.push(&self.children[node * lanes..(node + 1) * lanes], met));
-                        continue;
-                    }
-                    // No call for more: what is in registers would have to leave them.
-                    waiting.count = 0;
-                    rest = self.leaves.len() as u32;
+                    enter.store(&mut waiting.met);
+                    next = Some(waiting.push(&self.children[node * lanes..(node + 1) * lanes], met));
+                    continue;
                 }
             }
             next = waiting.pop((best.nearest * blocks.scale.0) as f32);
-            if next.is_none() && rest > 0 {
-                rest -= 1;
-                next = Some(rest | IS_LEAF);
-            }
         }
     }
 }
 
-/// Children that may wait for a ray: some 15 a level of a tree that is six or more levels deep on the widest registers.
+/// Children that may wait for a ray: some 15 a level of a tree that is ten levels deep on the widest registers.
 const MOST_WAITING: usize = 160;
+
+/// Whether there is place for all children that may wait for a ray at a time in a tree of these nodes, each of which stands behind its parent.
+pub(super) fn is_shallow(nodes: &[Vec<Child>]) -> bool {
+    let mut below = vec![0; nodes.len()];
+    for (index, node) in nodes.iter().enumerate().rev() {
+        let deepest = node.iter().map(|child| match child.content {
+            Content::Node(node) => below[node],
+            Content::Primitives(_) => 0,
+        });
+        below[index] = node.len() - 1 + deepest.max().unwrap_or(0);
+    }
+    below[0] <= MOST_WAITING
+}
 
 /// Children to come back to.
 pub(super) struct Waiting {
@@ -189,21 +191,22 @@ mod tests {
         }
     }
 
-    /// Trees may be so deep that more is left to look at than there is place for; nothing is forgotten.
+    /// Trees may be so deep that more is left to look at than there is place for; then everything is looked at.
     #[test]
-    fn what_there_is_no_place_for_is_looked_at_in_the_end() {
+    fn what_there_is_no_place_for_is_looked_at() {
         for level in levels() {
             for precision in Precision::ALL {
                 let [lanes, width] = widths_of(level, precision);
                 let (spheres, nodes) = row(width);
-                assert!(spheres.len() > MOST_WAITING + width);
+                assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&nodes));
+                assert!(is_shallow(&nodes[DEPTH - 1..]));
                 let bounds: Vec<Option<Bounds>> = spheres.iter().map(Primitive::bounds).collect();
                 let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
                 let primitives = Primitives { spheres, ..Primitives::default() };
                 let mut making = Making::new(&primitives, &bounds, scale, None, [width, lanes]);
-                let tree = Tree::of(&nodes, width, scale, &mut making);
+                let search = Search::of(Some(&nodes), primitives.spheres.len(), width, scale, &mut making);
                 let blocks = making.made(precision);
-                let wide = Wide { large: None, planes: Vec::new(), blocks, search: Search::Tree(tree) };
+                let wide = Wide { large: None, planes: Vec::new(), blocks, search };
                 let last = primitives.spheres.len() - 1;
                 let (distance, number) = on_level(level, precision, Along(&wide));
                 assert_eq!(number, last as f64, "{} {precision:?}", level.name());
