@@ -91,6 +91,6 @@ pub use lab::Lab;
 pub use pathmark_strategy as strategy;
 #[doc(hidden)]
 pub use pathmark_tracer::simd;
+use pathmark_tracer::{digest, input};
 #[doc(inline)]
 pub use pathmark_tracer::{effect, error, estimator, film, kernel, material, math, sampling, scene};
-use pathmark_tracer::{digest, input};

@@ -62,9 +62,13 @@ fn root() -> &'static Path {
 /// Where code of ours lies: its lints and its lines are everyone's.
 const FOLDERS: [&str; 5] = ["src", "tests", "benches", "crates", "examples"];
 
+/// Where modules are that call each other by `crate`: the package, and the crate of what renders.
+const SOURCES: [&str; 2] = ["src", "crates/pathmark-tracer/src"];
+
 /// Where a module's files are: a crate of its own that the package re-exports, a folder or a file.
 fn home(module: &str) -> Option<PathBuf> {
-    let places = [format!("crates/pathmark-{module}"), format!("src/{module}"), format!("src/{module}.rs")];
+    let inside = SOURCES.iter().flat_map(|source| [format!("{source}/{module}"), format!("{source}/{module}.rs")]);
+    let places = [format!("crates/pathmark-{module}")].into_iter().chain(inside);
     places.into_iter().map(|place| root().join(place)).find(|place| place.exists())
 }
 
@@ -137,10 +141,12 @@ fn imports_are_found_wherever_they_stand() {
 
 #[test]
 fn modules_import_only_those_above() {
-    let (source, layers) = (root().join("src"), layers());
+    let layers = layers();
     let (mut wrong, mut seen) = (Vec::new(), BTreeSet::new());
-    for file in rust_files("src") {
-        let inner = file.strip_prefix(&source).unwrap();
+    for (source, file) in
+        SOURCES.iter().flat_map(|source| rust_files(source).into_iter().map(move |file| (source, file)))
+    {
+        let inner = file.strip_prefix(root().join(source)).unwrap();
         let shown = inner.display();
         let module = inner.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs");
         // The crate's roots name every module, in its declaration or by calling `cli`.
@@ -159,8 +165,7 @@ fn modules_import_only_those_above() {
         wrong.extend(refused.map(|target| format!("{shown}: {module} imports {target}")));
     }
     for module in layers.keys().filter(|module| !seen.contains(*module)) {
-        let is_crate = home(module).is_some_and(|home| home.starts_with(root().join("crates")));
-        if !is_crate {
+        if home(module).is_none_or(|home| !home.join("src/lib.rs").exists()) {
             wrong.push(format!("CONTRIBUTING.md has the layer of {module}, which src/ has not"));
         }
     }
@@ -173,7 +178,10 @@ fn the_front_page_lists_the_public_modules() {
     let text = fs::read_to_string(root().join("src/lib.rs")).unwrap();
     let rows = text.lines().filter_map(|line| line.strip_prefix("//! | [`")?.split_once("`]"));
     let listed: Vec<&str> = rows.map(|(module, _)| module).collect();
+    let (_, tracer) = text.split_once("pub use pathmark_tracer::{").unwrap();
+    let (tracer, _) = tracer.split_once("};").unwrap();
     let mut shown = BTreeSet::from(["strategy"]);
+    shown.extend(tracer.split(',').map(str::trim));
     let mut is_hidden = false;
     for line in text.lines() {
         if let Some(module) = line.strip_prefix("pub mod ").filter(|_| !is_hidden) {

@@ -61,7 +61,8 @@ pub struct Place {
 /// What is wrong with something that the user gave.
 ///
 /// ```
-/// use pathmark_tracer::error::InputError;
+/// # use pathmark_tracer as pathmark;
+/// use pathmark::error::InputError;
 /// let error = InputError::new("--spp", "0", "must be at least 1").allowed("1 to 16777216");
 /// assert_eq!(error.to_string(), "--spp = 0: must be at least 1 (allowed: 1 to 16777216)");
 /// let error = InputError::new("radius", "-1", "must be positive").in_file("box.toml", Some((4, 10)));

@@ -47,7 +47,8 @@ impl Scene {
     /// Reads a scene from its text; files that it names are looked for from the current folder on.
     ///
     /// ```
-    /// use pathmark_tracer::scene::Scene;
+    /// # use pathmark_tracer as pathmark;
+    /// use pathmark::scene::Scene;
     ///
     /// let scene = Scene::from_toml("about = 'a room with green walls'\nbase = 'cornell'\nwithout = ['glass ball']")?;
     /// assert_eq!(scene.objects.len(), 8);
