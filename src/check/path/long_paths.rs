@@ -14,7 +14,7 @@ use std::thread;
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "P01", tries: "a closed sphere that loses nothing", run: endless },
-    Case { id: "P02", tries: "ten thousand bounces on a stack of 64 KiB", run: ten_thousand },
+    Case { id: "P02", tries: "ten thousand bounces on a stack of 128 KiB", run: ten_thousand },
     Case { id: "P03", tries: "throughputs down to the smallest number", run: underflow },
 ];
 
@@ -31,7 +31,7 @@ fn pixel(scene: &Scene, spec: Spec, spp: u32) -> (PixelSum, Counts) {
         let counts = kernel.render(&Piece { bounds, samples: 0..spp }, &mut buffer);
         (buffer.row_mut(0)[0], counts)
     };
-    let thread = thread::Builder::new().stack_size(64 << 10).spawn(render).expect("a thread");
+    let thread = thread::Builder::new().stack_size(128 << 10).spawn(render).expect("a thread");
     thread.join().expect("no overflow of the stack")
 }
 

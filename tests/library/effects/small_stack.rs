@@ -1,4 +1,4 @@
-//! No path is so long or so branched that a thread's stack would matter: 64 KiB are enough, where Rust's own threads have 2 MiB.
+//! No path is so long or so branched that a thread's stack would matter: 128 KiB are enough, where Rust's own threads have 2 MiB.
 
 use crate::estimate::{object, scene, sphere, view};
 use pathmark::film::{Bounds, Piece, TileBuffer};
@@ -7,7 +7,7 @@ use pathmark::scene::{Scene, load};
 use std::sync::Arc;
 use std::thread;
 
-const STACK: usize = 64 << 10;
+const STACK: usize = 128 << 10;
 const SPP: u32 = 5000;
 
 /// The counts of one pixel, rendered in a thread with a small stack.
