@@ -1,65 +1,27 @@
-//! The options that choose what is rendered, in which pieces and by whom.
+//! The options that choose what is rendered, in which pieces and by whom, from the table of axes.
 
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, read_text};
 use crate::kernel::{Clamp, Spec};
 use crate::lab::Lab;
-use crate::measure::{LARGEST_SEED, Settings, THREAD_PER_ROW, available_threads};
-use clap::Args;
+use crate::measure::{AXES, Axis, Field, LARGEST_SEED, Settings, THREAD_PER_ROW};
+use clap::builder::ValueParser;
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
 use std::path::Path;
 
+/// The values of the options that choose *what* is rendered, or of those that choose pieces and workers.
+pub(super) struct Options<const WHAT: bool>(Vec<(&'static Axis, String)>);
+
 /// *What* is rendered.
-#[derive(Args)]
-pub(super) struct What {
-    /// Columns and rows.
-    #[arg(long, value_name = "WxH", default_value = "512x384", allow_hyphen_values = true)]
-    pub(super) size: String,
-    /// Estimator [default: the scene's own]
-    #[arg(long, value_name = "NAME")]
-    pub(super) estimator: Option<String>,
-    /// Sampler
-    #[arg(long, value_name = "NAME", default_value = "independent")]
-    pub(super) sampler: String,
-    /// Kernel
-    #[arg(long, value_name = "NAME", default_value = "lanes")]
-    pub(super) kernel: String,
-    /// Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]
-    #[arg(long, value_name = "LEVEL")]
-    pub(super) simd: Option<String>,
-    /// Floating-point format: f64, or f32, which lanes alone have and which gives other bits
-    #[arg(long, value_name = "FORMAT", default_value = "f64")]
-    pub(super) precision: String,
-    /// Effect profile [default: the smallest that covers the scene]
-    #[arg(long, value_name = "PROFILE")]
-    pub(super) effects: Option<String>,
-    /// What finds the nearest surface [default: the fitting one for so many]
-    #[arg(long, value_name = "NAME")]
-    pub(super) accelerator: Option<String>,
-    /// Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]
-    #[arg(long, value_name = "N")]
-    pub(super) max_depth: Option<u16>,
-    /// How chance ends paths: albedo:N or throughput:N behind the N-th vertex, or never [default: the estimator's own]
-    #[arg(long, value_name = "RULE")]
-    pub(super) roulette: Option<String>,
-}
+pub(super) type What = Options<true>;
 
 /// The three axes: *what*, *pieces*, *who*.
 #[derive(Args)]
 pub(super) struct Axes {
     #[command(flatten)]
     what: What,
-    /// Who renders: a strategy of `pathmark list strategies`, or thread-per-row
-    #[arg(long, value_name = "NAME", default_value = "work-stealing")]
-    pub(super) strategy: String,
-    /// Workers [default: one for each processor]
-    #[arg(long, value_name = "N")]
-    pub(super) threads: Option<usize>,
-    /// Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], `samples:B[:WxH]` [default: tiles:32x32]
-    #[arg(long, value_name = "CUT")]
-    pub(super) decomposition: Option<String>,
-    /// How pieces get into the film: an output of `pathmark list outputs`
-    #[arg(long, value_name = "NAME", default_value = "slots")]
-    pub(super) output: String,
+    #[command(flatten)]
+    schedule: Options<false>,
     /// Clamp each subpixel's mean to 1 before averaging, as smallpt does: biased
     #[arg(long)]
     pub(super) subpixel_clamp: bool,
@@ -68,10 +30,54 @@ pub(super) struct Axes {
     pub(super) recursion_clamp: bool,
 }
 
-/// Columns and rows from `WxH`.
-pub(super) fn parse_size(text: &str) -> Result<(u32, u32)> {
-    let parsed = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    parsed.ok_or_else(|| InputError::new("size", text, "is no size").allowed("WxH, like 1024x768").into())
+/// What clap refuses before the program looks at a value.
+fn parser(axis: &Axis) -> ValueParser {
+    match (axis.field)(&mut Settings::default()) {
+        Field::Depth(_) => value_parser!(u16).into(),
+        Field::Samples(_) => value_parser!(u32).into(),
+        Field::Seed(_) => value_parser!(u64).into(),
+        Field::Workers(_) => value_parser!(usize).into(),
+        Field::Name(_) | Field::Fitting(_) | Field::Size(_) | Field::Clamp(_) => ValueParser::string(),
+    }
+}
+
+impl<const WHAT: bool> Args for Options<WHAT> {
+    fn augment_args(command: Command) -> Command {
+        let options = AXES.iter().filter_map(|axis| Some((axis, axis.option.as_ref()?)));
+        command.args(options.filter(|(axis, _)| (axis.changes_image || axis.of_light) == WHAT).map(|(axis, option)| {
+            let argument = Arg::new(axis.name).long(axis.name).value_name(option.value_name).help(option.about);
+            let is_size = matches!((axis.field)(&mut Settings::default()), Field::Size(_));
+            let argument = argument.value_parser(parser(axis)).allow_hyphen_values(is_size);
+            if option.default.is_empty() { argument } else { argument.default_value(option.default) }
+        }))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
+    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
+        let is_ours = |axis: &&Axis| axis.option.is_some() && (axis.changes_image || axis.of_light) == WHAT;
+        let given = |axis: &'static Axis| Some((axis, matches.get_raw(axis.name)?.next()?.to_str()?.to_string()));
+        Ok(Self(AXES.iter().filter(is_ours).filter_map(given).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl<const WHAT: bool> Options<WHAT> {
+    fn value(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|(axis, _)| axis.name == name).map(|(_, value)| value.as_str())
+    }
+
+    fn apply(&self, settings: &mut Settings) -> Result<()> {
+        self.0.iter().try_for_each(|(axis, value)| axis.set(settings, value))
+    }
 }
 
 /// The refusal to look into the paths of a workload.
@@ -93,102 +99,62 @@ fn default_estimator(lab: &Lab, scene: &str) -> Result<Option<String>> {
     }
 }
 
+/// Refuses options that a workload, which has nothing to do with light, would not look at.
+fn check_for_workload(settings: &Settings) -> Result<()> {
+    let mut base = Settings::default();
+    base.spec.estimator.clear();
+    let mut of_light = AXES.iter().filter(|axis| axis.of_light);
+    match of_light.find(|axis| axis.show(settings) != axis.show(&base)) {
+        None => Ok(()),
+        Some(axis) => {
+            let (value, problem) =
+                (axis.show(settings), format!("has no meaning for {}, which is a workload", settings.scene));
+            // Each clamp is a switch of its own.
+            let option = if axis.option.is_some() { axis.name.to_string() } else { format!("{value}-clamp") };
+            Err(InputError::new(option, value, problem).allowed("none").into())
+        }
+    }
+}
+
 impl What {
-    /// The kernel for a scene, and a seed that belongs to an image, not to a reference.
-    fn spec(&self, lab: &Lab, scene: &str, seed: u64) -> Result<Spec> {
-        let (width, height) = parse_size(&self.size)?;
+    /// Settings under which samples are looked into, by nobody in particular.
+    pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
+        let spec = Spec { seed, estimator: String::new(), ..Spec::default() };
+        let mut settings = Settings { scene: scene.to_string(), spp, spec, ..Settings::default() };
+        self.apply(&mut settings)?;
         if seed > LARGEST_SEED {
             let problem = "belongs to the references";
             return Err(InputError::new("seed", seed.to_string(), problem)
                 .allowed(format!("0 to {LARGEST_SEED}"))
                 .into());
         }
-        let default = Spec::default();
-        let is_workload = lab.workload_named(scene).is_some();
-        if is_workload {
-            self.check_for_workload(scene, &default)?;
+        if lab.workload_named(scene).is_some() {
+            check_for_workload(&settings)?;
+        } else if self.value("estimator").is_none() {
+            settings.spec.estimator = default_estimator(lab, scene)?.unwrap_or(Spec::default().estimator);
         }
-        let estimator = match &self.estimator {
-            Some(estimator) => estimator.clone(),
-            None if is_workload => String::new(),
-            None => default_estimator(lab, scene)?.unwrap_or(default.estimator),
-        };
-        Ok(Spec {
-            width,
-            height,
-            seed,
-            estimator,
-            sampler: self.sampler.clone(),
-            kernel: self.kernel.clone(),
-            simd: self.simd.clone(),
-            precision: self.precision.clone(),
-            effects: self.effects.clone(),
-            accelerator: self.accelerator.clone(),
-            max_depth: self.max_depth,
-            roulette: self.roulette.clone(),
-            clamp: None,
-        })
-    }
-
-    /// Refuses options that a workload, which has nothing to do with light, would not look at.
-    fn check_for_workload(&self, workload: &str, default: &Spec) -> Result<()> {
-        let unless_default = |value: &String, default: &String| Some(value.clone()).filter(|value| value != default);
-        let options = [
-            ("estimator", self.estimator.clone()),
-            ("sampler", unless_default(&self.sampler, &default.sampler)),
-            ("kernel", unless_default(&self.kernel, &default.kernel)),
-            ("simd", self.simd.clone()),
-            ("precision", unless_default(&self.precision, &default.precision)),
-            ("effects", self.effects.clone()),
-            ("accelerator", self.accelerator.clone()),
-            ("max-depth", self.max_depth.map(|depth| depth.to_string())),
-            ("roulette", self.roulette.clone()),
-        ];
-        match options.into_iter().find_map(|(option, value)| Some((option, value?))) {
-            None => Ok(()),
-            Some((option, value)) => {
-                let problem = format!("has no meaning for {workload}, which is a workload");
-                Err(InputError::new(option, value, problem).allowed("none").into())
-            }
-        }
-    }
-
-    /// Settings under which samples are looked into, by nobody in particular.
-    pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
-        let spec = self.spec(lab, scene, seed)?;
-        Ok(Settings { scene: scene.to_string(), spp, spec, ..Settings::default() })
+        Ok(settings)
     }
 }
 
 impl Axes {
-    /// The decomposition; a strategy whose name says its pieces takes no other.
-    fn cut(&self) -> Result<String> {
-        match &self.decomposition {
-            Some(cut) if self.strategy == THREAD_PER_ROW && cut != "rows" => {
-                let problem = format!("contradicts the strategy {THREAD_PER_ROW}");
-                Err(InputError::new("decomposition", cut, problem).allowed("rows, or none").into())
-            }
-            Some(cut) => Ok(cut.clone()),
-            None => Ok("tiles:32x32".to_string()),
-        }
-    }
-
-    /// The settings for a scene, samples and a seed.
+    /// The settings for a scene, samples and a seed. A strategy whose name says its pieces takes no other.
     pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
-        let clamp = match (self.subpixel_clamp, self.recursion_clamp) {
+        let mut settings = self.what.settings(lab, scene, spp, seed)?;
+        self.schedule.apply(&mut settings)?;
+        settings.spec.clamp = match (self.subpixel_clamp, self.recursion_clamp) {
             (true, _) => Some(Clamp::Subpixel),
             (false, true) => Some(Clamp::Recursion),
             (false, false) => None,
         };
-        let spec = Spec { clamp, ..self.what.spec(lab, scene, seed)? };
-        Ok(Settings {
-            scene: scene.to_string(),
-            spp,
-            spec,
-            decomposition: self.cut()?,
-            output: self.output.clone(),
-            strategy: self.strategy.clone(),
-            threads: self.threads.unwrap_or_else(available_threads),
-        })
+        if lab.workload_named(scene).is_some() {
+            check_for_workload(&settings)?;
+        }
+        let cut = self.schedule.value("decomposition").filter(|cut| *cut != "rows");
+        if let Some(cut) = cut.filter(|_| settings.strategy == THREAD_PER_ROW) {
+            let problem = format!("contradicts the strategy {THREAD_PER_ROW}");
+            return Err(InputError::new("decomposition", cut, problem).allowed("rows, or none").into());
+        }
+        Ok(settings)
     }
 }

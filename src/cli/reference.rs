@@ -1,12 +1,12 @@
 //! `pathmark reference SCENE`: the two half-references that images are measured against.
 
-use super::axes::parse_size;
 use super::output::print;
 use super::progress::Talk;
 use crate::error::{Error, Result};
 use crate::experiment::{Reference, ReferenceError, check_until, refine_reference, render_reference};
 use crate::files::Files;
 use crate::lab::Lab;
+use crate::measure::parse_size;
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         talk.note(&format!("warning: {warning}"));
     }
     for sample in &outcome.invalid {
-        talk.note(&replay::command(&arguments.scene, &setup.settings().spec, *sample));
+        talk.note(&replay::command(&arguments.scene, setup.settings(), *sample));
     }
     if arguments.json {
         print_json(&record)?;

@@ -6,7 +6,7 @@ use crate::error::{Error, InputError, Result};
 use crate::kernel::{self, Choice, Event, Inspector, PathLog, Spec};
 use crate::lab::Lab;
 use crate::math::{Rgb, Vec3};
-use crate::measure::{InvalidSample, LARGEST_SPP};
+use crate::measure::{AXES, InvalidSample, LARGEST_SPP, Settings};
 use crate::plot::number;
 use crate::scene::Scene;
 use crate::simd::Precision;
@@ -85,19 +85,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
 }
 
 /// The command that shows a sample of an image again: with every option that changes what the sample is.
-pub(super) fn command(scene: &str, spec: &Spec, at: InvalidSample) -> String {
-    let Spec { width, height, seed, estimator, sampler, precision, max_depth, roulette, .. } = spec;
+pub(super) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
     let scene = if scene.contains(char::is_whitespace) { format!("'{scene}'") } else { scene.to_string() };
-    let option = |name: &str, value: Option<String>| value.map_or(String::new(), |value| format!(" --{name} {value}"));
-    format!(
-        "pathmark replay {scene} --size {width}x{height} --estimator {estimator} --sampler {sampler} --seed {seed}{}{}{} --pixel {},{} --sample {}",
-        option("precision", (*precision != Spec::default().precision).then(|| precision.clone())),
-        option("max-depth", max_depth.map(|depth| depth.to_string())),
-        option("roulette", roulette.clone()),
-        at.x,
-        at.y,
-        at.sample,
-    )
+    let axes = AXES.iter().filter(|axis| axis.changes_image && (axis.option.is_some() || axis.name == "seed"));
+    let values = axes.map(|axis| (axis.name, axis.show(settings))).filter(|(_, value)| !value.is_empty());
+    let options: String = values.map(|(name, value)| format!(" --{name} {value}")).collect();
+    format!("pathmark replay {scene}{options} --pixel {},{} --sample {}", at.x, at.y, at.sample)
 }
 
 fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
@@ -272,13 +265,15 @@ mod tests {
         ];
         for spec in others {
             assert_ne!(spec, base());
-            let told = read(&command("cornell", &spec, InvalidSample { y: 5, x: 7, sample: 3 }));
+            let settings = Settings { spec: spec.clone(), ..Settings::default() };
+            let told = read(&command("cornell", &settings, InvalidSample { y: 5, x: 7, sample: 3 }));
             let Arguments { scene, pixel, sample, seed, what, .. } = told;
             assert_eq!((scene.as_str(), pixel.as_str(), sample), ("cornell", "7,5", 3));
             assert_eq!(what.settings(&Lab::new(), &scene, 4, seed).unwrap().spec, spec);
         }
         assert!(
-            command("my scene.toml", &base(), InvalidSample { y: 0, x: 0, sample: 0 }).contains(" 'my scene.toml' ")
+            command("my scene.toml", &Settings::default(), InvalidSample { y: 0, x: 0, sample: 0 })
+                .contains(" 'my scene.toml' ")
         );
     }
 }

@@ -4,6 +4,7 @@
 //! verifies; the result is a film, a [`Trace`] and a [`Record`]. [`Rounds`] add more samples to a film that is there. [`calibrate`] times strategies on empty jobs, for the simulator.
 
 mod adaptive;
+mod axes;
 mod calibration;
 mod checkpoint;
 mod chrome_trace;
@@ -29,6 +30,7 @@ mod usage;
 mod warning;
 
 pub use crate::lab::THREAD_PER_ROW;
+pub use axes::{AXES, Axis, AxisOption, Field, parse_size};
 pub use calibration::{CalibrationRow, calibrate};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;

@@ -126,4 +126,8 @@ fn a_workload_takes_no_options_of_light() {
         let arguments = ["render", "mandelbrot", &format!("--{option}"), value, "--size", "8x8"];
         refused(folder.path(), &arguments, 2, &[option, value, "workload"]);
     }
+    for clamp in ["subpixel-clamp", "recursion-clamp"] {
+        let arguments = ["render", "mandelbrot", &format!("--{clamp}"), "--size", "8x8"];
+        refused(folder.path(), &arguments, 2, &[clamp, "workload"]);
+    }
 }

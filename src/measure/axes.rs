@@ -1,0 +1,221 @@
+//! The table of axes: everything that tells one run from another, once.
+//!
+//! The command line, the matrix of an experiment, `--filter` and the ids of cells follow this table. A new axis is one row here, the
+//! field that holds its value, and the code that uses it.
+
+use super::Settings;
+use crate::error::{InputError, Result};
+use crate::kernel::{Clamp, Spec};
+use crate::lab::Lab;
+use crate::simd::{Level, levels};
+
+/// Where the value of an axis is kept, and of which type it is.
+pub enum Field<'a> {
+    /// A name.
+    Name(&'a mut String),
+    /// A name, or a choice that fits the scene.
+    Fitting(&'a mut Option<String>),
+    /// A bounce limit, or the limit of the estimator.
+    Depth(&'a mut Option<u16>),
+    /// Samples per pixel.
+    Samples(&'a mut u32),
+    /// A seed.
+    Seed(&'a mut u64),
+    /// Workers.
+    Workers(&'a mut usize),
+    /// Columns and rows.
+    Size(&'a mut Spec),
+    /// A clamp, or none.
+    Clamp(&'a mut Option<Clamp>),
+}
+
+/// The option of the command line that sets an axis.
+pub struct AxisOption {
+    /// The value's name in the help.
+    pub value_name: &'static str,
+    /// The help.
+    pub about: &'static str,
+    /// The value without the option; empty if it depends on the scene or the machine.
+    pub default: &'static str,
+}
+
+/// One axis.
+pub struct Axis {
+    /// Its name as an option, in an experiment, in a filter and in errors.
+    pub name: &'static str,
+    /// Whether another value gives another image. Every other axis changes only the schedule.
+    pub changes_image: bool,
+    /// Whether it has a meaning for light alone, and none for a workload.
+    pub of_light: bool,
+    /// Its option, if one option sets it for every command that renders.
+    pub option: Option<AxisOption>,
+    /// What an experiment means by `all`.
+    pub all: Option<fn(&Lab) -> Vec<String>>,
+    /// The field that holds its value.
+    pub field: fn(&mut Settings) -> Field<'_>,
+}
+
+impl Axis {
+    const fn new(name: &'static str, field: fn(&mut Settings) -> Field<'_>) -> Self {
+        Self { name, changes_image: false, of_light: false, option: None, all: None, field }
+    }
+
+    const fn image(self) -> Self {
+        Self { changes_image: true, ..self }
+    }
+
+    const fn light(self) -> Self {
+        Self { of_light: true, ..self }
+    }
+
+    const fn all(self, all: fn(&Lab) -> Vec<String>) -> Self {
+        Self { all: Some(all), ..self }
+    }
+
+    const fn option(self, value_name: &'static str, about: &'static str, default: &'static str) -> Self {
+        Self { option: Some(AxisOption { value_name, about, default }), ..self }
+    }
+
+    /// The axis of that name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        AXES.iter().find(|axis| axis.name == name)
+    }
+
+    /// Sets its value from text.
+    pub fn set(&self, settings: &mut Settings, text: &str) -> Result<()> {
+        let expected = match (self.field)(settings).set(text) {
+            Some(()) => return Ok(()),
+            None if self.name == "size" => return Err(not_a_size(text).into()),
+            None => "a number",
+        };
+        Err(InputError::new(self.name, text, "is out of range").allowed(expected).into())
+    }
+
+    /// Its value as text; empty if it is left to the scene or the estimator.
+    pub fn show(&self, settings: &Settings) -> String {
+        (self.field)(&mut settings.clone()).show()
+    }
+}
+
+fn not_a_size(text: &str) -> InputError {
+    InputError::new("size", text, "is no size").allowed("WxH, like 1024x768")
+}
+
+/// Columns and rows from `WxH`.
+pub fn parse_size(text: &str) -> Result<(u32, u32)> {
+    let parsed = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    parsed.ok_or_else(|| not_a_size(text).into())
+}
+
+impl Field<'_> {
+    fn set(self, text: &str) -> Option<()> {
+        match self {
+            Self::Name(name) => *name = text.to_string(),
+            Self::Fitting(name) => *name = Some(text.to_string()),
+            Self::Depth(depth) => *depth = Some(text.parse().ok()?),
+            Self::Samples(spp) => *spp = text.parse().ok()?,
+            Self::Seed(seed) => *seed = text.parse().ok()?,
+            Self::Workers(threads) => *threads = text.parse().ok()?,
+            Self::Size(spec) => (spec.width, spec.height) = parse_size(text).ok()?,
+            Self::Clamp(clamp) => {
+                *clamp = Some([Clamp::Subpixel, Clamp::Recursion].into_iter().find(|known| known.name() == text)?);
+            }
+        }
+        Some(())
+    }
+
+    fn show(self) -> String {
+        match self {
+            Self::Name(name) => name.clone(),
+            Self::Fitting(name) => name.clone().unwrap_or_default(),
+            Self::Depth(depth) => depth.map(|depth| depth.to_string()).unwrap_or_default(),
+            Self::Samples(spp) => spp.to_string(),
+            Self::Seed(seed) => seed.to_string(),
+            Self::Workers(threads) => threads.to_string(),
+            Self::Size(spec) => format!("{}x{}", spec.width, spec.height),
+            Self::Clamp(clamp) => clamp.map(Clamp::name).unwrap_or_default().to_string(),
+        }
+    }
+}
+
+fn all_scenes(lab: &Lab) -> Vec<String> {
+    lab.scenes().map(str::to_string).collect()
+}
+
+fn all_levels(_: &Lab) -> Vec<String> {
+    levels().map(Level::name).map(str::to_string).collect()
+}
+
+fn all_strategies(lab: &Lab) -> Vec<String> {
+    lab.strategies().iter().map(|entry| entry.name.to_string()).collect()
+}
+
+/// Every axis, in the order in which an experiment nests them: the first varies slowest. Results on disk depend on the order.
+pub static AXES: [Axis; 18] = [
+    Axis::new("scene", |s| Field::Name(&mut s.scene)).image().all(all_scenes),
+    Axis::new("size", |s| Field::Size(&mut s.spec)).image().option("WxH", "Columns and rows", "512x384"),
+    Axis::new("estimator", |s| Field::Name(&mut s.spec.estimator)).image().light().option(
+        "NAME",
+        "Estimator [default: the scene's own]",
+        "",
+    ),
+    Axis::new("sampler", |s| Field::Name(&mut s.spec.sampler)).image().light().option(
+        "NAME",
+        "Sampler",
+        "independent",
+    ),
+    Axis::new("max-depth", |s| Field::Depth(&mut s.spec.max_depth)).image().light().option(
+        "N",
+        "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]",
+        "",
+    ),
+    Axis::new("spp", |s| Field::Samples(&mut s.spp)).image(),
+    Axis::new("seed", |s| Field::Seed(&mut s.spec.seed)).image(),
+    Axis::new("clamp", |s| Field::Clamp(&mut s.spec.clamp)).image().light(),
+    Axis::new("kernel", |s| Field::Name(&mut s.spec.kernel)).light().option("NAME", "Kernel", "lanes"),
+    Axis::new("simd", |s| Field::Fitting(&mut s.spec.simd)).light().all(all_levels).option(
+        "LEVEL",
+        "Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]",
+        "",
+    ),
+    Axis::new("precision", |s| Field::Name(&mut s.spec.precision)).image().light().option(
+        "FORMAT",
+        "Floating-point format: f64, or f32, which lanes alone have and which gives other bits",
+        "f64",
+    ),
+    Axis::new("effects", |s| Field::Fitting(&mut s.spec.effects)).light().option(
+        "PROFILE",
+        "Effect profile [default: the smallest that covers the scene]",
+        "",
+    ),
+    Axis::new("accelerator", |s| Field::Fitting(&mut s.spec.accelerator)).light().option(
+        "NAME",
+        "Acceleration structure [default: chosen by the number of primitives]",
+        "",
+    ),
+    Axis::new("roulette", |s| Field::Fitting(&mut s.spec.roulette)).image().light().option(
+        "RULE",
+        "Russian roulette rule: albedo:N or throughput:N behind the N-th vertex, or never [default: the estimator's own]",
+        "",
+    ),
+    Axis::new("strategy", |s| Field::Name(&mut s.strategy)).all(all_strategies).option(
+        "NAME",
+        "Who renders: a strategy of `pathmark list strategies`, or thread-per-row",
+        "work-stealing",
+    ),
+    Axis::new("threads", |s| Field::Workers(&mut s.threads)).option(
+        "N",
+        "Workers [default: one for each processor]",
+        "",
+    ),
+    Axis::new("decomposition", |s| Field::Name(&mut s.decomposition)).option(
+        "CUT",
+        "Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], `samples:B[:WxH]` [default: tiles:32x32]",
+        "",
+    ),
+    Axis::new("output", |s| Field::Name(&mut s.output)).option(
+        "NAME",
+        "How pieces get into the film: an output of `pathmark list outputs`",
+        "slots",
+    ),
+];
