@@ -41,14 +41,26 @@ fn parser(axis: &Axis) -> ValueParser {
     }
 }
 
+impl<const WHAT: bool> Options<WHAT> {
+    fn axes() -> impl Iterator<Item = &'static Axis> {
+        AXES.iter().filter(|axis| !axis.about.is_empty() && (axis.changes_image || axis.of_light) == WHAT)
+    }
+
+    fn value(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|(axis, _)| axis.name == name).map(|(_, value)| value.as_str())
+    }
+
+    fn apply(&self, settings: &mut Settings) -> Result<()> {
+        self.0.iter().try_for_each(|(axis, value)| axis.set(settings, value))
+    }
+}
+
 impl<const WHAT: bool> Args for Options<WHAT> {
     fn augment_args(command: Command) -> Command {
-        let options = AXES.iter().filter_map(|axis| Some((axis, axis.option.as_ref()?)));
-        command.args(options.filter(|(axis, _)| (axis.changes_image || axis.of_light) == WHAT).map(|(axis, option)| {
-            let argument = Arg::new(axis.name).long(axis.name).value_name(option.value_name).help(option.about);
-            let is_size = matches!((axis.field)(&mut Settings::default()), Field::Size(_));
-            let argument = argument.value_parser(parser(axis)).allow_hyphen_values(is_size);
-            if option.default.is_empty() { argument } else { argument.default_value(option.default) }
+        command.args(Self::axes().map(|axis| {
+            let option = Arg::new(axis.name).long(axis.name).value_name(axis.value_name).help(axis.about);
+            let option = option.value_parser(parser(axis)).allow_hyphen_values(axis.name == "size");
+            if axis.default.is_empty() { option } else { option.default_value(axis.default) }
         }))
     }
 
@@ -59,24 +71,13 @@ impl<const WHAT: bool> Args for Options<WHAT> {
 
 impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
     fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
-        let is_ours = |axis: &&Axis| axis.option.is_some() && (axis.changes_image || axis.of_light) == WHAT;
         let given = |axis: &'static Axis| Some((axis, matches.get_raw(axis.name)?.next()?.to_str()?.to_string()));
-        Ok(Self(AXES.iter().filter(is_ours).filter_map(given).collect()))
+        Ok(Self(Self::axes().filter_map(given).collect()))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
         *self = Self::from_arg_matches(matches)?;
         Ok(())
-    }
-}
-
-impl<const WHAT: bool> Options<WHAT> {
-    fn value(&self, name: &str) -> Option<&str> {
-        self.0.iter().find(|(axis, _)| axis.name == name).map(|(_, value)| value.as_str())
-    }
-
-    fn apply(&self, settings: &mut Settings) -> Result<()> {
-        self.0.iter().try_for_each(|(axis, value)| axis.set(settings, value))
     }
 }
 
@@ -110,7 +111,7 @@ fn check_for_workload(settings: &Settings) -> Result<()> {
             let (value, problem) =
                 (axis.show(settings), format!("has no meaning for {}, which is a workload", settings.scene));
             // Each clamp is a switch of its own.
-            let option = if axis.option.is_some() { axis.name.to_string() } else { format!("{value}-clamp") };
+            let option = if axis.name == "clamp" { format!("{value}-clamp") } else { axis.name.to_string() };
             Err(InputError::new(option, value, problem).allowed("none").into())
         }
     }

@@ -87,10 +87,10 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
 /// The command that shows a sample of an image again: with every option that changes what the sample is.
 pub(super) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
     let scene = if scene.contains(char::is_whitespace) { format!("'{scene}'") } else { scene.to_string() };
-    let axes = AXES.iter().filter(|axis| axis.changes_image && (axis.option.is_some() || axis.name == "seed"));
+    let axes = AXES.iter().filter(|axis| axis.changes_image && (!axis.about.is_empty() || axis.name == "seed"));
     let values = axes.map(|axis| (axis.name, axis.show(settings))).filter(|(_, value)| !value.is_empty());
-    let options: String = values.map(|(name, value)| format!(" --{name} {value}")).collect();
-    format!("pathmark replay {scene}{options} --pixel {},{} --sample {}", at.x, at.y, at.sample)
+    let options: Vec<String> = values.map(|(name, value)| format!("--{name} {value}")).collect();
+    format!("pathmark replay {scene} {} --pixel {},{} --sample {}", options.join(" "), at.x, at.y, at.sample)
 }
 
 fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {

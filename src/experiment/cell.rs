@@ -2,8 +2,7 @@
 
 use super::{External, SceneVersion};
 use crate::error::{InputError, Result};
-use crate::kernel::Spec;
-use crate::measure::{ImageKey, Settings, Setup, available_threads, schedule_name};
+use crate::measure::{AXES, Axis, ImageKey, Settings, Setup, available_threads, schedule_name};
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -62,12 +61,11 @@ impl Cell {
         if settings.output != Settings::default().output {
             schedule = format!("{schedule}/{}", settings.output);
         }
-        let kernel = Some(spec.kernel.clone()).filter(|kernel| *kernel != Spec::default().kernel);
-        let axes =
-            [("kernel", &kernel), ("simd", &spec.simd), ("effects", &spec.effects), ("accelerator", &spec.accelerator)];
-        for (axis, value) in axes {
-            if let Some(value) = value {
-                schedule = format!("{schedule}/{axis}-{value}");
+        // An id names only what differs from the default.
+        for axis in AXES.iter().filter(|axis| axis.of_light && !axis.changes_image) {
+            let value = axis.show(&settings);
+            if value != axis.show(&Settings::default()) {
+                schedule = format!("{schedule}/{}-{value}", axis.name);
             }
         }
         let point = |spp: u32| {
@@ -84,29 +82,12 @@ impl Cell {
 
     /// Whether it has the value that a filter `field=value` asks for.
     pub fn matches(&self, filter: &str) -> Result<bool> {
-        let (settings, spec) = (&self.settings, &self.settings.spec);
-        let fields = [
-            ("scene", settings.scene.clone()),
-            ("estimator", spec.estimator.clone()),
-            ("sampler", spec.sampler.clone()),
-            ("spp", settings.spp.to_string()),
-            ("seed", spec.seed.to_string()),
-            ("decomposition", settings.decomposition.clone()),
-            ("output", settings.output.clone()),
-            ("kernel", spec.kernel.clone()),
-            ("simd", spec.simd.clone().unwrap_or_default()),
-            ("precision", spec.precision.clone()),
-            ("effects", spec.effects.clone().unwrap_or_default()),
-            ("accelerator", spec.accelerator.clone().unwrap_or_default()),
-            ("max-depth", spec.max_depth.map(|depth| depth.to_string()).unwrap_or_default()),
-            ("roulette", spec.roulette.clone().unwrap_or_default()),
-            ("strategy", schedule_name(&settings.strategy, &settings.decomposition).to_string()),
-            ("threads", settings.threads.to_string()),
-        ];
+        let strategy = schedule_name(&self.settings.strategy, &self.settings.decomposition).to_string();
+        let settings = Settings { strategy, ..self.settings.clone() };
         let pair = filter.split_once('=');
-        let known = pair.and_then(|(field, value)| Some((fields.iter().find(|(name, _)| *name == field)?, value)));
-        known.map(|((_, own), value)| own == value).ok_or_else(|| {
-            let names: Vec<&str> = fields.iter().map(|(name, _)| *name).collect();
+        let known = pair.and_then(|(field, value)| Some((Axis::named(field)?, value)));
+        known.map(|(axis, value)| axis.show(&settings) == value).ok_or_else(|| {
+            let names = AXES.each_ref().map(|axis| axis.name);
             InputError::new("filter", filter, "names no field")
                 .allowed(format!("{}=VALUE", names.join("=VALUE, ")))
                 .into()

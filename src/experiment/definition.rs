@@ -38,7 +38,7 @@
 //! ```
 
 use super::External;
-use super::matrix::{Matrix, Scale, one_or_many};
+use super::table::{Matrix, Scale, one_or_many};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use crate::lab::Lab;
@@ -196,13 +196,13 @@ impl Definition {
 
     /// The estimator that is named first.
     pub fn first_estimator(&self) -> &str {
-        self.matrix.iter().flat_map(|matrix| &matrix.estimator).next().map_or("", String::as_str)
+        self.matrix.iter().filter_map(|matrix| matrix.values("estimator")).flatten().next().map_or("", String::as_str)
     }
 
     /// The estimators, in the order in which they are named, and then the other programs.
     pub fn estimator_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
-        let own = self.matrix.iter().flat_map(|matrix| &matrix.estimator);
+        let own = self.matrix.iter().filter_map(|matrix| matrix.values("estimator")).flatten();
         for name in own.chain(self.external.iter().map(|external| &external.name)) {
             if !names.contains(name) {
                 names.push(name.clone());
@@ -231,8 +231,9 @@ impl Definition {
     pub fn reference(&self, profile: Profile) -> Result<Option<(String, u32)>> {
         let Some(table) = &self.reference else { return Ok(None) };
         let scale = self.scale(profile);
-        let own = || self.matrix.iter().flat_map(|matrix| &matrix.spp).max();
-        let largest = scale.spp.as_ref().map_or_else(own, |spp| spp.iter().max()).copied().unwrap_or(0);
+        let own = || self.matrix.iter().filter_map(|matrix| matrix.numbers("spp")).flatten().collect();
+        let spps: Vec<u32> = scale.numbers("spp").unwrap_or_else(own);
+        let largest = spps.into_iter().max().unwrap_or(0);
         // Seeds share the references' noise, which the cross form removes in the mean only. A curve's end is one of many points.
         let times = if self.matrix.iter().all(|matrix| matrix.curve) { 4 } else { 10 };
         let needed = largest.saturating_mul(times);

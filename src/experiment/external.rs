@@ -15,7 +15,7 @@
 use super::{Cell, CellPoint, Definition, Profile, Progress, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
-use crate::measure::Settings;
+use crate::measure::{Settings, parse_size};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -120,12 +120,12 @@ impl Definition {
                 other => other,
             })?;
             let scene = self.lab.load_scene(&external.scene)?;
-            let spps = scale.spp.as_ref().unwrap_or(&external.spp);
-            let seeds = scale.seed.as_ref().unwrap_or(&external.seed);
+            let spps = scale.numbers("spp").unwrap_or_else(|| external.spp.clone());
+            let seeds = scale.numbers("seed").unwrap_or_else(|| external.seed.clone());
+            let (width, height) = parse_size(scale.values("size").map_or("", |size| &size[0]))?;
             for (spp, seed) in spps.iter().flat_map(|spp| {
                 external.points(*spp).into_iter().flat_map(|spp| seeds.iter().map(move |seed| (spp, *seed)))
             }) {
-                let [width, height] = scale.size;
                 let spec = Spec {
                     width,
                     height,

@@ -18,6 +18,7 @@ mod run_file;
 mod scene_version;
 mod shuffle;
 mod sweep;
+mod table;
 
 pub use calibration_file::read_calibration;
 pub use cell::{Cell, CellPoint, trace_file};

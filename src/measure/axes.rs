@@ -8,6 +8,7 @@ use crate::error::{InputError, Result};
 use crate::kernel::{Clamp, Spec};
 use crate::lab::Lab;
 use crate::simd::{Level, levels};
+use Field::{Fitting, Name};
 
 /// Where the value of an axis is kept, and of which type it is.
 pub enum Field<'a> {
@@ -29,16 +30,6 @@ pub enum Field<'a> {
     Clamp(&'a mut Option<Clamp>),
 }
 
-/// The option of the command line that sets an axis.
-pub struct AxisOption {
-    /// The value's name in the help.
-    pub value_name: &'static str,
-    /// The help.
-    pub about: &'static str,
-    /// The value without the option; empty if it depends on the scene or the machine.
-    pub default: &'static str,
-}
-
 /// One axis.
 pub struct Axis {
     /// Its name as an option, in an experiment, in a filter and in errors.
@@ -47,8 +38,12 @@ pub struct Axis {
     pub changes_image: bool,
     /// Whether it has a meaning for light alone, and none for a workload.
     pub of_light: bool,
-    /// Its option, if one option sets it for every command that renders.
-    pub option: Option<AxisOption>,
+    /// The name of its option's value in the help.
+    pub value_name: &'static str,
+    /// The help of its option; empty if the command line sets the axis in another way.
+    pub about: &'static str,
+    /// The value without the option; empty if it depends on the scene or the machine.
+    pub default: &'static str,
     /// What an experiment means by `all`.
     pub all: Option<fn(&Lab) -> Vec<String>>,
     /// The field that holds its value.
@@ -57,7 +52,8 @@ pub struct Axis {
 
 impl Axis {
     const fn new(name: &'static str, field: fn(&mut Settings) -> Field<'_>) -> Self {
-        Self { name, changes_image: false, of_light: false, option: None, all: None, field }
+        let (value_name, about, default) = ("", "", "");
+        Self { name, changes_image: false, of_light: false, value_name, about, default, all: None, field }
     }
 
     const fn image(self) -> Self {
@@ -72,8 +68,12 @@ impl Axis {
         Self { all: Some(all), ..self }
     }
 
-    const fn option(self, value_name: &'static str, about: &'static str, default: &'static str) -> Self {
-        Self { option: Some(AxisOption { value_name, about, default }), ..self }
+    const fn option(self, value_name: &'static str, about: &'static str) -> Self {
+        Self { value_name, about, ..self }
+    }
+
+    const fn default(self, default: &'static str) -> Self {
+        Self { default, ..self }
     }
 
     /// The axis of that name.
@@ -83,12 +83,11 @@ impl Axis {
 
     /// Sets its value from text.
     pub fn set(&self, settings: &mut Settings, text: &str) -> Result<()> {
-        let expected = match (self.field)(settings).set(text) {
-            Some(()) => return Ok(()),
-            None if self.name == "size" => return Err(not_a_size(text).into()),
-            None => "a number",
-        };
-        Err(InputError::new(self.name, text, "is out of range").allowed(expected).into())
+        match (self.field)(settings).set(text) {
+            Some(()) => Ok(()),
+            None if self.name == "size" => Err(not_a_size(text).into()),
+            None => Err(InputError::new(self.name, text, "is out of range").into()),
+        }
     }
 
     /// Its value as text; empty if it is left to the scene or the estimator.
@@ -152,70 +151,22 @@ fn all_strategies(lab: &Lab) -> Vec<String> {
 
 /// Every axis, in the order in which an experiment nests them: the first varies slowest. Results on disk depend on the order.
 pub static AXES: [Axis; 18] = [
-    Axis::new("scene", |s| Field::Name(&mut s.scene)).image().all(all_scenes),
-    Axis::new("size", |s| Field::Size(&mut s.spec)).image().option("WxH", "Columns and rows", "512x384"),
-    Axis::new("estimator", |s| Field::Name(&mut s.spec.estimator)).image().light().option(
-        "NAME",
-        "Estimator [default: the scene's own]",
-        "",
-    ),
-    Axis::new("sampler", |s| Field::Name(&mut s.spec.sampler)).image().light().option(
-        "NAME",
-        "Sampler",
-        "independent",
-    ),
-    Axis::new("max-depth", |s| Field::Depth(&mut s.spec.max_depth)).image().light().option(
-        "N",
-        "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]",
-        "",
-    ),
+    Axis::new("scene", |s| Name(&mut s.scene)).image().all(all_scenes),
+    Axis::new("size", |s| Field::Size(&mut s.spec)).image().option("WxH", "Columns and rows").default("512x384"),
+    Axis::new("estimator", |s| Name(&mut s.spec.estimator)).image().light().option("NAME", "Estimator [default: the scene's own]"),
+    Axis::new("sampler", |s| Name(&mut s.spec.sampler)).image().light().option("NAME", "Sampler").default("independent"),
+    Axis::new("max-depth", |s| Field::Depth(&mut s.spec.max_depth)).image().light().option("N", "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]"),
     Axis::new("spp", |s| Field::Samples(&mut s.spp)).image(),
     Axis::new("seed", |s| Field::Seed(&mut s.spec.seed)).image(),
     Axis::new("clamp", |s| Field::Clamp(&mut s.spec.clamp)).image().light(),
-    Axis::new("kernel", |s| Field::Name(&mut s.spec.kernel)).light().option("NAME", "Kernel", "lanes"),
-    Axis::new("simd", |s| Field::Fitting(&mut s.spec.simd)).light().all(all_levels).option(
-        "LEVEL",
-        "Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]",
-        "",
-    ),
-    Axis::new("precision", |s| Field::Name(&mut s.spec.precision)).image().light().option(
-        "FORMAT",
-        "Floating-point format: f64, or f32, which lanes alone have and which gives other bits",
-        "f64",
-    ),
-    Axis::new("effects", |s| Field::Fitting(&mut s.spec.effects)).light().option(
-        "PROFILE",
-        "Effect profile [default: the smallest that covers the scene]",
-        "",
-    ),
-    Axis::new("accelerator", |s| Field::Fitting(&mut s.spec.accelerator)).light().option(
-        "NAME",
-        "Acceleration structure [default: chosen by the number of primitives]",
-        "",
-    ),
-    Axis::new("roulette", |s| Field::Fitting(&mut s.spec.roulette)).image().light().option(
-        "RULE",
-        "Russian roulette rule: albedo:N or throughput:N behind the N-th vertex, or never [default: the estimator's own]",
-        "",
-    ),
-    Axis::new("strategy", |s| Field::Name(&mut s.strategy)).all(all_strategies).option(
-        "NAME",
-        "Who renders: a strategy of `pathmark list strategies`, or thread-per-row",
-        "work-stealing",
-    ),
-    Axis::new("threads", |s| Field::Workers(&mut s.threads)).option(
-        "N",
-        "Workers [default: one for each processor]",
-        "",
-    ),
-    Axis::new("decomposition", |s| Field::Name(&mut s.decomposition)).option(
-        "CUT",
-        "Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], `samples:B[:WxH]` [default: tiles:32x32]",
-        "",
-    ),
-    Axis::new("output", |s| Field::Name(&mut s.output)).option(
-        "NAME",
-        "How pieces get into the film: an output of `pathmark list outputs`",
-        "slots",
-    ),
+    Axis::new("kernel", |s| Name(&mut s.spec.kernel)).light().option("NAME", "Kernel").default("lanes"),
+    Axis::new("simd", |s| Fitting(&mut s.spec.simd)).light().all(all_levels).option("LEVEL", "Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]"),
+    Axis::new("precision", |s| Name(&mut s.spec.precision)).image().light().option("FORMAT", "Floating-point format: f64, or f32, which lanes alone have and which gives other bits").default("f64"),
+    Axis::new("effects", |s| Fitting(&mut s.spec.effects)).light().option("PROFILE", "Effect profile [default: the smallest that covers the scene]"),
+    Axis::new("accelerator", |s| Fitting(&mut s.spec.accelerator)).light().option("NAME", "Acceleration structure [default: chosen by the number of primitives]"),
+    Axis::new("roulette", |s| Fitting(&mut s.spec.roulette)).image().light().option("RULE", "Russian roulette rule: albedo:N or throughput:N behind the N-th vertex, or never [default: the estimator's own]"),
+    Axis::new("strategy", |s| Name(&mut s.strategy)).all(all_strategies).option("NAME", "Who renders: a strategy of `pathmark list strategies`, or thread-per-row").default("work-stealing"),
+    Axis::new("threads", |s| Field::Workers(&mut s.threads)).option("N", "Workers [default: one for each processor]"),
+    Axis::new("decomposition", |s| Name(&mut s.decomposition)).option("CUT", "Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], `samples:B[:WxH]` [default: tiles:32x32]"),
+    Axis::new("output", |s| Name(&mut s.output)).option("NAME", "How pieces get into the film: an output of `pathmark list outputs`").default("slots"),
 ];

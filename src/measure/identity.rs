@@ -1,11 +1,8 @@
 //! The one identity of images and schedules: what tells two of them apart, whether they are asked for or measured.
 //!
-//! Cells, rows, references and figures compare by these keys. A new axis belongs into one of the two, which the tests below insist on.
+//! Cells, rows, references and figures compare by these keys. A new axis is a field of one of the two; the tests compare them with the table of axes.
 
 use super::{Record, Setup};
-use crate::kernel::workload::WORKLOAD;
-use crate::kernel::{Choice, Clamp, Spec};
-use crate::simd::Precision;
 use std::fmt;
 
 /// What tells images apart: rows with equal keys have equal checksums, unless the sampler gives other numbers in each run.
@@ -133,60 +130,16 @@ impl Record {
     }
 }
 
+/// A setup has the keys that its rows will have.
 impl Setup {
     /// What tells its image from others.
     pub fn image_key(&self) -> ImageKey {
-        // Every field is named, so that a new one has to be sorted in here.
-        let Spec {
-            width,
-            height,
-            seed,
-            estimator,
-            sampler,
-            kernel: _,
-            simd: _,
-            precision: _,
-            effects: _,
-            accelerator: _,
-            max_depth: _,
-            roulette: _,
-            clamp,
-        } = &self.settings().spec;
-        let choice = self.scene().map(|(_, choice)| choice);
-        let roulette = choice.and_then(Choice::roulette).map(|rule| rule.to_string());
-        ImageKey {
-            scene: self.name().to_string(),
-            scene_hash: self.hash(),
-            estimator: estimator.clone(),
-            sampler: sampler.clone(),
-            width: *width,
-            height: *height,
-            spp: self.settings().spp,
-            seed: *seed,
-            max_depth: choice.and_then(Choice::depth),
-            roulette: roulette.unwrap_or_default(),
-            clamp: clamp.map(Clamp::name).unwrap_or_default().to_string(),
-            precision: choice.map_or(Precision::F64, Choice::precision).name().to_string(),
-            adaptive: false,
-        }
+        Record::of(self).image_key()
     }
 
     /// What tells its schedule from others of the same image.
     pub fn schedule_key(&self) -> ScheduleKey {
-        let settings = self.settings();
-        let choice = self.scene().map(|(_, choice)| choice);
-        let of = |name: fn(&Choice) -> &'static str| choice.map(name).unwrap_or_default().to_string();
-        ScheduleKey {
-            strategy: settings.strategy.clone(),
-            decomposition: settings.decomposition.clone(),
-            threads: self.threads(),
-            output: settings.output.clone(),
-            kernel: choice.map_or(WORKLOAD, Choice::kernel).to_string(),
-            kernel_fallback: of(Choice::fallback),
-            simd: of(Choice::simd),
-            effects: of(Choice::effects),
-            accelerator: of(Choice::accelerator),
-        }
+        ScheduleKey { threads: self.threads(), ..Record::of(self).schedule_key() }
     }
 }
 

@@ -30,7 +30,7 @@ mod usage;
 mod warning;
 
 pub use crate::lab::THREAD_PER_ROW;
-pub use axes::{AXES, Axis, AxisOption, Field, parse_size};
+pub use axes::{AXES, Axis, Field, parse_size};
 pub use calibration::{CalibrationRow, calibrate};
 pub use checkpoint::{Checkpoint, Saved};
 pub use chrome_trace::chrome_trace;

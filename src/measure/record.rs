@@ -4,9 +4,10 @@ use super::{Outcome, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
-use crate::kernel::Clamp;
 use crate::kernel::workload::WORKLOAD;
+use crate::kernel::{Choice, Clamp};
 use crate::metric;
+use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
@@ -254,36 +255,41 @@ impl Record {
         self.warnings = format!("{}{separator}{warning}", self.warnings);
     }
 
+    /// The row of a setup before it runs: what it really uses, not what was asked for.
+    pub(super) fn of(setup: &Setup) -> Self {
+        let described = described(setup.settings());
+        let mut record = Self { scene: setup.name().to_string(), scene_hash: setup.hash(), ..described };
+        let choice = setup.scene().map(|(_, choice)| choice);
+        record.max_depth = choice.and_then(Choice::depth);
+        record.roulette = choice.and_then(Choice::roulette).map(|rule| rule.to_string()).unwrap_or_default();
+        record.precision = choice.map_or(Precision::F64, Choice::precision).name().to_string();
+        record.kernel = choice.map_or(WORKLOAD, Choice::kernel).to_string();
+        if let Some(choice) = choice {
+            record.biased = choice.is_biased();
+            record.kernel_fallback = choice.fallback().to_string();
+            record.simd = choice.simd().to_string();
+            record.effects = choice.effects().to_string();
+            record.accelerator = choice.accelerator().to_string();
+        }
+        record
+    }
+
     /// The row of a run that was done.
     pub fn new(setup: &Setup, outcome: &Outcome, errors: Measured) -> Self {
         let durations = outcome.trace.durations_s();
         let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
         let counts = &outcome.counts;
-        let mut record = described(setup.settings()).with_errors(errors);
+        let mut record = Self::of(setup).with_errors(errors);
         record.spp = outcome.spp;
         record.adaptive = outcome.adaptive;
         record.rounds = Some(outcome.rounds);
         record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());
         record.started_utc.clone_from(&outcome.started_utc);
-        record.scene = setup.name().to_string();
-        record.scene_hash = setup.hash();
-        match setup.scene() {
-            None => record.kernel = WORKLOAD.to_string(),
-            Some((scene, choice)) => {
-                record.max_depth = choice.depth();
-                record.roulette = choice.roulette().map(|rule| rule.to_string()).unwrap_or_default();
-                record.biased = choice.is_biased();
-                record.kernel = choice.kernel().to_string();
-                record.kernel_fallback = choice.fallback().to_string();
-                record.simd = choice.simd().to_string();
-                record.precision = choice.precision().name().to_string();
-                record.effects = choice.effects().to_string();
-                record.accelerator = choice.accelerator().to_string();
-                record.box_tests = Some(counts.box_tests);
-                // Without a hierarchy every ray is tested against every primitive, and nobody counts.
-                let all = counts.rays * scene.owners.len() as u64;
-                record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
-            }
+        if let Some((scene, choice)) = setup.scene() {
+            record.box_tests = Some(counts.box_tests);
+            // Without a hierarchy every ray is tested against every primitive, and nobody counts.
+            let all = counts.rays * scene.owners.len() as u64;
+            record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
         }
         record.build_s = Some(outcome.build_s);
         record.jobs = durations.len();

@@ -1,6 +1,6 @@
 use super::*;
 use crate::estimator::Roulette;
-use crate::measure::{Measured, Settings};
+use crate::measure::{AXES, Measured, Settings};
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
@@ -135,44 +135,56 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
     Setup::prepare(settings).unwrap()
 }
 
+/// Another value on each axis than the setups above have.
+const OTHER_VALUES: [(&str, &str); 17] = [
+    ("scene", "sky"),
+    ("size", "9x6"),
+    ("estimator", "mis"),
+    ("sampler", "sobol"),
+    ("max-depth", "3"),
+    ("spp", "8"),
+    ("seed", "2"),
+    ("clamp", "subpixel"),
+    ("kernel", "scalar"),
+    ("precision", "f32"),
+    ("effects", "all"),
+    ("accelerator", "sah"),
+    ("roulette", "albedo:2"),
+    ("strategy", "serial"),
+    ("threads", "2"),
+    ("decomposition", "rows"),
+    ("output", "channel-piece"),
+];
+
 #[test]
-fn every_axis_that_changes_the_image_gives_another_key() {
-    let changes: [fn(&mut Settings); 12] = [
-        |_| (),
-        |s| s.scene = "sky".to_string(),
-        |s| s.spp = 8,
-        |s| s.spec.width = 9,
-        |s| s.spec.height = 7,
-        |s| s.spec.seed = 2,
-        |s| s.spec.estimator = "mis".to_string(),
-        |s| s.spec.sampler = "sobol".to_string(),
-        |s| s.spec.precision = "f32".to_string(),
-        |s| s.spec.max_depth = Some(3),
-        |s| s.spec.roulette = Some("albedo:2".to_string()),
-        |s| s.spec.clamp = Some(Clamp::Subpixel),
-    ];
-    let setups = changes.map(setup);
-    let keys: BTreeSet<ImageKey> = setups.iter().map(Setup::image_key).collect();
-    let words: BTreeSet<String> = keys.iter().map(ToString::to_string).collect();
-    assert_eq!((keys.len(), words.len()), (changes.len(), changes.len()), "{words:#?}");
+fn each_axis_gives_another_image_or_another_schedule_as_the_table_says() {
+    let base = setup(|_| ());
+    let (mut images, mut schedules) = (BTreeSet::from([base.image_key()]), BTreeSet::from([base.schedule_key()]));
+    // Which instruction sets there are depends on the machine.
+    for axis in AXES.iter().filter(|axis| axis.name != "simd") {
+        let (_, value) = OTHER_VALUES.iter().find(|(name, _)| *name == axis.name).expect("a value for each axis");
+        let other = setup(|settings| axis.set(settings, value).unwrap());
+        if axis.changes_image {
+            assert!(images.insert(other.image_key()), "{}", axis.name);
+        } else {
+            assert_eq!(other.image_key(), base.image_key(), "{}", axis.name);
+            assert!(schedules.insert(other.schedule_key()), "{}", axis.name);
+        }
+    }
+    let words: BTreeSet<String> = images.iter().map(ToString::to_string).collect();
+    assert_eq!(words.len(), images.len(), "{words:#?}");
 }
 
 #[test]
-fn axes_of_schedules_leave_the_image_alone() {
-    let changes: [fn(&mut Settings); 8] = [
-        |_| (),
-        |s| s.strategy = "serial".to_string(),
-        |s| s.threads = 2,
-        |s| s.decomposition = "rows".to_string(),
-        |s| s.output = "channel-piece".to_string(),
-        |s| s.spec.kernel = "scalar".to_string(),
-        |s| s.spec.effects = Some("all".to_string()),
-        |s| s.spec.accelerator = Some("sah".to_string()),
-    ];
-    let setups = changes.map(setup);
-    assert_eq!(setups.iter().map(Setup::image_key).collect::<BTreeSet<_>>().len(), 1);
-    let keys: BTreeSet<ScheduleKey> = setups.iter().map(Setup::schedule_key).collect();
-    assert_eq!(keys.len(), changes.len(), "{keys:#?}");
+fn each_axis_has_a_column() {
+    for axis in &AXES {
+        let columns =
+            if axis.name == "size" { vec!["width".into(), "height".into()] } else { vec![axis.name.replace('-', "_")] };
+        for column in columns {
+            let sorted = if axis.changes_image { IMAGE.contains(&&*column) } else { SCHEDULE.contains(&&*column) };
+            assert!(sorted, "{}", axis.name);
+        }
+    }
 }
 
 #[test]

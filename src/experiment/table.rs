@@ -1,0 +1,162 @@
+//! The tables of a definition that give values to axes: `[matrix]`, `[quick]` and `[full]`.
+
+use crate::kernel::Clamp;
+use crate::measure::{AXES, Axis, Field, Settings, available_threads};
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+use std::str::FromStr;
+
+/// A table: values by axis, in the words of the file, and what else a matrix or a profile says.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Table<const PROFILE: bool> {
+    axes: BTreeMap<&'static str, Vec<String>>,
+    /// Whether samples per pixel are for each thread.
+    pub(super) weak: bool,
+    /// Whether each cell is a curve: a render that is measured on its way.
+    pub(super) curve: bool,
+    pub(super) repetitions: u32,
+    pub(super) reference_spp: Option<u32>,
+}
+
+/// The axes; cells are all combinations. An axis that is not named keeps its default.
+pub(super) type Matrix = Table<false>;
+
+/// How large a profile is, and the axes that it replaces.
+pub(super) type Scale = Table<true>;
+
+/// The axes and fields that cannot be left out.
+const REQUIRED: [&[&str]; 2] =
+    [&["scene", "estimator", "spp", "seed", "strategy", "threads", "decomposition"], &["size", "repetitions"]];
+
+impl<const PROFILE: bool> Table<PROFILE> {
+    /// The values of an axis, if the table has it.
+    pub(super) fn values(&self, axis: &str) -> Option<&Vec<String>> {
+        self.axes.get(axis)
+    }
+
+    /// The values of an axis of numbers, if the table has it.
+    pub(super) fn numbers<T: FromStr>(&self, axis: &str) -> Option<Vec<T>> {
+        Some(self.values(axis)?.iter().filter_map(|value| value.parse().ok()).collect())
+    }
+}
+
+/// The name of an axis or of another field.
+struct Key<const PROFILE: bool>(String);
+
+impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let others = if PROFILE { ["repetitions", "reference-spp"] } else { ["weak", "curve"] };
+        let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others).collect();
+        if known.contains(&name.as_str()) {
+            return Ok(Self(name));
+        }
+        Err(D::Error::custom(format_args!("unknown field `{name}`, expected one of `{}`", known.join("`, `"))))
+    }
+}
+
+/// The values of an axis, read as its field's type.
+struct Values(&'static Axis);
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "neither a number of threads nor \"all\"")]
+enum Threads {
+    Count(usize),
+    Word(ThreadsWord),
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ThreadsWord {
+    All,
+}
+
+impl Threads {
+    fn count(&self) -> usize {
+        match self {
+            Self::Count(count) => *count,
+            Self::Word(ThreadsWord::All) => available_threads(),
+        }
+    }
+}
+
+fn words<T: ToString>(values: &[T]) -> Vec<String> {
+    values.iter().map(ToString::to_string).collect()
+}
+
+impl<'de> DeserializeSeed<'de> for Values {
+    type Value = Vec<String>;
+
+    fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Self::Value, D::Error> {
+        Ok(match (self.0.field)(&mut Settings::default()) {
+            Field::Name(_) | Field::Fitting(_) => Vec::deserialize(from)?,
+            Field::Depth(_) => words(&Vec::<u16>::deserialize(from)?),
+            Field::Samples(_) => words(&Vec::<u32>::deserialize(from)?),
+            Field::Seed(_) => words(&Vec::<u64>::deserialize(from)?),
+            Field::Workers(_) => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
+            // All cells have the same size and clamp, which are no lists.
+            Field::Size(_) => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
+            Field::Clamp(_) => vec![Clamp::deserialize(from)?.name().to_string()],
+        })
+    }
+}
+
+impl<'de, const PROFILE: bool> Deserialize<'de> for Table<PROFILE> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(TableVisitor)
+    }
+}
+
+struct TableVisitor<const PROFILE: bool>;
+
+impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
+    type Value = Table<PROFILE>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a table")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Self::Value, M::Error> {
+        let (mut table, mut names) = (Table::default(), Vec::new());
+        while let Some(Key(name)) = map.next_key::<Key<PROFILE>>()? {
+            match (Axis::named(&name), name.as_str()) {
+                (Some(axis), _) => _ = table.axes.insert(axis.name, map.next_value_seed(Values(axis))?),
+                (None, "weak") => table.weak = map.next_value()?,
+                (None, "curve") => table.curve = map.next_value()?,
+                (None, "repetitions") => table.repetitions = map.next_value()?,
+                (None, _) => table.reference_spp = Some(map.next_value()?),
+            }
+            names.push(name);
+        }
+        let mut required = REQUIRED[usize::from(PROFILE)].iter();
+        match required.find(|required| !names.iter().any(|name| name == *required)) {
+            Some(missing) => Err(M::Error::missing_field(missing)),
+            None => Ok(table),
+        }
+    }
+}
+
+/// One table, or an array of them.
+pub(super) fn one_or_many<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
+    struct OneOrMany<T>(PhantomData<T>);
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for OneOrMany<T> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a table [matrix] or several [[matrix]]")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Self::Value, A::Error> {
+            Ok(vec![T::deserialize(MapAccessDeserializer::new(map))?])
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, sequence: A) -> Result<Self::Value, A::Error> {
+            Vec::deserialize(SeqAccessDeserializer::new(sequence))
+        }
+    }
+    deserializer.deserialize_any(OneOrMany(PhantomData))
+}
