@@ -4,7 +4,8 @@ use super::{Apart, Float, Mask, Precision, Table, Words, Work};
 use crate::math::{Bits, Real, single_unit, unit};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-const LANES: usize = 4;
+/// Two numbers in double precision fill a register of SSE2 or NEON; more of them are compiled for longer and are no faster.
+const LANES: usize = 2;
 
 /// Everywhere.
 pub(super) fn is_available() -> bool {
@@ -19,7 +20,7 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     }
 }
 
-/// Four of something.
+/// A few of something.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plain<T>([T; LANES]);
 
@@ -33,14 +34,6 @@ macro_rules! each {
             },
             {
                 let $k = 1;
-                $value
-            },
-            {
-                let $k = 2;
-                $value
-            },
-            {
-                let $k = 3;
                 $value
             },
         ])
@@ -115,8 +108,8 @@ impl Mask for Plain<bool> {
     }
     #[inline(always)]
     fn bits(self) -> u32 {
-        let [a, b, c, d] = self.0.map(u32::from);
-        a | b << 1 | c << 2 | d << 3
+        let [a, b] = self.0.map(u32::from);
+        a | b << 1
     }
 }
 
@@ -263,18 +256,8 @@ macro_rules! float {
             }
             #[inline(always)]
             fn rows(table: &Table, rows: Self) -> [Self; 4] {
-                let [a, b, c, d] = [
-                    table.$row(rows.0[0] as i32),
-                    table.$row(rows.0[1] as i32),
-                    table.$row(rows.0[2] as i32),
-                    table.$row(rows.0[3] as i32),
-                ];
-                [
-                    Self([a[0], b[0], c[0], d[0]]),
-                    Self([a[1], b[1], c[1], d[1]]),
-                    Self([a[2], b[2], c[2], d[2]]),
-                    Self([a[3], b[3], c[3], d[3]]),
-                ]
+                let [a, b] = [table.$row(rows.0[0] as i32), table.$row(rows.0[1] as i32)];
+                [0, 1, 2, 3].map(|column| Self([a[column], b[column]]))
             }
         }
     };

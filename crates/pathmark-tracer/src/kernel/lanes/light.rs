@@ -10,7 +10,7 @@ use crate::kernel::Counts;
 use crate::math::{Ray, Rgb, Vec3};
 use crate::sampling::Purpose;
 use crate::scene::AllEffects;
-use crate::simd::{Float, Mask};
+use crate::simd::{Apart, Float, Mask};
 use std::f64::consts::FRAC_1_PI;
 
 /// What a surface does with the light of some directions.
@@ -22,10 +22,28 @@ struct Lit<V: Float> {
     density: V,
 }
 
+/// Rays that arrived where light is given off. A function of its own, because few do, and the time to compile a function grows with the square of
+/// its length.
+pub(super) struct ArrivedAtLight<'a, V: Float> {
+    pub(super) kernel: &'a Lanes,
+    pub(super) packet: &'a Packet<V>,
+    pub(super) at: &'a Arrival<V>,
+    pub(super) lit: V::Mask,
+}
+
+impl<V: Float> Apart for ArrivedAtLight<'_, V> {
+    type Output = V;
+
+    #[inline(always)]
+    fn run(self) -> V {
+        self.kernel.share_of_arrival(self.packet, self.at, self.lit)
+    }
+}
+
 impl Lanes {
     /// The share of emission that counts where rays arrived whose start aimed at light, too.
     #[inline(always)]
-    pub(super) fn share_of_arrival<V: Float>(&self, packet: &Packet<V>, at: &Arrival<V>, lit: V::Mask) -> V {
+    fn share_of_arrival<V: Float>(&self, packet: &Packet<V>, at: &Arrival<V>, lit: V::Mask) -> V {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let lanes = lit & zero.le(packet.density);
         if !lanes.any() {
@@ -49,7 +67,7 @@ impl Lanes {
 
     /// Adds the light that vertices aim at.
     #[inline(always)]
-    pub(super) fn aim<V: Float, const MATT: bool>(
+    pub(super) fn aim<V: Float>(
         &self,
         packet: &mut Packet<V>,
         at: &Arrival<V>,
@@ -68,7 +86,7 @@ impl Lanes {
         let start = Start { point: at.point, primitive: at.primitive, inside: at.inside };
         let aims = targets.aim(&start, choice, place);
         let wi = at.frame.to_local(aims.direction);
-        let lit = self.scattered::<V, MATT>(packet, at, vertex, wi, going_on & aims.lanes);
+        let lit = self.scattered(packet, at, vertex, wi, going_on & aims.lanes);
         if !lit.lanes.any() {
             return;
         }
@@ -88,7 +106,7 @@ impl Lanes {
 
     /// What surfaces make of light from the local direction `wi`.
     #[inline(always)]
-    fn scattered<V: Float, const MATT: bool>(
+    fn scattered<V: Float>(
         &self,
         packet: &Packet<V>,
         at: &Arrival<V>,
@@ -101,11 +119,8 @@ impl Lanes {
         let cos = wi.z.abs();
         let mut scattered = vertex.albedo * V::splat(FRAC_1_PI) * cos;
         let mut density = cos * V::splat(FRAC_1_PI);
-        let mut scatters = lanes & zero.lt(wo.z * wi.z);
-        if !MATT {
-            scatters = scatters & vertex.kind.equal(zero);
-        }
-        if !MATT && self.tables.has_others {
+        let mut scatters = lanes & zero.lt(wo.z * wi.z) & vertex.kind.equal(zero);
+        if self.tables.has_others {
             let others = lanes & vertex.kind.equal(V::splat(Kind::Other.number()));
             for lane in LanesOf(others.bits()) {
                 let owner = self.scene.owners[at.primitive.lane(lane) as usize];

@@ -1,6 +1,7 @@
 //! What happens where paths arrive: the steps of [`crate::estimator::Path`], with a mask for each of its branches.
 
 use super::Lanes;
+use super::light::ArrivedAtLight;
 use super::packet::{LanesOf, Packet, Part, colour, differ, vector};
 use super::tables::{GIVES_OFF, Kind};
 use crate::kernel::Counts;
@@ -92,7 +93,7 @@ impl Lanes {
             let [r, g, b, _] = V::rows(&self.tables.emissions, primitive);
             let mut emission = Rgb { r, g, b };
             if let Some(at) = &early {
-                emission = emission * self.share_of_arrival(packet, at, lit);
+                emission = emission * V::apart(ArrivedAtLight { kernel: self, packet, at, lit });
             }
             // A ray that met nothing has looked up some surface or other.
             let found = packet.collected + packet.throughput * emission;
@@ -102,7 +103,7 @@ impl Lanes {
         counts.truncated += u64::from(cut.count_ones());
         ended |= cut;
         if let Some(at) = &early {
-            self.aim::<V, MATT>(packet, at, &vertex, ended, counts);
+            self.aim(packet, at, &vertex, ended, counts);
         }
         ended |= self.roulette(packet, met, &vertex);
         let at = match early {
