@@ -32,7 +32,8 @@ fn main() -> io::Result<()> {
     );
 
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
-    embed("experiments", &out.join("experiments.rs"))
+    embed("experiments", &out.join("experiments.rs"))?;
+    embed("experiments/claims", &out.join("claims.rs"))
 }
 
 fn output(program: &str, arguments: &[&str]) -> Option<String> {

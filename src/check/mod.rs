@@ -28,6 +28,7 @@
 
 mod analytic;
 pub mod bare_scene;
+pub mod cases_file;
 mod chi_square;
 mod double_double;
 pub mod exact;

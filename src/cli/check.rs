@@ -3,6 +3,7 @@
 use super::guards;
 use super::output::{lock_folder, print, print_json};
 use super::progress::Talk;
+use crate::check::cases_file::{self, CaseRow};
 use crate::check::guards::PriceRow;
 use crate::check::{self, Case, Effort, Outcome, SECTIONS};
 use crate::error::{Error, InputError, Result};
@@ -25,7 +26,7 @@ pub(super) struct Arguments {
     /// Try as many random inputs as the catalogue of hard cases asks for: minutes to hours
     #[arg(long)]
     thorough: bool,
-    /// Write the price list of the guards into this folder, beside the results of experiments, and a page of all of them
+    /// Write the cases and the price list of the guards into this folder, beside the results of experiments, and a page of all of them
     #[arg(long, value_name = "DIR", conflicts_with = "cases")]
     out: Option<PathBuf>,
     /// Print one JSON object
@@ -66,6 +67,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         }
     }
     if let Some(out) = &arguments.out {
+        let tried = cases.iter().zip(&outcomes).map(|(case, outcome)| CaseRow::new(case, outcome));
+        cases_file::write(out, &tried.collect::<Vec<CaseRow>>())?;
         guards::write(out, &prices)?;
         print(&format!("report in {}", report::write(lab, out)?.display()))?;
     }
@@ -77,6 +80,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 fn folder_for_prices(out: &Path) -> Result<Lock> {
     let mut files = Files::default();
     guards::claim(out, &mut files)?;
+    cases_file::claim(out, &mut files)?;
     report::claim("out", out, &mut files)?;
     lock_folder(out, Sharing::Shared)
 }

@@ -5,6 +5,7 @@
 mod axes;
 mod bounces;
 mod check;
+mod claims;
 mod compare;
 mod guards;
 mod list;
@@ -68,6 +69,8 @@ enum Verb {
     Bounces(bounces::Arguments),
     /// Try the hard cases of numerics, sampling and statistics on this machine.
     Check(check::Arguments),
+    /// Judge the claims of the four reports by the results in a folder.
+    Claims(claims::Arguments),
     /// Show what there is to choose from.
     List(list::Arguments),
     /// One cell of a sweep, read from standard input.
@@ -114,6 +117,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Price(arguments) => price::run(&arguments, lab, talk),
         Verb::Reference(arguments) => reference::run(&arguments, lab, talk),
+        Verb::Claims(arguments) => claims::run(&arguments, lab),
         Verb::Report(arguments) => report::run(&arguments, lab),
         Verb::Simulate(arguments) => simulate::run(&arguments, lab, talk),
         Verb::Trace(arguments) => trace::run(&arguments),

@@ -1,6 +1,7 @@
 //! From records to figures, tables, findings and one self-contained page.
 
 mod block;
+pub mod claims;
 mod contenders;
 mod figures;
 pub mod forecasts;
@@ -35,7 +36,8 @@ const PAGE: &str = "report.html";
 /// Enters the page of a folder into the files of a command that will write it. `option` is what the user gave the folder with. Refuses a folder
 /// with another file of that name.
 pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
-    files.renews(option, &out.join(PAGE), page::is_page)
+    files.renews(option, &out.join(PAGE), page::is_page)?;
+    claims::enter(option, out, files)
 }
 
 /// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path.
@@ -50,6 +52,9 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
         sections.push(Section::of(results, blocks));
     }
     sections.extend(guards::section(out)?);
+    if let Some(section) = claims::section(lab, out)? {
+        sections.insert(0, section);
+    }
     if sections.is_empty() {
         let problem = "holds no experiment: no folder in it has a records.csv";
         return Err(InputError::new("folder", out.display().to_string(), problem).into());

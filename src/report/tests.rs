@@ -8,6 +8,7 @@ use crate::lab::Lab;
 use crate::measure::{Record, SCHEMA};
 use std::cell::Cell;
 use std::collections::BTreeSet;
+use tempfile::TempDir;
 
 thread_local!(static PASSES: Cell<usize> = const { Cell::new(0) });
 
@@ -23,7 +24,7 @@ fn definition(figures: &[&str], more: &str) -> String {
 }
 
 /// A row of sixteen jobs that took a second.
-fn row() -> Record {
+pub(super) fn row() -> Record {
     let word = |word: &str| word.to_string();
     Record {
         schema: SCHEMA,
@@ -58,8 +59,8 @@ fn row() -> Record {
     }
 }
 
-/// The rows as a sweep leaves them, read back; each has the cell that its keys give.
-fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Result<Results> {
+/// The rows of `an-experiment` as a sweep leaves them in a folder of results; each has a cell of its own.
+pub(super) fn folder_of(figures: &[&str], more: &str, rows: Vec<Record>) -> TempDir {
     let out = tempfile::tempdir().unwrap();
     let folder = out.path().join("an-experiment");
     std::fs::create_dir(&folder).unwrap();
@@ -73,7 +74,13 @@ fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Res
         file.serialize(Record { cell, ..row }).unwrap();
     }
     file.flush().unwrap();
-    Results::read(&Lab::built_in(), out.path(), &folder)
+    out
+}
+
+/// The rows read back.
+fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Result<Results> {
+    let out = folder_of(figures, more, rows);
+    Results::read(&Lab::built_in(), out.path(), &out.path().join("an-experiment"))
 }
 
 /// The text of everything that is shown.

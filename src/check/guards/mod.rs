@@ -44,7 +44,7 @@ pub static GUARDS: &[Guard] = &[
 /// Rounds in which both variants are timed.
 const ROUNDS: usize = 31;
 /// Confidence of all intervals.
-const LEVEL: f64 = 0.95;
+pub const LEVEL: f64 = 0.95;
 
 /// What the program does, and what it could do instead.
 pub struct Guard {

@@ -1,0 +1,88 @@
+//! `check/cases.csv`: what came of each hard case, as evidence for claims.
+
+use super::{Case, Outcome};
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use crate::files::Files;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// The folder of results that has the list.
+pub const FOLDER: &str = "check";
+/// The list's file in it.
+pub const FILE: &str = "cases.csv";
+
+/// One case.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseRow {
+    /// Its name in the catalogue.
+    pub id: String,
+    /// What it tries.
+    pub tries: String,
+    /// Whether nothing failed.
+    pub pass: bool,
+    /// How many things were tried.
+    pub trials: usize,
+    /// How many of them failed.
+    pub failed: usize,
+    /// The last trial: which variant, what was expected, what was found.
+    pub variant: String,
+    /// Expected there.
+    pub expected: String,
+    /// Found there.
+    pub found: String,
+    /// Why the case, or a part of it, was not tried.
+    pub skipped: String,
+}
+
+impl CaseRow {
+    /// The row of a case; of its trials it shows the first that failed, or else the last.
+    pub fn new(case: &Case, outcome: &Outcome) -> Self {
+        let shown = outcome.failures().next().or(outcome.trials.last());
+        let of = |part: fn(&super::Trial) -> String| shown.map(part).unwrap_or_default();
+        Self {
+            id: case.id.to_string(),
+            tries: case.tries.to_string(),
+            pass: outcome.passed(),
+            trials: outcome.trials.len(),
+            failed: outcome.failures().count(),
+            variant: of(|trial| trial.variant.clone()),
+            expected: of(|trial| trial.expected.clone()),
+            found: of(|trial| trial.found.clone()),
+            skipped: outcome.skipped.join("; "),
+        }
+    }
+}
+
+/// Enters the list into the files of a command that will write it. Refuses a folder that has one: results are never overwritten.
+pub fn claim(out: &Path, files: &mut Files) -> Result<()> {
+    files.renews("out", &out.join(FOLDER).join(FILE), |_| false)
+}
+
+/// Writes the list into a folder of results.
+pub fn write(out: &Path, rows: &[CaseRow]) -> Result<()> {
+    let folder = out.join(FOLDER);
+    std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+    atomic_file::write(&folder.join(FILE), |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        for row in rows {
+            writer.serialize(row)?;
+        }
+        writer.flush()
+    })
+}
+
+/// The list in a folder of results; empty if there is none.
+pub fn read(out: &Path) -> Result<Vec<CaseRow>> {
+    let path = out.join(FOLDER).join(FILE);
+    if !path.is_file() {
+        return Ok(Vec::new());
+    }
+    let file = std::fs::File::open(&path).map_err(|e| Error::system("reading", &path, e))?;
+    let rows: std::result::Result<_, csv::Error> = csv::Reader::from_reader(file).into_deserialize().collect();
+    rows.map_err(|error| {
+        let line = error.position().map(|position| (position.line() as usize, 1));
+        InputError::new("row", "", error.to_string()).in_file(path.display().to_string(), line).into()
+    })
+}

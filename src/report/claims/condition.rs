@@ -1,0 +1,140 @@
+//! Conditions on rows: columns of `records.csv` and the values that are wanted in them.
+
+use crate::error::InputError;
+use crate::measure::Record;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// A row by its columns, as `records.csv` writes them.
+pub(super) type Columns = serde_json::Map<String, serde_json::Value>;
+
+/// A row's columns.
+pub(super) fn columns(record: &Record) -> Columns {
+    match serde_json::to_value(record) {
+        Ok(serde_json::Value::Object(columns)) => columns,
+        _ => Columns::new(),
+    }
+}
+
+/// The value of a column, as text; empty if nothing was measured.
+pub(super) fn text(row: &Columns, column: &str) -> String {
+    match row.get(column) {
+        None | Some(serde_json::Value::Null) => String::new(),
+        Some(serde_json::Value::String(text)) => text.clone(),
+        Some(other) => other.to_string(),
+    }
+}
+
+/// The value of a column of numbers.
+pub(super) fn number(row: &Columns, column: &str) -> Option<f64> {
+    row.get(column)?.as_f64()
+}
+
+/// Refuses a column that `records.csv` does not have.
+pub(super) fn check_column(field: &str, column: &str) -> Result<(), InputError> {
+    let known = columns(&Record::default());
+    if known.contains_key(column) {
+        return Ok(());
+    }
+    let names: Vec<&str> = known.keys().map(String::as_str).collect();
+    Err(InputError::new(field, column, "is not a column of records.csv").allowed(names.join(", ")))
+}
+
+/// Conditions that all have to hold, by column.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+#[serde(transparent)]
+pub(super) struct Conditions(BTreeMap<String, Wanted>);
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "neither a value nor a list of values")]
+enum Wanted {
+    One(Value),
+    AnyOf(Vec<Value>),
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged, expecting = "neither a text, a number nor a boolean")]
+enum Value {
+    Whole(i64),
+    Number(f64),
+    Boolean(bool),
+    Text(String),
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(number) => number.fmt(f),
+            Self::Number(number) => number.fmt(f),
+            Self::Boolean(is_true) => is_true.fmt(f),
+            Self::Text(text) => text.fmt(f),
+        }
+    }
+}
+
+impl Value {
+    /// Whether a row's value is this one, or within the bound that it is: ">=2", "<=4".
+    fn admits(&self, row: &Columns, column: &str) -> bool {
+        let wanted = self.to_string();
+        let own = || number(row, column);
+        let bound = |digits: &str| digits.trim().parse::<f64>().ok();
+        if let Some(least) = wanted.strip_prefix(">=").and_then(bound) {
+            return own().is_some_and(|own| own >= least);
+        }
+        if let Some(most) = wanted.strip_prefix("<=").and_then(bound) {
+            return own().is_some_and(|own| own <= most);
+        }
+        wanted == text(row, column)
+    }
+}
+
+impl Wanted {
+    fn values(&self) -> &[Value] {
+        match self {
+            Self::One(value) => std::slice::from_ref(value),
+            Self::AnyOf(values) => values,
+        }
+    }
+}
+
+impl Conditions {
+    /// Refuses columns that do not exist.
+    pub(super) fn check(&self, field: &str) -> Result<(), InputError> {
+        self.0.keys().try_for_each(|column| check_column(field, column))
+    }
+
+    /// Whether a row meets all of them.
+    pub(super) fn admit(&self, row: &Columns) -> bool {
+        self.0.iter().all(|(column, wanted)| wanted.values().iter().any(|value| value.admits(row, column)))
+    }
+
+    /// The columns that they speak of.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
+        self.0.keys().map(String::as_str)
+    }
+
+    /// Where a row does not meet them: column, its value, the value wanted.
+    pub(super) fn differences(&self, row: &Columns) -> Vec<(String, String, String)> {
+        let missed = |(column, wanted): (&String, &Wanted)| {
+            let is_met = wanted.values().iter().any(|value| value.admits(row, column));
+            (!is_met).then(|| (column.clone(), text(row, column), wanted.to_string()))
+        };
+        self.0.iter().filter_map(missed).collect()
+    }
+}
+
+impl fmt::Display for Wanted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let values: Vec<String> = self.values().iter().map(ToString::to_string).collect();
+        f.write_str(&values.join(" or "))
+    }
+}
+
+/// In words: "strategy = thread-per-row, spp = 8 or 20".
+impl fmt::Display for Conditions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let parts: Vec<String> = self.0.iter().map(|(column, wanted)| format!("{column} = {wanted}")).collect();
+        f.write_str(&parts.join(", "))
+    }
+}

@@ -1,0 +1,256 @@
+//! Statistics of rows, with their intervals.
+
+use super::condition::{Columns, Conditions, columns, number, text};
+use super::statistic::{ForecastColumn, Kind};
+use crate::analysis::fit::log_log;
+use crate::analysis::jackknife::SeedCurves;
+use crate::analysis::mean::{Moments, geometric_interval, t_interval};
+use crate::analysis::quantile::{median, median_interval};
+use crate::analysis::rank::spearman;
+use crate::analysis::slope::power_law;
+use crate::analysis::speedup::serial_fraction;
+use crate::analysis::z_test::{critical_value, z_score};
+use crate::analysis::{Estimate, Interval};
+use crate::error::{InputError, Result};
+use crate::experiment::read_calibration;
+use crate::report::contenders::{curves_of_seeds, one_per_seed};
+use crate::report::results::Results;
+use crate::report::rows::Row;
+use crate::simulate::{Contender, Hardware, contenders, forecast};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// A number, its interval if there were enough rows for one, and how many rows it was computed from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Found {
+    pub(super) value: f64,
+    pub(super) interval: Option<Interval>,
+    pub(super) rows: usize,
+}
+
+impl Found {
+    fn estimate(estimate: Option<Estimate>, rows: usize) -> Option<Self> {
+        let Estimate { value, interval } = estimate?;
+        Some(Self { value, interval: Some(interval), rows })
+    }
+
+    /// A number that was counted.
+    fn exact(value: f64, rows: usize) -> Option<Self> {
+        (rows > 0).then(|| Self { value, interval: Interval::between(value, value, 1.0), rows })
+    }
+
+    /// The median of some values. Too few of them for the level have the t interval of `of_few` instead, and one has none.
+    fn typical(values: &[f64], level: f64, of_few: fn(&[f64], f64) -> Option<Estimate>) -> Option<Self> {
+        let enough = median_interval(values, level).filter(|interval| interval.level >= level);
+        let interval = enough.or_else(|| Some(of_few(values, level)?.interval));
+        Some(Self { value: median(values)?, interval, rows: values.len() })
+    }
+}
+
+/// An experiment's rows beside their columns.
+pub(super) struct Evidence {
+    results: Results,
+    columns: Vec<Columns>,
+}
+
+type Pair<'a> = (&'a Row, &'a Columns);
+
+/// Columns that follow from another one: rows that differ in the one differ in these, too.
+const FOLLOWERS: [(&str, &[&str]); 5] = [
+    ("scene", &["scene_hash", "effects", "accelerator", "max_depth", "roulette"]),
+    ("estimator", &["max_depth", "roulette", "effects", "kernel_fallback"]),
+    ("kernel", &["kernel_fallback", "simd", "effects", "accelerator"]),
+    ("precision", &["simd", "accelerator"]),
+    ("sampler", &["kernel", "kernel_fallback", "simd", "effects"]),
+];
+
+/// The columns that tell rows apart.
+const IDENTITY: [&str; 22] = [
+    "scene",
+    "scene_hash",
+    "estimator",
+    "sampler",
+    "width",
+    "height",
+    "spp",
+    "seed",
+    "max_depth",
+    "roulette",
+    "clamp",
+    "precision",
+    "adaptive",
+    "strategy",
+    "decomposition",
+    "threads",
+    "output",
+    "kernel",
+    "kernel_fallback",
+    "simd",
+    "effects",
+    "accelerator",
+];
+
+impl Evidence {
+    pub(super) fn of(results: Results) -> Self {
+        let columns = results.rows().map(|row| columns(row)).collect();
+        Self { results, columns }
+    }
+
+    /// The rows that meet some conditions.
+    pub(super) fn rows<'a>(&'a self, conditions: &'a Conditions) -> Vec<Pair<'a>> {
+        self.results.rows().zip(&self.columns).filter(|(_, columns)| conditions.admit(columns)).collect()
+    }
+
+    /// The statistic of the rows that meet the conditions; `None` if there are no such rows, or too few for any number.
+    pub(super) fn measure(&self, conditions: &Conditions, kind: &Kind, level: f64) -> Result<Option<Found>> {
+        let rows = self.rows(conditions);
+        let of = |column: &str| -> Vec<f64> { rows.iter().filter_map(|(_, row)| number(row, column)).collect() };
+        let per = |above: &str, below: &str| -> Vec<f64> {
+            let ratio =
+                |row: &Columns| Some(number(row, above)? / number(row, below)?).filter(|ratio| ratio.is_finite());
+            rows.iter().filter_map(|(_, row)| ratio(row)).collect()
+        };
+        Ok(match kind {
+            Kind::Value { column, per: None } => Found::typical(&of(column), level, t_interval),
+            Kind::Value { column, per: Some(below) } => Found::typical(&per(column, below), level, t_interval),
+            Kind::Share { column, of } => share(&per(column, of), level),
+            Kind::Count { column } => Found::exact(of(column).iter().sum(), of(column).len()),
+            Kind::PairedRatio { column, over } => {
+                Found::typical(&self.ratios(&rows, conditions, over, column)?, level, geometric_interval)
+            }
+            Kind::Speedup { over } => {
+                let ratios = self.ratios(&rows, conditions, over, "makespan_s")?;
+                let speedups: Vec<f64> = ratios.iter().map(|ratio| 1.0 / ratio).collect();
+                Found::typical(&speedups, level, geometric_interval)
+            }
+            Kind::Exponent { x, y } => {
+                let points = rows.iter().filter_map(|(_, row)| Some((number(row, x)?, number(row, y)?)));
+                let points: Vec<(f64, f64)> = points.collect();
+                Found::estimate(log_log(&points, level).map(|line| line.slope), points.len())
+            }
+            Kind::RmseSlope => {
+                let own: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
+                let curves: Vec<_> = curves_of_seeds(&own).into_iter().map(|(curve, _)| curve).collect();
+                let law = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, level));
+                Found::estimate(law.map(|law| law.exponent), rows.len())
+            }
+            Kind::Z { column, over } => z(&rows, &self.rows(over), column, level),
+            Kind::RankCorrelation { x, y, by } => rank_correlation(&rows, [x, y], by, level),
+            Kind::Checksum => checksums(&rows),
+            Kind::Forecast { strategy, cores, column } => self.forecast(&rows, (strategy, *cores), *column, level)?,
+        })
+    }
+
+    /// A column of rows over that of the rows beside them, which differ in what one of the conditions speaks of.
+    fn ratios(&self, rows: &[Pair<'_>], own: &Conditions, over: &Conditions, column: &str) -> Result<Vec<f64>> {
+        let named: BTreeSet<&str> = own.columns().chain(over.columns()).collect();
+        let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
+        let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
+        let key = |row: &Row, columns: &Columns| {
+            let told = IDENTITY.iter().filter(|column| !free.contains(*column));
+            (told.map(|column| text(columns, column)).collect::<Vec<String>>(), row.repetition)
+        };
+        let mut below = HashMap::new();
+        for (row, columns) in self.rows(over) {
+            if let Some(other) = below.insert(key(row, columns), (row, columns)) {
+                let problem = format!("cannot be told from {} by the claim that compares with it", other.0.cell);
+                return Err(InputError::new("cell", &row.cell, problem).into());
+            }
+        }
+        let ratio = |(row, columns): &Pair<'_>| {
+            let (_, other) = below.get(&key(row, columns))?;
+            Some(number(columns, column)? / number(other, column)?).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+        };
+        Ok(rows.iter().filter_map(ratio).collect())
+    }
+
+    /// Simulated schedules of the jobs of serial rows whose traces were kept.
+    fn forecast(
+        &self,
+        rows: &[Pair<'_>],
+        (strategy, cores): (&str, usize),
+        column: ForecastColumn,
+        level: f64,
+    ) -> Result<Option<Found>> {
+        let path = self.results.folder.join("calibration.csv");
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let mut known = contenders(&self.results.definition.lab, &read_calibration(&path)?);
+        known.push(Contender::longest_first());
+        known.retain(|contender| contender.name == strategy);
+        let mut values = Vec::new();
+        for (row, _) in rows.iter().filter(|(row, _)| row.schedule.is_serial()) {
+            let Some(trace) = self.results.trace(row)? else { continue };
+            for told in forecast(&trace.costs_s(), &known, &[cores], &Hardware::default()) {
+                values.extend(match column {
+                    ForecastColumn::Speedup => Some(told.speedup),
+                    ForecastColumn::Efficiency => Some(told.efficiency),
+                    ForecastColumn::SerialFraction => serial_fraction(told.speedup, cores),
+                });
+            }
+        }
+        Ok(Found::typical(&values, level, t_interval))
+    }
+}
+
+/// The mean of some shares; if all are alike, that share.
+fn share(shares: &[f64], level: f64) -> Option<Found> {
+    let first = *shares.first()?;
+    if shares.len() > 1 && shares.iter().all(|share| *share == first) {
+        return Found::exact(first, shares.len());
+    }
+    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+    let interval = t_interval(shares, level).map(|estimate| estimate.interval);
+    Some(Found { value: mean, interval, rows: shares.len() })
+}
+
+/// The difference of two means over seeds in standard errors, give or take the quantile of the level.
+fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<Found> {
+    let moments = |pairs: &[Pair<'_>]| {
+        let own: Vec<&Row> = pairs.iter().map(|(row, _)| *row).collect();
+        let by_row: HashMap<*const Row, f64> = pairs
+            .iter()
+            .filter_map(|(row, columns)| Some((std::ptr::from_ref(*row), number(columns, column)?)))
+            .collect();
+        Moments::of(&one_per_seed(&own, |row| by_row.get(&std::ptr::from_ref(row)).copied()))
+    };
+    let (a, b) = (moments(rows), moments(over));
+    let score = z_score(a.mean()?, a.standard_error()?, b.mean()?, b.standard_error()?)?;
+    let interval = Interval::around(score, critical_value(1.0 - level)?, level);
+    Some(Found { value: score, interval, rows: rows.len() + over.len() })
+}
+
+/// Spearman's coefficient over the means of groups; its interval is Fisher's, with the variance for ranks of E. C. Fieller, H. O. Hartley and
+/// E. S. Pearson, "Tests for rank correlation coefficients", Biometrika 44 (1957).
+fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) -> Option<Found> {
+    let mut groups: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
+    for (_, row) in rows {
+        if let Some(pair) = number(row, x).zip(number(row, y)) {
+            groups.entry(text(row, by)).or_default().push(pair);
+        }
+    }
+    let mean = |pairs: &Vec<(f64, f64)>| {
+        let (a, b) = pairs.iter().fold((0.0, 0.0), |sum, pair| (sum.0 + pair.0, sum.1 + pair.1));
+        (a / pairs.len() as f64, b / pairs.len() as f64)
+    };
+    let points: Vec<(f64, f64)> = groups.values().map(mean).collect();
+    let rho = spearman(&points)?.rho;
+    let spread = (points.len() > 3).then(|| (1.06 / (points.len() as f64 - 3.0)).sqrt())?;
+    let half = spread * critical_value(1.0 - level)?;
+    // A perfect order has an infinite transform, and so no spread.
+    let centre = libm::atanh(rho.clamp(-0.999_999, 0.999_999));
+    let interval = Interval::between(libm::tanh(centre - half), libm::tanh(centre + half), level);
+    Some(Found { value: rho, interval, rows: rows.len() })
+}
+
+/// How many checksums the image with the most of them has; none if no image has two rows.
+fn checksums(rows: &[Pair<'_>]) -> Option<Found> {
+    let mut images: BTreeMap<_, Vec<&str>> = BTreeMap::new();
+    // A sampler that gives other numbers in each run leaves none.
+    for (row, _) in rows.iter().filter(|(row, _)| !row.checksum.is_empty()) {
+        images.entry(&row.image).or_default().push(&row.checksum);
+    }
+    let compared: Vec<&Vec<&str>> = images.values().filter(|checksums| checksums.len() > 1).collect();
+    let most = compared.iter().map(|sums| sums.iter().collect::<BTreeSet<_>>().len()).max()?;
+    Found::exact(most as f64, compared.iter().map(|sums| sums.len()).sum())
+}

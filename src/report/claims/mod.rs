@@ -1,0 +1,62 @@
+//! The claims of the four reports, each with a verdict that is computed from the results in a folder.
+//!
+//! A claim names the rows that answer it, a statistic, and the values that the report predicts for it ([`definition`]). To add one, add
+//! it to `experiments/claims/REPORT.toml`.
+
+mod condition;
+mod definition;
+mod judge;
+mod listing;
+mod measure;
+mod statistic;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+pub use definition::{Claim, Report};
+pub use judge::{Answer, judge};
+pub use listing::{FOLDER, save};
+pub use verdict::Verdict;
+
+use super::page::Section;
+use crate::error::Result;
+use crate::experiment::RunFile;
+use crate::files::Files;
+use crate::lab::Lab;
+use listing::{CSV, MARKDOWN, is_csv, is_markdown};
+use std::path::Path;
+use std::sync::Arc;
+
+const QUESTION: &str = "What did the four reports claim, and what do the rows of this folder say about it?";
+
+const ANALYSIS: &str = "Each claim names the rows that answer it, a statistic, and the values that the report predicts for that statistic. A claim is confirmed if the whole interval of \
+the measurement lies within the prediction, refuted if it lies wholly outside, and open otherwise. It is not comparable if the rows were measured under other conditions than the report's, \
+and not answered if there are no rows.";
+
+/// Enters the files of the verdicts into those of a command that will write them.
+pub fn enter(option: &str, out: &Path, files: &mut Files) -> Result<()> {
+    let folder = out.join(FOLDER);
+    files.renews(option, &folder.join(CSV), is_csv)?;
+    files.renews(option, &folder.join(MARKDOWN), is_markdown)
+}
+
+/// The verdicts as the first section of the page, if the folder has rows for any of them. Writes them into the folder, too.
+pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
+    let reports = Report::all()?;
+    let answers = judge(lab, &reports, &[out.to_path_buf()])?;
+    let answered = answers.iter().filter(|answer| answer.source.is_some()).count();
+    if answered == 0 {
+        return Ok(None);
+    }
+    save(&answers, out)?;
+    Ok(Some(Section {
+        name: FOLDER.to_string(),
+        title: "The claims of the four reports".to_string(),
+        question: QUESTION.to_string(),
+        analysis: ANALYSIS.to_string(),
+        failed: Vec::new(),
+        rows: answered,
+        run: RunFile::of_now("pathmark claims".to_string()),
+        blocks: listing::blocks(&answers),
+    }))
+}

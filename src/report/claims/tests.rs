@@ -1,0 +1,194 @@
+use super::*;
+use crate::error::Error;
+use crate::measure::Record;
+use crate::report::tests::{folder_of, row};
+
+const HEAD: &str = "report = \"X\"\ntitle = \"T\"\nabout = \"Who.\"\n";
+
+/// A claim with this evidence.
+fn claim(evidence: &str) -> String {
+    let words = "quote = \"q\"\nplace = \"p\"\nreported = \"r\"\nclaim = \"c\"\nexpected = \"confirmed\"\n";
+    format!("{HEAD}[[claim]]\nid = 1\n{words}{evidence}\n")
+}
+
+/// The verdict on a claim about `an-experiment` with these rows, and why.
+fn verdict(rows: &[Record], evidence: &str) -> (Verdict, String) {
+    let out = folder_of(&[], "", rows.to_vec());
+    let text = claim(&format!("experiment = \"an-experiment\"\nlevel = 0.95\n{evidence}"));
+    let reports = [Report::from_text("X.toml", &text).unwrap()];
+    let answers = judge(&Lab::built_in(), &reports, &[out.path().to_path_buf()]).unwrap();
+    (answers[0].verdict, answers[0].why.clone())
+}
+
+/// Rows that differ in what `change` does with the number of the row.
+fn rows(count: u32, change: impl Fn(u32, &mut Record)) -> Vec<Record> {
+    let changed = |index: u32| {
+        let mut row = Record { repetition: index, ..row() };
+        change(index, &mut row);
+        row
+    };
+    (0..count).map(changed).collect()
+}
+
+/// A number a little beside `value`, another for each index.
+fn about(value: f64, index: u32) -> f64 {
+    value * (1.0 + 0.001 * (f64::from(index % 5) - 2.0))
+}
+
+/// A prediction from `low` to `high` is confirmed, and those beside it are refuted.
+fn both_ways(rows: &[Record], evidence: &str, [low, high]: [f64; 2]) {
+    let with = |a: f64, b: f64| verdict(rows, &format!("{evidence}\nwithin = [{a:?}, {b:?}]")).0;
+    assert_eq!(with(low, high), Verdict::Confirmed, "{evidence}");
+    assert_eq!(with(high, high + 1.0), Verdict::Refuted, "{evidence}");
+    assert_eq!(with(low - 1.0, low), Verdict::Refuted, "{evidence}");
+}
+
+#[test]
+fn values_shares_and_counts() {
+    let rows = rows(9, |index, row| {
+        row.makespan_s = Some(about(2.0, index));
+        row.cpu_user_s = Some(about(1.0, index + 1));
+        row.invalid_samples = Some(3);
+    });
+    both_ways(&rows, "statistic = \"value\"\ncolumn = \"makespan_s\"", [1.9, 2.1]);
+    both_ways(&rows, "statistic = \"value\"\ncolumn = \"makespan_s\"\nper = \"spp\"", [0.4, 0.6]);
+    both_ways(&rows, "statistic = \"share\"\ncolumn = \"cpu_user_s\"\nof = \"makespan_s\"", [0.49, 0.51]);
+    both_ways(&rows, "statistic = \"count\"\ncolumn = \"invalid_samples\"", [26.5, 27.5]);
+}
+
+#[test]
+fn an_interval_across_the_end_of_the_prediction_is_open() {
+    let rows = rows(9, |index, row| row.makespan_s = Some(about(2.0, index)));
+    let value = "statistic = \"value\"\ncolumn = \"makespan_s\"";
+    assert_eq!(verdict(&rows, &format!("{value}\nat-least = 2.0")).0, Verdict::Open);
+    assert_eq!(verdict(&rows, &format!("{value}\nat-least = 1.9")).0, Verdict::Confirmed);
+    assert_eq!(verdict(&rows, &format!("{value}\nat-most = 1.9")).0, Verdict::Refuted);
+    assert_eq!(verdict(&rows[..1], &format!("{value}\nat-least = 1.0")).0, Verdict::Open, "one value");
+    assert_eq!(verdict(&rows[..4], &format!("{value}\nat-least = 1.0")).0, Verdict::Confirmed, "four values");
+}
+
+#[test]
+fn ratios_pair_rows_by_all_that_the_claim_does_not_name() {
+    // Each repetition has its own speed, and the pool is three times as fast in each: unpaired, nothing would be seen.
+    let mut all = Vec::new();
+    for repetition in 0..7 {
+        let slow = f64::from(1 << repetition);
+        for (strategy, threads, seconds) in [("serial", 1, 3.0), ("pool", 2, 1.0)] {
+            let mut row = Record { repetition, threads, strategy: strategy.to_string(), ..row() };
+            row.makespan_s = Some(about(seconds * slow, repetition + threads as u32));
+            all.push(row);
+        }
+    }
+    let pool = "rows = { strategy = \"pool\", threads = 2 }\nover = { strategy = \"serial\", threads = 1 }";
+    both_ways(&all, &format!("statistic = \"speedup\"\n{pool}"), [2.9, 3.1]);
+    let ratio = format!("statistic = \"paired-ratio\"\ncolumn = \"makespan_s\"\n{pool}");
+    both_ways(&all, &ratio, [0.32, 0.34]);
+    // Rows that differ in what nobody named are not compared.
+    for row in all.iter_mut().filter(|row| row.strategy == "serial") {
+        row.decomposition = "rows".to_string();
+    }
+    assert_eq!(verdict(&all, &format!("statistic = \"speedup\"\n{pool}\nat-least = 1.0")).0, Verdict::NotAnswered);
+}
+
+#[test]
+fn exponents_and_slopes() {
+    let points = rows(12, |index, row| {
+        row.spp = 1 << (index % 4);
+        row.seed = 1 + u64::from(index / 4);
+        row.repetition = 0;
+        row.makespan_s = Some(about(f64::from(row.spp), index));
+        let mse = about(1.0 / f64::from(row.spp), 3 * index + 1);
+        (row.mse, row.rmse) = (Some(mse), Some(mse.sqrt()));
+    });
+    both_ways(&points, "statistic = \"exponent\"\nx = \"spp\"\ny = \"makespan_s\"", [0.99, 1.01]);
+    both_ways(&points, "statistic = \"rmse-slope\"", [-0.51, -0.49]);
+}
+
+#[test]
+fn means_ranks_and_checksums() {
+    let all = rows(20, |index, row| {
+        row.seed = 1 + u64::from(index / 2);
+        row.repetition = 0;
+        row.estimator = if index % 2 == 0 { "bsdf" } else { "mis" }.to_string();
+        row.mean_radiance = Some(if index % 2 == 0 { about(1.0, index) } else { about(1.0, index / 2) });
+        row.checksum = format!("{index}");
+    });
+    let pair = "column = \"mean_radiance\"\nrows = { estimator = \"bsdf\" }\nover = { estimator = \"mis\" }";
+    both_ways(&all, &format!("statistic = \"z\"\n{pair}"), [-4.0, 4.0]);
+    let shifted = rows(20, |index, row| {
+        *row = all[index as usize].clone();
+        row.mean_radiance = row.mean_radiance.map(|mean| if index % 2 == 0 { mean + 0.1 } else { mean });
+    });
+    assert_eq!(verdict(&shifted, &format!("statistic = \"z\"\n{pair}\nwithin = [-4, 4]")).0, Verdict::Refuted);
+
+    let ranked = rows(12, |index, row| {
+        row.scene = format!("scene {index}");
+        (row.rays, row.mse) = (Some(u64::from(index)), Some(f64::from(index * index)));
+    });
+    let rank = "statistic = \"rank-correlation\"\nx = \"rays\"\ny = \"mse\"\nby = \"scene\"";
+    assert_eq!(verdict(&ranked, &format!("{rank}\nat-least = 0.9")).0, Verdict::Confirmed);
+    assert_eq!(verdict(&ranked, &format!("{rank}\nat-most = 0.0")).0, Verdict::Refuted);
+
+    let alike = rows(3, |_, row| row.checksum = "same".to_string());
+    let mut other = alike.clone();
+    other[1].checksum = "other".to_string();
+    let checksum = "statistic = \"checksum\"\nwithin = [1, 1]";
+    assert_eq!(verdict(&alike, checksum).0, Verdict::Confirmed);
+    assert_eq!(verdict(&other, checksum).0, Verdict::Refuted);
+    assert_eq!(verdict(&alike[..1], checksum).0, Verdict::NotAnswered, "nothing to compare with");
+}
+
+#[test]
+fn other_conditions_are_told_with_their_factor() {
+    let rows = rows(9, |index, row| row.makespan_s = Some(about(2.0, index)));
+    let test = "statistic = \"value\"\ncolumn = \"makespan_s\"\nat-least = 1.0\ncomparable-if = { width = 1024, height = 768 }";
+    let (found, why) = verdict(&rows, test);
+    assert_eq!(found, Verdict::NotComparable);
+    assert_eq!(why, "height = 6 instead of 768; width = 8 instead of 1024; 1/16384 of the pixels");
+    let (found, why) = verdict(&rows, &format!("{test}\na-fortiori = true"));
+    assert_eq!((found, why.is_empty()), (Verdict::Confirmed, false));
+    let met = test.replace("1024", "\">=8\"").replace("768", "[6, 768]");
+    assert_eq!(verdict(&rows, &met), (Verdict::Confirmed, String::new()));
+}
+
+#[test]
+fn rows_that_are_not_there_answer_nothing() {
+    let value = "statistic = \"value\"\ncolumn = \"makespan_s\"\nat-least = 1.0";
+    assert_eq!(verdict(&rows(9, |_, _| ()), &format!("{value}\nrows = {{ scene = \"sky\" }}")).0, Verdict::NotAnswered);
+    let out = folder_of(&[], "", rows(9, |_, _| ()));
+    let text = claim(&format!("experiment = \"another\"\nlevel = 0.95\n{value}"));
+    let reports = [Report::from_text("X.toml", &text).unwrap()];
+    let answers = judge(&Lab::built_in(), &reports, &[out.path().to_path_buf()]).unwrap();
+    assert_eq!(answers[0].verdict, Verdict::NotAnswered);
+    assert!(!answers[0].is_unexpected());
+}
+
+fn refused(evidence: &str) -> String {
+    match Report::from_text("X.toml", &claim(evidence)) {
+        Err(Error::Input(error)) => error.to_string(),
+        other => panic!("accepted: {other:?}"),
+    }
+}
+
+#[test]
+fn what_a_claim_asks_for_must_exist() {
+    let rows = "experiment = \"e\"\nrows = { scene = \"cornell\" }\nlevel = 0.95\nat-least = 1.0";
+    for (evidence, told) in [
+        (format!("statistic = \"mode\"\n{rows}"), vec!["X.toml:11", "mode", "rank-correlation"]),
+        (format!("statistic = \"value\"\n{rows}"), vec!["X.toml:11", "column"]),
+        (format!("statistic = \"value\"\ncolumn = \"seconds\"\n{rows}"), vec!["X.toml:12", "seconds", "makespan_s"]),
+        (format!("statistic = \"checksum\"\nx = \"spp\"\n{rows}"), vec!["X.toml:11", "`x`"]),
+        (format!("statistic = \"checksum\"\n{}", rows.replace("level = 0.95\n", "")), vec!["X.toml:5", "level"]),
+        (format!("statistic = \"checksum\"\n{}", rows.replace("0.95", "95")), vec!["X.toml:14", "95"]),
+        (format!("statistic = \"checksum\"\n{}", rows.replace("at-least = 1.0", "")), vec!["X.toml:5", "within"]),
+        (format!("statistic = \"checksum\"\nwithin = [1, 2]\n{rows}"), vec!["X.toml:5", "at-most"]),
+        (format!("statistic = \"checksum\"\n{}", rows.replace("scene", "szene")), vec!["szene", "scene_hash"]),
+        ("statistic = \"case\"\nids = [\"Z99\"]\nlevel = 0.95\nat-most = 0.0".to_string(), vec!["X.toml:12", "Z99"]),
+        (String::new(), vec!["X.toml:5", "context"]),
+        (format!("statistic = \"checksum\"\n{rows}\ncontext = \"c\""), vec!["X.toml:5", "missing"]),
+        ("context = \"c\"\nexpectd = 1".to_string(), vec!["X.toml:12", "expectd"]),
+    ] {
+        let error = refused(&evidence);
+        assert!(told.iter().all(|word| error.contains(word)), "{evidence}\n{error}");
+    }
+}

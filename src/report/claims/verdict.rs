@@ -1,0 +1,82 @@
+//! Verdicts: an interval beside the prediction of a claim.
+
+use super::measure::Found;
+use std::fmt;
+
+/// The names of all verdicts.
+pub(super) const NAMES: [&str; 6] = ["confirmed", "refuted", "open", "not-comparable", "not-answered", "context"];
+
+/// What the measurements say of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// The whole interval lies within the prediction.
+    Confirmed,
+    /// The interval and the prediction have nothing in common.
+    Refuted,
+    /// The interval lies partly within the prediction, or there is none.
+    Open,
+    /// The rows were measured under other conditions than the report's.
+    NotComparable,
+    /// There are no rows.
+    NotAnswered,
+    /// There is nothing to measure.
+    Context,
+}
+
+impl Verdict {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        NAMES[self as usize]
+    }
+
+    /// Compares what was found with the ends of the prediction.
+    pub(super) fn of(found: &Found, [low, high]: [f64; 2]) -> Self {
+        match found.interval {
+            None => Self::Open,
+            Some(interval) if low <= interval.low && interval.high <= high => Self::Confirmed,
+            Some(interval) if interval.high < low || high < interval.low => Self::Refuted,
+            Some(_) => Self::Open,
+        }
+    }
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.name().replace('-', " "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::Interval;
+
+    fn of(low: f64, high: f64, predicted: [f64; 2]) -> Verdict {
+        let interval = Interval::between(low, high, 0.95);
+        Verdict::of(&Found { value: 0.5 * (low + high), interval, rows: 9 }, predicted)
+    }
+
+    #[test]
+    fn names_are_in_the_order_of_the_verdicts() {
+        assert_eq!(Verdict::Confirmed.name(), "confirmed");
+        assert_eq!(Verdict::Context.name(), "context");
+        assert_eq!(Verdict::NotAnswered.to_string(), "not answered");
+    }
+
+    #[test]
+    fn the_whole_interval_decides() {
+        assert_eq!(of(0.95, 1.05, [0.9, 1.1]), Verdict::Confirmed);
+        assert_eq!(of(0.9, 1.1, [0.9, 1.1]), Verdict::Confirmed);
+        assert_eq!(of(0.89, 1.05, [0.9, 1.1]), Verdict::Open);
+        assert_eq!(of(0.5, 2.0, [0.9, 1.1]), Verdict::Open);
+        assert_eq!(of(0.5, 0.8, [0.9, 1.1]), Verdict::Refuted);
+        assert_eq!(of(1.2, 1.3, [0.9, 1.1]), Verdict::Refuted);
+        assert_eq!(of(1.2, 1.3, [0.9, f64::INFINITY]), Verdict::Confirmed);
+        assert_eq!(of(-1.2, 0.3, [f64::NEG_INFINITY, 0.2]), Verdict::Open);
+    }
+
+    #[test]
+    fn a_single_value_decides_nothing() {
+        assert_eq!(Verdict::of(&Found { value: 1.0, interval: None, rows: 1 }, [0.9, 1.1]), Verdict::Open);
+    }
+}
