@@ -256,7 +256,7 @@ impl Record {
     }
 
     /// The row of a setup before it runs: what it really uses, not what was asked for.
-    pub(super) fn of(setup: &Setup) -> Self {
+    pub fn of(setup: &Setup) -> Self {
         let described = described(setup.settings());
         let mut record = Self { scene: setup.name().to_string(), scene_hash: setup.hash(), ..described };
         let choice = setup.scene().map(|(_, choice)| choice);

@@ -1,6 +1,7 @@
 //! What the program `pathmark` does as a user runs it: one test program for all verbs.
 
 mod changed_inputs;
+mod claims;
 mod command_line;
 #[path = "../support/experiment.rs"]
 mod experiment;

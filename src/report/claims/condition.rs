@@ -1,6 +1,6 @@
 //! Conditions on rows: columns of `records.csv` and the values that are wanted in them.
 
-use crate::error::InputError;
+use crate::error::{InputError, Result};
 use crate::measure::Record;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -32,13 +32,13 @@ pub(super) fn number(row: &Columns, column: &str) -> Option<f64> {
 }
 
 /// Refuses a column that `records.csv` does not have.
-pub(super) fn check_column(field: &str, column: &str) -> Result<(), InputError> {
+pub(super) fn check_column(field: &str, column: &str) -> Result<()> {
     let known = columns(&Record::default());
     if known.contains_key(column) {
         return Ok(());
     }
     let names: Vec<&str> = known.keys().map(String::as_str).collect();
-    Err(InputError::new(field, column, "is not a column of records.csv").allowed(names.join(", ")))
+    Err(InputError::new(field, column, "is not a column of records.csv").allowed(names.join(", ")).into())
 }
 
 /// Conditions that all have to hold, by column.
@@ -100,7 +100,7 @@ impl Wanted {
 
 impl Conditions {
     /// Refuses columns that do not exist.
-    pub(super) fn check(&self, field: &str) -> Result<(), InputError> {
+    pub(super) fn check(&self, field: &str) -> Result<()> {
         self.0.keys().try_for_each(|column| check_column(field, column))
     }
 

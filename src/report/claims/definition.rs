@@ -27,7 +27,7 @@
 
 use super::condition::Conditions;
 use super::statistic::Statistic;
-use crate::error::{InputError, Result};
+use crate::error::{Error, InputError, Result};
 use crate::input::{locate, parse};
 use serde::Deserialize;
 
@@ -149,15 +149,18 @@ impl Claim {
         fields.into_iter().find(|(_, is_left)| *is_left).map(|(name, _)| name)
     }
 
-    fn resolve(&mut self) -> std::result::Result<(), InputError> {
+    fn resolve(&mut self) -> Result<()> {
         let kinds = [self.statistic.is_some(), self.context.is_some(), self.missing.is_some()];
         if kinds.into_iter().filter(|is_there| *is_there).count() != 1 {
             return Err(InputError::new("id", self.id.to_string(), "has not exactly one kind of evidence")
-                .allowed("a statistic, a context or a missing"));
+                .allowed("a statistic, a context or a missing")
+                .into());
         }
         if !super::verdict::NAMES.contains(&self.expected.as_str()) {
             let problem = "is not the name of a verdict";
-            return Err(InputError::new("expected", &self.expected, problem).allowed(super::verdict::NAMES.join(", ")));
+            return Err(InputError::new("expected", &self.expected, problem)
+                .allowed(super::verdict::NAMES.join(", "))
+                .into());
         }
         let Some(name) = self.statistic.take() else { return Ok(()) };
         let statistic = Statistic::taken_from(self, &name)?;
@@ -167,15 +170,18 @@ impl Claim {
             (None, None, Some(high)) => [f64::NEG_INFINITY, high],
             _ => {
                 return Err(InputError::new("id", self.id.to_string(), "has not exactly one prediction")
-                    .allowed("within = [low, high], at-least = low or at-most = high"));
+                    .allowed("within = [low, high], at-least = low or at-most = high")
+                    .into());
             }
         };
         let Some(level) = self.level else {
             let problem = "has a prediction, and no level for the interval that is compared with it";
-            return Err(InputError::new("id", self.id.to_string(), problem).allowed("level = 0.95"));
+            return Err(InputError::new("id", self.id.to_string(), problem).allowed("level = 0.95").into());
         };
         if !(level > 0.0 && level < 1.0) {
-            return Err(InputError::new("level", level.to_string(), "is not a confidence").allowed("between 0 and 1"));
+            return Err(InputError::new("level", level.to_string(), "is not a confidence")
+                .allowed("between 0 and 1")
+                .into());
         }
         let comparable_if = std::mem::take(&mut self.comparable_if);
         comparable_if.check("comparable-if")?;
@@ -190,9 +196,12 @@ impl Report {
         let mut report: Self = parse(text, file)?;
         for claim in &mut report.claims {
             let id = claim.id;
-            claim.resolve().map_err(|error| {
-                let at = place(text, id, &error.field, &error.value);
-                error.in_file(file, at)
+            claim.resolve().map_err(|error| match error {
+                Error::Input(error) => {
+                    let at = place(text, id, &error.field, &error.value);
+                    error.in_file(file, at).into()
+                }
+                other => other,
             })?;
         }
         Ok(report)

@@ -3,7 +3,7 @@
 use super::condition::{Conditions, check_column};
 use super::definition::Claim;
 use crate::check;
-use crate::error::InputError;
+use crate::error::{InputError, Result};
 use std::fmt;
 
 /// A number that is computed from results.
@@ -77,11 +77,9 @@ const NAMES: [&str; 13] = [
     "guard",
 ];
 
-type Checked<T> = Result<T, InputError>;
-
 impl Statistic {
     /// The statistic of that name, with the claim's fields. Every field that the claim has must be one of the statistic's.
-    pub(super) fn taken_from(claim: &mut Claim, name: &str) -> Checked<Self> {
+    pub(super) fn taken_from(claim: &mut Claim, name: &str) -> Result<Self> {
         let needs = Needs { name, id: claim.id };
         let statistic = match name {
             "case" => Self::Case { ids: known_cases(needs.field("ids", claim.ids.take())?)? },
@@ -100,14 +98,14 @@ impl Statistic {
         match claim.unused_field() {
             None => Ok(statistic),
             Some(field) => {
-                Err(InputError::new("statistic", name, format!("has no use for the claim's field `{field}`")))
+                Err(InputError::new("statistic", name, format!("has no use for the claim's field `{field}`")).into())
             }
         }
     }
 }
 
 impl Kind {
-    fn taken_from(claim: &mut Claim, name: &str, needs: &Needs<'_>) -> Checked<Self> {
+    fn taken_from(claim: &mut Claim, name: &str, needs: &Needs<'_>) -> Result<Self> {
         Ok(match name {
             "value" => Self::Value {
                 column: needs.column("column", claim.column.take())?,
@@ -142,7 +140,7 @@ impl Kind {
                 cores: needs.field("cores", claim.cores.take())?,
                 column: needs.one_of(claim.column.take(), &FORECAST_COLUMNS)?,
             },
-            _ => return Err(InputError::new("statistic", name, "is not a statistic").allowed(NAMES.join(", "))),
+            _ => return Err(InputError::new("statistic", name, "is not a statistic").allowed(NAMES.join(", ")).into()),
         })
     }
 }
@@ -218,40 +216,43 @@ struct Needs<'a> {
 }
 
 impl Needs<'_> {
-    fn field<T>(&self, field: &str, value: Option<T>) -> Checked<T> {
+    fn field<T>(&self, field: &str, value: Option<T>) -> Result<T> {
         value.ok_or_else(|| {
             InputError::new("statistic", self.name, format!("needs the field `{field}`, which claim {} lacks", self.id))
+                .into()
         })
     }
 
-    fn column(&self, field: &str, value: Option<String>) -> Checked<String> {
+    fn column(&self, field: &str, value: Option<String>) -> Result<String> {
         let column = self.field(field, value)?;
         check_column(field, &column)?;
         Ok(column)
     }
 
-    fn conditions(&self, value: Option<Conditions>) -> Checked<Conditions> {
+    fn conditions(&self, value: Option<Conditions>) -> Result<Conditions> {
         let conditions = self.field("over", value)?;
         conditions.check("over")?;
         Ok(conditions)
     }
 
-    fn one_of<T: Copy>(&self, value: Option<String>, table: &[(&str, T)]) -> Checked<T> {
+    fn one_of<T: Copy>(&self, value: Option<String>, table: &[(&str, T)]) -> Result<T> {
         let name = self.field("column", value)?;
         let found = table.iter().find(|(known, _)| *known == name).map(|(_, value)| *value);
         found.ok_or_else(|| {
             let names: Vec<&str> = table.iter().map(|(name, _)| *name).collect();
-            InputError::new("column", &name, format!("is not a column of a {}", self.name)).allowed(names.join(", "))
+            InputError::new("column", &name, format!("is not a column of a {}", self.name))
+                .allowed(names.join(", "))
+                .into()
         })
     }
 }
 
-fn known_cases(ids: Vec<String>) -> Checked<Vec<String>> {
+fn known_cases(ids: Vec<String>) -> Result<Vec<String>> {
     match ids.iter().find(|id| check::find(id).is_none()) {
         None if !ids.is_empty() => Ok(ids),
         unknown => {
             let id = unknown.map_or("", String::as_str);
-            Err(InputError::new("ids", id, "names no hard case").allowed("names of `pathmark check`"))
+            Err(InputError::new("ids", id, "names no hard case").allowed("names of `pathmark check`").into())
         }
     }
 }

@@ -1,7 +1,12 @@
+use super::condition::{Columns, columns};
+use super::definition::{Evidence, Test};
+use super::statistic::{Kind, Statistic};
 use super::*;
 use crate::error::Error;
+use crate::experiment::{Cell, Definition, Profile};
 use crate::measure::Record;
 use crate::report::tests::{folder_of, row};
+use std::collections::BTreeMap;
 
 const HEAD: &str = "report = \"X\"\ntitle = \"T\"\nabout = \"Who.\"\n";
 
@@ -191,4 +196,59 @@ fn what_a_claim_asks_for_must_exist() {
         let error = refused(&evidence);
         assert!(told.iter().all(|word| error.contains(word)), "{evidence}\n{error}");
     }
+}
+
+/// The excerpts of the reports, in which every quote stands.
+const EXCERPTS: [(&str, &str); 4] = [
+    ("A", include_str!("../../../experiments/claims/excerpts/A.txt")),
+    ("B", include_str!("../../../experiments/claims/excerpts/B.txt")),
+    ("C", include_str!("../../../experiments/claims/excerpts/C.txt")),
+    ("D", include_str!("../../../experiments/claims/excerpts/D.txt")),
+];
+
+#[test]
+fn each_claim_appears_once_and_quotes_its_report() {
+    let reports = Report::all().unwrap();
+    let mut ids: Vec<u32> = reports.iter().flat_map(|report| &report.claims).map(|claim| claim.id).collect();
+    ids.sort_unstable();
+    assert_eq!(ids, (1..=72).collect::<Vec<u32>>());
+    for report in &reports {
+        let (_, text) = EXCERPTS.iter().find(|(letter, _)| *letter == report.report).expect("excerpts of each report");
+        for claim in &report.claims {
+            assert!(text.contains(&claim.quote), "{}: {}", claim.id, claim.quote);
+        }
+    }
+}
+
+/// Every query matches rows that a sweep of the quick or of the reports' profile will write.
+#[test]
+fn each_query_asks_for_rows_of_an_experiment() {
+    let lab = Lab::built_in();
+    let reports = Report::all().unwrap();
+    let mut rows: BTreeMap<String, Vec<Columns>> = BTreeMap::new();
+    for claim in reports.iter().flat_map(|report| &report.claims) {
+        let Evidence::Test(Test { statistic: Statistic::OfRows { experiment, rows: wanted, kind }, .. }) = claim.evidence() else {
+            continue;
+        };
+        let own = rows.entry(experiment.clone()).or_insert_with(|| cells(&lab, experiment));
+        let other = match kind {
+            Kind::PairedRatio { over, .. } | Kind::Speedup { over } | Kind::Z { over, .. } => Some(over),
+            _ => None,
+        };
+        for conditions in std::iter::once(wanted).chain(other) {
+            assert!(own.iter().any(|row| conditions.admit(row)), "{}: {experiment} where {conditions}", claim.id);
+        }
+    }
+}
+
+/// The rows that an experiment's cells will have, before they run.
+fn cells(lab: &Arc<Lab>, experiment: &str) -> Vec<Columns> {
+    let definition = Definition::load(lab, experiment).unwrap();
+    let profiles = [Profile::Quick, Profile::Reports].into_iter().filter(|profile| definition.has(*profile));
+    let cells = profiles.flat_map(|profile| definition.cells(profile).unwrap());
+    let row = |cell: Cell| {
+        let setup = lab.prepare(cell.settings).unwrap();
+        cell.points.iter().map(|point| columns(&Record { spp: point.spp, ..Record::of(&setup) })).collect::<Vec<_>>()
+    };
+    cells.filter(|cell| cell.external.is_none()).flat_map(row).collect()
 }

@@ -32,10 +32,9 @@ impl Verdict {
     /// Compares what was found with the ends of the prediction.
     pub(super) fn of(found: &Found, [low, high]: [f64; 2]) -> Self {
         match found.interval {
-            None => Self::Open,
             Some(interval) if low <= interval.low && interval.high <= high => Self::Confirmed,
             Some(interval) if interval.high < low || high < interval.low => Self::Refuted,
-            Some(_) => Self::Open,
+            _ => Self::Open,
         }
     }
 }

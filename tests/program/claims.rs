@@ -1,0 +1,70 @@
+//! `pathmark claims`: verdicts from a folder of results.
+
+use crate::experiment::{TINY, write_tiny};
+use crate::program::{finish, pathmark};
+use crate::snapshot::{assert_untouched, snapshot};
+use std::fs;
+use std::path::Path;
+
+/// A folder `out` with the rows of a small experiment that has the name of a large one.
+fn with_rows() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    fs::rename(folder.path().join("tiny.toml"), folder.path().join("thread-scaling.toml")).unwrap();
+    finish(pathmark(folder.path(), &["run", "thread-scaling.toml", "--out", "out"])).with_code(0);
+    folder
+}
+
+fn listing(folder: &Path, more: &[&str]) -> Vec<serde_json::Value> {
+    let arguments = [&["claims", "out", "--json"], more].concat();
+    let told = finish(pathmark(folder, &arguments)).with_code(0).out;
+    serde_json::from_str(&told).unwrap()
+}
+
+#[test]
+fn small_images_do_not_judge_a_report_and_are_told_as_such() {
+    let folder = with_rows();
+    let verdicts = listing(folder.path(), &[]);
+    assert_eq!(verdicts.len(), 72);
+    let from_rows: Vec<&serde_json::Value> = verdicts.iter().filter(|row| row["source"].is_string()).collect();
+    assert!(!from_rows.is_empty());
+    for row in &from_rows {
+        assert_eq!(row["source"], "out/thread-scaling/records.csv");
+        let is_small = row["verdict"] == "not-comparable" && row["why"].as_str().unwrap().contains("of the pixels");
+        assert!(is_small || row["verdict"] != "not-comparable", "{row}");
+    }
+    let text = fs::read_to_string(folder.path().join("out/claims/claims.md")).unwrap();
+    assert_eq!(text.matches("\n### ").count(), 72);
+    let table = csv::Reader::from_path(folder.path().join("out/claims/claims.csv")).unwrap();
+    assert_eq!(table.into_records().map(Result::unwrap).count(), 72);
+    let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    let (claims, experiment) = (page.find("id=\"claims\"").unwrap(), page.find("id=\"thread-scaling\"").unwrap());
+    assert!(claims < experiment, "the claims come first");
+    // Nothing that was measured can have become unexpected: it was not measured at the report's size.
+    assert_eq!(listing(folder.path(), &["--strict"]).len(), 72);
+}
+
+#[test]
+fn the_claims_of_one_report_are_printed_alone() {
+    let folder = with_rows();
+    let before = snapshot(folder.path());
+    let verdicts = listing(folder.path(), &["--report", "A"]);
+    assert!(verdicts.len() < 72 && verdicts.iter().all(|row| row["report"] == "A"));
+    assert_untouched(&before, &snapshot(folder.path()));
+}
+
+#[test]
+fn folders_and_files_that_are_not_of_it_are_refused() {
+    let folder = with_rows();
+    fs::write(folder.path().join("out/claims/claims.md"), "my own claims").unwrap();
+    let before = snapshot(folder.path());
+    for (arguments, told) in [
+        (["claims", "out", "--report", "E"], "A, B, C, D"),
+        (["claims", "nowhere", "--report", "A"], "nowhere"),
+        (["claims", "out", "--quiet", "--json"], "claims.md"),
+    ] {
+        let said = finish(pathmark(folder.path(), &arguments)).with_code(2).err;
+        assert!(said.contains(told), "{said}");
+    }
+    assert_untouched(&before, &snapshot(folder.path()));
+}
