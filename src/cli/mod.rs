@@ -11,6 +11,7 @@ mod list;
 mod out_of_memory;
 mod output;
 mod price;
+mod profile;
 mod progress;
 mod reference;
 mod render;

@@ -2,10 +2,10 @@
 
 use super::output::{lock_folder, print};
 use super::progress::Talk;
-use super::{command_line, guards, strict::Strict};
+use super::{command_line, guards, profile, strict::Strict};
 use crate::check::guards::FOLDER;
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Sweep};
+use crate::experiment::{Definition, Options, Progress, RecordsFile, Sweep};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -15,15 +15,11 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// `pathmark reproduce --full --out results-here`
+/// `pathmark reproduce --reports --out results-here`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Small images, minutes (the default)
-    #[arg(long, conflicts_with = "full")]
-    quick: bool,
-    /// The reports' own sizes, hours
-    #[arg(long)]
-    full: bool,
+    #[command(flatten)]
+    size: profile::Choice,
     /// Folder for what comes out; an earlier run's goes to its folder `earlier`
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
@@ -35,7 +31,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
-    let profile = if arguments.full && !arguments.quick { Profile::Full } else { Profile::Quick };
+    let profile = arguments.size.profile();
     let options = Options {
         out: arguments.out.clone(),
         profile,
@@ -46,6 +42,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     };
     let mut definitions =
         Definition::known(lab).map(|(name, _)| Definition::load(lab, name)).collect::<Result<Vec<_>>>()?;
+    definitions.retain(|definition| definition.has(profile));
     definitions.retain(|definition| match definition.missing_feature() {
         None => true,
         Some(feature) => {
@@ -59,7 +56,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     report::claim("out", &arguments.out, &mut files)?;
     let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
-        put_aside(&arguments.out, &definitions, talk)?;
+        put_aside(&arguments.out, lab, talk)?;
     }
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
@@ -82,10 +79,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     arguments.strict.check(invalid)
 }
 
-/// Moves what an earlier run left out of the way: measurements are never overwritten.
-fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> {
+/// Moves what an earlier run left out of the way, whichever experiments and profile it had: measurements are never overwritten, and a report is of
+/// one run.
+fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
+    let names: Vec<&str> = Definition::known(lab).map(|(name, _)| name).collect();
     // All are asked before any is moved: a running sweep holds the lock of one of them.
-    for rows in definitions.iter().map(|definition| out.join(&definition.name).join("records.csv")) {
+    for rows in names.iter().map(|name| out.join(name).join("records.csv")) {
         if rows.is_file() {
             RecordsFile::check_idle(&rows)?;
         }
@@ -98,7 +97,7 @@ fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> 
         return Err(Error::system("reading", "the system's clock", problem));
     }
     let earlier = out.join("earlier").join(stamp);
-    for name in definitions.iter().map(|definition| definition.name.as_str()).chain([FOLDER]) {
+    for name in names.into_iter().chain([FOLDER]) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;

@@ -128,7 +128,7 @@ impl<'a> Sweep<'a> {
         }
         let finished: HashSet<(&str, u32)> =
             done.iter().map(|record| (record.cell.as_str(), record.repetition)).collect();
-        let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
+        let repetitions = options.repetitions.map_or_else(|| definition.repetitions(options.profile), Ok)?;
         let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
         let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
         let invalid = done.iter().filter_map(|record| record.invalid_samples).sum();
