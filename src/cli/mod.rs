@@ -10,6 +10,7 @@ mod guards;
 mod list;
 mod out_of_memory;
 mod output;
+mod plan;
 mod price;
 mod profile;
 mod progress;
@@ -23,6 +24,7 @@ mod run;
 mod simulate;
 mod strict;
 mod trace;
+mod whole;
 
 use crate::error::{Error, Result};
 use crate::lab::Lab;

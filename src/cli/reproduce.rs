@@ -1,11 +1,13 @@
 //! `pathmark reproduce`: all committed experiments.
 
 use super::output::{lock_folder, print};
+use super::plan::Plans;
 use super::progress::Talk;
+use super::whole::Whole;
 use super::{command_line, guards, profile, strict::Strict};
 use crate::check::guards::FOLDER;
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Progress, RecordsFile, Sweep};
+use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -26,6 +28,9 @@ pub(super) struct Arguments {
     /// Go on with a run that was stopped
     #[arg(long)]
     resume: bool,
+    /// Print rows, estimated seconds and bytes of each experiment, and run none
+    #[arg(long)]
+    plan: bool,
     #[command(flatten)]
     strict: Strict,
 }
@@ -42,7 +47,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     };
     let mut definitions =
         Definition::known(lab).map(|(name, _)| Definition::load(lab, name)).collect::<Result<Vec<_>>>()?;
+    let known = definitions.len();
     definitions.retain(|definition| definition.has(profile));
+    let left_out = known - definitions.len();
     definitions.retain(|definition| match definition.missing_feature() {
         None => true,
         Some(feature) => {
@@ -53,6 +60,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let mut files = Files::default();
     let sweeps = definitions.iter().map(|definition| Sweep::new(definition, &options, &mut files));
     let sweeps = sweeps.collect::<Result<Vec<_>>>()?;
+    if arguments.plan {
+        return Plans::new(lab, &sweeps)?.print(left_out);
+    }
     report::claim("out", &arguments.out, &mut files)?;
     let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
@@ -61,13 +71,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
     }
-    let (mut rows, mut failed, mut invalid) = (0, 0, 0);
-    for sweep in &sweeps {
-        let summary = sweep.run(talk)?;
-        rows += summary.rows;
-        failed += summary.failed;
-        invalid += summary.invalid;
-    }
+    let Total { rows, failed, invalid } = run_all(&sweeps, profile, lab, talk)?;
     if !guards::are_in(&arguments.out) {
         guards::write(&arguments.out, &guards::measure(talk))?;
     }
@@ -77,6 +81,38 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));
     }
     arguments.strict.check(invalid)
+}
+
+/// What all sweeps did.
+#[derive(Default)]
+struct Total {
+    rows: usize,
+    failed: usize,
+    invalid: u64,
+}
+
+/// Runs all sweeps. The quick ones are over before an estimate of them would be of use; of the others, the time left is that of all.
+fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Result<Total> {
+    let mut total = Total::default();
+    let mut add = |summary: &Summary| {
+        total.rows += summary.rows;
+        total.failed += summary.failed;
+        total.invalid += summary.invalid;
+    };
+    if profile == Profile::Quick {
+        for sweep in sweeps {
+            add(&sweep.run(talk)?);
+        }
+        return Ok(total);
+    }
+    let plans = Plans::new(lab, sweeps)?;
+    talk.note(&plans.told());
+    let whole = Whole::new(talk, &plans.each);
+    for (sweep, plan) in sweeps.iter().zip(&plans.each) {
+        whole.enter(plan);
+        add(&sweep.run(&whole)?);
+    }
+    Ok(total)
 }
 
 /// Moves what an earlier run left out of the way, whichever experiments and profile it had: measurements are never overwritten, and a report is of

@@ -55,10 +55,10 @@ pub struct Summary {
 
 /// An experiment that can start: everything that the user could have got wrong has been checked, and nothing has been made.
 pub struct Sweep<'a> {
-    definition: &'a Definition,
-    options: &'a Options,
-    cells: Vec<Cell>,
-    references: Vec<Reference>,
+    pub(super) definition: &'a Definition,
+    pub(super) options: &'a Options,
+    pub(super) cells: Vec<Cell>,
+    pub(super) references: Vec<Reference>,
 }
 
 impl<'a> Sweep<'a> {

@@ -7,6 +7,7 @@ mod experiment;
 mod external;
 mod faults;
 mod inspection;
+mod plan;
 mod price;
 #[path = "../support/program.rs"]
 mod program;
