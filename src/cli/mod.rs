@@ -11,7 +11,9 @@ mod guards;
 mod list;
 mod out_of_memory;
 mod output;
+mod plan;
 mod price;
+mod profile;
 mod progress;
 mod reference;
 mod render;
@@ -23,6 +25,7 @@ mod run;
 mod simulate;
 mod strict;
 mod trace;
+mod whole;
 
 use crate::error::{Error, Result};
 use crate::lab::Lab;

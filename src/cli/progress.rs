@@ -43,6 +43,19 @@ impl Talk {
     }
 }
 
+impl Talk {
+    /// A part of the work that has begun: the bar goes on under another title, and `left` stands beside the title where there is no bar.
+    pub(super) fn step(&self, title: &str, left: &str) {
+        if self.quiet {
+            return;
+        }
+        match &self.work().bar {
+            Some(bar) => bar.set_message(title.to_string()),
+            None => Self::line(&format!("{title} ..., {left}")),
+        }
+    }
+}
+
 impl Progress for Talk {
     fn begin(&self, title: &str, total: u64) {
         if self.quiet {

@@ -1,11 +1,13 @@
 //! `pathmark reproduce`: all committed experiments.
 
 use super::output::{lock_folder, print};
+use super::plan::Plans;
 use super::progress::Talk;
-use super::{command_line, guards, strict::Strict};
+use super::whole::Whole;
+use super::{command_line, guards, profile, strict::Strict};
 use crate::check::guards::FOLDER;
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Sweep};
+use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -15,27 +17,26 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// `pathmark reproduce --full --out results-here`
+/// `pathmark reproduce --reports --out results-here`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Small images, minutes (the default)
-    #[arg(long, conflicts_with = "full")]
-    quick: bool,
-    /// The reports' own sizes, hours
-    #[arg(long)]
-    full: bool,
+    #[command(flatten)]
+    size: profile::Choice,
     /// Folder for what comes out; an earlier run's goes to its folder `earlier`
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Go on with a run that was stopped
     #[arg(long)]
     resume: bool,
+    /// Print rows, estimated seconds and bytes of each experiment, and run none
+    #[arg(long)]
+    plan: bool,
     #[command(flatten)]
     strict: Strict,
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
-    let profile = if arguments.full && !arguments.quick { Profile::Full } else { Profile::Quick };
+    let profile = arguments.size.profile();
     let options = Options {
         out: arguments.out.clone(),
         profile,
@@ -46,6 +47,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     };
     let mut definitions =
         Definition::known(lab).map(|(name, _)| Definition::load(lab, name)).collect::<Result<Vec<_>>>()?;
+    let known = definitions.len();
+    definitions.retain(|definition| definition.has(profile));
+    let left_out = known - definitions.len();
     definitions.retain(|definition| match definition.missing_feature() {
         None => true,
         Some(feature) => {
@@ -56,21 +60,18 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let mut files = Files::default();
     let sweeps = definitions.iter().map(|definition| Sweep::new(definition, &options, &mut files));
     let sweeps = sweeps.collect::<Result<Vec<_>>>()?;
+    if arguments.plan {
+        return Plans::new(lab, &sweeps)?.print(left_out);
+    }
     report::claim("out", &arguments.out, &mut files)?;
     let _lock = lock_folder(&arguments.out, Sharing::Alone)?;
     if !arguments.resume {
-        put_aside(&arguments.out, &definitions, talk)?;
+        put_aside(&arguments.out, lab, talk)?;
     }
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
     }
-    let (mut rows, mut failed, mut invalid) = (0, 0, 0);
-    for sweep in &sweeps {
-        let summary = sweep.run(talk)?;
-        rows += summary.rows;
-        failed += summary.failed;
-        invalid += summary.invalid;
-    }
+    let Total { rows, failed, invalid } = run_all(&sweeps, profile, lab, talk)?;
     if !guards::are_in(&arguments.out) {
         guards::write(&arguments.out, &guards::measure(talk))?;
     }
@@ -82,10 +83,44 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     arguments.strict.check(invalid)
 }
 
-/// Moves what an earlier run left out of the way: measurements are never overwritten.
-fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> {
+/// What all sweeps did.
+#[derive(Default)]
+struct Total {
+    rows: usize,
+    failed: usize,
+    invalid: u64,
+}
+
+/// Runs all sweeps. The quick ones are over before an estimate of them would be of use; of the others, the time left is that of all.
+fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Result<Total> {
+    let mut total = Total::default();
+    let mut add = |summary: &Summary| {
+        total.rows += summary.rows;
+        total.failed += summary.failed;
+        total.invalid += summary.invalid;
+    };
+    if profile == Profile::Quick {
+        for sweep in sweeps {
+            add(&sweep.run(talk)?);
+        }
+        return Ok(total);
+    }
+    let plans = Plans::new(lab, sweeps)?;
+    talk.note(&plans.told());
+    let whole = Whole::new(talk, &plans.each);
+    for (sweep, plan) in sweeps.iter().zip(&plans.each) {
+        whole.enter(plan);
+        add(&sweep.run(&whole)?);
+    }
+    Ok(total)
+}
+
+/// Moves what an earlier run left out of the way, whichever experiments and profile it had: measurements are never overwritten, and a report is of
+/// one run.
+fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
+    let names: Vec<&str> = Definition::known(lab).map(|(name, _)| name).collect();
     // All are asked before any is moved: a running sweep holds the lock of one of them.
-    for rows in definitions.iter().map(|definition| out.join(&definition.name).join("records.csv")) {
+    for rows in names.iter().map(|name| out.join(name).join("records.csv")) {
         if rows.is_file() {
             RecordsFile::check_idle(&rows)?;
         }
@@ -98,7 +133,7 @@ fn put_aside(out: &Path, definitions: &[Definition], talk: &Talk) -> Result<()> 
         return Err(Error::system("reading", "the system's clock", problem));
     }
     let earlier = out.join("earlier").join(stamp);
-    for name in definitions.iter().map(|definition| definition.name.as_str()).chain([FOLDER]) {
+    for name in names.into_iter().chain([FOLDER]) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;

@@ -2,9 +2,9 @@
 
 use super::output::{lock_folder, print};
 use super::progress::Talk;
-use super::{command_line, strict::Strict};
+use super::{command_line, profile, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, Sweep};
+use crate::experiment::{Definition, Options, Sweep};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -30,9 +30,8 @@ pub(super) struct Arguments {
     /// Only cells with this value, as in strategy=rayon; may be given several times
     #[arg(long = "filter", value_name = "FIELD=VALUE")]
     filters: Vec<String>,
-    /// The report's own sizes instead of small images
-    #[arg(long)]
-    full: bool,
+    #[command(flatten)]
+    size: profile::Choice,
     #[command(flatten)]
     strict: Strict,
 }
@@ -42,7 +41,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     check_figures(&definition)?;
     let options = Options {
         out: arguments.out.clone(),
-        profile: if arguments.full { Profile::Full } else { Profile::Quick },
+        profile: arguments.size.profile(),
         resume: arguments.resume,
         repetitions: arguments.repetitions,
         filters: arguments.filters.clone(),

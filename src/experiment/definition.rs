@@ -18,7 +18,7 @@
 //! # There may be several, each under [[matrix]]. Optional: sampler, output, effects, accelerator, roulette, max-depth, size (instead of the
 //! # profile's), kernel, simd, precision, weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
 //! # fewest samples on the way to each spp. clamp = "subpixel" clamps each subpixel's mean before averaging,
-//! # clamp = "recursion" the light of each recursion.
+//! # clamp = "recursion" the light of each recursion. profiles = ["reports"] is for a matrix that other profiles do not have.
 //!
 //! [figure.price-list]            # optional: what a figure of the list above is told
 //! goals = [0.1, 0.01]
@@ -26,19 +26,24 @@
 //! [reference]                    # optional: measures errors
 //! estimator = "bsdf"
 //!
-//! [quick]                        # what `--quick` renders; any axis of the matrix may be replaced
+//! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
 //! repetitions = 6
 //! reference-spp = 2000
 //!
-//! [full]
+//! [full]                         # `--full`; there must be at least one of [quick], [full] and [reports]
 //! size = [1024, 768]
 //! repetitions = 9
 //! reference-spp = 2000
+//!
+//! [reports]                      # `--reports`: sizes and parameters of the reports
+//! size = [1024, 768]
+//! repetitions = 1
+//! reference-spp = 2000
 //! ```
 
-use super::External;
 use super::table::{Matrix, Scale, one_or_many};
+use super::{External, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use crate::lab::Lab;
@@ -55,30 +60,6 @@ const TAKEN: &[&str] = &["earlier", "guards", "references", "report.html"];
 
 /// The features that an experiment may require, and whether this program was built with them.
 pub(super) const FEATURES: &[(&str, bool)] = &[("openmp", cfg!(feature = "openmp"))];
-
-/// How large an experiment is run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Profile {
-    /// Small images: minutes.
-    Quick,
-    /// The report's own sizes: hours.
-    Full,
-}
-
-impl Profile {
-    /// Its name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Quick => "quick",
-            Self::Full => "full",
-        }
-    }
-
-    /// The profile of that name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Quick, Self::Full].into_iter().find(|profile| profile.name() == name)
-    }
-}
 
 /// What a sweep may keep beside its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -134,8 +115,9 @@ pub struct Definition {
     #[serde(default)]
     pub external: Vec<External>,
     reference: Option<ReferenceTable>,
-    quick: Scale,
-    full: Scale,
+    pub(super) quick: Option<Scale>,
+    pub(super) full: Option<Scale>,
+    pub(super) reports: Option<Scale>,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -152,6 +134,7 @@ impl Definition {
         definition.name = name.to_string();
         definition.text = text.to_string();
         definition.file = file.to_string();
+        definition.check_profiles()?;
         Ok(definition)
     }
 
@@ -187,13 +170,6 @@ impl Definition {
         Self::from_text(lab, &stem, name_or_path, &read_text(path)?)
     }
 
-    pub(super) fn scale(&self, profile: Profile) -> &Scale {
-        match profile {
-            Profile::Quick => &self.quick,
-            Profile::Full => &self.full,
-        }
-    }
-
     /// The estimator that is named first.
     pub fn first_estimator(&self) -> &str {
         self.matrix.iter().filter_map(|matrix| matrix.values("estimator")).flatten().next().map_or("", String::as_str)
@@ -223,19 +199,24 @@ impl Definition {
     }
 
     /// How often each cell is run.
-    pub fn repetitions(&self, profile: Profile) -> u32 {
-        self.scale(profile).repetitions
+    pub fn repetitions(&self, profile: Profile) -> Result<u32> {
+        Ok(self.scale(profile)?.repetitions)
+    }
+
+    /// The matrices of a profile.
+    pub(super) fn matrices(&self, profile: Profile) -> impl Iterator<Item = &Matrix> {
+        self.matrix.iter().filter(move |matrix| matrix.is_for(profile))
     }
 
     /// Estimator and samples per pixel of each half-reference, if errors are to be measured.
     pub fn reference(&self, profile: Profile) -> Result<Option<(String, u32)>> {
         let Some(table) = &self.reference else { return Ok(None) };
-        let scale = self.scale(profile);
-        let own = || self.matrix.iter().filter_map(|matrix| matrix.numbers("spp")).flatten().collect();
+        let scale = self.scale(profile)?;
+        let own = || self.matrices(profile).filter_map(|matrix| matrix.numbers("spp")).flatten().collect();
         let spps: Vec<u32> = scale.numbers("spp").unwrap_or_else(own);
         let largest = spps.into_iter().max().unwrap_or(0);
         // Seeds share the references' noise, which the cross form removes in the mean only. A curve's end is one of many points.
-        let times = if self.matrix.iter().all(|matrix| matrix.curve) { 4 } else { 10 };
+        let times = if self.matrices(profile).all(|matrix| matrix.curve) { 4 } else { 10 };
         let needed = largest.saturating_mul(times);
         match scale.reference_spp {
             Some(spp) if spp >= needed => Ok(Some((table.estimator.clone(), spp))),

@@ -112,7 +112,7 @@ impl External {
 impl Definition {
     /// The cells of the other programs.
     pub(super) fn external_cells(&self, profile: Profile) -> Result<Vec<Cell>> {
-        let scale = self.scale(profile);
+        let scale = self.scale(profile)?;
         let mut cells = Vec::new();
         for external in &self.external {
             external.check().map_err(|error| match error {

@@ -1,7 +1,7 @@
 //! The axes of an experiment and the cells that they span.
 
 use super::definition::FEATURES;
-use super::table::Matrix;
+use super::table::{Matrix, Scale};
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
@@ -36,7 +36,7 @@ impl Cells {
 impl Definition {
     /// The cells, each once, in the order of the matrix. Every one has been checked: nothing that the definition says can fail later.
     pub fn cells(&self, profile: Profile) -> Result<Vec<Cell>> {
-        if self.repetitions(profile) == 0 {
+        if self.repetitions(profile)? == 0 {
             return Err(self.located(profile, InputError::new("repetitions", "0", "must be at least 1")));
         }
         if let Some(unknown) = self.requires.iter().find(|name| !FEATURES.iter().any(|(known, _)| known == name)) {
@@ -51,8 +51,8 @@ impl Definition {
             );
         }
         let mut cells = Cells::default();
-        for matrix in &self.matrix {
-            let product = Product { definition: self, profile, matrix };
+        for matrix in self.matrices(profile) {
+            let product = Product { definition: self, profile, scale: self.scale(profile)?, matrix };
             product.check_axes()?;
             product.add(&AXES, &Settings::default(), &mut cells)?;
         }
@@ -74,6 +74,7 @@ impl Definition {
 struct Product<'a> {
     definition: &'a Definition,
     profile: Profile,
+    scale: &'a Scale,
     matrix: &'a Matrix,
 }
 
@@ -87,7 +88,7 @@ impl<'a> Product<'a> {
 
     /// The values of an axis as they are written. A profile replaces those of the matrix; only its size is for matrices without one.
     fn written(&self, axis: &Axis) -> Option<&'a Vec<String>> {
-        let (own, scale) = (self.matrix.values(axis.name), self.definition.scale(self.profile).values(axis.name));
+        let (own, scale) = (self.matrix.values(axis.name), self.scale.values(axis.name));
         if axis.name == "size" { own.or(scale) } else { scale.or(own) }
     }
 

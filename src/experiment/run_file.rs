@@ -16,7 +16,7 @@ pub const MACHINE: &str = "machine.toml";
 pub struct RunFile {
     /// The command that made them.
     pub command: String,
-    /// `quick` or `full`.
+    /// `quick`, `full` or `reports`.
     pub profile: String,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,

@@ -55,10 +55,10 @@ pub struct Summary {
 
 /// An experiment that can start: everything that the user could have got wrong has been checked, and nothing has been made.
 pub struct Sweep<'a> {
-    definition: &'a Definition,
-    options: &'a Options,
-    cells: Vec<Cell>,
-    references: Vec<Reference>,
+    pub(super) definition: &'a Definition,
+    pub(super) options: &'a Options,
+    pub(super) cells: Vec<Cell>,
+    pub(super) references: Vec<Reference>,
 }
 
 impl<'a> Sweep<'a> {
@@ -128,7 +128,7 @@ impl<'a> Sweep<'a> {
         }
         let finished: HashSet<(&str, u32)> =
             done.iter().map(|record| (record.cell.as_str(), record.repetition)).collect();
-        let repetitions = options.repetitions.unwrap_or_else(|| definition.repetitions(options.profile));
+        let repetitions = options.repetitions.map_or_else(|| definition.repetitions(options.profile), Ok)?;
         let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
         let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
         let invalid = done.iter().filter_map(|record| record.invalid_samples).sum();

@@ -1,5 +1,6 @@
-//! The tables of a definition that give values to axes: `[matrix]`, `[quick]` and `[full]`.
+//! The tables of a definition that give values to axes: `[matrix]`, and a table for each profile.
 
+use super::Profile;
 use crate::kernel::Clamp;
 use crate::measure::{AXES, Axis, Field, Settings, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
@@ -18,6 +19,8 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) weak: bool,
     /// Whether each cell is a curve: a render that is measured on its way.
     pub(super) curve: bool,
+    /// The profiles that the matrix is for; all, if `None`.
+    pub(super) profiles: Option<Vec<Profile>>,
     pub(super) repetitions: u32,
     pub(super) reference_spp: Option<u32>,
 }
@@ -31,6 +34,13 @@ pub(super) type Scale = Table<true>;
 /// The axes and fields that cannot be left out.
 const REQUIRED: [&[&str]; 2] =
     [&["scene", "estimator", "spp", "seed", "strategy", "threads", "decomposition"], &["size", "repetitions"]];
+
+impl Matrix {
+    /// Whether that profile has it.
+    pub(super) fn is_for(&self, profile: Profile) -> bool {
+        self.profiles.as_ref().is_none_or(|profiles| profiles.contains(&profile))
+    }
+}
 
 impl<const PROFILE: bool> Table<PROFILE> {
     /// The values of an axis, if the table has it.
@@ -50,8 +60,8 @@ struct Key<const PROFILE: bool>(String);
 impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
-        let others = if PROFILE { ["repetitions", "reference-spp"] } else { ["weak", "curve"] };
-        let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others).collect();
+        let others: &[&str] = if PROFILE { &["repetitions", "reference-spp"] } else { &["weak", "curve", "profiles"] };
+        let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
         if known.contains(&name.as_str()) {
             return Ok(Self(name));
         }
@@ -127,6 +137,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                 (Some(axis), _) => _ = table.axes.insert(axis.name, map.next_value_seed(Values(axis))?),
                 (None, "weak") => table.weak = map.next_value()?,
                 (None, "curve") => table.curve = map.next_value()?,
+                (None, "profiles") => table.profiles = Some(map.next_value()?),
                 (None, "repetitions") => table.repetitions = map.next_value()?,
                 (None, _) => table.reference_spp = Some(map.next_value()?),
             }

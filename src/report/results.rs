@@ -93,7 +93,7 @@ impl Results {
         Self::typical(&rows).map_or(Ok(None), |row| self.trace(row))
     }
 
-    /// Quick or full.
+    /// The profile that was run.
     pub fn profile(&self) -> Profile {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }

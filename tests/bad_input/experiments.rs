@@ -17,6 +17,11 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("spp = [4]", "spp = [4]\noutput = [\"pigeon\"]", &["output", "pigeon", "slots"]),
     ("spp = [4]", "spp = [4]\noutput = []", &["output"]),
     ("title = \"Tiny\"", "title = \"Tiny\"\nrequires = [\"gpu\"]", &["requires", "gpu", "openmp"]),
+    ("spp = [4]", "spp = [4]\nprofiles = [\"huge\"]", &["profiles", "huge", "quick", "full", "reports"]),
+    ("spp = [4]", "spp = [4]\nprofiles = \"full\"", &["profiles", "full", "sequence"]),
+    ("spp = [4]", "spp = [4]\nprofiles = [\"reports\"]", &["profiles", "reports", "[reports]", "quick, full"]),
+    ("spp = [4]", "spp = [4]\nprofiles = [\"full\"]", &["profiles", "no matrix", "quick"]),
+    ("spp = [4]", "spp = [4]\nprofiles = []", &["profiles", "no matrix", "quick"]),
     ("tiles:8x8", "samples:24", &["decomposition", "samples:24", "samples:16"]),
     ("estimator = [\"smallpt\"]", "estimator = [\"magic\"]", &["estimator", "magic", "smallpt"]),
     (
@@ -87,6 +92,25 @@ fn a_fault_in_the_full_profile_is_shown_there() {
     let base = TINY.replace("repetitions = 3", "repetitions = 30");
     assert!(check(&base, "repetitions = 10", "repetitions = 0", &["--full"], &["repetitions", "0"]));
     assert!(check(TINY, "size = [32, 16]", "size = [0, 16]", &["--full"], &["size", "0x16"]));
+}
+
+/// What a definition lacks is named, together with what it has.
+#[test]
+fn a_profile_that_is_not_there_is_refused() {
+    let (head, quick) = TINY.split_once("[quick]").unwrap();
+    let (quick, full) = quick.split_once("[full]").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let refuse = |text: &str, option: &[&str], said: &[&str]| {
+        write_tiny(folder.path(), text);
+        refused(folder.path(), &[&["run", "tiny.toml", "--out", "new"], option].concat(), 2, said);
+    };
+    for option in [&[][..], &["--full"], &["--reports"]] {
+        refuse(head, option, &["tiny.toml", "profile", "[quick], [full], [reports]"]);
+    }
+    refuse(TINY, &["--reports"], &["tiny.toml", "reports", "--quick, --full"]);
+    refuse(&format!("{head}[quick]{quick}"), &["--full"], &["tiny.toml", "full", "(allowed: --quick)"]);
+    refuse(&format!("{head}[full]{full}"), &[], &["tiny.toml", "quick", "(allowed: --full)"]);
+    refuse(&format!("{head}[full]{full}"), &["--full", "--reports"], &["--full", "--reports"]);
 }
 
 /// A reference that cannot be, or that is too coarse to measure anything with.

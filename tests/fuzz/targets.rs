@@ -243,7 +243,7 @@ fn mesh(path: &Path) -> bool {
 
 fn experiment(path: &Path) -> bool {
     let Ok(definition) = Definition::load(&Lab::built_in(), path.to_str().unwrap()) else { return false };
-    [Profile::Quick, Profile::Full].into_iter().filter(|profile| ok(definition.cells(*profile))).count() > 0
+    Profile::ALL.into_iter().filter(|profile| ok(definition.cells(*profile))).count() > 0
 }
 
 /// With the checksum of the bytes before it; the beginnings of files keep the one that does not fit.

@@ -8,6 +8,7 @@ mod experiment;
 mod external;
 mod faults;
 mod inspection;
+mod plan;
 mod price;
 #[path = "../support/program.rs"]
 mod program;

@@ -6,7 +6,7 @@ use crate::analysis::z_test::two_sided_p;
 use crate::check::exact::{critical, run};
 use crate::check::{Case, Trials};
 use crate::estimator;
-use crate::experiment::{Definition, EXPERIMENTS, Profile, reference_seed};
+use crate::experiment::{Definition, EXPERIMENTS, reference_seed};
 use crate::film::Film;
 use crate::image_io::Image;
 use crate::kernel::Spec;
@@ -97,7 +97,8 @@ fn shared_bias(trials: &mut Trials) {
     let mut others = Vec::new();
     for (name, _) in EXPERIMENTS {
         let definition = Definition::load(&Lab::built_in(), name).expect("a shipped experiment");
-        let Ok(Some((reference, _))) = definition.reference(Profile::Full) else { continue };
+        let Some(profile) = definition.profiles().next() else { continue };
+        let Ok(Some((reference, _))) = definition.reference(profile) else { continue };
         if definition.estimator_names().iter().any(|estimator| aims(estimator) != aims(&reference)) {
             others.push(*name);
         }

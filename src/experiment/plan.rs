@@ -1,0 +1,167 @@
+//! What a sweep will take, before it starts: rows, bytes, and seconds by a short pilot.
+//!
+//! The pilot renders each kind of image once, on one thread and at a small size, for the nanoseconds of a sample. A cell takes its samples times
+//! that, divided by the processors that its threads can use. This assumes an ideal speedup, and leaves out what schedules cost.
+
+use super::cell::Cell;
+use super::sweep::Sweep;
+use super::{Keep, Reference};
+use crate::error::Result;
+use crate::kernel::Spec;
+use crate::lab::Lab;
+use crate::measure::{Settings, available_threads};
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Seconds of rendering for each kind of image.
+const RENDER_S: f64 = 0.05;
+/// Seconds after which no other kind is rendered.
+const MOST_S: f64 = 15.0;
+/// Columns of the pilot's images: lanes have enough paths at a time.
+const WIDTH: u32 = 64;
+/// Seconds of a row besides rendering: its process starts, and its image is checked.
+const ROW_S: f64 = 0.03;
+/// Bytes of a row, of a job in a trace, of a pixel in an image, and of a pixel in the film of a reference.
+const BYTES: [u64; 4] = [760, 60, 12, 52];
+
+/// What a sweep takes, from its first row to its last.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Plan {
+    /// The experiment.
+    pub name: String,
+    /// Its cells.
+    pub cells: usize,
+    /// Its rows.
+    pub rows: usize,
+    /// Estimated seconds of the references that no earlier plan has and no cache holds.
+    pub references_s: f64,
+    /// Halves of those references.
+    pub halves: usize,
+    /// Estimated seconds of all rows.
+    pub cells_s: f64,
+    /// Estimated bytes of rows, traces, images and references. Figures are not among them.
+    pub bytes: u64,
+}
+
+impl Plan {
+    /// Estimated seconds.
+    pub fn seconds(&self) -> f64 {
+        self.references_s + self.cells_s
+    }
+}
+
+/// What the pilot knows of samples, and the references that have been planned.
+pub struct Prices<'a> {
+    lab: &'a Lab,
+    begun: Instant,
+    /// Kinds of images, with the seconds of a sample.
+    kinds: Vec<(Settings, f64)>,
+    /// Kinds that were not rendered for want of time; the mean of the others stands for them.
+    pub guessed: usize,
+    planned: HashSet<PathBuf>,
+}
+
+impl<'a> Prices<'a> {
+    /// Nothing is known yet.
+    pub fn new(lab: &'a Lab) -> Self {
+        Self { lab, begun: Instant::now(), kinds: Vec::new(), guessed: 0, planned: HashSet::new() }
+    }
+
+    /// How many kinds of images are known.
+    pub fn kinds(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// Seconds of a sample of these settings on one processor.
+    fn sample_s(&mut self, settings: &Settings) -> Result<f64> {
+        let kind = small(settings);
+        if let Some((_, seconds)) = self.kinds.iter().find(|(known, _)| *known == kind) {
+            return Ok(*seconds);
+        }
+        let seconds = if self.begun.elapsed().as_secs_f64() < MOST_S {
+            self.measure(&kind, settings.spp)?
+        } else {
+            self.guessed += 1;
+            self.kinds.iter().map(|(_, seconds)| seconds).sum::<f64>() / self.kinds.len().max(1) as f64
+        };
+        self.kinds.push((kind, seconds));
+        Ok(seconds)
+    }
+
+    /// Renders a kind of image; `spp` is a number of samples that it can have.
+    fn measure(&self, kind: &Settings, spp: u32) -> Result<f64> {
+        let with = |spp: u32| self.lab.prepare(Settings { spp, ..kind.clone() });
+        let samples = |spp: u32| f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp);
+        let fewest = with(spp)?.fewest_spp();
+        let setup = with(fewest)?;
+        // The first run of a setup builds its kernel, and the first of a process is slower than the rest.
+        setup.run(None)?;
+        let once_s = setup.run(None)?.makespan_s;
+        let times = (RENDER_S / once_s).clamp(1.0, 64.0) as u32;
+        if times == 1 {
+            return Ok(once_s / samples(fewest));
+        }
+        Ok(with(fewest * times)?.run(None)?.makespan_s / samples(fewest * times))
+    }
+
+    /// Adds a reference that no earlier plan has.
+    fn add_reference(&mut self, reference: &Reference, folder: &Path, plan: &mut Plan) -> Result<()> {
+        let pixels = u64::from(reference.size[0]) * u64::from(reference.size[1]);
+        for (half, path) in reference.paths(self.lab, folder)?.into_iter().enumerate() {
+            if path.is_file() || !self.planned.insert(path) {
+                continue;
+            }
+            let setup = reference.half(self.lab, half as u32)?;
+            let samples = pixels as f64 * f64::from(reference.spp);
+            plan.references_s += samples * self.sample_s(setup.settings())? / available_threads() as f64;
+            plan.halves += 1;
+            plan.bytes += pixels * BYTES[3];
+        }
+        Ok(())
+    }
+}
+
+/// The image of these settings at the pilot's size and by one thread, whatever its samples. Two cells of one kind have the same.
+fn small(settings: &Settings) -> Settings {
+    let spec = &settings.spec;
+    let height = (u64::from(WIDTH) * u64::from(spec.height)).div_ceil(u64::from(spec.width).max(1));
+    let spec = Spec { width: WIDTH, height: height.clamp(1, 4 * u64::from(WIDTH)) as u32, seed: 0, ..spec.clone() };
+    let schedule = Settings { strategy: "serial".to_string(), threads: 1, ..Settings::default() };
+    Settings { scene: settings.scene.clone(), spp: 0, spec, ..schedule }
+}
+
+impl Sweep<'_> {
+    /// What it takes. Other programs have no price, so their seconds are not in it.
+    pub fn plan(&self, prices: &mut Prices<'_>) -> Result<Plan> {
+        let (definition, options) = (self.definition, self.options);
+        let repetitions = options.repetitions.map_or_else(|| definition.repetitions(options.profile), Ok)?;
+        let mut plan = Plan { name: definition.name.clone(), cells: self.cells.len(), ..Plan::default() };
+        let folder = options.out.join("references");
+        for reference in &self.references {
+            prices.add_reference(reference, &folder, &mut plan)?;
+        }
+        let mut images = HashSet::new();
+        for cell in &self.cells {
+            plan.rows += cell.points.len() * repetitions as usize;
+            if cell.external.is_none() {
+                let once = cell.weight as f64 * prices.sample_s(&cell.settings)? + ROW_S;
+                plan.cells_s += once * f64::from(repetitions);
+            }
+            if definition.keeps(Keep::Traces) && cell.external.is_none() {
+                plan.bytes +=
+                    prices.lab.prepare(cell.settings.clone())?.jobs() as u64 * BYTES[1] * u64::from(repetitions);
+            }
+            if definition.keeps(Keep::Images) {
+                images.extend(cell.points.iter().map(|point| (point.image.as_str(), pixels(cell))));
+            }
+        }
+        plan.bytes += plan.rows as u64 * BYTES[0];
+        plan.bytes += images.iter().map(|(_, pixels)| pixels * BYTES[2]).sum::<u64>();
+        Ok(plan)
+    }
+}
+
+fn pixels(cell: &Cell) -> u64 {
+    u64::from(cell.settings.spec.width) * u64::from(cell.settings.spec.height)
+}
