@@ -55,6 +55,11 @@ impl CaseRow {
     }
 }
 
+/// Whether a folder of results has the list already.
+pub fn is_in(out: &Path) -> bool {
+    out.join(FOLDER).join(FILE).is_file()
+}
+
 /// Enters the list into the files of a command that will write it. Refuses a folder that has one: results are never overwritten.
 pub fn claim(out: &Path, files: &mut Files) -> Result<()> {
     files.renews("out", &out.join(FOLDER).join(FILE), |_| false)

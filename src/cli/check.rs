@@ -1,17 +1,15 @@
 //! `pathmark check`: the hard cases on this machine, and what guarding against them costs.
 
-use super::guards;
 use super::output::{lock_folder, print, print_json};
 use super::progress::Talk;
-use crate::check::cases_file::{self, CaseRow};
+use super::{cases, guards};
+use crate::check::cases_file;
 use crate::check::guards::PriceRow;
 use crate::check::{self, Case, Effort, Outcome, SECTIONS};
 use crate::error::{Error, InputError, Result};
-use crate::experiment::Progress;
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::{Lock, Sharing};
-use crate::measure::available_threads;
 use crate::report;
 use clap::Args;
 use serde::Serialize;
@@ -26,7 +24,8 @@ pub(super) struct Arguments {
     /// Try as many random inputs as the catalogue of hard cases asks for: minutes to hours
     #[arg(long)]
     thorough: bool,
-    /// Write the cases and the price list of the guards into this folder, beside the results of experiments, and a page of all of them
+    /// Write the cases and the price list of the guards into this folder, beside the results of experiments, and a page of all of them. A price list that
+    /// is there stays
     #[arg(long, value_name = "DIR", conflicts_with = "cases")]
     out: Option<PathBuf>,
     /// Print one JSON object
@@ -45,19 +44,18 @@ struct Row<'a> {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
-    let cases = chosen(&arguments.cases)?;
-    let _lock = arguments.out.as_ref().map(|out| folder_for_prices(out)).transpose()?;
+    let chosen = chosen(&arguments.cases)?;
+    let _lock = arguments.out.as_ref().map(|out| folder_for_results(out)).transpose()?;
     let effort = if arguments.thorough { Effort::Thorough } else { Effort::Quick };
-    talk.begin("hard cases", cases.len() as u64);
-    let outcomes = check::run(&cases, effort, available_threads(), &|done| talk.advance(done))?;
-    talk.end();
-    let rows: Vec<Row<'_>> = cases
+    let outcomes = cases::try_all(&chosen, effort, talk)?;
+    let rows: Vec<Row<'_>> = chosen
         .iter()
         .zip(&outcomes)
         .map(|(case, outcome)| Row { id: case.id, tries: case.tries, pass: outcome.passed(), outcome })
         .collect();
-    // Guards are timed alone, and only where everything is asked for.
-    let prices = if arguments.cases.is_empty() { guards::measure(talk) } else { Vec::new() };
+    // Guards are timed alone, only where everything is asked for, and once for each folder.
+    let are_priced = arguments.out.as_ref().is_some_and(|out| guards::are_in(out));
+    let prices = if arguments.cases.is_empty() && !are_priced { guards::measure(talk) } else { Vec::new() };
     if arguments.json {
         print_json(&serde_json::json!({ "cases": rows, "guards": prices }))?;
     } else {
@@ -67,19 +65,23 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         }
     }
     if let Some(out) = &arguments.out {
-        let tried = cases.iter().zip(&outcomes).map(|(case, outcome)| CaseRow::new(case, outcome));
-        cases_file::write(out, &tried.collect::<Vec<CaseRow>>())?;
-        guards::write(out, &prices)?;
+        cases::write(out, &chosen, &outcomes)?;
+        if !are_priced {
+            guards::write(out, &prices)?;
+        }
         print(&format!("report in {}", report::write(lab, out)?.display()))?;
     }
     let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| row.id).collect();
     if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }
 }
 
-/// The folder of results, locked, if the price list and the page may be written into it.
-fn folder_for_prices(out: &Path) -> Result<Lock> {
+/// The folder of results, locked, if the cases, the price list and the page may be written into it. `reproduce` may have left the price list
+/// there already.
+fn folder_for_results(out: &Path) -> Result<Lock> {
     let mut files = Files::default();
-    guards::claim(out, &mut files)?;
+    if !guards::are_in(out) || cases_file::is_in(out) {
+        guards::claim(out, &mut files)?;
+    }
     cases_file::claim(out, &mut files)?;
     report::claim("out", out, &mut files)?;
     lock_folder(out, Sharing::Shared)

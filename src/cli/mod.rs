@@ -4,6 +4,7 @@
 
 mod axes;
 mod bounces;
+mod cases;
 mod check;
 mod claims;
 mod compare;

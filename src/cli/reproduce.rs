@@ -4,15 +4,15 @@ use super::output::{lock_folder, print};
 use super::plan::Plans;
 use super::progress::Talk;
 use super::whole::Whole;
-use super::{command_line, guards, profile, strict::Strict};
-use crate::check::guards::FOLDER;
+use super::{cases, command_line, guards, profile, strict::Strict};
+use crate::check::{self, Case, Effort, cases_file, guards::FOLDER};
 use crate::error::{Error, Result};
 use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
 use crate::measure::utc_now;
-use crate::report;
+use crate::report::{self, claims};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -72,6 +72,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         guards::claim(&arguments.out, &mut files)?;
     }
     let Total { rows, failed, invalid } = run_all(&sweeps, profile, lab, talk)?;
+    // They take longer than a sixth of all quick experiments: `check --out` tries them when they are asked for.
+    if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
+        let all: Vec<&'static Case> = check::cases().collect();
+        cases::write(&arguments.out, &all, &cases::try_all(&all, Effort::Quick, talk)?)?;
+    }
     if !guards::are_in(&arguments.out) {
         guards::write(&arguments.out, &guards::measure(talk))?;
     }
@@ -133,7 +138,7 @@ fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
         return Err(Error::system("reading", "the system's clock", problem));
     }
     let earlier = out.join("earlier").join(stamp);
-    for name in names.into_iter().chain([FOLDER]) {
+    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;
