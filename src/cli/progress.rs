@@ -6,6 +6,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+/// The time left by the pace of the bar, and by what the work says itself.
+const BY_PACE: &str = "{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {eta} left";
+const BY_WORK: &str = "{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {prefix} left";
+
 /// Talks on standard error.
 pub(super) struct Talk {
     quiet: bool,
@@ -44,25 +48,12 @@ impl Talk {
 }
 
 impl Talk {
-    /// A part of the work that has begun: the bar goes on under another title, and `left` stands beside the title where there is no bar.
-    pub(super) fn step(&self, title: &str, left: &str) {
-        if self.quiet {
-            return;
-        }
-        match &self.work().bar {
-            Some(bar) => bar.set_message(title.to_string()),
-            None => Self::line(&format!("{title} ..., {left}")),
-        }
-    }
-}
-
-impl Progress for Talk {
-    fn begin(&self, title: &str, total: u64) {
+    fn start(&self, title: &str, total: u64, template: &str) {
         if self.quiet {
             return;
         }
         let bar = self.terminal.then(|| {
-            let style = ProgressStyle::with_template("{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {eta} left");
+            let style = ProgressStyle::with_template(template);
             let bar = ProgressBar::new(total);
             bar.with_message(title.to_string()).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
@@ -70,6 +61,35 @@ impl Progress for Talk {
             Self::line(&format!("{title} ..."));
         }
         *self.work() = Work { title: title.to_string(), total, bar, told: 0 };
+    }
+
+    /// Work begins that consists of steps and knows the time left.
+    pub(super) fn begin_steps(&self, title: &str, total: u64) {
+        self.start(title, total, BY_WORK);
+    }
+
+    /// A step begins: the bar goes on under its title, and a line says the time left where there is no bar.
+    pub(super) fn step(&self, title: &str, left: &str) {
+        if self.quiet {
+            return;
+        }
+        match &self.work().bar {
+            Some(bar) => bar.set_message(title.to_string()),
+            None => Self::line(&format!("{title} ..., {left} left in all")),
+        }
+    }
+
+    /// The time left, for the bar.
+    pub(super) fn left(&self, left: &str) {
+        if let Some(bar) = &self.work().bar {
+            bar.set_prefix(left.to_string());
+        }
+    }
+}
+
+impl Progress for Talk {
+    fn begin(&self, title: &str, total: u64) {
+        self.start(title, total, BY_PACE);
     }
 
     fn advance(&self, done: u64) {

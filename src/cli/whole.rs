@@ -3,12 +3,40 @@
 use super::progress::Talk;
 use crate::experiment::{Plan, Progress};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// Tells a `Talk` how far all experiments are, while each of them tells how far it is itself.
 pub(super) struct Whole<'a> {
     talk: &'a Talk,
     total_s: f64,
     place: Mutex<Place>,
+    pace: Mutex<Pace>,
+}
+
+/// What work took, beside its estimate.
+struct Pace {
+    at_s: f64,
+    at: Instant,
+    estimated_s: f64,
+    taken_s: f64,
+}
+
+impl Pace {
+    /// The work has come to that second of the estimate.
+    fn watch(&mut self, at_s: f64) {
+        let (estimated_s, taken_s) = (at_s - self.at_s, self.at.elapsed().as_secs_f64());
+        // Rows that an earlier run made take no time and say nothing about the pace.
+        if taken_s > 0.01 * estimated_s {
+            self.estimated_s += estimated_s;
+            self.taken_s += taken_s;
+        }
+        (self.at_s, self.at) = (at_s, Instant::now());
+    }
+
+    /// Seconds taken for each second of the estimate.
+    fn factor(&self) -> f64 {
+        if self.estimated_s > 0.0 { self.taken_s / self.estimated_s } else { 1.0 }
+    }
 }
 
 /// Where the work stands, in seconds of the estimate.
@@ -26,8 +54,19 @@ struct Place {
 impl<'a> Whole<'a> {
     pub(super) fn new(talk: &'a Talk, plans: &[Plan]) -> Self {
         let total_s = plans.iter().map(Plan::seconds).sum();
-        talk.begin("all experiments", milliseconds(total_s));
-        Self { talk, total_s, place: Mutex::new(Place::default()) }
+        talk.begin_steps("all experiments", milliseconds(total_s));
+        let pace = Pace { at_s: 0.0, at: Instant::now(), estimated_s: 0.0, taken_s: 0.0 };
+        Self { talk, total_s, place: Mutex::new(Place::default()), pace: Mutex::new(pace) }
+    }
+
+    /// The work has come to that second of the estimate; the time left, in words.
+    fn reach(&self, at_s: f64) -> String {
+        let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
+        pace.watch(at_s);
+        let left = format!("about {:.0} min", (pace.factor() * (self.total_s - at_s).max(0.0) / 60.0).ceil());
+        self.talk.left(&left);
+        self.talk.advance(milliseconds(at_s));
+        left
     }
 
     fn place(&self) -> MutexGuard<'_, Place> {
@@ -57,15 +96,13 @@ impl Progress for Whole<'_> {
             (place.from_s, place.plan.references_s / place.plan.halves.max(1) as f64)
         };
         place.total = total;
-        let left_s = self.total_s - place.from_s;
-        self.talk.step(title, &format!("about {:.0} min left of all experiments", (left_s / 60.0).ceil()));
-        self.talk.advance(milliseconds(place.from_s));
+        self.talk.step(title, &self.reach(place.from_s));
     }
 
     fn advance(&self, done: u64) {
         let place = self.place();
         let share = done as f64 / place.total.max(1) as f64;
-        self.talk.advance(milliseconds(place.from_s + place.step_s * share));
+        self.reach(place.from_s + place.step_s * share);
     }
 
     fn note(&self, text: &str) {
@@ -82,5 +119,22 @@ impl Progress for Whole<'_> {
 impl Drop for Whole<'_> {
     fn drop(&mut self) {
         self.talk.end();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn rows_that_are_there_do_not_change_the_pace() {
+        let at = Instant::now().checked_sub(Duration::from_secs(20)).unwrap();
+        let mut pace = Pace { at_s: 0.0, at, estimated_s: 0.0, taken_s: 0.0 };
+        pace.watch(10.0);
+        let slow = pace.factor();
+        assert!((2.0..2.5).contains(&slow), "{slow}");
+        pace.watch(1e6);
+        assert_eq!(pace.factor(), slow);
     }
 }
