@@ -79,7 +79,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 /// there already.
 fn folder_for_results(out: &Path) -> Result<Lock> {
     let mut files = Files::default();
-    if !guards::are_in(out) || cases_file::is_in(out) {
+    if !guards::are_in(out) || guards::read(out)?.is_empty() {
         guards::claim(out, &mut files)?;
     }
     cases_file::claim(out, &mut files)?;

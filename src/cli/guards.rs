@@ -1,6 +1,6 @@
 //! Measuring the price list of the guards, for `check` and `reproduce`.
 
-use crate::check::guards::{FILE, FOLDER, GUARDS, PriceRow, write_prices};
+use crate::check::guards::{FILE, FOLDER, GUARDS, PriceRow, read_prices, write_prices};
 use crate::error::{Error, Result};
 use crate::experiment::{MACHINE, Progress, RunFile, read_run_file};
 use crate::files::Files;
@@ -9,6 +9,11 @@ use std::path::Path;
 /// Whether a folder of results has the list already.
 pub(super) fn are_in(out: &Path) -> bool {
     out.join(FOLDER).join(FILE).is_file()
+}
+
+/// The list in a folder of results.
+pub(super) fn read(out: &Path) -> Result<Vec<PriceRow>> {
+    read_prices(&out.join(FOLDER).join(FILE))
 }
 
 /// Measures all guards, one after the other.

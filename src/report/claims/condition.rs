@@ -109,6 +109,11 @@ impl Conditions {
         self.0.iter().all(|(column, wanted)| wanted.values().iter().any(|value| value.admits(row, column)))
     }
 
+    /// Whether they admit every row.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// The columns that they speak of.
     pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(String::as_str)

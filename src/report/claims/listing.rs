@@ -160,7 +160,7 @@ fn entry(answer: &Answer<'_>, base: &Path) -> String {
         let level = level.map_or_else(String::new, |level| format!(", {:.1} %", 100.0 * level));
         let _ = writeln!(
             text,
-            "- Measured: {}{level}; {}, {rows} values from [{shown}]({shown})\n- Predicted: {}",
+            "- Measured: {}{level}; {}; {rows} values, [{shown}]({shown})\n- Predicted: {}",
             answer.measured(),
             answer.question(),
             answer.predicted()

@@ -173,7 +173,8 @@ impl fmt::Display for Statistic {
         match self {
             Self::Case { ids } => write!(f, "failed among the hard cases {}", ids.join(", ")),
             Self::Guard { guard, column } => write!(f, "{} of the guard \"{guard}\"", column.name()),
-            Self::OfRows { experiment, rows, kind } => write!(f, "{kind}, {experiment} where {rows}"),
+            Self::OfRows { experiment, rows, kind } if rows.is_empty() => write!(f, "{kind}; all rows of {experiment}"),
+            Self::OfRows { experiment, rows, kind } => write!(f, "{kind}; rows of {experiment} where {rows}"),
         }
     }
 }
@@ -185,8 +186,8 @@ impl fmt::Display for Kind {
             Self::Value { column, per: Some(per) } => write!(f, "median {column} / {per}"),
             Self::Share { column, of } => write!(f, "mean {column} / {of}"),
             Self::Count { column } => write!(f, "sum of {column}"),
-            Self::PairedRatio { column, over } => write!(f, "median ratio of {column} over rows where {over}"),
-            Self::Speedup { over } => write!(f, "median speedup over rows where {over}"),
+            Self::PairedRatio { column, over } => write!(f, "median ratio of {column} to that of rows where {over}"),
+            Self::Speedup { over } => write!(f, "median speedup against rows where {over}"),
             Self::Exponent { x, y } => write!(f, "exponent of {y} against {x}"),
             Self::RmseSlope => f.write_str("exponent of rmse against spp"),
             Self::Z { column, over } => write!(f, "z of mean {column} against rows where {over}"),
