@@ -150,7 +150,7 @@ mod tests {
     use crate::scene::{Content, Primitive, Primitives, Sphere};
     use crate::simd::{Precision, Work, levels, on_level, widths_of};
 
-    const DEPTH: usize = 100;
+    const DEPTH: usize = 200;
 
     /// A row of spheres whose boxes are all on the x axis, though the axis meets the last one alone. Each node holds the last of its spheres and a
     /// node with those before, so a ray along the axis comes to the last one when everything else has been looked at.
