@@ -1,6 +1,6 @@
 //! The claims of the four reports, each with a verdict that is computed from the results in a folder.
 //!
-//! A claim names the rows that answer it, a statistic, and the values that the report predicts for it ([`definition`]). To add one, add
+//! A claim names the rows that answer it, a statistic, and the values that the report predicts for it (see `definition.rs`). To add one, add
 //! it to `experiments/claims/REPORT.toml`.
 
 mod condition;
