@@ -2,7 +2,7 @@
 
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, read_text};
-use crate::kernel::{Clamp, Spec};
+use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{AXES, Axis, Field, LARGEST_SEED, Settings, THREAD_PER_ROW};
 use clap::builder::ValueParser;
@@ -22,12 +22,10 @@ pub(super) struct Axes {
     what: What,
     #[command(flatten)]
     schedule: Options<false>,
-    /// Clamp each subpixel's mean to 1 before averaging, as smallpt does: biased
-    #[arg(long)]
-    pub(super) subpixel_clamp: bool,
-    /// Clamp the light that each recursion returns to 1, as report B does: biased
-    #[arg(long, conflicts_with = "subpixel_clamp")]
-    pub(super) recursion_clamp: bool,
+    /// Clamp bright light: `subpixel`, the mean of each subpixel to 1 as smallpt does, or `recursion`, what each recursion returns as report B
+    /// does; `recursion:10` clamps to 10. Biased
+    #[arg(long, value_name = "CLAMP")]
+    pub(super) clamp: Option<String>,
 }
 
 /// What clap refuses before the program looks at a value.
@@ -37,7 +35,7 @@ fn parser(axis: &Axis) -> ValueParser {
         Field::Samples(_) => value_parser!(u32).into(),
         Field::Seed(_) => value_parser!(u64).into(),
         Field::Workers(_) => value_parser!(usize).into(),
-        Field::Name(_) | Field::Fitting(_) | Field::Size(_) | Field::Clamp(_) => ValueParser::string(),
+        Field::Name(_) | Field::Fitting(_) | Field::Size(_) => ValueParser::string(),
     }
 }
 
@@ -110,9 +108,7 @@ fn check_for_workload(settings: &Settings) -> Result<()> {
         Some(axis) => {
             let (value, problem) =
                 (axis.show(settings), format!("has no meaning for {}, which is a workload", settings.scene));
-            // Each clamp is a switch of its own.
-            let option = if axis.name == "clamp" { format!("{value}-clamp") } else { axis.name.to_string() };
-            Err(InputError::new(option, value, problem).allowed("none").into())
+            Err(InputError::new(axis.name, value, problem).allowed("none").into())
         }
     }
 }
@@ -143,11 +139,7 @@ impl Axes {
     pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let mut settings = self.what.settings(lab, scene, spp, seed)?;
         self.schedule.apply(&mut settings)?;
-        settings.spec.clamp = match (self.subpixel_clamp, self.recursion_clamp) {
-            (true, _) => Some(Clamp::Subpixel),
-            (false, true) => Some(Clamp::Recursion),
-            (false, false) => None,
-        };
+        settings.spec.clamp.clone_from(&self.clamp);
         if lab.workload_named(scene).is_some() {
             check_for_workload(&settings)?;
         }

@@ -11,7 +11,7 @@ use crate::material::MATERIALS;
 use crate::measure::OUTPUTS;
 use crate::metric::METRICS;
 use crate::sampling::SAMPLERS;
-use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, GENERATORS, PROFILES, SHAPES, effect_names};
+use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, FILTERS, GENERATORS, PROFILES, SHAPES, effect_names};
 use crate::simd::LEVELS;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
@@ -41,6 +41,7 @@ enum Kind {
     Effects,
     Accelerators,
     Cameras,
+    Filters,
     Shapes,
     Generators,
     Materials,
@@ -98,6 +99,7 @@ fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
         Kind::Simd => LEVELS.iter().map(|level| item(level.name, level.about)).collect(),
         Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Accelerators => ACCELERATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Filters => FILTERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Cameras => CAMERAS.iter().map(|(name, about)| item(name, about)).collect(),
         Kind::Shapes => SHAPES.iter().map(|(name, about)| item(name, about)).collect(),
         Kind::Generators => GENERATORS.iter().map(|(name, about)| item(name, about)).collect(),

@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
 /// What a child is asked to do.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -180,14 +181,15 @@ impl CellJob {
         references: Option<&[Image; 2]>,
     ) -> Result<Record> {
         let image = outcome.film.image();
-        if let Some(path) = &point.image {
-            image_io::write(path, &image)?;
-        }
+        let begun = Instant::now();
+        point.image.as_ref().map_or(Ok(()), |path| image_io::write(path, &image))?;
+        let image_write_s = point.image.as_ref().map(|_| begun.elapsed().as_secs_f64());
         let errors = match references {
             Some([first, second]) => Measured::against(&image, first, second)?,
             None => Measured::default(),
         };
-        Ok(self.label(point, Record::new(setup, outcome, errors)))
+        let record = Record { image_write_s, ..Record::new(setup, outcome, errors) };
+        Ok(self.label(point, record))
     }
 
     fn read_references(&self, halves: &[HalfFile; 2]) -> Result<[Image; 2]> {

@@ -16,9 +16,8 @@
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
 //! # There may be several, each under [[matrix]]. Optional: sampler, output, effects, accelerator, roulette, max-depth, size (instead of the
-//! # profile's), kernel, simd, precision, weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
-//! # fewest samples on the way to each spp. clamp = "subpixel" clamps each subpixel's mean before averaging,
-//! # clamp = "recursion" the light of each recursion. profiles = ["reports"] is for a matrix that other profiles do not have.
+//! # profile's), kernel, simd, precision, clamp, filter, epsilon, weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
+//! # fewest samples on the way to each spp. profiles = ["reports"] is for a matrix that other profiles do not have.
 //!
 //! [figure.price-list]            # optional: what a figure of the list above is told
 //! goals = [0.1, 0.01]

@@ -1,7 +1,6 @@
 //! The tables of a definition that give values to axes: `[matrix]`, and a table for each profile.
 
 use super::Profile;
-use crate::kernel::Clamp;
 use crate::measure::{AXES, Axis, Field, Settings, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
@@ -108,9 +107,8 @@ impl<'de> DeserializeSeed<'de> for Values {
             Field::Samples(_) => words(&Vec::<u32>::deserialize(from)?),
             Field::Seed(_) => words(&Vec::<u64>::deserialize(from)?),
             Field::Workers(_) => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
-            // All cells have the same size and clamp, which are no lists.
+            // All cells have the same size, which is no list.
             Field::Size(_) => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
-            Field::Clamp(_) => vec![Clamp::deserialize(from)?.name().to_string()],
         })
     }
 }

@@ -37,6 +37,15 @@ pub struct FilmKey {
     /// How chance ends paths, the estimator's own rule included; films of revision 1 leave that out.
     #[serde(default)]
     pub roulette: Option<String>,
+    /// What is clamped, if anything is; older files do not say.
+    #[serde(default)]
+    pub clamp: Option<String>,
+    /// The pixel filter, if it is not the camera's own.
+    #[serde(default)]
+    pub filter: Option<String>,
+    /// Nearer than this nothing is hit, if there is such a distance.
+    #[serde(default)]
+    pub epsilon: Option<String>,
     /// Floating-point format of the paths; older files have but one.
     #[serde(default = "double")]
     pub precision: String,

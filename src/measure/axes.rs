@@ -5,8 +5,9 @@
 
 use super::Settings;
 use crate::error::{InputError, Result};
-use crate::kernel::{Clamp, Spec};
+use crate::kernel::Spec;
 use crate::lab::Lab;
+use crate::scene::FILTERS;
 use crate::simd::{Level, levels};
 use Field::{Fitting, Name};
 
@@ -26,8 +27,6 @@ pub enum Field<'a> {
     Workers(&'a mut usize),
     /// Columns and rows.
     Size(&'a mut Spec),
-    /// A clamp, or none.
-    Clamp(&'a mut Option<Clamp>),
 }
 
 /// One axis.
@@ -116,9 +115,6 @@ impl Field<'_> {
             Self::Seed(seed) => *seed = text.parse().ok()?,
             Self::Workers(threads) => *threads = text.parse().ok()?,
             Self::Size(spec) => (spec.width, spec.height) = parse_size(text).ok()?,
-            Self::Clamp(clamp) => {
-                *clamp = Some([Clamp::Subpixel, Clamp::Recursion].into_iter().find(|known| known.name() == text)?);
-            }
         }
         Some(())
     }
@@ -132,7 +128,6 @@ impl Field<'_> {
             Self::Seed(seed) => seed.to_string(),
             Self::Workers(threads) => threads.to_string(),
             Self::Size(spec) => format!("{}x{}", spec.width, spec.height),
-            Self::Clamp(clamp) => clamp.map(Clamp::name).unwrap_or_default().to_string(),
         }
     }
 }
@@ -145,12 +140,16 @@ fn all_levels(_: &Lab) -> Vec<String> {
     levels().map(Level::name).map(str::to_string).collect()
 }
 
+fn all_filters(_: &Lab) -> Vec<String> {
+    FILTERS.iter().map(|entry| entry.name.to_string()).collect()
+}
+
 fn all_strategies(lab: &Lab) -> Vec<String> {
     lab.strategies().iter().map(|entry| entry.name.to_string()).collect()
 }
 
 /// Every axis, in the order in which an experiment nests them: the first varies slowest. Results on disk depend on the order.
-pub static AXES: [Axis; 18] = [
+pub static AXES: [Axis; 20] = [
     Axis::new("scene", |s| Name(&mut s.scene)).image().all(all_scenes),
     Axis::new("size", |s| Field::Size(&mut s.spec)).image().option("WxH", "Columns and rows").default("512x384"),
     Axis::new("estimator", |s| Name(&mut s.spec.estimator)).image().light().option("NAME", "Estimator [default: the scene's own]"),
@@ -158,7 +157,9 @@ pub static AXES: [Axis; 18] = [
     Axis::new("max-depth", |s| Field::Depth(&mut s.spec.max_depth)).image().light().option("N", "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]"),
     Axis::new("spp", |s| Field::Samples(&mut s.spp)).image(),
     Axis::new("seed", |s| Field::Seed(&mut s.spec.seed)).image(),
-    Axis::new("clamp", |s| Field::Clamp(&mut s.spec.clamp)).image().light(),
+    Axis::new("clamp", |s| Fitting(&mut s.spec.clamp)).image().light(),
+    Axis::new("filter", |s| Fitting(&mut s.spec.filter)).image().light().all(all_filters).option("NAME", "Pixel filter: tent, box or center [default: the camera's own]"),
+    Axis::new("epsilon", |s| Fitting(&mut s.spec.epsilon)).image().light().option("DISTANCE", "Drop hits nearer than this, as programs do that cannot tell where a ray starts: biased, and for the scalar kernel alone [default: no such distance is needed]"),
     Axis::new("kernel", |s| Name(&mut s.spec.kernel)).light().option("NAME", "Kernel").default("lanes"),
     Axis::new("simd", |s| Fitting(&mut s.spec.simd)).light().all(all_levels).option("LEVEL", "Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]"),
     Axis::new("precision", |s| Name(&mut s.spec.precision)).image().light().option("FORMAT", "Floating-point format: f64, or f32, which lanes alone have and which gives other bits").default("f64"),

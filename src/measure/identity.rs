@@ -28,8 +28,12 @@ pub struct ImageKey {
     pub max_depth: Option<u16>,
     /// How chance ends paths, the estimator's own rule included; empty if it does not.
     pub roulette: String,
-    /// What is clamped to 1; empty if nothing is.
+    /// What is clamped; empty if nothing is.
     pub clamp: String,
+    /// Pixel filter; empty if it is the camera's own.
+    pub filter: String,
+    /// Distance below which nothing is hit; empty if there is none.
+    pub epsilon: String,
     /// Floating-point format of the kernel that renders.
     pub precision: String,
     /// Whether tiles have as many samples as their noise calls for.
@@ -44,7 +48,13 @@ impl fmt::Display for ImageKey {
         if let Some(depth) = self.max_depth {
             write!(f, "/depth{depth}")?;
         }
-        let parts = [("roulette-", &self.roulette), ("clamp-", &self.clamp), ("", &self.precision)];
+        let parts = [
+            ("roulette-", &self.roulette),
+            ("clamp-", &self.clamp),
+            ("filter-", &self.filter),
+            ("epsilon-", &self.epsilon),
+            ("", &self.precision),
+        ];
         for (name, value) in parts.iter().filter(|(_, value)| !value.is_empty()) {
             write!(f, "/{name}{value}")?;
         }
@@ -109,6 +119,8 @@ impl Record {
             max_depth: self.max_depth,
             roulette: self.roulette.clone(),
             clamp: self.clamp.clone(),
+            filter: self.filter.clone(),
+            epsilon: self.epsilon.clone(),
             precision: self.precision.clone(),
             adaptive: self.adaptive,
         }

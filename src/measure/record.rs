@@ -4,14 +4,15 @@ use super::{Outcome, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::image_io::Image;
+use crate::kernel::Choice;
 use crate::kernel::workload::WORKLOAD;
-use crate::kernel::{Choice, Clamp};
 use crate::metric;
+use crate::scene::Filter;
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 5;
+pub const SCHEMA: u32 = 6;
 
 /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
@@ -63,8 +64,12 @@ pub struct Record {
     pub time_limit_s: Option<f64>,
     /// How often jobs were handed out.
     pub rounds: Option<u32>,
-    /// What was clamped to 1: `subpixel` or `recursion`; empty if nothing was.
+    /// What was clamped: `subpixel` or `recursion`, and behind a colon to how much if not to 1; empty if nothing was.
     pub clamp: String,
+    /// Pixel filter; empty if it was the camera's own.
+    pub filter: String,
+    /// Distance below which nothing was hit; empty if there was none.
+    pub epsilon: String,
     /// Whether an option was on that changes what the image converges to.
     pub biased: bool,
     /// How the film was cut.
@@ -148,8 +153,16 @@ pub struct Record {
     /// What the samples themselves say of the squared error: the mean over pixels of the variance of a pixel's mean, for independent samples. Where
     /// subpixels or a sampler spread the samples evenly, the true error is below it.
     pub variance: Option<f64>,
+    /// Share of pixels whose display value is within 0.05 of the reference's in every channel: the share that is accurate.
+    pub within_tolerance: Option<f64>,
+    /// Pixels that are brighter than the reference by more than 1, the display's white, in some channel.
+    pub fireflies: Option<u64>,
     /// Mean radiance over pixels and channels.
     pub mean_radiance: Option<f64>,
+    /// Pixels in which every channel is 0.
+    pub black_pixels: Option<u64>,
+    /// Seconds to write the image; empty if it was not kept.
+    pub image_write_s: Option<f64>,
     /// Checksum of the film; empty if the sampler gives other numbers in each run.
     pub checksum: String,
     /// Doubts, separated by semicolons.
@@ -164,6 +177,12 @@ pub struct Record {
     pub started_utc: String,
 }
 
+/// See [`Record::within_tolerance`].
+const TOLERANCE: f64 = 0.05;
+
+/// See [`Record::fireflies`].
+const WHITE: f64 = 1.0;
+
 /// The errors of an image, where there was a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Measured {
@@ -173,6 +192,10 @@ pub struct Measured {
     pub mse_display: Option<f64>,
     /// See [`Record::rel_mse`].
     pub rel_mse: Option<f64>,
+    /// See [`Record::within_tolerance`].
+    pub within_tolerance: Option<f64>,
+    /// See [`Record::fireflies`].
+    pub fireflies: Option<u64>,
 }
 
 impl Measured {
@@ -182,6 +205,8 @@ impl Measured {
             mse: Some(metric::cross_mse(image, first, second)?),
             mse_display: Some(metric::cross_mse_display(image, first, second)?),
             rel_mse: Some(metric::cross_rel_mse(image, first, second)?),
+            within_tolerance: Some(metric::share_within(image, first, second, TOLERANCE)?),
+            fireflies: Some(metric::brighter_pixels(image, first, second, WHITE)?),
         })
     }
 }
@@ -202,8 +227,10 @@ fn described(settings: &Settings) -> Record {
         precision: spec.precision.clone(),
         max_depth: spec.max_depth,
         roulette: spec.roulette.clone().unwrap_or_default(),
-        clamp: spec.clamp.map(Clamp::name).unwrap_or_default().to_string(),
-        biased: spec.clamp.is_some() || spec.max_depth.is_some(),
+        clamp: spec.clamp.clone().unwrap_or_default(),
+        filter: spec.filter.clone().unwrap_or_default(),
+        epsilon: spec.epsilon.clone().unwrap_or_default(),
+        biased: spec.clamp.is_some() || spec.max_depth.is_some() || spec.filter.is_some() || spec.epsilon.is_some(),
         decomposition: settings.decomposition.clone(),
         strategy: settings.strategy.clone(),
         output: settings.output.clone(),
@@ -213,6 +240,11 @@ fn described(settings: &Settings) -> Record {
         started_utc: utc_now(),
         ..Record::default()
     }
+}
+
+/// A distance, small ones by their power of ten.
+fn distance(value: f64) -> String {
+    if value > 0.0 && value < 1e-3 { format!("{value:e}") } else { value.to_string() }
 }
 
 /// The row of a run that failed.
@@ -232,6 +264,8 @@ impl Record {
         self.mse_display = errors.mse_display;
         self.rmse_display = errors.mse_display.and_then(metric::root);
         self.rel_mse = errors.rel_mse;
+        self.within_tolerance = errors.within_tolerance;
+        self.fireflies = errors.fireflies;
         self
     }
 
@@ -266,6 +300,9 @@ impl Record {
         record.kernel = choice.map_or(WORKLOAD, Choice::kernel).to_string();
         if let Some(choice) = choice {
             record.biased = choice.is_biased();
+            record.clamp = choice.clamp().map(|clamp| clamp.to_string()).unwrap_or_default();
+            record.filter = choice.filter().map(Filter::name).unwrap_or_default().to_string();
+            record.epsilon = choice.epsilon().map(distance).unwrap_or_default();
             record.kernel_fallback = choice.fallback().to_string();
             record.simd = choice.simd().to_string();
             record.effects = choice.effects().to_string();
@@ -321,7 +358,9 @@ impl Record {
         record.truncated = Some(counts.truncated);
         record.invalid_samples = Some(counts.invalid);
         record.variance = Some(outcome.film.mean_variance());
-        record.mean_radiance = Some(outcome.film.image().mean().iter().sum::<f64>() / 3.0);
+        let image = outcome.film.image();
+        record.mean_radiance = Some(image.mean().iter().sum::<f64>() / 3.0);
+        record.black_pixels = Some(image.pixels.iter().filter(|pixel| **pixel == [0.0; 3]).count() as u64);
         record.checksum = outcome.checksum.clone().unwrap_or_default();
         record.warnings = outcome.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";");
         record

@@ -91,8 +91,8 @@ impl Rounds {
 impl Setup {
     /// Refuses settings that cannot be rendered in rounds.
     pub fn check_rounds(&self) -> Result<()> {
-        let Some(clamp) = self.settings().spec.clamp else { return Ok(()) };
+        let Some(clamp) = &self.settings().spec.clamp else { return Ok(()) };
         let problem = "needs all samples of a pixel at once, and so cannot be rendered in rounds";
-        Err(InputError::new(format!("{}-clamp", clamp.name()), "true", problem).into())
+        Err(InputError::new("clamp", clamp, problem).into())
     }
 }

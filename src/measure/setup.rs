@@ -9,9 +9,9 @@ use crate::estimator::Estimator;
 use crate::film::{Decomposition, Plan};
 use crate::film_file::FilmKey;
 use crate::kernel::workload::Entry as Workload;
-use crate::kernel::{self, Choice, Clamp, Counts, Kernel, OwnEstimator, Spec};
+use crate::kernel::{self, Choice, Clamped, Counts, Kernel, OwnEstimator, Spec};
 use crate::lab::{Lab, THREAD_PER_ROW};
-use crate::scene::{Filter, SUBPIXELS, Scene};
+use crate::scene::{SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
 use std::ops::Range;
@@ -47,6 +47,15 @@ struct Built {
     build_s: f64,
 }
 
+impl Subject {
+    fn choice(&self) -> Option<&Choice> {
+        match self {
+            Self::Scene { choice, .. } => Some(choice),
+            Self::Workload(_) => None,
+        }
+    }
+}
+
 impl Lab {
     /// Checks the settings, loads the scene and cuts the film.
     pub fn prepare(&self, settings: Settings) -> Result<Setup> {
@@ -65,6 +74,11 @@ impl Lab {
         let choice = Box::new(kernel::choose_among(&scene, &settings.spec, self.own_estimators())?);
         Setup::new(self, Subject::Scene { scene, choice }, settings)
     }
+}
+
+/// A part of a key, if there is one.
+fn given(part: String) -> Option<String> {
+    Some(part).filter(|part| !part.is_empty())
 }
 
 impl Setup {
@@ -97,7 +111,8 @@ impl Setup {
                 .allowed(names.join(", "))
                 .into());
         };
-        if settings.spec.clamp == Some(Clamp::Subpixel) && decomposition.splits_samples() {
+        let clamp = subject.choice().and_then(Choice::clamp);
+        if clamp.is_some_and(|clamp| clamp.what == Clamped::Subpixel) && decomposition.splits_samples() {
             let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
         }
@@ -237,7 +252,7 @@ impl Setup {
     }
 
     fn has_subpixels(&self) -> bool {
-        self.scene().is_some_and(|(scene, _)| scene.camera.filter == Filter::Subpixels)
+        self.scene().is_some_and(|(scene, choice)| choice.subpixels(scene) > 1)
     }
 
     /// What the film will be of.
@@ -253,7 +268,10 @@ impl Setup {
             width: key.width,
             height: key.height,
             max_depth: key.max_depth,
-            roulette: Some(key.roulette).filter(|rule| !rule.is_empty()),
+            roulette: given(key.roulette),
+            clamp: given(key.clamp),
+            filter: given(key.filter),
+            epsilon: given(key.epsilon),
             precision: key.precision,
             adaptive: key.adaptive,
             revision: kernel::REVISION,

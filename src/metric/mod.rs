@@ -12,10 +12,12 @@ mod heatmap;
 mod percentile;
 mod pointwise;
 mod ssim;
+mod tolerance;
 
 pub use cross::{bias_squared, cross_mse, cross_mse_display, cross_rel_mse, root};
 pub use heatmap::{Heatmap, heat_colour, heatmap};
 pub use pointwise::REL_MSE_EPSILON;
+pub use tolerance::{brighter_pixels, share_within};
 
 use crate::error::{InputError, Result};
 use crate::image_io::Image;

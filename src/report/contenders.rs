@@ -2,7 +2,7 @@
 
 use super::block::Block;
 use super::naming::{Part, needed};
-use super::results::Results;
+use super::results::{Results, prefixed};
 use super::rows::{Row, group};
 use super::schedule::{crew, strategy};
 use super::words::{LEVEL, values};
@@ -193,8 +193,10 @@ fn names(rows: &[&Row]) -> Vec<String> {
         |row| if row.biased && row.max_depth.is_none() { "biased".to_string() } else { String::new() },
         |row| crew(strategy(row), row.threads),
     ];
-    let rest: [Part<Row>; 8] = [
+    let rest: [Part<Row>; 10] = [
         |row| row.clamp.clone(),
+        |row| prefixed("filter ", &row.filter),
+        |row| prefixed("epsilon ", &row.epsilon),
         |row| row.precision.clone(),
         |row| format!("{}x{}", row.width, row.height),
         |row| row.decomposition.clone(),

@@ -10,7 +10,7 @@ use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::lab::Lab;
 use crate::measure::{ImageKey, Record, TraceFile};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -98,10 +98,13 @@ impl Results {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }
 
-    /// Size and machine in a line, for below a figure's title.
+    /// Scene, size and machine in a line, for below a figure's title. A scene or a size that not all rows have is left out.
     pub(super) fn workload(&self) -> String {
-        let size = self.first().map_or_else(String::new, |row| format!("{}, {}, ", row.scene, self.size()));
-        format!("{size}{}", self.machine_line())
+        let scenes: BTreeSet<&str> = self.rows().map(|row| row.scene.as_str()).collect();
+        let sizes: BTreeSet<(u32, u32)> = self.rows().map(|row| (row.width, row.height)).collect();
+        let scene = scenes.first().filter(|_| scenes.len() == 1).map(|scene| format!("{scene}, "));
+        let size = sizes.first().filter(|_| sizes.len() == 1).map(|(width, height)| format!("{width}x{height}, "));
+        format!("{}{}{}", scene.unwrap_or_default(), size.unwrap_or_default(), self.machine_line())
     }
 
     /// Columns and rows of the images.
@@ -202,15 +205,22 @@ fn named(records: Vec<Record>) -> Vec<Row> {
     records.into_iter().map(row).collect()
 }
 
+/// A value with its name; nothing if it is empty.
+pub(super) fn prefixed(name: &str, value: &str) -> String {
+    if value.is_empty() { String::new() } else { format!("{name}{value}") }
+}
+
 /// What differs among the images. Scene, estimator and sampler are told wherever they do, the rest where nothing else tells two images apart.
 fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
     let main: [Part<ImageKey>; 3] =
         [|image| image.scene.clone(), |image| image.estimator.clone(), |image| image.sampler.clone()];
-    let rest: [Part<ImageKey>; 5] = [
+    let rest: [Part<ImageKey>; 7] = [
         |image| format!("{}x{}", image.width, image.height),
         |image| image.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
         |image| image.roulette.clone(),
         |image| image.clamp.clone(),
+        |image| prefixed("filter ", &image.filter),
+        |image| prefixed("epsilon ", &image.epsilon),
         |image| image.precision.clone(),
     ];
     let images: Vec<&ImageKey> = rows.iter().map(|row| &row.image).collect();

@@ -1,6 +1,7 @@
 //! Numbers and intervals as tables and sentences say them.
 
 use super::rows::Row;
+use crate::analysis::mean::{Moments, t_interval};
 use crate::analysis::quantile::{median, median_interval};
 use crate::analysis::{Estimate, Interval};
 use crate::plot::{Dot, Point};
@@ -26,6 +27,12 @@ impl Told {
     /// The median of some values with its distribution-free interval.
     pub(super) fn median(values: &[f64]) -> Option<Self> {
         Some(Self { value: median(values)?, interval: median_interval(values, LEVEL) })
+    }
+
+    /// The mean of values that scatter alike, with Student's interval.
+    pub(super) fn mean(values: &[f64]) -> Option<Self> {
+        let interval = t_interval(values, LEVEL).map(|estimate| estimate.interval);
+        Some(Self { value: Moments::of(values).mean()?, interval })
     }
 
     /// In another unit.

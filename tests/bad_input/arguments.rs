@@ -47,8 +47,13 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--estimator", "whitted", "--max-depth", "33"], &["max-depth", "33", "whitted", "0 to 32"]),
     (&["--roulette", "luck:3"], &["roulette", "luck:3", "throughput:N"]),
     (&["--estimator", "whitted", "--roulette", "albedo:5"], &["roulette", "albedo:5", "whitted"]),
-    (&["--recursion-clamp"], &["recursion-clamp", "smallpt", "bsdf, nee, mis"]),
-    (&["--estimator", "bsdf", "--recursion-clamp", "--subpixel-clamp"], &["--recursion-clamp", "--subpixel-clamp"]),
+    (&["--roulette", "constant:1.5"], &["roulette", "constant:1.5", "0 < P < 1"]),
+    (&["--clamp", "recursion"], &["recursion", "smallpt", "bsdf, nee, mis"]),
+    (&["--clamp", "pixel"], &["clamp", "pixel", "subpixel or recursion"]),
+    (&["--clamp", "subpixel:0"], &["clamp", "subpixel:0", "above 0"]),
+    (&["--filter", "gauss"], &["filter", "gauss", "tent, box, center"]),
+    (&["--epsilon=-1e-4"], &["epsilon", "-1e-4", "from 0 on"]),
+    (&["--epsilon", "small"], &["epsilon", "small", "from 0 on"]),
     // A profile that there is and that covers the scene, but not with this sampler.
     (&["--sampler", "sobol", "--effects", "surfaces"], &["effects", "surfaces", "sobol", "smallpt"]),
     (&["--max-depth", "65536"], &["max-depth", "65536"]),
@@ -122,12 +127,12 @@ fn a_workload_takes_no_options_of_light() {
         ("accelerator", "sah"),
         ("max-depth", "3"),
         ("roulette", "never"),
+        ("clamp", "subpixel"),
+        ("clamp", "recursion"),
+        ("filter", "box"),
+        ("epsilon", "1e-4"),
     ] {
         let arguments = ["render", "mandelbrot", &format!("--{option}"), value, "--size", "8x8"];
         refused(folder.path(), &arguments, 2, &[option, value, "workload"]);
-    }
-    for clamp in ["subpixel-clamp", "recursion-clamp"] {
-        let arguments = ["render", "mandelbrot", &format!("--{clamp}"), "--size", "8x8"];
-        refused(folder.path(), &arguments, 2, &[clamp, "workload"]);
     }
 }

@@ -54,9 +54,9 @@ fn a_folder_whose_name_is_no_text() {
 #[test]
 fn a_curve_that_cannot_be_rendered_in_rounds() {
     let folder = tempfile::tempdir().unwrap();
-    let text = TINY.replace("[matrix]\n", "[matrix]\ncurve = true\nclamp = \"subpixel\"\n");
+    let text = TINY.replace("[matrix]\n", "[matrix]\ncurve = true\nclamp = [\"subpixel\"]\n");
     write_tiny(folder.path(), &text.replace("[quick]\n", REFERENCE));
-    refused(folder.path(), &RUN, 2, &["tiny.toml:", "subpixel-clamp", "rounds"]);
+    refused(folder.path(), &RUN, 2, &["tiny.toml:", "clamp", "subpixel", "rounds"]);
 }
 
 /// Two programs of one name would write rows that nobody can tell apart.

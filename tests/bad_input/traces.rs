@@ -80,6 +80,6 @@ fn references_need_a_deterministic_sampler() {
 #[test]
 fn split_samples_and_the_subpixel_clamp_exclude_each_other() {
     let folder = tempfile::tempdir().unwrap();
-    let arguments = ["render", "cornell", "--subpixel-clamp", "--decomposition", "samples:16"];
+    let arguments = ["render", "cornell", "--clamp", "subpixel", "--decomposition", "samples:16"];
     refused(folder.path(), &arguments, 2, &["decomposition", "samples:16", "clamp"]);
 }

@@ -1,6 +1,6 @@
 //! Who renders what when, in which pieces and delivered how, changes no bit (METHODOLOGY, Determinism).
 
-use pathmark::kernel::{Clamp, Spec};
+use pathmark::kernel::Spec;
 use pathmark::measure::{OUTPUTS, Outcome, Rounds, Settings, Setup};
 use pathmark::sampling::SAMPLERS;
 use pathmark::scene::{Scene, load};
@@ -125,7 +125,7 @@ fn adaptive() {
 #[test]
 fn rounds_refuse() {
     let prepared = |settings| Setup::for_scene(Arc::clone(&SCENE), settings).unwrap();
-    let clamped = Settings { spec: Spec { clamp: Some(Clamp::Subpixel), ..settings().spec }, ..settings() };
+    let clamped = Settings { spec: Spec { clamp: Some("subpixel".into()), ..settings().spec }, ..settings() };
     assert!(Rounds::new(prepared(clamped)).is_err());
     let mut film = Rounds::new(prepared(settings())).unwrap();
     assert!(film.extend_to(18, None).is_err() && film.extend_to(0, None).is_err() && film.spp() == 0);

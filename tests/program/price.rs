@@ -64,7 +64,7 @@ fn what_cannot_be_priced_is_refused() {
         (&["--rmse", "nan"], "rmse"),
         (&["--rmse", "1e-9", "--size", "8x6"], "rmse"),
         (&["--rmse", "0.1", "--pilot-spp", "6", "--estimator", "bsdf"], "pilot-spp"),
-        (&["--rmse", "0.1", "--subpixel-clamp", "--size", "8x6"], "subpixel-clamp"),
+        (&["--rmse", "0.1", "--clamp", "subpixel", "--size", "8x6"], "clamp"),
         (&["--rmse", "0.1", "--seed", "9223372036854775807"], "seed"),
         (&["--rmse", "0.1", "--pilot-seeds", "2"], "pilot-seeds"),
     ] {

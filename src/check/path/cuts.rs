@@ -4,7 +4,7 @@ use crate::check::exact::{Bench, arriving_estimators, critical, full_estimators,
 use crate::check::stage::{camera, diffuse, object, scene, sphere};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
-use crate::kernel::{Clamp, KERNELS, Spec};
+use crate::kernel::{KERNELS, Spec};
 use crate::measure::{Measured, Record, Settings, Setup, Warning};
 use crate::scene::{Scene, load};
 use std::sync::Arc;
@@ -71,8 +71,8 @@ fn clamp(trials: &mut Trials) {
     for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
         let arrives = arriving_estimators().any(|name| name == estimator);
         let is_one_path = ESTIMATORS.iter().any(|entry| entry.name == estimator && entry.is_one_path);
-        for clamp in [None, Some(Clamp::Subpixel), Some(Clamp::Recursion)] {
-            if !arrives || (clamp == Some(Clamp::Recursion) && !is_one_path) {
+        for clamp in [None, Some("subpixel"), Some("recursion")] {
+            if !arrives || (clamp == Some("recursion") && !is_one_path) {
                 continue;
             }
             let spec = Spec {
@@ -81,12 +81,12 @@ fn clamp(trials: &mut Trials) {
                 estimator: estimator.into(),
                 kernel: kernel.into(),
                 roulette: Some("albedo:0".into()),
-                clamp,
+                clamp: clamp.map(str::to_string),
                 ..Spec::default()
             };
             let outcome = run(&scene, Settings { spp: 4, spec, ..Settings::default() });
             let exact = if clamp.is_some() { 0.651_321_559_9 } else { 1.0 };
-            let what = format!("{}, {estimator}, {kernel}", clamp.map_or("none", Clamp::name));
+            let what = format!("{}, {estimator}, {kernel}", clamp.unwrap_or("none"));
             // A film's squares are those of the samples before the clamp, so the spread is that among the pixels.
             let pixels = outcome.film.pixels().iter().map(|pixel| pixel.mean()[0]);
             let moments = crate::analysis::mean::Moments::of(&pixels.collect::<Vec<f64>>());

@@ -1,7 +1,7 @@
 //! What it costs to clamp each subpixel before averaging: light, and the less of it the more samples there are.
 
 use super::prelude::*;
-use crate::analysis::mean::{Moments, t_interval};
+use crate::analysis::mean::Moments;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
@@ -43,9 +43,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let known = |spp: u32| prototype.as_ref()?.bias.iter().find(|(of, _)| *of == spp).map(|(_, bias)| *bias);
     let losses = of("subpixel").filter(|((_, spp), _)| *spp < largest).filter_map(|((_, spp), rows)| {
         let losses = values(rows.iter().copied(), |row| Some(100.0 * (row.mean_radiance? / limit - 1.0)));
-        let interval = t_interval(&losses, LEVEL).map(|estimate| estimate.interval);
-        let lost = Told { value: Moments::of(&losses).mean()?, interval };
-        Some(Loss { spp: *spp, seeds: losses.len(), lost, prototype: known(*spp) })
+        Some(Loss { spp: *spp, seeds: losses.len(), lost: Told::mean(&losses)?, prototype: known(*spp) })
     });
     let losses: Vec<Loss> = losses.collect();
     let points = losses.iter().map(|loss| loss.lost.above(f64::from(loss.spp))).collect();

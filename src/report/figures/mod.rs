@@ -4,6 +4,8 @@
 //! that it wants, and may tell each something about itself in a table `[figure.NAME]`, which the figure's own type reads.
 
 mod acceleration;
+mod bias;
+mod bounces;
 mod clamp_bias;
 mod clock;
 mod contact_sheet;
@@ -77,6 +79,8 @@ pub const FIGURES: &[FigureEntry] = entries! {
     equal_time, "equal-time", NoOptions, "what each estimator and sampler shows after the same time";
     estimators, "estimators", NoOptions, "times as fast to the same error as the first estimator, by scene";
     roulette, "roulette", Yardstick, "efficiency by when chance ends paths and by what";
+    bounces, "bounces", NoOptions, "light by the number of its bounces, and how long paths are";
+    bias, "bias", bias::Options, "light, noise and doubtful pixels by epsilon, filter or clamp";
     clamp_bias, "clamp-bias", clamp_bias::Options, "light lost by clamping each subpixel before averaging, by samples per pixel";
     time_against_spp, "time-against-spp", NoOptions, "seconds against samples per pixel, with the linear fit";
     speedup, "speedup", NoOptions, "speedup, efficiency and Karp-Flatt serial fraction against threads";

@@ -19,7 +19,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         return Ok(vec![Block::finding(text)]);
     };
     let lines = gathered(compared.iter().filter_map(|(contender, gain)| {
-        let (rule, start) = contender.image.roulette.split_once(':')?;
+        // A constant chance begins at the first vertex: its number is no vertex.
+        let (rule, start) = contender.image.roulette.split_once(':').filter(|(rule, _)| *rule != "constant")?;
         let name = format!("{}, {}, by {rule}", contender.image.scene, contender.image.estimator);
         Some((name, Told::from(*gain).above(start.parse().ok()?)))
     }));

@@ -7,7 +7,7 @@ mod precision;
 use crate::watchdog::Watchdog;
 use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
-use pathmark::kernel::{Clamp, Counts, Kernel, Spec, build, choose};
+use pathmark::kernel::{Counts, Kernel, Spec, build, choose};
 use pathmark::scene::{SCENES, Scene, load};
 use pathmark::simd::{Level, levels};
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -199,7 +199,8 @@ fn what_lanes_cannot_do_is_told() {
         ("cornell", Spec { sampler: "stratified".into(), ..spec() }, "sampler"),
         ("cornell", Spec { sampler: "locked".into(), ..spec() }, "sampler"),
         ("cornell", Spec { effects: Some("smallpt".into()), ..spec() }, "effects"),
-        ("cornell", Spec { clamp: Some(Clamp::Subpixel), ..spec() }, "clamp"),
+        ("cornell", Spec { clamp: Some("subpixel".into()), ..spec() }, "clamp"),
+        ("cornell", Spec { epsilon: Some("1e-4".into()), ..spec() }, "epsilon"),
     ] {
         let choice = choose(&load(scene).unwrap(), &spec).unwrap();
         assert_eq!((choice.kernel(), choice.simd(), choice.fallback()), ("scalar", "", reason), "{scene}");

@@ -59,7 +59,7 @@ fn options_that_contradict_are_refused() {
     refused(folder.path(), &["--target-error", "-1"], &["target-error"]);
     refused(folder.path(), &["--target-error", "0"], &["target-error", "above 0"]);
     refused(folder.path(), &["--time-limit", "NaN"], &["time-limit", "above 0"]);
-    refused(folder.path(), &["--target-error", "0.3", "--subpixel-clamp"], &["subpixel-clamp", "rounds"]);
+    refused(folder.path(), &["--target-error", "0.3", "--clamp", "subpixel"], &["clamp", "subpixel", "rounds"]);
     refused(folder.path(), &["--checkpoint", "a.png", "-o", "a.png"], &["checkpoint", "a.png"]);
     refused(folder.path(), &["--checkpoint", "c", "--sampler", "locked"], &["checkpoint", "locked"]);
 }

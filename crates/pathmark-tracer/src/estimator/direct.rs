@@ -5,7 +5,7 @@ use super::medium::Medium;
 use crate::effect::EffectSet;
 use crate::math::{Ray, Rgb, Vec3, dot};
 use crate::sampling::UNIFORM_SPHERE_DENSITY;
-use crate::scene::{Hit, POINT_LIGHT, PointLight, Scene, Standpoint, Tests};
+use crate::scene::{Hit, POINT_LIGHT, PointLight, REACH, Scene, Standpoint, Tests};
 
 /// The part of the way to a light on which something can hide it. A light that lies in a surface is not hidden by it: what remains is more
 /// than rounding makes of a distance, and relative, so that it is the same in scenes of any size.
@@ -18,11 +18,19 @@ struct Way {
 }
 
 impl Way {
-    /// `None` where the light itself is: there it has no direction.
+    /// `None` where the light itself is, because there it has no direction, and beyond its reach.
     #[inline(always)]
-    fn to(light: &PointLight, point: Vec3) -> Option<Self> {
+    fn to<X: EffectSet, P: Probe>(light: &PointLight, point: Vec3, probe: &mut P) -> Option<Self> {
         let towards = light.position - point;
         let distance = dot(towards, towards).sqrt();
+        if X::EFFECTS.cover(REACH)
+            && let Some(reach) = light.reach
+        {
+            probe.used(REACH);
+            if distance > reach {
+                return None;
+            }
+        }
         (distance > 0.0).then(|| Self { direction: towards * (1.0 / distance), distance })
     }
 
@@ -69,7 +77,7 @@ pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
     let material = &scene.objects[hit.object as usize].material;
     let mut radiance = Rgb::BLACK;
     for light in &scene.point_lights {
-        let Some(way) = Way::to(light, hit.point) else { continue };
+        let Some(way) = Way::to::<X, P>(light, hit.point, probe) else { continue };
         let wi = frame.to_local(way.direction);
         let scattered = material.eval::<X>(wo, wi) * wi.z.abs();
         if scattered.is_black() {
@@ -93,7 +101,7 @@ pub(super) fn light_at_fog<X: EffectSet, P: Probe>(scene: &Scene, point: Vec3, p
     probe.used(POINT_LIGHT);
     let mut radiance = Rgb::BLACK;
     for light in &scene.point_lights {
-        let Some(way) = Way::to(light, point) else { continue };
+        let Some(way) = Way::to::<X, P>(light, point, probe) else { continue };
         if let Some(beam) = way.arriving::<X, P>(scene, light, point, None, Medium::OUTSIDE, probe) {
             radiance += beam * UNIFORM_SPHERE_DENSITY;
         }

@@ -90,7 +90,7 @@ impl Probe for &mut dyn Probe {
 }
 
 /// What tells apart the estimators that follow paths.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Course {
     /// At this many vertices, counted from the first, a surface that reflects and transmits is followed both ways; at most 2.
     pub splits: u16,
@@ -261,7 +261,7 @@ pub fn find(name: &str) -> Option<&'static Entry> {
 }
 
 /// What every estimator can be told.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// After so many bounces a path is cut, whatever its throughput; `None` leaves it to the estimator.
     pub max_depth: Option<u16>,

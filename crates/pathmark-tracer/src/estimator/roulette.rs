@@ -1,5 +1,5 @@
 //! Russian roulette: when paths may end, and by which chance. `--roulette albedo:5` is smallpt's: behind the fifth vertex, by the largest
-//! channel of the surface's albedo.
+//! channel of the surface's albedo. `--roulette constant:0.8` is report B's: the same chance behind every vertex.
 //!
 //! Whatever the chance, what survives is divided by it, so the mean stays what it is (Arvo and Kirk, "Particle Transport and Image
 //! Synthesis", 1990).
@@ -9,16 +9,18 @@ use crate::math::{Real, Rgb};
 use std::fmt;
 
 /// What the chance to survive follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum By {
     /// The largest channel of what the vertex lets on.
     Albedo,
     /// The largest channel of what the path still carries behind the vertex, at most 1.
     Throughput,
+    /// Nothing: it is the same everywhere.
+    Constant(f64),
 }
 
 /// When and how paths are ended by chance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Roulette {
     by: By,
     after: u16,
@@ -29,15 +31,19 @@ impl Roulette {
     pub const SMALLPT: Self = Self { by: By::Albedo, after: 5 };
 
     /// What `--roulette` allows.
-    pub const ALLOWED: &str = "albedo:N or throughput:N behind the N-th vertex, N from 0 to 65534, or never";
+    pub const ALLOWED: &str = "albedo:N or throughput:N behind the N-th vertex, N from 0 to 65534, constant:P with the same chance P behind every vertex, 0 < P < 1, or never";
 
-    /// Reads `albedo:5`, `throughput:2` or `never`.
+    /// Reads `albedo:5`, `throughput:2`, `constant:0.8` or `never`.
     pub fn parse(text: &str) -> Result<Self> {
         let unknown = || InputError::new("roulette", text, "is no rule").allowed(Self::ALLOWED);
         if text == "never" {
             return Ok(Self { by: By::Albedo, after: u16::MAX });
         }
         let (by, after) = text.split_once(':').ok_or_else(unknown)?;
+        if by == "constant" {
+            let chance = after.parse().ok().filter(|chance| 0.0 < *chance && *chance < 1.0).ok_or_else(unknown)?;
+            return Ok(Self { by: By::Constant(chance), after: 0 });
+        }
         let by = match by {
             "albedo" => By::Albedo,
             "throughput" => By::Throughput,
@@ -61,6 +67,7 @@ impl Roulette {
                 let (one, largest) = (T::splat(1.0), (throughput * passed).largest());
                 T::select(largest.lt(one), largest, one)
             }
+            By::Constant(chance) => T::splat(chance),
         }
     }
 
@@ -81,6 +88,7 @@ impl fmt::Display for Roulette {
             (_, u16::MAX) => f.write_str("never"),
             (By::Albedo, after) => write!(f, "albedo:{after}"),
             (By::Throughput, after) => write!(f, "throughput:{after}"),
+            (By::Constant(chance), _) => write!(f, "constant:{chance}"),
         }
     }
 }
@@ -91,11 +99,24 @@ mod tests {
 
     #[test]
     fn names_are_read_back() {
-        for name in ["albedo:5", "albedo:0", "throughput:2", "throughput:65534", "never"] {
+        for name in ["albedo:5", "albedo:0", "throughput:2", "throughput:65534", "constant:0.8", "never"] {
             assert_eq!(Roulette::parse(name).unwrap().to_string(), name);
         }
         assert_eq!(Roulette::parse("albedo:5").unwrap(), Roulette::SMALLPT);
-        for name in ["", "albedo", "albedo:", "albedo:-1", "albedo:65535", "luck:3", "throughput:2.5", "never:1"] {
+        for name in [
+            "",
+            "albedo",
+            "albedo:",
+            "albedo:-1",
+            "albedo:65535",
+            "luck:3",
+            "throughput:2.5",
+            "never:1",
+            "constant:0",
+            "constant:1",
+            "constant:nan",
+            "constant:-.5",
+        ] {
             assert!(Roulette::parse(name).unwrap_err().to_string().contains("throughput:N"), "{name}");
         }
     }
@@ -107,5 +128,6 @@ mod tests {
         assert_eq!([survival("albedo:2", 2), survival("albedo:2", 3)], [None, Some(0.75)]);
         // The product is (0.125, 2, 0.075): more than 1 is none.
         assert_eq!([survival("throughput:0", 1), survival("never", u16::MAX)], [Some(1.0), None]);
+        assert_eq!([survival("constant:0.4", 0), survival("constant:0.4", 1)], [None, Some(0.4)]);
     }
 }

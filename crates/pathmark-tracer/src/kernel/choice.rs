@@ -1,6 +1,6 @@
 //! What the names of a [`Spec`] come to for a scene: everything that a user could have got wrong is found here.
 
-use super::{Clamp, KERNELS, LANES, OwnEstimator, SCALAR, Spec};
+use super::{Clamp, Clamped, KERNELS, LANES, OwnEstimator, SCALAR, Spec};
 use crate::effect::Effects;
 use crate::error::{InputError, Result};
 use crate::estimator::{
@@ -9,8 +9,9 @@ use crate::estimator::{
 use crate::material::Diffuse;
 use crate::sampling::{Entry as SamplerEntry, InLanes as LaneSampler, SAMPLERS};
 use crate::scene::{
-    ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, FOG, HIERARCHY, LENS, POINT_LIGHT, PROFILES,
-    ProfileEntry, Scan, Scene, SmallptEffects, Sphere, accelerator, effect_names,
+    ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, EPSILON, FILTERS, FOG, Filter, HIERARCHY,
+    LENS, POINT_LIGHT, PROFILES, ProfileEntry, SUBPIXELS, Scan, Scene, SmallptEffects, Sphere, View, accelerator,
+    effect_names,
 };
 use crate::simd::{Entry as LevelEntry, LEVELS, Level, Precision, widths_of};
 use std::sync::Arc;
@@ -25,6 +26,10 @@ pub struct Choice {
     pub(super) height: u32,
     pub(super) seed: u64,
     pub(super) clamp: Option<Clamp>,
+    /// The filter, if it is not the camera's own.
+    filter: Option<Filter>,
+    /// Nearer than this nothing is hit.
+    pub(super) epsilon: Option<f64>,
     pub(super) estimator: EstimatorEntry,
     /// The estimator, if it is in no table.
     pub(super) own: Option<OwnEstimator>,
@@ -64,9 +69,29 @@ impl Choice {
         Self { seed, clamp: None, ..self }
     }
 
-    /// What is clamped to 1.
+    /// What is clamped.
     pub fn clamp(&self) -> Option<Clamp> {
         self.clamp
+    }
+
+    /// The filter, if it is not the camera's own.
+    pub fn filter(&self) -> Option<Filter> {
+        self.filter
+    }
+
+    /// Nearer than this nothing is hit; `None` if where a ray starts is told exactly.
+    pub fn epsilon(&self) -> Option<f64> {
+        self.epsilon
+    }
+
+    /// The scene's camera set up for the image.
+    pub fn view(&self, scene: &Scene) -> View {
+        scene.camera.view(self.width, self.height).filtered(self.filter)
+    }
+
+    /// Over so many subpixels the samples of a pixel are spread in turn; 1 if it has none.
+    pub fn subpixels(&self, scene: &Scene) -> u32 {
+        if self.filter.unwrap_or(scene.camera.filter) == Filter::Tent { SUBPIXELS } else { 1 }
     }
 
     /// When and how chance ends paths: what was asked for, or else the estimator's own rule.
@@ -81,7 +106,7 @@ impl Choice {
 
     /// Whether an option is on that changes what the image converges to.
     pub fn is_biased(&self) -> bool {
-        self.clamp.is_some() || self.depth().is_some()
+        self.clamp.is_some() || self.depth().is_some() || self.filter.is_some() || self.epsilon.is_some()
     }
 
     /// The estimator behind a pointer.
@@ -184,7 +209,8 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         Some(own) => own.any().any_course(),
         None => any_estimator(estimator.name, options).and_then(|estimator| estimator.any_course()),
     };
-    let lanes = lanes_for(scene, spec, course)?;
+    let epsilon = epsilon(spec)?;
+    let lanes = lanes_for(scene, spec, course, epsilon)?;
     let scan = match &lanes {
         Err(_) => Scan::OneByOne,
         Ok(chosen) => {
@@ -201,11 +227,16 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
     if accelerator.is_hierarchy() {
         effects = effects.and(HIERARCHY);
     }
+    if epsilon.is_some() {
+        effects = effects.and(EPSILON);
+    }
     Ok(Choice {
         width: spec.width,
         height: spec.height,
         seed: spec.seed,
-        clamp: spec.clamp,
+        clamp: spec.clamp.as_deref().map(Clamp::parse).transpose()?,
+        filter: filter(scene, spec)?,
+        epsilon,
         profile: profile(effects, spec.effects.as_deref(), &estimator, sampler)?,
         estimator,
         own,
@@ -249,10 +280,11 @@ fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Opti
         let allowed = if is_own { "none".to_string() } else { format!("0 to {}", estimator.largest_depth) };
         return Err(InputError::new("max-depth", depth.to_string(), problem).allowed(allowed).into());
     }
-    if spec.clamp == Some(Clamp::Recursion) && !estimator.is_one_path {
+    let clamp = spec.clamp.as_deref().map(Clamp::parse).transpose()?;
+    if clamp.is_some_and(|clamp| clamp.what == Clamped::Recursion) && !estimator.is_one_path {
         let problem = "follows several paths at once, whose recursions are not clamped here";
         let single: Vec<&str> = ESTIMATORS.iter().filter(|entry| entry.is_one_path).map(|entry| entry.name).collect();
-        return Err(InputError::new("recursion-clamp", estimator.name, problem).allowed(single.join(", ")).into());
+        return Err(InputError::new("estimator", estimator.name, problem).allowed(single.join(", ")).into());
     }
     let roulette = spec.roulette.as_deref().map(Roulette::parse).transpose()?;
     if let Some(rule) = spec.roulette.as_deref().filter(|_| is_own || estimator.roulette.is_none()) {
@@ -262,23 +294,49 @@ fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Opti
     Ok(Options { max_depth: spec.max_depth, roulette })
 }
 
+/// The filter that the spec names, if it is not the camera's own.
+fn filter(scene: &Scene, spec: &Spec) -> Result<Option<Filter>> {
+    let Some(name) = spec.filter.as_deref() else { return Ok(None) };
+    let Some(entry) = FILTERS.iter().find(|entry| entry.name == name) else {
+        return Err(unknown("filter", name, FILTERS.iter().map(|entry| entry.name)).into());
+    };
+    Ok(Some(entry.filter).filter(|filter| *filter != scene.camera.filter))
+}
+
+/// The distance below which nothing is hit, if there is to be one.
+fn epsilon(spec: &Spec) -> Result<Option<f64>> {
+    let Some(text) = spec.epsilon.as_deref().filter(|text| *text != "none") else { return Ok(None) };
+    let parsed = text.parse().ok().filter(|distance: &f64| distance.is_finite() && *distance >= 0.0);
+    let error = || {
+        InputError::new("epsilon", text, "is no distance")
+            .allowed("a number from 0 on, in the scene's lengths, or none")
+    };
+    parsed.map(Some).ok_or_else(|| error().into())
+}
+
 /// As many primitives as single precision has whole numbers for are more than lanes tell apart.
 const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
 
 /// What of a scene or of its settings lanes have no code for.
-fn obstacle(scene: &Scene, spec: &Spec) -> Option<&'static str> {
+fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static str> {
     let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
     let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
     let others = [
         (spec.effects.is_some(), "effects"),
         (spec.clamp.is_some(), "clamp"),
+        (epsilon.is_some(), "epsilon"),
         (scene.owners.len() >= MOST_IN_LANES, "primitives"),
     ];
     of_scene.or_else(|| others.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name))
 }
 
 /// The level on which lanes render a scene with these settings, or why they do not.
-fn lanes_for(scene: &Scene, spec: &Spec, course: Option<Course>) -> Result<std::result::Result<InLanes, &'static str>> {
+fn lanes_for(
+    scene: &Scene,
+    spec: &Spec,
+    course: Option<Course>,
+    epsilon: Option<f64>,
+) -> Result<std::result::Result<InLanes, &'static str>> {
     if !KERNELS.iter().any(|entry| entry.name == spec.kernel) {
         return Err(unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into());
     }
@@ -287,7 +345,7 @@ fn lanes_for(scene: &Scene, spec: &Spec, course: Option<Course>) -> Result<std::
     if spec.kernel == SCALAR {
         return Ok(Err(SCALAR));
     }
-    Ok(Err(match (obstacle(scene, spec), course, LaneSampler::find(&spec.sampler)) {
+    Ok(Err(match (obstacle(scene, spec, epsilon), course, LaneSampler::find(&spec.sampler)) {
         (None, Some(course), Some(sampler)) => {
             let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
             // Where most of the time goes to lights, being compiled for it would gain 3 %, and takes as long to compile as the others.

@@ -1,6 +1,7 @@
 //! How an estimator is executed over a piece of the film. A kernel never sees a thread.
 
 mod choice;
+mod clamp;
 mod inspect;
 mod lanes;
 mod own;
@@ -19,13 +20,14 @@ use crate::sampling::{
 use crate::scene::{AllEffects, ProfileVisitor, Scene, SmallptEffects, with_profile};
 pub use choice::{Choice, choose, choose_among};
 use choice::{INDEPENDENT, unknown};
+pub use clamp::{Clamp, Clamped};
 pub use inspect::{BounceRow, Event, Inspector, LightByBounce, PathLog};
 use lanes::Lanes;
 pub use own::OwnEstimator;
 use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
-pub use spec::{Clamp, Spec};
+pub use spec::Spec;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -91,7 +93,10 @@ const SCALAR: &str = "scalar";
 fn prepared(scene: &Arc<Scene>, choice: &Choice) -> Arc<Scene> {
     let mut prepared = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
     if choice.estimator.aims {
-        prepared = Arc::new(prepared.lit(&scene.camera.view(choice.width, choice.height)));
+        prepared = Arc::new(prepared.lit(&choice.view(scene)));
+    }
+    if choice.epsilon.is_some() {
+        prepared = Arc::new(Scene { epsilon: choice.epsilon, ..Scene::clone(&prepared) });
     }
     prepared
 }
@@ -111,8 +116,8 @@ pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>>
     if let Ok(chosen) = choice.lanes {
         return Ok(Box::new(Lanes::new(prepared(scene, choice), choice, chosen)));
     }
-    if choice.clamp == Some(Clamp::Recursion) {
-        return Ok(Box::new(RecursionClamp(Inspector::new(scene, choice)?)));
+    if let Some(Clamp { what: Clamped::Recursion, limit }) = choice.clamp {
+        return Ok(Box::new(RecursionClamp { inspector: Inspector::new(scene, choice)?, limit }));
     }
     let scene = prepared(scene, choice);
     let name = choice.sampler.name;

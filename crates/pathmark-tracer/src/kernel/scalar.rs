@@ -1,6 +1,6 @@
 //! One path at a time, in f64: the readable kernel that every other one is measured against.
 
-use super::{Choice, Clamp, Counts, Kernel};
+use super::{Choice, Clamp, Clamped, Counts, Kernel};
 use crate::effect::EffectSet;
 use crate::estimator::{Estimator, Probe, camera_ray};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
@@ -16,7 +16,7 @@ pub(super) struct Scalar<E, S, X> {
     view: View,
     width: u32,
     seed: u64,
-    subpixel_clamp: bool,
+    subpixel_limit: Option<f64>,
     estimator: E,
     sampler: S,
     profile: PhantomData<X>,
@@ -40,11 +40,14 @@ impl Probe for Counts {
 impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
     pub(super) fn new(scene: Arc<Scene>, choice: &Choice, estimator: E, sampler: S) -> Self {
         Self {
-            view: scene.camera.view(choice.width, choice.height),
+            view: choice.view(&scene),
             scene,
             width: choice.width,
             seed: choice.seed,
-            subpixel_clamp: choice.clamp == Some(Clamp::Subpixel),
+            subpixel_limit: choice
+                .clamp
+                .filter(|clamp| clamp.what == Clamped::Subpixel)
+                .map(|clamp: Clamp| clamp.limit),
             estimator,
             sampler,
             profile: PhantomData,
@@ -68,7 +71,7 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
     /// Where subpixels are clamped, each is a pass of its own over its samples; smallpt cuts its mean at 1 before the four are averaged. Squares
     /// are those of the unclamped samples. One loop serves both, because the compiler repeats a whole path at every place that calls it.
     fn pixel(&self, x: u32, y: u32, piece: &Piece, sum: &mut SampleSum, counts: &mut Counts) -> PixelSum {
-        let passes = if self.subpixel_clamp { SUBPIXELS } else { 1 };
+        let passes = if self.subpixel_limit.is_some() { SUBPIXELS } else { 1 };
         let mut pixel = PixelSum::default();
         for pass in 0..passes {
             sum.clear();
@@ -76,10 +79,8 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
                 sum.add(self.sample(x, y, sample, counts));
             }
             let mut part = sum.total();
-            if !self.subpixel_clamp {
-                return part;
-            }
-            part.sum = part.mean().map(|mean| mean.min(1.0) * f64::from(part.count));
+            let Some(limit) = self.subpixel_limit else { return part };
+            part.sum = part.mean().map(|mean| mean.min(limit) * f64::from(part.count));
             pixel = pixel.plus(&part);
         }
         pixel

@@ -4,26 +4,6 @@ use super::LANES;
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
-/// What of the light is clamped to 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Clamp {
-    /// The mean of each subpixel before averaging, as smallpt does.
-    Subpixel,
-    /// What each recursion returns, as report B does.
-    Recursion,
-}
-
-impl Clamp {
-    /// Its name in records.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Subpixel => "subpixel",
-            Self::Recursion => "recursion",
-        }
-    }
-}
-
 /// Which kernel to build: the *what* of a render.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spec {
@@ -54,8 +34,16 @@ pub struct Spec {
     /// When and how chance ends paths, as [`Roulette`](crate::estimator::Roulette) reads it; `None` leaves it to the estimator.
     #[serde(default)]
     pub roulette: Option<String>,
-    /// What is clamped to 1: biased.
-    pub clamp: Option<Clamp>,
+    /// What is clamped, as [`Clamp`](super::Clamp) reads it: biased.
+    #[serde(default)]
+    pub clamp: Option<String>,
+    /// Pixel filter by name; the camera's own if `None`.
+    #[serde(default)]
+    pub filter: Option<String>,
+    /// Nearer than this, in the scene's lengths, nothing is hit, as programs do it that cannot tell where a ray starts: biased. `None` or "none" tells
+    /// it exactly.
+    #[serde(default)]
+    pub epsilon: Option<String>,
 }
 
 /// What was there before there was a choice.
@@ -79,6 +67,8 @@ impl Default for Spec {
             max_depth: None,
             roulette: None,
             clamp: None,
+            filter: None,
+            epsilon: None,
         }
     }
 }

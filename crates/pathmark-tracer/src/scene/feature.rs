@@ -24,4 +24,6 @@ features! {
     Fog, FOG, "fog", "a homogeneous medium that absorbs, scatters and glows";
     Compound, COMPOUND, "compound", "objects that are made of several primitives";
     AngularEmission, ANGULAR_EMISSION, "angular-emission", "emission by the angle to the normal";
+    Epsilon, EPSILON, "epsilon", "a distance below which nothing is hit";
+    Reach, REACH, "reach", "point lights that end after a distance";
 }

@@ -4,11 +4,12 @@
 //! [[point-lights]]
 //! position = [50.0, 70.0, 80.0]
 //! intensity = [10000.0, 10000.0, 10000.0]   # W per steradian
+//! reach = 200.0                             # optional: farther away it gives no light, as in report C
 //! ```
 
-use crate::input::{point, radiance};
+use crate::input::{length, point, radiance};
 use crate::math::{Rgb, Vec3};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 
 /// The light.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
@@ -20,12 +21,20 @@ pub struct PointLight {
     /// Radiant intensity, in W per steradian.
     #[serde(deserialize_with = "radiance")]
     pub intensity: Rgb,
+    /// Farther away it gives no light, which no real light does; `None` if it follows the inverse square law everywhere.
+    #[serde(default, deserialize_with = "reach")]
+    pub reach: Option<f64>,
+}
+
+fn reach<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    length(deserializer).map(Some)
 }
 
 impl PointLight {
     /// The same light with every length multiplied; its irradiance stays what it was.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        Self { position: self.position * factor, intensity: self.intensity * (factor * factor) }
+        let reach = self.reach.map(|reach| reach * factor);
+        Self { position: self.position * factor, intensity: self.intensity * (factor * factor), reach }
     }
 }

@@ -142,6 +142,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         fog: draft.fog,
         hierarchy: None,
         lights: None,
+        epsilon: None,
     };
     add_parts(&mut scene, draft.parts, &mut draft.hash)?;
     scene.hash = draft.hash.finish();

@@ -42,7 +42,7 @@ impl Inspector {
         };
         Ok(Self {
             scene: prepared(scene, choice),
-            view: scene.camera.view(choice.width, choice.height),
+            view: choice.view(scene),
             width: choice.width,
             seed: choice.seed,
             estimator: choice.any_estimator()?,

@@ -67,7 +67,7 @@ impl Lanes {
         InLanes { level, precision, course, sampler, is_matt }: InLanes,
     ) -> Self {
         let tables = Tables::of(&scene, precision);
-        let view = scene.camera.view(choice.width, choice.height);
+        let view = choice.view(&scene);
         Self {
             targets: scene.lights.as_ref().and_then(Targets::of).map(Box::new),
             search: match precision {

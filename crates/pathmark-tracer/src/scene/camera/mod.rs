@@ -46,9 +46,39 @@ pub struct Lens {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filter {
     /// smallpt's: a tent over each of 2x2 subpixels, sample k taking subpixel k mod 4.
-    Subpixels,
+    Tent,
     /// Evenly over the pixel.
-    Pixel,
+    Box,
+    /// All through its centre.
+    Center,
+}
+
+/// One line of the table of filters.
+pub struct FilterEntry {
+    /// Its name on the command line and in records.
+    pub name: &'static str,
+    /// How it spreads samples, in a line.
+    pub about: &'static str,
+    /// It.
+    pub filter: Filter,
+}
+
+/// The pixel filters, in the order in which they are listed.
+pub const FILTERS: &[FilterEntry] = &[
+    FilterEntry { name: "tent", about: "smallpt's: a tent over each of 2x2 subpixels", filter: Filter::Tent },
+    FilterEntry { name: "box", about: "evenly over the pixel", filter: Filter::Box },
+    FilterEntry {
+        name: "center",
+        about: "all through the centre of the pixel, as report B does",
+        filter: Filter::Center,
+    },
+];
+
+impl Filter {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        FILTERS.iter().find(|entry| entry.filter == self).map_or("", |entry| entry.name)
+    }
 }
 
 /// Subpixels in a pixel: 2 by 2.
@@ -87,6 +117,7 @@ cameras! {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     camera: Camera,
+    filter: Filter,
     right: Vec3,
     up: Vec3,
     width: f64,
@@ -104,13 +135,13 @@ impl Camera {
     pub fn view(&self, width: u32, height: u32) -> View {
         let (w, h) = (f64::from(width), f64::from(height));
         let side = match self.filter {
-            // The subpixel camera's rows lie along the x axis, exactly.
-            Filter::Subpixels => Vec3::new(1.0, 0.0, 0.0),
-            Filter::Pixel => self.direction.cross(self.up).normalized(),
+            // The rows of smallpt's camera lie along the x axis, exactly.
+            Filter::Tent => Vec3::new(1.0, 0.0, 0.0),
+            Filter::Box | Filter::Center => self.direction.cross(self.up).normalized(),
         };
         let right = side * (w * self.field / h);
         let up = right.cross(self.direction).normalized() * self.field;
-        View { camera: *self, right, up, width: w, height: h, rows: height }
+        View { camera: *self, filter: self.filter, right, up, width: w, height: h, rows: height }
     }
 
     /// The same camera with every length multiplied.
@@ -129,6 +160,12 @@ fn subpixel(sample: u32) -> [f64; 2] {
 }
 
 impl View {
+    /// The same view with another filter, if there is one.
+    #[must_use]
+    pub fn filtered(self, filter: Option<Filter>) -> Self {
+        Self { filter: filter.unwrap_or(self.filter), ..self }
+    }
+
     /// Where rays start, nine of them: through the corners of the image, the middles of its edges and its own, from the middle of the lens.
     pub fn origins(&self) -> [Vec3; 9] {
         std::array::from_fn(|k| {
@@ -182,11 +219,10 @@ impl View {
     #[inline(always)]
     fn towards<T: Real>(&self, [x, y]: [T; 2], subpixel: [T; 2], film: [T; 2]) -> Vec3<T> {
         let (half, two) = (T::splat(0.5), T::splat(2.0));
-        let [dx, dy] = match self.camera.filter {
-            Filter::Subpixels => {
-                [(subpixel[0] + half + tent(film[0])) / two, (subpixel[1] + half + tent(film[1])) / two]
-            }
-            Filter::Pixel => film,
+        let [dx, dy] = match self.filter {
+            Filter::Tent => [(subpixel[0] + half + tent(film[0])) / two, (subpixel[1] + half + tent(film[1])) / two],
+            Filter::Box => film,
+            Filter::Center => [half, half],
         };
         let row = T::splat(f64::from(self.rows - 1)) - y;
         let across = (dx + x) / T::splat(self.width) - half;

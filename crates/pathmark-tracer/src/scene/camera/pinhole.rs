@@ -51,7 +51,7 @@ pub(super) fn looking_at(position: Vec3, target: Vec3, up: Vec3, field: f64) -> 
     if dot(side, side) < 1e-12 {
         return Err("the camera looks along its upward direction (allowed: another `up`)");
     }
-    Ok(Camera { position, direction, up, field, advance: 0.0, filter: Filter::Pixel, lens: None })
+    Ok(Camera { position, direction, up, field, advance: 0.0, filter: Filter::Box, lens: None })
 }
 
 impl<'de> Deserialize<'de> for Pinhole {

@@ -43,6 +43,6 @@ fn view_direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D:
 impl From<Smallpt> for Camera {
     fn from(Smallpt { position, direction, field, advance }: Smallpt) -> Self {
         let up = Vec3::new(0.0, 1.0, 0.0);
-        Self { position, direction, up, field, advance, filter: Filter::Subpixels, lens: None }
+        Self { position, direction, up, field, advance, filter: Filter::Tent, lens: None }
     }
 }

@@ -10,6 +10,7 @@
 //!
 //! To add one: write its file with a type that implements [`Generate`] and `Deserialize`, and give it a line in `generators!` below.
 
+mod clusters;
 mod furnace;
 mod imbalance;
 mod spheres;
@@ -80,6 +81,7 @@ macro_rules! generators {
 
 generators! {
     spheres::Spheres, "spheres", "so many diffuse balls, evenly at random in a cube, filling the same share of it";
+    clusters::Clusters, "clusters", "so many diffuse balls in dense clusters in a cube that is empty elsewhere";
     imbalance::Imbalance, "imbalance", "a sixteenth of the image where a path costs so many rays, one elsewhere";
     furnace::Furnace, "furnace", "a closed box of that albedo in thermal equilibrium, with a mirror and a glass ball in it";
 }

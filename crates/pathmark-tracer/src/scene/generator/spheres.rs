@@ -11,7 +11,7 @@ use rand_pcg::Pcg64;
 use serde::Deserialize;
 
 /// The most that fit in the numbers of primitives with room to spare.
-const MOST: f64 = 1e7;
+pub(super) const MOST: f64 = 1e7;
 
 /// Balls of one colour are one object.
 const COLOURS: usize = 8;
@@ -42,22 +42,48 @@ impl Generate for Spheres {
     }
 
     fn make(&self) -> Vec<Made> {
-        let mut numbers = Pcg64::seed_from_u64(self.seed);
-        let mut unit = || (numbers.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-        let radius = 0.5 / libm::cbrt(f64::from(self.count.max(1)));
-        let mut made: Vec<Made> = (0..COLOURS)
-            .map(|colour| {
-                let mut albedo = || 0.2 + 0.6 * unit();
-                let albedo = Rgb { r: albedo(), g: albedo(), b: albedo() };
-                let (material, emission) = (Material::Diffuse(Diffuse { albedo }), Rgb::BLACK);
-                Made { name: format!("balls of colour {colour}"), shapes: Vec::new(), material, emission }
-            })
-            .collect();
-        for index in 0..self.count as usize {
-            let mut coordinate = || 2.0 * unit() - 1.0;
-            let center = Vec3::new(coordinate(), coordinate(), coordinate());
-            made[index % COLOURS].shapes.push(AnyShape::Sphere(Sphere { center, radius }));
+        let mut balls = Balls::new(self.seed, 0.5 / libm::cbrt(f64::from(self.count.max(1))));
+        for _ in 0..self.count {
+            let place = balls.place();
+            balls.add(place);
         }
-        made
+        balls.made
+    }
+}
+
+/// Balls of one size that are added one by one, each of the next colour.
+pub(super) struct Balls {
+    numbers: Pcg64,
+    radius: f64,
+    count: usize,
+    pub(super) made: Vec<Made>,
+}
+
+impl Balls {
+    pub(super) fn new(seed: u64, radius: f64) -> Self {
+        let mut balls = Self { numbers: Pcg64::seed_from_u64(seed), radius, count: 0, made: Vec::new() };
+        for colour in 0..COLOURS {
+            let mut albedo = || 0.2 + 0.6 * balls.unit();
+            let albedo = Rgb { r: albedo(), g: albedo(), b: albedo() };
+            let (material, emission) = (Material::Diffuse(Diffuse { albedo }), Rgb::BLACK);
+            balls.made.push(Made { name: format!("balls of colour {colour}"), shapes: Vec::new(), material, emission });
+        }
+        balls
+    }
+
+    fn unit(&mut self) -> f64 {
+        (self.numbers.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A place in the cube from -1 to 1.
+    pub(super) fn place(&mut self) -> Vec3 {
+        let mut coordinate = || 2.0 * self.unit() - 1.0;
+        Vec3::new(coordinate(), coordinate(), coordinate())
+    }
+
+    pub(super) fn add(&mut self, center: Vec3) {
+        let sphere = Sphere { center, radius: self.radius };
+        self.made[self.count % COLOURS].shapes.push(AnyShape::Sphere(sphere));
+        self.count += 1;
     }
 }

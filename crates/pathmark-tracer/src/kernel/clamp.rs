@@ -1,0 +1,67 @@
+//! Clamps: what cuts bright light away, and so noise and energy with it. `--clamp subpixel` is smallpt's, `--clamp recursion` report B's, and
+//! `--clamp recursion:10` cuts at 10 instead of 1.
+
+use crate::error::{InputError, Result};
+use std::fmt;
+
+/// What of the light is clamped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clamped {
+    /// The mean of each subpixel before averaging, as smallpt does.
+    Subpixel,
+    /// What each recursion returns, as report B does.
+    Recursion,
+}
+
+/// A clamp of radiance in each channel: biased.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clamp {
+    /// What is clamped.
+    pub what: Clamped,
+    /// The radiance that it is clamped to, above 0.
+    pub limit: f64,
+}
+
+impl Clamp {
+    /// What `--clamp` allows.
+    pub const ALLOWED: &str = "subpixel or recursion, or with a limit above 0 other than 1, like recursion:10";
+
+    /// Reads `subpixel`, `recursion` or `recursion:10`.
+    pub fn parse(text: &str) -> Result<Self> {
+        let unknown = || InputError::new("clamp", text, "is no clamp").allowed(Self::ALLOWED);
+        let (what, limit) = text.split_once(':').unwrap_or((text, "1"));
+        let what = match what {
+            "subpixel" => Clamped::Subpixel,
+            "recursion" => Clamped::Recursion,
+            _ => return Err(unknown().into()),
+        };
+        let limit = limit.parse().ok().filter(|limit: &f64| limit.is_finite() && *limit > 0.0).ok_or_else(unknown)?;
+        Ok(Self { what, limit })
+    }
+}
+
+impl fmt::Display for Clamp {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = match self.what {
+            Clamped::Subpixel => "subpixel",
+            Clamped::Recursion => "recursion",
+        };
+        if self.limit == 1.0 { f.write_str(name) } else { write!(f, "{name}:{}", self.limit) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_back() {
+        for name in ["subpixel", "recursion", "recursion:10", "subpixel:0.5"] {
+            assert_eq!(Clamp::parse(name).unwrap().to_string(), name);
+        }
+        assert_eq!(Clamp::parse("recursion:1").unwrap().to_string(), "recursion");
+        for name in ["", "pixel", "recursion:", "recursion:0", "subpixel:-1", "subpixel:nan", "recursion:inf"] {
+            assert!(Clamp::parse(name).unwrap_err().to_string().contains("recursion:10"), "{name}");
+        }
+    }
+}

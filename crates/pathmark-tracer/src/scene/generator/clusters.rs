@@ -1,0 +1,52 @@
+//! So many balls in clusters in the cube from -1 to 1: each cluster has a place at random and a density that falls off around it, so that most
+//! of the cube is empty and a few places are crowded.
+
+use super::spheres::{Balls, MOST};
+use super::{Generate, Made};
+use crate::math::Vec3;
+use serde::Deserialize;
+
+/// The generator as it is written.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(in crate::scene) struct Clusters {
+    /// How many balls: the number behind the scene's name.
+    count: u32,
+    /// In how many clusters they are.
+    groups: std::num::NonZeroU16,
+    /// Of their places and colours.
+    seed: u64,
+}
+
+/// Half the width of a cluster: places are the mean of two even ones, whose density is a tent.
+const SPREAD: f64 = 0.12;
+
+impl Generate for Clusters {
+    const FIELD: &'static str = "count";
+
+    fn number(&self) -> f64 {
+        f64::from(self.count)
+    }
+
+    fn set_number(&mut self, number: f64) -> Result<(), &'static str> {
+        if !(1.0..=MOST).contains(&number) || number.fract() != 0.0 {
+            return Err("a whole number from 1 to 10000000");
+        }
+        self.count = number as u32;
+        Ok(())
+    }
+
+    fn make(&self) -> Vec<Made> {
+        // As large as they would be in a cube of a cluster's size.
+        let mut balls = Balls::new(
+            self.seed,
+            SPREAD * 0.5 / libm::cbrt(f64::from(self.count.max(1)) / f64::from(self.groups.get())),
+        );
+        let centers: Vec<Vec3> = (0..self.groups.get()).map(|_| balls.place() * (1.0 - SPREAD)).collect();
+        for index in 0..self.count as usize {
+            let offset = (balls.place() + balls.place()) * (0.5 * SPREAD);
+            balls.add(centers[index % centers.len()] + offset);
+        }
+        balls.made
+    }
+}

@@ -1,0 +1,177 @@
+//! What an approximation costs and what it gains: light lost, noise and doubtful pixels by the value of one axis, against rows in which the
+//! axis has its usual value.
+
+use super::prelude::*;
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Options {
+    /// The axis that is varied: `epsilon`, `filter` or `clamp`.
+    axis: Option<Varied>,
+    /// How the usual value is called.
+    usual: Option<String>,
+}
+
+#[derive(Deserialize, Clone, Copy, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+enum Varied {
+    Epsilon,
+    Filter,
+    Clamp,
+}
+
+impl Varied {
+    fn of(self, image: &ImageKey) -> &str {
+        match self {
+            Self::Epsilon => &image.epsilon,
+            Self::Filter => &image.filter,
+            Self::Clamp => &image.clamp,
+        }
+    }
+
+    fn forget(self, image: &mut ImageKey) {
+        match self {
+            Self::Epsilon => image.epsilon.clear(),
+            Self::Filter => image.filter.clear(),
+            Self::Clamp => image.clamp.clear(),
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Epsilon => "epsilon",
+            Self::Filter => "filter",
+            Self::Clamp => "clamp",
+        }
+    }
+}
+
+/// One value on one scene at one number of samples.
+struct Cost {
+    scene: String,
+    value: String,
+    spp: u32,
+    /// Mean radiance over that of the usual value, by seed.
+    light: Told,
+    rmse: Option<f64>,
+    within: Option<f64>,
+    black: Option<f64>,
+    fireflies: Option<f64>,
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let Options { axis, usual } = options(results, "bias")?;
+    let (axis, usual) = (axis.unwrap_or(Varied::Epsilon), usual.unwrap_or_else(|| "none".to_string()));
+    let mut costs = costs(results, axis, &usual);
+    if costs.is_empty() {
+        let text = format!("There is nothing to compare: it takes rows with and without {}.", axis.name());
+        return Ok(vec![Block::finding(text)]);
+    }
+    let values = in_order(costs.iter().map(|cost| cost.value.clone()), &usual);
+    let place = |cost: &Cost| values.iter().position(|value| *value == cost.value);
+    costs.sort_by(|a, b| (&a.scene, place(a), a.spp).cmp(&(&b.scene, place(b), b.spp)));
+    // The most samples show the bias with the least noise.
+    let most = |cost: &&Cost| costs.iter().filter(|other| other.scene == cost.scene).all(|other| other.spp <= cost.spp);
+    let scenes: BTreeSet<&str> = costs.iter().map(|cost| cost.scene.as_str()).collect();
+    let row = |value: &String| {
+        let dot = |scene: &&str| {
+            let own = costs.iter().filter(most).find(|cost| cost.value == *value && cost.scene == *scene)?;
+            Some(own.light.times(100.0).dot())
+        };
+        PlotRow::new(value, scenes.iter().map(dot).collect())
+    };
+    let mut plot = DotPlot::new(
+        format!("Light by {}", axis.name()),
+        Axis::linear(format!("mean radiance against {usual}, %")).including([100.0]),
+        values.iter().map(row).collect(),
+    )
+    .grouped(scenes.iter().copied());
+    plot.subtitle = results.workload();
+    plot.caption =
+        "Bars: 95 % interval over seeds, of ratios within a seed. Each scene at its most samples.".to_string();
+    plot.guides = vec![(100.0, usual.clone())];
+    let worst = costs.iter().filter(|cost| cost.value != usual).max_by(|a, b| {
+        let off = |cost: &Cost| (cost.light.value - 1.0).abs();
+        off(a).total_cmp(&off(b))
+    });
+    let finding = worst.map(|cost| {
+        Block::finding(format!(
+            "The light changes most with {} {} on {}: to {:.2} % of what it is with {usual}{}.",
+            axis.name(),
+            cost.value,
+            cost.scene,
+            100.0 * cost.light.value,
+            cost.light.bar().map_or_else(String::new, |(low, high)| format!(
+                " (95 % {:.2} to {:.2})",
+                100.0 * low,
+                100.0 * high
+            )),
+        ))
+    });
+    let share = |value: Option<f64>, digits| number(value.map(|value| 100.0 * value), digits);
+    let table = Block::table("bias", format!("Light, noise and doubtful pixels by {}", axis.name()), &costs)
+        .column("scene", |cost| cost.scene.clone())
+        .column(axis.name(), |cost| cost.value.clone())
+        .column("spp", |cost| cost.spp.to_string())
+        .column("light, %", |cost| format!("{:.3}", 100.0 * cost.light.value))
+        .column("95 % interval", |cost| {
+            let percent = cost.light.times(100.0);
+            percent.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.3} to {high:.3}"))
+        })
+        .column("RMSE", |cost| number(cost.rmse, 5))
+        .column("pixels within 0.05 of the display, %", |cost| share(cost.within, 2))
+        .column("black pixels, %", |cost| share(cost.black, 3))
+        .column("fireflies in a million pixels", |cost| number(cost.fireflies.map(|share| 1e6 * share), 0))
+        .end();
+    let mut blocks = vec![Block::figure("bias", plot)];
+    blocks.extend(finding);
+    blocks.push(table);
+    Ok(blocks)
+}
+
+/// The values in the order of the usual one, then numbers by size, then names.
+fn in_order(values: impl Iterator<Item = String>, usual: &str) -> Vec<String> {
+    let mut values: Vec<String> = values.collect::<BTreeSet<_>>().into_iter().collect();
+    let number = |value: &str| value.rsplit(':').next().and_then(|number| number.parse().ok()).unwrap_or(0.0_f64);
+    values.sort_by(|a, b| {
+        let is_usual = |value: &str| value == usual;
+        is_usual(b).cmp(&is_usual(a)).then(number(a).total_cmp(&number(b)))
+    });
+    values
+}
+
+fn costs(results: &Results, axis: Varied, usual: &str) -> Vec<Cost> {
+    let forgotten = |row: &Row| {
+        let mut image = row.image.clone();
+        axis.forget(&mut image);
+        image
+    };
+    // Kernels differ where an approximation is for one of them alone, and give the same image.
+    let plain = results.rows().filter(|row| axis.of(&row.image).is_empty());
+    let plain: BTreeMap<ImageKey, f64> = plain.filter_map(|row| Some((forgotten(row), row.mean_radiance?))).collect();
+    let cells = results.by(|row| (row.scene.as_str(), axis.of(&row.image), row.spp));
+    let cost = |((scene, value, spp), rows): ((&str, &str, u32), Vec<&Row>)| {
+        let rows = rows.into_iter().map(|row| (row.seed, row)).collect::<BTreeMap<_, _>>().into_values();
+        let rows: Vec<&Row> = rows.collect();
+        let light = rows.iter().filter_map(|row| Some(row.mean_radiance? / plain.get(&forgotten(row))?));
+        let mean = |value: fn(&Row) -> Option<f64>| {
+            let all = values(rows.iter().copied(), value);
+            (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+        };
+        Some(Cost {
+            scene: scene.to_string(),
+            value: if value.is_empty() { usual.to_string() } else { value.to_string() },
+            spp,
+            light: Told::mean(&light.collect::<Vec<f64>>())?,
+            rmse: mean(|row| row.rmse),
+            within: mean(|row| row.within_tolerance),
+            black: mean(|row| Some(row.black_pixels? as f64 / pixels(row))),
+            fireflies: mean(|row| Some(row.fireflies? as f64 / pixels(row))),
+        })
+    };
+    cells.into_iter().filter_map(cost).collect()
+}
+
+fn pixels(row: &Row) -> f64 {
+    f64::from(row.width) * f64::from(row.height)
+}

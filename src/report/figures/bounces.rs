@@ -1,0 +1,100 @@
+//! Light by the number of its bounces, and how long paths are: rows with growing bounce limits are the partial sums of the Neumann series,
+//! because a path that is cut has the same vertices up to the cut.
+
+use super::prelude::*;
+
+/// One bounce limit of a scene.
+struct Step {
+    name: String,
+    limit: u16,
+    /// Share of all light that makes exactly so many bounces, with its interval over seeds.
+    light: Told,
+    /// Share of all light that makes at most so many.
+    up_to: f64,
+    /// Share of paths that are cut at the limit.
+    cut: f64,
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let images = results.by(|row| {
+        let roulette = if row.roulette.is_empty() { "no roulette" } else { &row.roulette };
+        format!("{}, {} with {roulette}", row.scene, row.estimator)
+    });
+    let steps: Vec<Step> = images.iter().flat_map(|(name, rows)| steps(name, rows)).collect();
+    if steps.is_empty() {
+        return Ok(vec![Block::finding(
+            "There is no light by bounce: it takes rows with bounce limits and rows without.",
+        )]);
+    }
+    let lines = |y: fn(&Step) -> Point| Series::by_name(gathered(steps.iter().map(|step| (&step.name, y(step)))));
+    let mut light = LineChart::new(
+        "Light by the number of its bounces",
+        Axis::linear("bounces"),
+        Axis::log("share of all light, %"),
+        lines(|step| step.light.times(100.0).above(f64::from(step.limit))),
+    );
+    light.caption = "Bars: 95 % interval over seeds. Light without a bounce is the lamp as it is seen.".to_string();
+    let mut paths = LineChart::new(
+        "Paths that are longer than a limit",
+        Axis::linear("bounces"),
+        Axis::log("share of paths, %"),
+        lines(|step| Point::new(f64::from(step.limit), 100.0 * step.cut)),
+    );
+    for chart in [&mut light, &mut paths] {
+        chart.subtitle = results.workload();
+        chart.dodge = 4.0;
+    }
+    let findings = images.keys().filter_map(|name| {
+        let direct = steps.iter().find(|step| step.name == *name && step.limit == 1)?;
+        let sixth = steps.iter().find(|step| step.name == *name && step.limit == 6)?;
+        Some(Block::finding(format!(
+            "{name}: {:.1} % of the light makes at most one bounce and {:.1} % at most six; {:.1} % of the paths are longer than six bounces.",
+            100.0 * direct.up_to,
+            100.0 * sixth.up_to,
+            100.0 * sixth.cut,
+        )))
+    });
+    let findings: Vec<Block> = findings.collect();
+    let table = Block::table("bounces", "Light and paths by bounces", &steps)
+        .column("scene and estimator", |step| step.name.clone())
+        .column("bounces", |step| step.limit.to_string())
+        .column("share of the light, %", |step| format!("{:.3}", 100.0 * step.light.value))
+        .column("95 % interval", |step| {
+            let percent = step.light.times(100.0);
+            percent.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.3} to {high:.3}"))
+        })
+        .column("share up to here, %", |step| format!("{:.3}", 100.0 * step.up_to))
+        .column("paths that are longer, %", |step| format!("{:.3}", 100.0 * step.cut))
+        .end();
+    let mut blocks = vec![Block::figure("bounces", light), Block::figure("path-lengths", paths)];
+    blocks.extend(findings);
+    blocks.push(table);
+    Ok(blocks)
+}
+
+/// The steps of the rows with a limit, against the rows of the same seed without one.
+fn steps(name: &str, rows: &[&Row]) -> Vec<Step> {
+    let radiance = |limit: Option<u16>| -> BTreeMap<u64, f64> {
+        let own = rows.iter().filter(|row| row.max_depth == limit);
+        own.filter_map(|row| Some((row.seed, row.mean_radiance?))).collect()
+    };
+    let whole = radiance(None);
+    let limits: BTreeSet<u16> = rows.iter().filter_map(|row| row.max_depth).collect();
+    let step = |limit: u16| {
+        let (up_to, before) = (radiance(Some(limit)), limit.checked_sub(1).map(|below| radiance(Some(below))));
+        let share = |seed: &u64, value: f64| Some(value / whole.get(seed)?);
+        let running: Vec<f64> = up_to.iter().filter_map(|(seed, value)| share(seed, *value)).collect();
+        let own = up_to.iter().filter_map(|(seed, value)| {
+            let below = before.as_ref().map_or(Some(0.0), |before| before.get(seed).copied())?;
+            share(seed, value - below)
+        });
+        let cut = rows.iter().filter(|row| row.max_depth == Some(limit));
+        let (cut, paths) = cut
+            .filter_map(|row| Some((row.truncated? as f64, row.paths? as f64)))
+            .fold((0.0, 0.0), |sum, row| (sum.0 + row.0, sum.1 + row.1));
+        let light = Told::mean(&own.collect::<Vec<f64>>())?;
+        let up_to = running.iter().sum::<f64>() / running.len() as f64;
+        Some(Step { name: name.to_string(), limit, light, up_to, cut: cut / paths })
+    };
+    limits.into_iter().filter_map(step).collect()
+}
