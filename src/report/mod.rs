@@ -1,5 +1,6 @@
 //! From records to figures, tables, findings and one self-contained page.
 
+mod benches;
 mod block;
 pub mod claims;
 mod contenders;
@@ -18,6 +19,7 @@ mod tests;
 pub mod timeline;
 mod words;
 
+pub use benches::{BenchRow, write_benches};
 pub use block::{Block, Table};
 pub use figures::{FIGURES, FigureEntry, check_figures};
 pub use results::Results;
@@ -52,6 +54,7 @@ pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
         sections.push(Section::of(results, blocks));
     }
     sections.extend(guards::section(out)?);
+    sections.extend(benches::section(out)?);
     if let Some(section) = claims::section(lab, out)? {
         sections.insert(0, section);
     }

@@ -1,5 +1,6 @@
 //! What the library promises, without the program: one test program, because each one that links the library costs seconds to build.
 
+mod approximations;
 mod atomic_file;
 mod convergence;
 mod determinism;

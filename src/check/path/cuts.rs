@@ -64,15 +64,16 @@ fn on_record(trials: &mut Trials) {
 }
 
 /// With roulette from the first vertex on a sample is a tenth of the number of vertices, G/10, so that one that is cut at 1 has the mean
-/// (1 - 0.9^10)/(1 - 0.9)/10 = 0.6513215599 instead of 1. With one sample in each subpixel both clamps cut the same.
+/// (1 - 0.9^10)/(1 - 0.9)/10 = 0.6513215599 instead of 1, and (1 - 0.9^20) = 0.8784233454 if it is cut at 2. With one sample in each subpixel
+/// both clamps cut the same.
 fn clamp(trials: &mut Trials) {
     let scene = hollow(0.9, 0.1);
     let side = trials.times(128, 2048) as u32;
     for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
         let arrives = arriving_estimators().any(|name| name == estimator);
         let is_one_path = ESTIMATORS.iter().any(|entry| entry.name == estimator && entry.is_one_path);
-        for clamp in [None, Some("subpixel"), Some("recursion")] {
-            if !arrives || (clamp == Some("recursion") && !is_one_path) {
+        for clamp in [None, Some("subpixel"), Some("recursion"), Some("subpixel:2"), Some("recursion:2")] {
+            if !arrives || (clamp.is_some_and(|clamp| clamp.starts_with("recursion")) && !is_one_path) {
                 continue;
             }
             let spec = Spec {
@@ -85,7 +86,7 @@ fn clamp(trials: &mut Trials) {
                 ..Spec::default()
             };
             let outcome = run(&scene, Settings { spp: 4, spec, ..Settings::default() });
-            let exact = if clamp.is_some() { 0.651_321_559_9 } else { 1.0 };
+            let exact = clamp.map_or(1.0, |clamp| if clamp.ends_with(":2") { 0.878_423_345_4 } else { 0.651_321_559_9 });
             let what = format!("{}, {estimator}, {kernel}", clamp.unwrap_or("none"));
             // A film's squares are those of the samples before the clamp, so the spread is that among the pixels.
             let pixels = outcome.film.pixels().iter().map(|pixel| pixel.mean()[0]);

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
 /// Columns that change the image.
-const IMAGE: [&str; 13] = [
+const IMAGE: [&str; 15] = [
     "scene",
     "scene_hash",
     "estimator",
@@ -17,6 +17,8 @@ const IMAGE: [&str; 13] = [
     "max_depth",
     "roulette",
     "clamp",
+    "filter",
+    "epsilon",
     "precision",
     "adaptive",
 ];
@@ -26,7 +28,11 @@ const SCHEDULE: [&str; 9] =
     ["strategy", "decomposition", "threads", "output", "kernel", "kernel_fallback", "simd", "effects", "accelerator"];
 
 /// Columns that say which row it is, what follows from the others, and what was measured.
-const OTHER: [&str; 50] = [
+const OTHER: [&str; 54] = [
+    "within_tolerance",
+    "fireflies",
+    "black_pixels",
+    "image_write_s",
     "schema",
     "experiment",
     "cell",
@@ -136,7 +142,7 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
 }
 
 /// Another value on each axis than the setups above have.
-const OTHER_VALUES: [(&str, &str); 17] = [
+const OTHER_VALUES: [(&str, &str); 19] = [
     ("scene", "sky"),
     ("size", "9x6"),
     ("estimator", "mis"),
@@ -145,6 +151,8 @@ const OTHER_VALUES: [(&str, &str); 17] = [
     ("spp", "8"),
     ("seed", "2"),
     ("clamp", "subpixel"),
+    ("filter", "box"),
+    ("epsilon", "1e-4"),
     ("kernel", "scalar"),
     ("precision", "f32"),
     ("effects", "all"),

@@ -178,7 +178,7 @@ fn options_have_the_scalar_kernels_bits() {
         for depth in [0, 1, 2, 3, 6, 40] {
             assert_same(&scene, &Spec { max_depth: Some(depth), ..spec.clone() }, &pieces);
         }
-        for roulette in ["albedo:0", "throughput:0", "throughput:3", "albedo:9"] {
+        for roulette in ["albedo:0", "throughput:0", "throughput:3", "albedo:9", "constant:0.8"] {
             assert_same(&scene, &Spec { roulette: Some(roulette.into()), ..spec.clone() }, &pieces);
         }
         for accelerator in ["none", "sah"] {

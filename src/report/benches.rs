@@ -1,0 +1,216 @@
+//! What `cargo bench --bench scheduling` measured: `benches/benches.csv`, which it writes into the folder that `PATHMARK_BENCH_OUT` names.
+
+use super::block::{Block, Table};
+use super::page::Section;
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use crate::experiment::{MACHINE, RunFile, read_run_file};
+use crate::plot::{Axis, Dot, DotPlot, Row};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The folder of results that has the file.
+const FOLDER: &str = "benches";
+/// The file.
+const FILE: &str = "benches.csv";
+
+const QUESTION: &str = "What does `cargo bench` say of the strategies, and what does the interface between scheduling and work cost?";
+
+const ANALYSIS: &str = "Criterion measures its cases one after the other, so a drift of the machine's speed falls on some of them and not on others. The experiment `thread-scaling` interleaves its cells; \
+conclusions should rest on that.\n\n\
+Speedups are of one render against the same render by `serial`. The seam sets strategies beside their bare mechanisms, both with empty jobs: the difference is what the interface costs.";
+
+/// One case as criterion measured it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BenchRow {
+    /// Criterion's group: `scheduling`, `empty-jobs`, `seam` or `trace`.
+    pub group: String,
+    /// The case: in most groups a strategy.
+    pub case: String,
+    /// Its parameter: in most groups the threads.
+    pub parameter: String,
+    /// Samples or jobs of a round.
+    pub elements: u64,
+    /// Median seconds of a round.
+    pub median_s: f64,
+    /// Lower end of its 95 % interval.
+    pub low_s: f64,
+    /// Upper end of its 95 % interval.
+    pub high_s: f64,
+}
+
+impl BenchRow {
+    /// How many times as fast as another: the ratio of medians, and the widest one that the two intervals allow.
+    pub fn speedup_over(&self, other: &Self) -> [f64; 3] {
+        [other.median_s / self.median_s, other.low_s / self.high_s, other.high_s / self.low_s]
+    }
+}
+
+/// Writes the cases, and what they were measured on, into a folder of results.
+pub fn write_benches(out: &Path, command: String, rows: &[BenchRow]) -> Result<()> {
+    let folder = out.join(FOLDER);
+    std::fs::create_dir_all(&folder).map_err(|e| Error::system("making", &folder, e))?;
+    RunFile::of_now(command).write(&folder.join(MACHINE))?;
+    let path = folder.join(FILE);
+    atomic_file::write(&path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        rows.iter().try_for_each(|row| writer.serialize(row)).map_err(std::io::Error::other)?;
+        writer.flush()
+    })
+}
+
+fn read(path: &Path) -> Result<Vec<BenchRow>> {
+    let file = std::fs::File::open(path).map_err(|e| Error::system("reading", path, e))?;
+    let rows = csv::Reader::from_reader(file).into_deserialize().collect::<std::result::Result<Vec<BenchRow>, _>>();
+    rows.map_err(|e| InputError::new("benches", "", e.to_string()).in_file(path.display().to_string(), None).into())
+}
+
+/// The section, if a folder has such a file. Its figure and tables are written beside it.
+pub(super) fn section(out: &Path) -> Result<Option<Section>> {
+    let folder = out.join(FOLDER);
+    let path = folder.join(FILE);
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let rows = read(&path)?;
+    let run = read_run_file(&folder.join(MACHINE))?;
+    let speedups = speedups(&rows);
+    let mut blocks = Vec::new();
+    if !speedups.is_empty() {
+        blocks.push(Block::Figure { stem: "speedup", figure: Box::new(plot(&speedups, run.machine.line())) });
+        blocks.push(Block::Table { stem: "speedup", table: speedup_table(&speedups) });
+    }
+    let seam = pairs(&rows);
+    if !seam.is_empty() {
+        blocks.push(Block::Table { stem: "seam", table: seam_table(&seam) });
+    }
+    blocks.push(Block::Table { stem: "rounds", table: all(&rows) });
+    for block in &blocks {
+        block.save(&folder.join("figures"))?;
+    }
+    Ok(Some(Section {
+        name: FOLDER.to_string(),
+        title: "What cargo bench measured".to_string(),
+        question: QUESTION.to_string(),
+        analysis: ANALYSIS.to_string(),
+        failed: Vec::new(),
+        rows: rows.len(),
+        run,
+        blocks,
+    }))
+}
+
+/// The cases of the group `scheduling` with their speedups over `serial`, the fastest first.
+fn speedups(rows: &[BenchRow]) -> Vec<(&BenchRow, [f64; 3])> {
+    let own = || rows.iter().filter(|row| row.group == "scheduling");
+    let Some(serial) = own().find(|row| row.case == "serial") else { return Vec::new() };
+    let mut found: Vec<_> = own().map(|row| (row, row.speedup_over(serial))).collect();
+    found.sort_by(|a, b| b.1[0].total_cmp(&a.1[0]));
+    found
+}
+
+/// A strategy and its bare mechanism on as many threads.
+fn pairs(rows: &[BenchRow]) -> Vec<(&BenchRow, &BenchRow)> {
+    let own = || rows.iter().filter(|row| row.group == "seam");
+    let bare: BTreeMap<_, _> =
+        own().filter_map(|row| Some(((row.case.strip_suffix("-bare")?, row.parameter.as_str()), row))).collect();
+    own().filter_map(|row| Some((row, *bare.get(&(row.case.as_str(), row.parameter.as_str()))?))).collect()
+}
+
+fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
+    let row = |(row, [speedup, low, high]): &(&BenchRow, [f64; 3])| {
+        let dot = Dot { value: *speedup, interval: Some((*low, *high)) };
+        Row::new(format!("{}, {}", row.case, row.parameter), vec![Some(dot)])
+    };
+    let mut plot = DotPlot::new(
+        "Speedup by cargo bench",
+        Axis::linear("times as fast as serial").including([1.0]),
+        speedups.iter().map(row).collect(),
+    );
+    plot.subtitle = machine;
+    plot.caption = "Names: strategy, threads. Bars: widest ratio that the 95 % intervals of both medians allow.".to_string();
+    plot.guides = vec![(1.0, "serial".to_string())];
+    plot
+}
+
+fn table(title: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Table {
+    Table { title: title.to_string(), columns: columns.iter().map(ToString::to_string).collect(), rows }
+}
+
+fn speedup_table(speedups: &[(&BenchRow, [f64; 3])]) -> Table {
+    let row = |(row, [speedup, low, high]): &(&BenchRow, [f64; 3])| {
+        let interval = format!("{low:.3} to {high:.3}");
+        vec![row.case.clone(), row.parameter.clone(), format!("{speedup:.3}"), interval]
+    };
+    let columns = ["strategy", "threads", "speedup", "interval"];
+    table("Speedup against serial", &columns, speedups.iter().map(row).collect())
+}
+
+fn seam_table(pairs: &[(&BenchRow, &BenchRow)]) -> Table {
+    let ns = |seconds: f64, row: &BenchRow| 1e9 * seconds / row.elements as f64;
+    let row = |(own, bare): &(&BenchRow, &BenchRow)| {
+        let [least, most] = [own.low_s - bare.high_s, own.high_s - bare.low_s];
+        vec![
+            own.case.clone(),
+            own.parameter.clone(),
+            format!("{:.1}", ns(bare.median_s, bare)),
+            format!("{:.1}", ns(own.median_s, own)),
+            format!("{:.1}", ns(own.median_s - bare.median_s, own)),
+            format!("{:.1} to {:.1}", ns(least, own), ns(most, own)),
+        ]
+    };
+    let columns = ["strategy", "threads", "bare mechanism, ns a job", "strategy, ns a job", "difference, ns", "interval"];
+    table("What the seam between scheduling and work costs", &columns, pairs.iter().map(row).collect())
+}
+
+fn all(rows: &[BenchRow]) -> Table {
+    let row = |row: &BenchRow| {
+        let us = |seconds: f64| format!("{:.2}", 1e6 * seconds);
+        let interval = format!("{} to {}", us(row.low_s), us(row.high_s));
+        vec![
+            row.group.clone(),
+            row.case.clone(),
+            row.parameter.clone(),
+            row.elements.to_string(),
+            us(row.median_s),
+            interval,
+        ]
+    };
+    let columns = ["group", "case", "threads or pieces", "samples or jobs", "median of a round, us", "95 % interval"];
+    table("All cases", &columns, rows.iter().map(row).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(group: &str, case: &str, parameter: &str, median_s: f64) -> BenchRow {
+        let (group, case, parameter) = (group.to_string(), case.to_string(), parameter.to_string());
+        BenchRow { group, case, parameter, elements: 1000, median_s, low_s: 0.9 * median_s, high_s: 1.1 * median_s }
+    }
+
+    #[test]
+    fn what_was_written_is_read_and_compared() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows = [
+            row("scheduling", "serial", "1", 2.0),
+            row("scheduling", "rayon", "2", 1.0),
+            row("seam", "rayon", "2", 3e-6),
+            row("seam", "rayon-bare", "2", 2e-6),
+        ];
+        write_benches(folder.path(), "cargo bench".to_string(), &rows).unwrap();
+        assert_eq!(read(&folder.path().join(FOLDER).join(FILE)).unwrap(), rows);
+        let found = speedups(&rows);
+        assert_eq!(found.iter().map(|(row, _)| row.case.as_str()).collect::<Vec<_>>(), ["rayon", "serial"]);
+        let [speedup, low, high] = found[0].1;
+        assert_eq!(speedup, 2.0);
+        assert!((low - 1.8 / 1.1).abs() < 1e-12 && (high - 2.2 / 0.9).abs() < 1e-12, "{low} to {high}");
+        let seam = seam_table(&pairs(&rows));
+        // 1 us more for 1000 jobs is 1 ns a job; from 2.7 - 2.2 to 3.3 - 1.8.
+        assert_eq!(seam.rows, [["rayon", "2", "2.0", "3.0", "1.0", "0.5 to 1.5"].map(String::from)]);
+        assert!(section(folder.path()).unwrap().is_some());
+        assert!(section(&folder.path().join("none")).unwrap().is_none());
+    }
+}
