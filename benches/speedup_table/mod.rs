@@ -15,7 +15,8 @@ pub(crate) fn print(group: &str, start: SystemTime) {
     if let Some(out) = std::env::var_os("PATHMARK_BENCH_OUT").filter(|_| !rows.is_empty()) {
         let command = std::iter::once("cargo bench --bench scheduling".to_string());
         let filter: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
-        let command: Vec<String> = command.chain((!filter.is_empty()).then(|| format!("-- {}", filter.join(" ")))).collect();
+        let command: Vec<String> =
+            command.chain((!filter.is_empty()).then(|| format!("-- {}", filter.join(" ")))).collect();
         if let Err(error) = write_benches(Path::new(&out), command.join(" "), &rows) {
             eprintln!("{error}");
         }

@@ -6,6 +6,7 @@
 //! disturbs the sweep that goes on in its place.
 
 use super::external::filled;
+use super::object_pixels::{object_pixels, only};
 use super::process_group;
 use super::{External, HalfFile, SceneVersion};
 use crate::error::{Error, InputError, Result};
@@ -16,6 +17,7 @@ use crate::lab::Lab;
 use crate::measure::{
     Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure, missing_external, run_external,
 };
+use crate::metric::cross_mse;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -39,6 +41,9 @@ pub struct CellJob {
     pub scene: SceneVersion,
     /// The two half-references, if errors are to be measured.
     pub references: Option<[HalfFile; 2]>,
+    /// The object on whose pixels errors are measured besides.
+    #[serde(default)]
+    pub object: Option<String>,
     /// The other program that renders it, and the folder where that was made.
     pub external: Option<(External, PathBuf)>,
     /// Where to keep the trace; of a curve there is none.
@@ -188,7 +193,12 @@ impl CellJob {
             Some([first, second]) => Measured::against(&image, first, second)?,
             None => Measured::default(),
         };
-        let record = Record { image_write_s, ..Record::new(setup, outcome, errors) };
+        let mut record = Record { image_write_s, ..Record::new(setup, outcome, errors) };
+        if let (Some(object), Some(halves)) = (&self.object, references) {
+            let wanted = object_pixels(setup, object)?;
+            let [image, first, second] = [&image, &halves[0], &halves[1]].map(|image| only(image, &wanted));
+            record.object_mse = Some(cross_mse(&image, &first, &second)?);
+        }
         Ok(self.label(point, record))
     }
 

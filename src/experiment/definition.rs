@@ -24,6 +24,7 @@
 //!
 //! [reference]                    # optional: measures errors
 //! estimator = "bsdf"
+//! object = "mirror ball"          # optional: and those on the pixels of this object (column object_mse)
 //!
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
@@ -123,6 +124,7 @@ pub struct Definition {
 #[serde(deny_unknown_fields)]
 struct ReferenceTable {
     estimator: String,
+    object: Option<String>,
 }
 
 impl Definition {
@@ -228,6 +230,11 @@ impl Definition {
                 ))
             }
         }
+    }
+
+    /// The object on whose pixels errors are measured besides.
+    pub(super) fn object(&self) -> Option<&str> {
+        self.reference.as_ref()?.object.as_deref()
     }
 
     /// The error of a reference that cannot be rendered, at the field that asks for it.

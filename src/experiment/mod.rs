@@ -10,6 +10,7 @@ mod drift;
 mod external;
 mod half;
 mod matrix;
+mod object_pixels;
 mod plan;
 mod pricing;
 mod process_group;

@@ -3,6 +3,7 @@
 use super::calibration_file::write_calibration;
 use super::cell::trace_file;
 use super::drift::Drift;
+use super::object_pixels::check_object;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
@@ -78,6 +79,13 @@ impl<'a> Sweep<'a> {
         for reference in &references {
             reference.check(&definition.lab).map_err(|error| definition.reference_error(options.profile, error))?;
             reference.check_cache(&definition.lab, &options.out.join("references"))?;
+        }
+        if let Some(object) = definition.object() {
+            for cell in &cells {
+                let checked =
+                    definition.lab.prepare(cell.settings.clone()).and_then(|setup| check_object(&setup, object));
+                checked.map_err(|error| definition.reference_error(options.profile, error))?;
+            }
         }
         files.reads("the experiment", Path::new(&definition.file));
         for cell in &cells {
@@ -162,6 +170,7 @@ impl<'a> Sweep<'a> {
                             .iter()
                             .find(|(of, _)| of.is_for(&cell.settings))
                             .map(|(_, halves)| halves.clone()),
+                        object: definition.object().map(str::to_string),
                         external: cell.external.clone().map(|external| (external, programs.clone())),
                         trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
                     };

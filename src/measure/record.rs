@@ -153,6 +153,8 @@ pub struct Record {
     /// What the samples themselves say of the squared error: the mean over pixels of the variance of a pixel's mean, for independent samples. Where
     /// subpixels or a sampler spread the samples evenly, the true error is below it.
     pub variance: Option<f64>,
+    /// Mean squared error, cross form, over the pixels of the object that the experiment names; NaN if it is in none.
+    pub object_mse: Option<f64>,
     /// Share of pixels whose display value is within 0.05 of the reference's in every channel: the share that is accurate.
     pub within_tolerance: Option<f64>,
     /// Pixels that are brighter than the reference by more than 1, the display's white, in some channel.

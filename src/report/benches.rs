@@ -15,7 +15,8 @@ const FOLDER: &str = "benches";
 /// The file.
 const FILE: &str = "benches.csv";
 
-const QUESTION: &str = "What does `cargo bench` say of the strategies, and what does the interface between scheduling and work cost?";
+const QUESTION: &str =
+    "What does `cargo bench` say of the strategies, and what does the interface between scheduling and work cost?";
 
 const ANALYSIS: &str = "Criterion measures its cases one after the other, so a drift of the machine's speed falls on some of them and not on others. The experiment `thread-scaling` interleaves its cells; \
 conclusions should rest on that.\n\n\
@@ -130,7 +131,8 @@ fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
         speedups.iter().map(row).collect(),
     );
     plot.subtitle = machine;
-    plot.caption = "Names: strategy, threads. Bars: widest ratio that the 95 % intervals of both medians allow.".to_string();
+    plot.caption =
+        "Names: strategy, threads. Bars: widest ratio that the 95 % intervals of both medians allow.".to_string();
     plot.guides = vec![(1.0, "serial".to_string())];
     plot
 }
@@ -161,7 +163,8 @@ fn seam_table(pairs: &[(&BenchRow, &BenchRow)]) -> Table {
             format!("{:.1} to {:.1}", ns(least, own), ns(most, own)),
         ]
     };
-    let columns = ["strategy", "threads", "bare mechanism, ns a job", "strategy, ns a job", "difference, ns", "interval"];
+    let columns =
+        ["strategy", "threads", "bare mechanism, ns a job", "strategy, ns a job", "difference, ns", "interval"];
     table("What the seam between scheduling and work costs", &columns, pairs.iter().map(row).collect())
 }
 

@@ -46,7 +46,10 @@ fn an_epsilon_loses_the_light_of_shorter_ways() {
     for (epsilon, exact) in [("none", 1.0), ("1e-6", 1.0), ("0.5", 0.1 / (1.0 - 0.9 * (1.0 - 0.0625))), ("1.5", 0.0)] {
         let spec = Spec { epsilon: Some(epsilon.into()), ..spec("bsdf", "scalar") };
         let (found, error) = mean(&run(HOLLOW, spec, 64).film);
-        assert!((found - exact).abs() <= 5.0 * error + 1e-9, "epsilon {epsilon}: {found} +- {error} instead of {exact}");
+        assert!(
+            (found - exact).abs() <= 5.0 * error + 1e-9,
+            "epsilon {epsilon}: {found} +- {error} instead of {exact}"
+        );
     }
 }
 

@@ -40,6 +40,7 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
         scene: SceneVersion::of(&Setup::prepare(settings.clone()).unwrap()),
         settings,
         references: Some(references.map(half)),
+        object: None,
         external: None,
         trace: None,
     };

@@ -86,7 +86,8 @@ fn clamp(trials: &mut Trials) {
                 ..Spec::default()
             };
             let outcome = run(&scene, Settings { spp: 4, spec, ..Settings::default() });
-            let exact = clamp.map_or(1.0, |clamp| if clamp.ends_with(":2") { 0.878_423_345_4 } else { 0.651_321_559_9 });
+            let exact =
+                clamp.map_or(1.0, |clamp| if clamp.ends_with(":2") { 0.878_423_345_4 } else { 0.651_321_559_9 });
             let what = format!("{}, {estimator}, {kernel}", clamp.unwrap_or("none"));
             // A film's squares are those of the samples before the clamp, so the spread is that among the pixels.
             let pixels = outcome.film.pixels().iter().map(|pixel| pixel.mean()[0]);

@@ -90,7 +90,9 @@ fn fair(trials: &mut Trials) {
     let scene = hollow([0.5, 0.9, 0.2], [1.0, 2.0, 3.0]);
     let mut bench = Bench::new(trials);
     bench.widest = [3e-2, 1e-3];
-    for rule in ["never", "albedo:0", "albedo:1", "albedo:3", "albedo:5", "throughput:0", "throughput:5", "constant:0.95"] {
+    for rule in
+        ["never", "albedo:0", "albedo:1", "albedo:3", "albedo:5", "throughput:0", "throughput:5", "constant:0.95"]
+    {
         bench.roulette = Some(rule.to_string());
         // Without roulette a path of this albedo ends at the cut alone; what it misses there is 1e-18.
         bench.max_depth = (rule == "never").then_some(400);

@@ -28,7 +28,8 @@ const SCHEDULE: [&str; 9] =
     ["strategy", "decomposition", "threads", "output", "kernel", "kernel_fallback", "simd", "effects", "accelerator"];
 
 /// Columns that say which row it is, what follows from the others, and what was measured.
-const OTHER: [&str; 54] = [
+const OTHER: [&str; 55] = [
+    "object_mse",
     "within_tolerance",
     "fireflies",
     "black_pixels",

@@ -15,15 +15,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let accelerators = in_table_order(names, ACCELERATORS.iter().map(|entry| entry.name));
     let (generated, others): (Vec<&Row>, Vec<&Row>) = results.rows().partition(|row| primitives(row).is_some());
     let sizes = places(generated, |row| primitives(row).unwrap_or_default());
-    let samples = places(others, |row| u64::from(row.spp));
+    let samples = places(others.clone(), |row| u64::from(row.spp));
     let mut blocks = Vec::new();
     blocks.extend(against_primitives(results, &sizes, &accelerators));
-    let others = || accelerators.iter().copied().filter(|(_, name)| *name != yardstick);
-    for (_, name) in others() {
+    let hierarchies = || accelerators.iter().copied().filter(|(_, name)| *name != yardstick);
+    for (_, name) in hierarchies() {
         blocks.extend(crossover(name, &gains(&sizes, &yardstick, name)?));
     }
-    let gains = others().map(|(place, name)| Ok((place, name, gains(&samples, &yardstick, name)?)));
+    let gains = hierarchies().map(|(place, name)| Ok((place, name, gains(&samples, &yardstick, name)?)));
     blocks.extend(against_spp(results, &samples, &gains.collect::<Result<Vec<_>>>()?));
+    blocks.extend(hierarchies().flat_map(|(_, name)| marginal(&others, &yardstick, name)));
     blocks.push(table(results, &accelerators));
     Ok(blocks)
 }
@@ -137,6 +138,32 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     };
     let findings = gains.iter().filter(|(.., gains)| !gains.is_empty()).map(finding);
     [Block::figure("acceleration-spp", chart)].into_iter().chain(findings).collect()
+}
+
+/// How many times as long the yardstick takes for each further sample: what every render takes once is in no difference of two times, so it
+/// cannot bend this factor as it bends the gain at few samples.
+fn marginal(rows: &[&Row], yardstick: &str, name: &str) -> Vec<Block> {
+    let by_size = group(rows.iter().copied(), |row| (row.width, row.height));
+    let finding = |((width, height), rows): ((u32, u32), Vec<&Row>)| {
+        let spp: BTreeSet<u32> = rows.iter().map(|row| row.spp).collect();
+        let (least, most) = (*spp.first()?, *spp.last()?);
+        let times: BTreeMap<(&str, u32, u32), f64> = rows
+            .iter()
+            .filter_map(|row| Some(((row.accelerator.as_str(), row.repetition, row.spp), row.makespan_s?)))
+            .collect();
+        let further =
+            |name, repetition| Some(times.get(&(name, repetition, most))? - times.get(&(name, repetition, least))?);
+        let repetitions: BTreeSet<u32> = rows.iter().map(|row| row.repetition).collect();
+        let ratios = repetitions.into_iter().filter_map(|n| Some(further(yardstick, n)? / further(name, n)?));
+        let ratio = Told::median(&ratios.collect::<Vec<f64>>()).filter(|_| least < most)?;
+        let interval = ratio.interval.map_or_else(String::new, |interval| format!(", {}", with_level(&interval, 2)));
+        Some(Block::finding(format!(
+            "For each sample from {least} to {most} at {width}x{height}, {yardstick} takes {:.2} times as long as {name}{interval}: \
+             differences of times, in which a fixed cost has no part.",
+            ratio.value
+        )))
+    };
+    by_size.into_iter().filter_map(finding).collect()
 }
 
 fn table(results: &Results, accelerators: &[(usize, &str)]) -> Block {
