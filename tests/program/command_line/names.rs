@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 19] = [
+const KINDS: [&str; 20] = [
     "scenes",
     "workloads",
     "strategies",
@@ -22,6 +22,7 @@ const KINDS: [&str; 19] = [
     "generators",
     "materials",
     "features",
+    "filters",
     "metrics",
     "formats",
     "experiments",

@@ -1,19 +1,16 @@
 //! What the names of a [`Spec`] come to for a scene: everything that a user could have got wrong is found here.
 
-use super::{Clamp, Clamped, KERNELS, LANES, OwnEstimator, SCALAR, Spec};
+use super::in_lanes::{InLanes, lanes_for};
+use super::{Clamp, Clamped, LANES, OwnEstimator, SCALAR, Spec};
 use crate::effect::Effects;
 use crate::error::{InputError, Result};
-use crate::estimator::{
-    AnyEstimator, Compiled, Course, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator,
-};
-use crate::material::Diffuse;
-use crate::sampling::{Entry as SamplerEntry, InLanes as LaneSampler, SAMPLERS};
+use crate::estimator::{AnyEstimator, Compiled, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
+use crate::sampling::{Entry as SamplerEntry, SAMPLERS};
 use crate::scene::{
-    ACCELERATORS, ANGULAR_EMISSION, Accelerator, AllEffects, DiffuseOnly, EPSILON, FILTERS, FOG, Filter, HIERARCHY,
-    LENS, POINT_LIGHT, PROFILES, ProfileEntry, SUBPIXELS, Scan, Scene, SmallptEffects, Sphere, View, accelerator,
-    effect_names,
+    ACCELERATORS, Accelerator, AllEffects, DiffuseOnly, EPSILON, FILTERS, Filter, HIERARCHY, PROFILES, ProfileEntry,
+    SUBPIXELS, Scan, Scene, SmallptEffects, Sphere, View, accelerator, effect_names,
 };
-use crate::simd::{Entry as LevelEntry, LEVELS, Level, Precision, widths_of};
+use crate::simd::{Precision, widths_of};
 use std::sync::Arc;
 
 /// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
@@ -39,17 +36,6 @@ pub struct Choice {
     accelerator: &'static Accelerator,
     /// How lanes go about it, or why they do not.
     pub(super) lanes: std::result::Result<InLanes, &'static str>,
-}
-
-/// What lanes are made with.
-#[derive(Clone, Copy)]
-pub(super) struct InLanes {
-    pub(super) level: Level,
-    pub(super) precision: Precision,
-    pub(super) course: Course,
-    pub(super) sampler: LaneSampler,
-    /// Whether they are compiled for diffuse surfaces alone.
-    pub(super) is_matt: bool,
 }
 
 impl Choice {
@@ -312,95 +298,4 @@ fn epsilon(spec: &Spec) -> Result<Option<f64>> {
             .allowed("a number from 0 on, in the scene's lengths, or none")
     };
     parsed.map(Some).ok_or_else(|| error().into())
-}
-
-/// As many primitives as single precision has whole numbers for are more than lanes tell apart.
-const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
-
-/// What of a scene or of its settings lanes have no code for.
-fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static str> {
-    let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
-    let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
-    let others = [
-        (spec.effects.is_some(), "effects"),
-        (spec.clamp.is_some(), "clamp"),
-        (epsilon.is_some(), "epsilon"),
-        (scene.owners.len() >= MOST_IN_LANES, "primitives"),
-    ];
-    of_scene.or_else(|| others.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name))
-}
-
-/// The level on which lanes render a scene with these settings, or why they do not.
-fn lanes_for(
-    scene: &Scene,
-    spec: &Spec,
-    course: Option<Course>,
-    epsilon: Option<f64>,
-) -> Result<std::result::Result<InLanes, &'static str>> {
-    if !KERNELS.iter().any(|entry| entry.name == spec.kernel) {
-        return Err(unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into());
-    }
-    let level = level(LEVELS, spec.simd.as_deref())?;
-    let precision = precision(spec)?;
-    if spec.kernel == SCALAR {
-        return Ok(Err(SCALAR));
-    }
-    Ok(Err(match (obstacle(scene, spec, epsilon), course, LaneSampler::find(&spec.sampler)) {
-        (None, Some(course), Some(sampler)) => {
-            let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
-            // Where most of the time goes to lights, being compiled for it would gain 3 %, and takes as long to compile as the others.
-            let is_matt = is_diffuse && course.aims.is_none();
-            return Ok(Ok(InLanes { level, precision, course, sampler, is_matt }));
-        }
-        (Some(reason), ..) => reason,
-        (None, None, _) => "estimator",
-        (None, Some(_), None) => "sampler",
-    }))
-}
-
-/// The level of that name, or the fastest that this processor has.
-fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Result<Level> {
-    let available = || levels.iter().filter_map(LevelEntry::here);
-    if let Some(level) = available().find(|level| wanted.is_none_or(|name| level.name() == name)) {
-        return Ok(level);
-    }
-    let name = wanted.unwrap_or_default();
-    if levels.iter().any(|level| level.name == name) {
-        let allowed: Vec<&str> = available().map(Level::name).collect();
-        let error = InputError::new("simd", name, "is not supported by this processor");
-        return Err(error.allowed(allowed.join(", ")).into());
-    }
-    Err(unknown("simd", name, available().map(Level::name)).into())
-}
-
-/// The format that the spec names; the scalar kernel has but one.
-fn precision(spec: &Spec) -> Result<Precision> {
-    let name = &spec.precision;
-    let Some(precision) = Precision::ALL.into_iter().find(|precision| precision.name() == name) else {
-        return Err(unknown("precision", name, Precision::ALL.into_iter().map(Precision::name)).into());
-    };
-    if spec.kernel == SCALAR && precision != Precision::F64 {
-        let problem = "is nothing for the scalar kernel";
-        return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
-    }
-    Ok(precision)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// On a processor without the first level the next one renders, and the first is refused by what there is.
-    #[test]
-    fn a_level_that_the_processor_lacks_is_refused() {
-        let [mut first, last] = [&LEVELS[0], &LEVELS[LEVELS.len() - 1]].map(LevelEntry::clone);
-        (first.name, first.is_available) = ("first", || false);
-        let table = Box::leak(Box::new([first, last]));
-        assert_eq!(level(table, None).unwrap().name(), "baseline");
-        let error = level(table, Some("first")).unwrap_err().to_string();
-        assert!(error.contains("first") && error.contains("is not supported by this processor"), "{error}");
-        assert!(error.contains("baseline"), "{error}");
-        let error = level(table, Some("mmx")).unwrap_err().to_string();
-        assert!(error.contains("there is none of that name"), "{error}");
-    }
 }

@@ -2,6 +2,7 @@
 
 mod choice;
 mod clamp;
+mod in_lanes;
 mod inspect;
 mod lanes;
 mod own;

@@ -16,7 +16,7 @@ mod walks;
 mod wide;
 mod window;
 
-use super::choice::InLanes;
+use crate::kernel::in_lanes::InLanes;
 use super::{Choice, Counts, Kernel};
 use crate::estimator::Course;
 use crate::film::{Piece, TileBuffer};

@@ -1,0 +1,112 @@
+//! Whether lanes render a scene with some settings, and on which level.
+
+use super::choice::unknown;
+use super::{KERNELS, SCALAR, Spec};
+use crate::error::{InputError, Result};
+use crate::estimator::Course;
+use crate::material::Diffuse;
+use crate::sampling::InLanes as LaneSampler;
+use crate::scene::{ANGULAR_EMISSION, FOG, LENS, POINT_LIGHT, Scene};
+use crate::simd::{Entry as LevelEntry, LEVELS, Level, Precision};
+
+/// What lanes are made with.
+#[derive(Clone, Copy)]
+pub(super) struct InLanes {
+    pub(super) level: Level,
+    pub(super) precision: Precision,
+    pub(super) course: Course,
+    pub(super) sampler: LaneSampler,
+    /// Whether they are compiled for diffuse surfaces alone.
+    pub(super) is_matt: bool,
+}
+
+/// As many primitives as single precision has whole numbers for are more than lanes tell apart.
+const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
+
+/// What of a scene or of its settings lanes have no code for.
+fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static str> {
+    let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
+    let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
+    let others = [
+        (spec.effects.is_some(), "effects"),
+        (spec.clamp.is_some(), "clamp"),
+        (epsilon.is_some(), "epsilon"),
+        (scene.owners.len() >= MOST_IN_LANES, "primitives"),
+    ];
+    of_scene.or_else(|| others.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name))
+}
+
+/// The level on which lanes render a scene with these settings, or why they do not.
+pub(super) fn lanes_for(
+    scene: &Scene,
+    spec: &Spec,
+    course: Option<Course>,
+    epsilon: Option<f64>,
+) -> Result<std::result::Result<InLanes, &'static str>> {
+    if !KERNELS.iter().any(|entry| entry.name == spec.kernel) {
+        return Err(unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into());
+    }
+    let level = level(LEVELS, spec.simd.as_deref())?;
+    let precision = precision(spec)?;
+    if spec.kernel == SCALAR {
+        return Ok(Err(SCALAR));
+    }
+    Ok(Err(match (obstacle(scene, spec, epsilon), course, LaneSampler::find(&spec.sampler)) {
+        (None, Some(course), Some(sampler)) => {
+            let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
+            // Where most of the time goes to lights, being compiled for it would gain 3 %, and takes as long to compile as the others.
+            let is_matt = is_diffuse && course.aims.is_none();
+            return Ok(Ok(InLanes { level, precision, course, sampler, is_matt }));
+        }
+        (Some(reason), ..) => reason,
+        (None, None, _) => "estimator",
+        (None, Some(_), None) => "sampler",
+    }))
+}
+
+/// The level of that name, or the fastest that this processor has.
+fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Result<Level> {
+    let available = || levels.iter().filter_map(LevelEntry::here);
+    if let Some(level) = available().find(|level| wanted.is_none_or(|name| level.name() == name)) {
+        return Ok(level);
+    }
+    let name = wanted.unwrap_or_default();
+    if levels.iter().any(|level| level.name == name) {
+        let allowed: Vec<&str> = available().map(Level::name).collect();
+        let error = InputError::new("simd", name, "is not supported by this processor");
+        return Err(error.allowed(allowed.join(", ")).into());
+    }
+    Err(unknown("simd", name, available().map(Level::name)).into())
+}
+
+/// The format that the spec names; the scalar kernel has but one.
+fn precision(spec: &Spec) -> Result<Precision> {
+    let name = &spec.precision;
+    let Some(precision) = Precision::ALL.into_iter().find(|precision| precision.name() == name) else {
+        return Err(unknown("precision", name, Precision::ALL.into_iter().map(Precision::name)).into());
+    };
+    if spec.kernel == SCALAR && precision != Precision::F64 {
+        let problem = "is nothing for the scalar kernel";
+        return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
+    }
+    Ok(precision)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// On a processor without the first level the next one renders, and the first is refused by what there is.
+    #[test]
+    fn a_level_that_the_processor_lacks_is_refused() {
+        let [mut first, last] = [&LEVELS[0], &LEVELS[LEVELS.len() - 1]].map(LevelEntry::clone);
+        (first.name, first.is_available) = ("first", || false);
+        let table = Box::leak(Box::new([first, last]));
+        assert_eq!(level(table, None).unwrap().name(), "baseline");
+        let error = level(table, Some("first")).unwrap_err().to_string();
+        assert!(error.contains("first") && error.contains("is not supported by this processor"), "{error}");
+        assert!(error.contains("baseline"), "{error}");
+        let error = level(table, Some("mmx")).unwrap_err().to_string();
+        assert!(error.contains("there is none of that name"), "{error}");
+    }
+}
