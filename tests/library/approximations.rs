@@ -26,6 +26,7 @@ fn mean(film: &Film) -> (f64, f64) {
 
 /// A hollow sphere of radius 1 with albedo 0.9 that gives off 0.1, seen from its middle.
 const HOLLOW: &str = r#"
+about = "an approximation"
 estimator = "bsdf"
 background = [0.0, 0.0, 0.0]
 [camera.pinhole]
@@ -55,6 +56,7 @@ fn an_epsilon_loses_the_light_of_shorter_ways() {
 
 /// A lamp in the dark, seen sharply.
 const LAMP: &str = r#"
+about = "an approximation"
 estimator = "bsdf"
 background = [0.0, 0.0, 0.0]
 [camera.pinhole]
@@ -96,6 +98,7 @@ fn the_filter_of_the_camera_is_no_approximation() {
 fn floor(reach: &str) -> String {
     format!(
         r#"
+about = "an approximation"
 estimator = "whitted"
 background = [0.0, 0.0, 0.0]
 [camera.pinhole]
