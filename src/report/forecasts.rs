@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::results::Results;
 use super::rows::Row;
+use crate::analysis::speedup::serial_fraction;
 use crate::error::Result;
 use crate::plot::style::Look;
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
@@ -135,6 +136,9 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
             .column("makespan, s", |row| seconds(row.makespan_s))
             .column("speedup", |row| format!("{:.2}", row.speedup))
             .column("efficiency", |row| format!("{:.3}", row.efficiency))
+            .column("serial fraction (Karp and Flatt)", |row| {
+                serial_fraction(row.speedup, row.workers).map_or_else(|| "-".to_string(), |e| format!("{e:.4}"))
+            })
             .column("work / cores, s", |row| seconds(row.share_s))
             .column("longest job, s", |row| seconds(row.longest_s))
             .column("Graham's bound, s", |row| seconds(row.greedy_s))

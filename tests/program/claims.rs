@@ -33,7 +33,7 @@ fn small_images_do_not_judge_a_report_and_are_told_as_such() {
         let is_small = row["verdict"] == "not-comparable" && row["why"].as_str().unwrap().contains("of the pixels");
         assert!(is_small || row["verdict"] != "not-comparable", "{row}");
     }
-    let text = fs::read_to_string(folder.path().join("out/claims/claims.md")).unwrap();
+    let text = fs::read_to_string(folder.path().join("out/CLAIMS.md")).unwrap();
     assert_eq!(text.matches("\n### ").count(), 72);
     let table = csv::Reader::from_path(folder.path().join("out/claims/claims.csv")).unwrap();
     assert_eq!(table.into_records().map(Result::unwrap).count(), 72);
@@ -56,12 +56,12 @@ fn the_claims_of_one_report_are_printed_alone() {
 #[test]
 fn folders_and_files_that_are_not_of_it_are_refused() {
     let folder = with_rows();
-    fs::write(folder.path().join("out/claims/claims.md"), "my own claims").unwrap();
+    fs::write(folder.path().join("out/CLAIMS.md"), "my own claims").unwrap();
     let before = snapshot(folder.path());
     for (arguments, told) in [
         (["claims", "out", "--report", "E"], "A, B, C, D"),
         (["claims", "nowhere", "--report", "A"], "nowhere"),
-        (["claims", "out", "--quiet", "--json"], "claims.md"),
+        (["claims", "out", "--quiet", "--json"], "CLAIMS.md"),
     ] {
         let said = finish(pathmark(folder.path(), &arguments)).with_code(2).err;
         assert!(said.contains(told), "{said}");

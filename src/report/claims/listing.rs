@@ -16,8 +16,8 @@ use std::path::Path;
 pub const FOLDER: &str = "claims";
 /// The verdicts as a table.
 pub(super) const CSV: &str = "claims.csv";
-/// The verdicts as a text.
-pub(super) const MARKDOWN: &str = "claims.md";
+/// The verdicts as a text. It stands beside the folders of the rows, so that its links lead there.
+pub const MARKDOWN: &str = "CLAIMS.md";
 
 const HEADING: &str = "# The claims of the four reports";
 
@@ -58,13 +58,13 @@ impl Answer<'_> {
     }
 }
 
-/// Writes `claims.csv` and `claims.md` into the folder `claims` of a folder of results.
+/// Writes `claims/claims.csv` and `CLAIMS.md` into a folder of results.
 pub fn save(answers: &[Answer<'_>], out: &Path) -> Result<()> {
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
     table("claims", answers).save(&folder)?;
     let text = markdown(answers, out);
-    atomic_file::write(&folder.join(MARKDOWN), |file| file.write_all(text.as_bytes()))
+    atomic_file::write(&out.join(MARKDOWN), |file| file.write_all(text.as_bytes()))
 }
 
 /// The complete table.

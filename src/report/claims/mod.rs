@@ -35,9 +35,8 @@ and not answered if there are no rows.";
 
 /// Enters the files of the verdicts into those of a command that will write them.
 pub fn enter(option: &str, out: &Path, files: &mut Files) -> Result<()> {
-    let folder = out.join(FOLDER);
-    files.renews(option, &folder.join(CSV), is_csv)?;
-    files.renews(option, &folder.join(MARKDOWN), is_markdown)
+    files.renews(option, &out.join(FOLDER).join(CSV), is_csv)?;
+    files.renews(option, &out.join(MARKDOWN), is_markdown)
 }
 
 /// The verdicts as the first section of the page, if the folder has rows for any of them. Writes them into the folder, too.
