@@ -194,9 +194,9 @@ impl CellJob {
             None => Measured::default(),
         };
         let mut record = Record { image_write_s, ..Record::new(setup, outcome, errors) };
-        if let (Some(object), Some(halves)) = (&self.object, references) {
+        if let (Some(object), Some([first, second])) = (&self.object, references) {
             let wanted = object_pixels(setup, object)?;
-            let [image, first, second] = [&image, &halves[0], &halves[1]].map(|image| only(image, &wanted));
+            let [image, first, second] = [&image, first, second].map(|image| only(image, &wanted));
             record.object_mse = Some(cross_mse(&image, &first, &second)?);
         }
         Ok(self.label(point, record))

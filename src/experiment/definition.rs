@@ -56,8 +56,7 @@ use std::sync::Arc;
 pub const EXPERIMENTS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/experiments.rs"));
 
 /// What else there is in a folder of results.
-const TAKEN: &[&str] =
-    &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
+const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
 
 /// The features that an experiment may require, and whether this program was built with them.
 pub(super) const FEATURES: &[(&str, bool)] = &[("openmp", cfg!(feature = "openmp"))];

@@ -7,14 +7,12 @@ use crate::scene::{AllEffects, Filter, Scene, Tests};
 
 /// The index of the object of that name.
 fn index(scene: &Scene, object: &str) -> Result<u32> {
-    match (0..).zip(&scene.objects).find(|(_, own)| own.name == object) {
-        Some((index, _)) => Ok(index),
-        None => {
-            let names: Vec<&str> = scene.objects.iter().map(|own| own.name.as_str()).collect();
-            let problem = format!("is no object of {}", scene.name);
-            Err(InputError::new("object", object, problem).allowed(names.join(", ")).into())
-        }
+    if let Some((index, _)) = (0..).zip(&scene.objects).find(|(_, own)| own.name == object) {
+        return Ok(index);
     }
+    let names: Vec<&str> = scene.objects.iter().map(|own| own.name.as_str()).collect();
+    let problem = format!("is no object of {}", scene.name);
+    Err(InputError::new("object", object, problem).allowed(names.join(", ")).into())
 }
 
 /// Refuses an object that the scene does not have.

@@ -17,7 +17,7 @@ pub const FOLDER: &str = "claims";
 /// The verdicts as a table.
 pub(super) const CSV: &str = "claims.csv";
 /// The verdicts as a text. It stands beside the folders of the rows, so that its links lead there.
-pub const MARKDOWN: &str = "CLAIMS.md";
+pub(super) const MARKDOWN: &str = "CLAIMS.md";
 
 const HEADING: &str = "# The claims of the four reports";
 

@@ -16,10 +16,10 @@ mod walks;
 mod wide;
 mod window;
 
-use crate::kernel::in_lanes::InLanes;
 use super::{Choice, Counts, Kernel};
 use crate::estimator::Course;
 use crate::film::{Piece, TileBuffer};
+use crate::kernel::in_lanes::InLanes;
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
