@@ -129,7 +129,8 @@ fn a_light_ends_at_its_reach() {
         let (column, row) = ((index % 64) as f64 + 0.5, (index / 64) as f64 + 0.5);
         // Height of the image on the floor: 2 * 4 * tan(30 degrees), which is 8 / sqrt(3).
         let pixel = 8.0 * 3.0_f64.sqrt().recip() / 48.0;
-        let distance = ((column - 32.0).powi(2) + (row - 24.0).powi(2)).sqrt() * pixel;
+        let (across, down) = (column - 32.0, row - 24.0);
+        let distance = (across * across + down * down).sqrt() * pixel;
         let is_lit = distance * distance + 1.0 <= 1.5 * 1.5;
         assert_eq!(ended.mean(), if is_lit { endless.mean() } else { [0.0; 3] }, "pixel {index} at {distance}");
         dark += u32::from(!is_lit);
