@@ -118,6 +118,8 @@ fn a_profile_that_is_not_there_is_refused() {
 fn each_wrong_reference_is_refused_at_its_place() {
     let base = TINY.replace("\n[quick]\n", REFERENCE);
     let cases: &[(&str, &str, &[&str])] = &[
+        ("estimator = \"bsdf\"", "estimator = \"bsdf\"\nobject = \"piano\"", &["object", "piano", "mirror ball"]),
+        ("estimator = \"bsdf\"", "estimator = \"bsdf\"\nobject = 7", &["object", "7", "string"]),
         ("reference-spp = 40", "reference-spp = 39", &["reference-spp", "39", "40"]),
         ("reference-spp = 40", "reference-spp = 0", &["reference-spp", "0", "40"]),
         ("reference-spp = 40", "reference-spp = 4000000000", &["spp", "4000000000", "1 to"]),

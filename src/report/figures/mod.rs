@@ -4,6 +4,7 @@
 //! that it wants, and may tell each something about itself in a table `[figure.NAME]`, which the figure's own type reads.
 
 mod acceleration;
+mod baselines;
 mod bias;
 mod bounces;
 mod clamp_bias;
@@ -84,6 +85,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     clamp_bias, "clamp-bias", clamp_bias::Options, "light lost by clamping each subpixel before averaging, by samples per pixel";
     time_against_spp, "time-against-spp", NoOptions, "seconds against samples per pixel, with the linear fit";
     speedup, "speedup", NoOptions, "speedup, efficiency and Karp-Flatt serial fraction against threads";
+    baselines, "baselines", NoOptions, "speedups of one schedule against several baselines, and those above the number of workers";
     scaling_laws, "scaling-laws", NoOptions, "Amdahl's law and the Universal Scalability Law fitted to the speedups";
     weak_scaling, "weak-scaling", NoOptions, "scaled speedup against threads, with Gustafson's law";
     clock, "clock", NoOptions, "what CPU time, as clock() counts it, would have claimed";

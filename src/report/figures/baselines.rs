@@ -1,0 +1,101 @@
+//! Speedups of one schedule against several baselines of the same image, and those that exceed the number of workers.
+
+use super::prelude::*;
+use crate::analysis::speedup::{Oddity, oddity, serial_fraction_estimate};
+
+/// What tells the builds and schedules of an experiment apart: schedule and compiled-in effects.
+type Kind<'a> = (&'a Schedule, &'a str);
+
+/// A schedule on several threads against one baseline.
+struct Against<'a> {
+    own: Kind<'a>,
+    baseline: Kind<'a>,
+    speedups: Vec<f64>,
+    speedup: Estimate,
+}
+
+impl Against<'_> {
+    fn workers(&self) -> usize {
+        self.own.0.key.threads
+    }
+
+    fn is_superlinear(&self) -> bool {
+        oddity(&self.speedup.interval, self.workers()) == Some(Oddity::Superlinear)
+    }
+
+    fn name(&self) -> String {
+        format!("{} over {}", told_kind(self.own), told_kind(self.baseline))
+    }
+}
+
+fn told_kind((schedule, effects): Kind<'_>) -> String {
+    let threads = schedule.key.threads;
+    let of_several = if threads > 1 { format!(" on {threads} threads") } else { String::new() };
+    format!("{}{of_several}, effects {effects}", schedule.key.strategy)
+}
+
+pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
+    let kinds: BTreeMap<Kind<'_>, Vec<&Row>> = results.by(|row| (&row.schedule, row.effects.as_str()));
+    let (alone, several): (Vec<_>, Vec<_>) = kinds.iter().partition(|((schedule, _), _)| schedule.key.threads == 1);
+    let mut all = Vec::new();
+    for (own, rows) in several {
+        for (baseline, base_rows) in &alone {
+            let pair = |row: &&Row| (row.image.clone(), row.repetition);
+            let own_times = unique(rows.iter().copied(), |row| pair(&row))?;
+            let speedups: Vec<f64> = base_rows
+                .iter()
+                .filter_map(|row| Some(row.makespan_s? / own_times.get(&pair(row))?.makespan_s?))
+                .collect();
+            if let Some(speedup) = Told::median(&speedups).and_then(|told| told.estimate()) {
+                all.push(Against { own: *own, baseline: **baseline, speedups, speedup });
+            }
+        }
+    }
+    all.sort_by(|a, b| b.speedup.value.total_cmp(&a.speedup.value));
+    let dots = all.iter().map(|a| PlotRow::new(a.name(), vec![Some(Told::from(a.speedup).dot())])).collect();
+    let mut plot =
+        DotPlot::new("One schedule against several baselines", Axis::linear("speedup").including([1.0, 2.1]), dots);
+    plot.guides = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter().map(guide).collect();
+    plot.subtitle = results.workload();
+    let intervals = all.iter().map(|against| against.speedup.interval);
+    plot.caption = format!("Median of ratios within a repetition. Bars: {}.", confidence(intervals));
+    let mut blocks = vec![Block::figure("baselines", plot)];
+    blocks.extend(finding(&all));
+    blocks.push(table(&all));
+    Ok(blocks)
+}
+
+fn guide(workers: usize) -> (f64, String) {
+    (workers as f64, format!("{workers} workers"))
+}
+
+fn finding(all: &[Against<'_>]) -> Option<Block> {
+    let most = all.first()?;
+    let least = all.last()?;
+    let verdict = if most.is_superlinear() { "superlinear" } else { "not superlinear" };
+    Some(Block::finding(format!(
+        "{}: {:.2} times as fast ({}), {verdict} on {} workers; {}: {:.2} times ({}). The schedule is the same; only the baseline differs.",
+        most.name(),
+        most.speedup.value,
+        with_level(&most.speedup.interval, 2),
+        most.workers(),
+        least.name(),
+        least.speedup.value,
+        with_level(&least.speedup.interval, 2),
+    )))
+}
+
+fn table(all: &[Against<'_>]) -> Block {
+    let fraction = |against: &&Against<'_>| {
+        let found = serial_fraction_estimate(&against.speedups, against.workers(), LEVEL);
+        found.map_or_else(|| "-".to_string(), |estimate| told(&estimate, 3))
+    };
+    Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
+        .column("schedule", |against| told_kind(against.own))
+        .column("baseline", |against| told_kind(against.baseline))
+        .column("speedup", |against| format!("{:.3}", against.speedup.value))
+        .column("interval (confidence)", |against| with_level(&against.speedup.interval, 3))
+        .column("e (confidence)", fraction)
+        .column("remark", |against| if against.is_superlinear() { "superlinear".into() } else { String::new() })
+        .end()
+}
