@@ -1,7 +1,7 @@
 //! What images are measured against: two independent halves, from seeds that no image under test can have.
 //!
 //! With two halves R₁ and R₂ the mean of (T - R₁)(T - R₂) is the image's squared error without the references' own noise
-//! (METHODOLOGY: cross form).
+//! (docs/errors.md: cross form).
 
 use super::{Cell, Definition, Profile, SceneVersion};
 use crate::atomic_file;

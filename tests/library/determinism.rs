@@ -1,4 +1,4 @@
-//! One set of numbers, one image: METHODOLOGY, Determinism, and G10, F12 of the catalogue of hard cases. Recorded checksums are in its table (`src/check/path/platform.rs`).
+//! One set of numbers, one image: docs/determinism.md, and G10, F12 of the catalogue of hard cases. Recorded checksums are in its table (`src/check/path/platform.rs`).
 
 use crate::scene_text::{Ball, load_scene};
 use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};

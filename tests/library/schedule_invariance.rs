@@ -1,4 +1,4 @@
-//! Who renders what when, in which pieces and delivered how, changes no bit (METHODOLOGY, Determinism).
+//! Who renders what when, in which pieces and delivered how, changes no bit (docs/determinism.md).
 
 use pathmark::kernel::Spec;
 use pathmark::measure::{OUTPUTS, Outcome, Rounds, Settings, Setup};

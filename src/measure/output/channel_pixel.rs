@@ -1,5 +1,5 @@
 //! `--output channel-pixel`: each pixel is sent through one channel as soon as its row of the piece is rendered, and received when all
-//! jobs are done, as report D (METHODOLOGY) does it.
+//! jobs are done, as report D (docs/reports.md) does it.
 //!
 //! Cost: a message for each pixel on a queue that all workers append to, and memory for all of them until the end.
 

@@ -1,5 +1,5 @@
 //! `--output row-progress`: as `slots`, but after each row of its piece a worker counts it under a lock that all workers share, as report B
-//! (METHODOLOGY) does to show its progress.
+//! (docs/reports.md) does to show its progress.
 //!
 //! Cost: one lock for each row of each piece. Report B also prints inside the lock, which is left out here.
 

@@ -2,7 +2,7 @@
 //!
 //! `pathmark render cornell --strategy thread-per-job --decomposition rows`, or `--strategy thread-per-row` for short
 //!
-//! The plan of report A (METHODOLOGY), which starts 768 threads for the 768 rows of its picture. It ignores `--threads`.
+//! The plan of report A (docs/reports.md), which starts 768 threads for the 768 rows of its picture. It ignores `--threads`.
 //!
 //! Cost: a thread's start and end for each job (tens of microseconds), a stack for each, and time slices shared among far more
 //! threads than cores. Balance is left to the kernel. With tens of thousands of jobs the system refuses or ends the process, so

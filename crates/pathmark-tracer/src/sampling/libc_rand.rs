@@ -1,6 +1,6 @@
 //! The C library's generator: `--sampler libc-rand`.
 //!
-//! What report A's program (METHODOLOGY) really draws from: `rand()` has one state for the whole process, and glibc guards it with a lock,
+//! What report A's program (docs/reports.md) really draws from: `rand()` has one state for the whole process, and glibc guards it with a lock,
 //! so threads take turns at every number. Who gets which number depends on who comes first: no two runs with more than one thread are
 //! alike. Here to be measured, not to be used.
 
