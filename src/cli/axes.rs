@@ -24,7 +24,7 @@ pub(super) struct Axes {
     schedule: Options<false>,
     /// Clamp bright light: `subpixel`, the mean of each subpixel to 1 as smallpt does, or `recursion`, what each recursion returns as report B
     /// does; `recursion:10` clamps to 10. Biased
-    #[arg(long, value_name = "CLAMP")]
+    #[arg(long, value_name = "CLAMP", help_heading = "Image")]
     pub(super) clamp: Option<String>,
 }
 
@@ -57,6 +57,7 @@ impl<const WHAT: bool> Args for Options<WHAT> {
     fn augment_args(command: Command) -> Command {
         command.args(Self::axes().map(|axis| {
             let option = Arg::new(axis.name).long(axis.name).value_name(axis.value_name).help(axis.about);
+            let option = option.help_heading(if WHAT { "Image" } else { "Schedule" });
             let option = option.value_parser(parser(axis)).allow_hyphen_values(axis.name == "size");
             if axis.default.is_empty() { option } else { option.default_value(axis.default) }
         }))

@@ -8,8 +8,9 @@ use crate::image_io::FORMATS;
 use crate::kernel::{KERNELS, Spec, choose};
 use crate::lab::Lab;
 use crate::material::MATERIALS;
-use crate::measure::OUTPUTS;
+use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS};
 use crate::metric::METRICS;
+use crate::report::FIGURES;
 use crate::sampling::SAMPLERS;
 use crate::scene::{ACCELERATORS, CAMERAS, FEATURES, FILTERS, GENERATORS, PROFILES, SHAPES, effect_names};
 use crate::simd::LEVELS;
@@ -49,6 +50,9 @@ enum Kind {
     Metrics,
     Formats,
     Experiments,
+    Figures,
+    Columns,
+    Warnings,
 }
 
 #[derive(Serialize)]
@@ -72,6 +76,13 @@ struct SceneItem {
 
 fn item(name: &str, about: &str) -> Item {
     Item { kind: None, name: name.to_string(), about: about.to_string(), scene: None }
+}
+
+/// Meaning, type and age of a column of `records.csv`.
+fn about_column(column: &Column) -> String {
+    let unit = column.unit().map_or_else(String::new, |unit| format!(" of {unit}"));
+    let empty = if column.may_be_empty() { ", may be empty" } else { "" };
+    format!("{} [{}{unit}{empty}; since schema {}]", column.about.trim(), column.values(), column.since())
 }
 
 fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
@@ -111,6 +122,9 @@ fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
             let experiment = |(name, _): (&str, &str)| Ok(item(name, &Definition::load(lab, name)?.title));
             Definition::known(lab).map(experiment).collect::<Result<_>>()?
         }
+        Kind::Figures => FIGURES.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Columns => COLUMNS.iter().map(|column| item(column.name, &about_column(column))).collect(),
+        Kind::Warnings => WARNINGS.iter().map(|entry| item(entry.name, entry.about)).collect(),
     })
 }
 

@@ -8,8 +8,10 @@ mod cases;
 mod check;
 mod claims;
 mod compare;
+mod explain;
 mod guards;
 mod list;
+mod new;
 mod out_of_memory;
 mod output;
 mod plan;
@@ -36,9 +38,21 @@ use std::io::ErrorKind;
 use std::process::ExitCode;
 use std::sync::Arc;
 
+/// What people come for, in five lines.
+const EXAMPLES: &str = "\
+Examples:
+  pathmark render cornell --spp 64 -o cornell.png            render a scene
+  pathmark run thread-scaling                                compare schedules: rows, figures and a page
+  pathmark price cornell --rmse 0.1,0.05                     predict what an accuracy costs
+  pathmark reproduce                                         run all experiments
+  pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
+
+Measure: reproduce, run, price, report, claims   Render: render, reference, compare
+Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check";
+
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]
-#[command(name = "pathmark", version, about, max_term_width = 110)]
+#[command(name = "pathmark", version, about, max_term_width = 110, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     verb: Verb,
@@ -75,6 +89,10 @@ enum Verb {
     Check(check::Arguments),
     /// Judge the claims of the four reports by the results in a folder.
     Claims(claims::Arguments),
+    /// Write a commented file to start an experiment or a scene from.
+    New(new::Arguments),
+    /// Explain the warnings of rows: what each means, and what to do.
+    Explain(explain::Arguments),
     /// Show what there is to choose from.
     List(list::Arguments),
     /// One cell of a sweep, read from standard input.
@@ -128,6 +146,8 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Replay(arguments) => replay::run(&arguments, lab),
         Verb::Bounces(arguments) => bounces::run(&arguments, lab, talk),
         Verb::Check(arguments) => check::run(&arguments, lab, talk),
+        Verb::New(arguments) => new::run(&arguments),
+        Verb::Explain(arguments) => explain::run(&arguments),
         Verb::List(arguments) => list::run(&arguments, lab),
         Verb::Cell => crate::experiment::child_main(lab),
     }

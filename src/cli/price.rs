@@ -72,7 +72,7 @@ struct Row {
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     for goal in &arguments.rmse {
         if !(*goal > 0.0 && goal.is_finite()) {
-            let error = InputError::new("rmse", goal.to_string(), "can be no goal");
+            let error = InputError::new("rmse", goal.to_string(), "must be a positive number");
             return Err(error.allowed("positive numbers, like 0.05,0.01").into());
         }
     }

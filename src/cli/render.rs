@@ -22,31 +22,31 @@ pub(super) struct Arguments {
     /// A scene of `pathmark list scenes`, or the path of a .toml file
     scene: String,
     /// Samples per pixel [default: 16]
-    #[arg(long, value_name = "N", conflicts_with_all = ["target_error", "time_limit"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["target_error", "time_limit"], help_heading = "Accuracy")]
     spp: Option<u32>,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Accuracy")]
     rounds: rounds::Until,
     /// Give each tile of 16x16 pixels as many samples as its noise calls for, --spp on average
-    #[arg(long, conflicts_with_all = ["target_error", "time_limit", "checkpoint"])]
+    #[arg(long, conflicts_with_all = ["target_error", "time_limit", "checkpoint"], help_heading = "Accuracy")]
     adaptive: bool,
     /// Seed of the random numbers
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, help_heading = "Image")]
     seed: u64,
     /// Image file: .png, .ppm and .bmp for looking at, .exr, .pfm and .hdr for linear radiance [default: SCENE.png]
-    #[arg(short = 'o', long = "image", value_name = "FILE")]
+    #[arg(short = 'o', long = "image", value_name = "FILE", help_heading = "Output")]
     image: Option<PathBuf>,
     #[command(flatten)]
     axes: Axes,
     /// Scale what .png, .ppm and .bmp show so that the brightest channel of the image is 1; the light itself stays as it is
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     auto_exposure: bool,
     /// Write who did what when: .csv for `pathmark trace` and `pathmark simulate`
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     trace: Option<PathBuf>,
     /// Print the record as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = "Output")]
     json: bool,
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Output")]
     strict: Strict,
 }
 
@@ -68,8 +68,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         path.map_or(Ok(()), |path| files.writes(option, path))?;
     }
 
-    let (setup, outcome) = if arguments.rounds.are_asked_for() {
-        let goal_spp = (!arguments.rounds.have_a_goal()).then_some(spp);
+    let (setup, outcome) = if arguments.rounds.is_multi_round() {
+        let goal_spp = (!arguments.rounds.has_goal()).then_some(spp);
         rounds::render(&arguments.rounds, setup, goal_spp, talk)?
     } else {
         talk.begin(&format!("{} at {spp} spp", setup.name()), setup.jobs() as u64);

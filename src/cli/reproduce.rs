@@ -3,6 +3,7 @@
 use super::output::{lock_folder, print};
 use super::plan::Plans;
 use super::progress::Talk;
+use super::run::talk_of;
 use super::whole::Whole;
 use super::{cases, command_line, guards, profile, strict::Strict};
 use crate::check::{self, Case, Effort, cases_file, guards::FOLDER};
@@ -11,7 +12,7 @@ use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Sum
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
-use crate::measure::utc_now;
+use crate::measure::{Doubts, utc_now};
 use crate::report::{self, claims};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -71,7 +72,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
     }
-    let Total { rows, failed, invalid } = run_all(&sweeps, profile, lab, talk)?;
+    let Total { rows, failed, invalid, doubts } = run_all(&sweeps, profile, lab, talk)?;
     // They take longer than a sixth of all quick experiments: `check --out` tries them when they are asked for.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
         let all: Vec<&'static Case> = check::cases().collect();
@@ -81,6 +82,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         guards::write(&arguments.out, &guards::measure(talk))?;
     }
     let page = report::write(lab, &arguments.out)?;
+    talk_of(&doubts, talk);
     print(&format!("{rows} rows from {} experiments, report in {}", definitions.len(), page.display()))?;
     if failed > 0 {
         return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));
@@ -94,6 +96,7 @@ struct Total {
     rows: usize,
     failed: usize,
     invalid: u64,
+    doubts: Doubts,
 }
 
 /// Runs all sweeps. The quick ones are over before an estimate of them would be of use; of the others, the time left is that of all.
@@ -103,6 +106,7 @@ fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Re
         total.rows += summary.rows;
         total.failed += summary.failed;
         total.invalid += summary.invalid;
+        total.doubts.merge(&summary.doubts);
     };
     if profile == Profile::Quick {
         for sweep in sweeps {

@@ -26,12 +26,12 @@ pub(super) struct Until {
 
 impl Until {
     /// Whether one round would not do.
-    pub(super) fn are_asked_for(&self) -> bool {
-        self.have_a_goal() || self.checkpoint.is_some()
+    pub(super) fn is_multi_round(&self) -> bool {
+        self.has_goal() || self.checkpoint.is_some()
     }
 
     /// Whether something else than a number of samples says when to stop.
-    pub(super) fn have_a_goal(&self) -> bool {
+    pub(super) fn has_goal(&self) -> bool {
         self.target_error.is_some() || self.time_limit.is_some()
     }
 

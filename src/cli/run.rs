@@ -4,10 +4,11 @@ use super::output::{lock_folder, print};
 use super::progress::Talk;
 use super::{command_line, profile, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Sweep};
+use crate::experiment::{Definition, Options, Progress, Sweep};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
+use crate::measure::Doubts;
 use crate::report::{self, check_figures};
 use clap::Args;
 use std::path::PathBuf;
@@ -60,5 +61,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         return Err(Error::Check(problem));
     }
     arguments.strict.check(summary.invalid)?;
+    talk_of(&summary.doubts, talk);
     print(&format!("{} rows in {}, report in {}", summary.rows, summary.folder.display(), page?.display()))
+}
+
+/// Says how many rows have times in doubt, if there are any.
+pub(super) fn talk_of(doubts: &Doubts, talk: &Talk) {
+    if doubts.is_any() {
+        talk.note(&format!("{doubts}; `pathmark explain` says what each means"));
+    }
 }

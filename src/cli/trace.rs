@@ -27,7 +27,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     arguments.output.as_ref().map_or(Ok(()), |path| files.writes("output", path))?;
     let trace = TraceFile::read(&arguments.file)?;
     let Some(balance) = timeline::balance(&trace) else {
-        let problem = "has workers or times that cannot be";
+        let problem = "contains invalid worker numbers or times";
         return Err(InputError::new("trace", arguments.file.display().to_string(), problem).into());
     };
     if let Some((path, write)) = write {

@@ -5,6 +5,9 @@
 //! question = "How much faster do more threads make it?"
 //! analysis = "How to read the figures."
 //! figures = ["speedup"]
+//! chapter = "scheduling"          # optional: accuracy, scheduling, hard-inputs or effects; where the page has it
+//! place = 3                       # optional: its place among the experiments of the chapter
+//! in-short = 1                    # optional: the number of the finding that stands at the beginning of the page
 //! keep = ["traces"]               # optional: images, traces, calibration
 //!
 //! [matrix]                       # cells are all combinations
@@ -43,12 +46,13 @@
 //! ```
 
 use super::table::{Matrix, Scale, one_or_many};
-use super::{External, Profile};
+use super::{Chapter, External, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use crate::lab::Lab;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -95,6 +99,15 @@ pub struct Definition {
     pub question: String,
     /// How to read what comes out.
     pub analysis: String,
+    /// The chapter of the report page that it belongs to.
+    #[serde(default)]
+    pub chapter: Chapter,
+    /// Its place in the chapter. Experiments without a place follow those with one, by name.
+    #[serde(default = "last_place")]
+    pub place: u32,
+    /// The number of the finding, from 1, that stands at the beginning of the page.
+    #[serde(default, rename = "in-short")]
+    pub in_short: Option<NonZeroUsize>,
     /// Names of the figures that the report draws.
     pub figures: Vec<String>,
     /// What figures are told about this experiment, by figure; each figure reads its own table.
@@ -118,6 +131,10 @@ pub struct Definition {
     pub(super) quick: Option<Scale>,
     pub(super) full: Option<Scale>,
     pub(super) reports: Option<Scale>,
+}
+
+fn last_place() -> u32 {
+    u32::MAX
 }
 
 #[derive(Debug, Clone, Deserialize)]

@@ -5,6 +5,7 @@
 mod calibration_file;
 mod cell;
 mod cell_process;
+mod chapter;
 mod definition;
 mod drift;
 mod external;
@@ -26,6 +27,7 @@ mod table;
 pub use calibration_file::read_calibration;
 pub use cell::{Cell, CellPoint, trace_file};
 pub use cell_process::{CellJob, PointJob, child_main};
+pub use chapter::Chapter;
 pub use definition::{Definition, EXPERIMENTS, Keep};
 pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};

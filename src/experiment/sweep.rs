@@ -16,7 +16,7 @@ use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{Machine, Record};
+use crate::measure::{Doubts, Machine, Record};
 use crate::temporary;
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -52,6 +52,8 @@ pub struct Summary {
     pub failed: usize,
     /// Samples that were NaN, infinite or negative, over all rows.
     pub invalid: u64,
+    /// Rows whose times are in doubt.
+    pub doubts: Doubts,
 }
 
 /// An experiment that can start: everything that the user could have got wrong has been checked, and nothing has been made.
@@ -140,7 +142,8 @@ impl<'a> Sweep<'a> {
         let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
         let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
         let invalid = done.iter().filter_map(|record| record.invalid_samples).sum();
-        let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0, invalid };
+        let doubts = Doubts::of(done.iter().map(|record| record.warnings.as_str()));
+        let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0, invalid, doubts };
         let mut drift = Drift::of(&done);
         let mut units = 0;
         // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
@@ -185,6 +188,7 @@ impl<'a> Sweep<'a> {
                         }
                         file.append(&record)?;
                         summary.invalid += record.invalid_samples.unwrap_or(0);
+                        summary.doubts.add(&record.warnings);
                         summary.rows += 1;
                         order += 1;
                     }

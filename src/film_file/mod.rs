@@ -34,7 +34,7 @@ pub struct FilmKey {
     /// Where paths are cut, if they are.
     #[serde(default)]
     pub max_depth: Option<u16>,
-    /// How chance ends paths, the estimator's own rule included; films of revision 1 leave that out.
+    /// Russian roulette rule, the estimator's own rule included; films of revision 1 leave that out.
     #[serde(default)]
     pub roulette: Option<String>,
     /// What is clamped, if anything is; older files do not say.

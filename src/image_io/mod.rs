@@ -72,7 +72,7 @@ pub fn check_picture(path: &Path, width: u32, height: u32) -> Result<&'static Fo
     let size = format!("{width}x{height}");
     codec::check_size(u64::from(width), u64::from(height)).map_err(|e| InputError::new("size", &size, e))?;
     if format.forbidden_width == Some(width) {
-        let problem = format!("is no size of a {} picture", format.name);
+        let problem = format!("is not a size that a {} picture can have", format.name);
         return Err(InputError::new("size", size, problem).allowed(format!("any other width than {width}")).into());
     }
     Ok(format)

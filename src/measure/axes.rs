@@ -96,7 +96,7 @@ impl Axis {
 }
 
 fn not_a_size(text: &str) -> InputError {
-    InputError::new("size", text, "is no size").allowed("WxH, like 1024x768")
+    InputError::new("size", text, "is not a size").allowed("WxH, for example 640x480")
 }
 
 /// Columns and rows from `WxH`.

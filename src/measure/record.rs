@@ -1,5 +1,6 @@
 //! One row of `records.csv`: one repetition of one cell, with everything that is needed to repeat it.
 
+use super::column::columns;
 use super::{Outcome, Settings, Setup, Warning, utc_now};
 use crate::analysis::quantile::median;
 use crate::error::Result;
@@ -14,169 +15,171 @@ use serde::{Deserialize, Serialize};
 /// Version of the columns.
 pub const SCHEMA: u32 = 6;
 
-/// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-pub struct Record {
-    /// Version of the columns.
-    pub schema: u32,
-    /// Name of the experiment; `render` outside of one.
-    pub experiment: String,
-    /// The cell's settings in one word; with `repetition`, unique within an experiment.
-    pub cell: String,
-    /// Scene.
-    pub scene: String,
-    /// Hash of the scene's definition.
-    pub scene_hash: String,
-    /// Effect profile that the kernel was compiled for.
-    pub effects: String,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Samples per pixel.
-    pub spp: u32,
-    /// Seed.
-    pub seed: u64,
-    /// Estimator.
-    pub estimator: String,
-    /// Sampler.
-    pub sampler: String,
-    /// Kernel that rendered.
-    pub kernel: String,
-    /// Why it was not the one that was asked for; empty if it was.
-    pub kernel_fallback: String,
-    /// Floating-point format of the kernel that rendered.
-    pub precision: String,
-    /// Instruction set of its lanes; empty if it had none.
-    pub simd: String,
-    /// What the search for the nearest primitive goes by.
-    pub accelerator: String,
-    /// After so many bounces paths were cut; empty if only their throughput ended them.
-    pub max_depth: Option<u16>,
-    /// How chance ended paths; empty if it did not.
-    pub roulette: String,
-    /// Whether tiles had as many samples as their noise called for; `spp` is their mean then.
-    pub adaptive: bool,
-    /// RMSE at which the render was to stop; empty if it went by samples or time alone.
-    pub target_error: Option<f64>,
-    /// Seconds of rendering after which it was to stop.
-    pub time_limit_s: Option<f64>,
-    /// How often jobs were handed out.
-    pub rounds: Option<u32>,
-    /// What was clamped: `subpixel` or `recursion`, and behind a colon to how much if not to 1; empty if nothing was.
-    pub clamp: String,
-    /// Pixel filter; empty if it was the camera's own.
-    pub filter: String,
-    /// Distance below which nothing was hit; empty if there was none.
-    pub epsilon: String,
-    /// Whether an option was on that changes what the image converges to.
-    pub biased: bool,
-    /// How the film was cut.
-    pub decomposition: String,
-    /// Strategy.
-    pub strategy: String,
-    /// How pieces got into the film.
-    pub output: String,
-    /// Workers asked for.
-    pub threads: usize,
-    /// Number of the repetition, from 0.
-    pub repetition: u32,
-    /// Position in the order in which the sweep really ran.
-    pub order: u64,
-    /// Jobs.
-    pub jobs: usize,
-    /// What was measured; empty if the run failed.
-    pub workers_used: Option<u32>,
-    /// Seconds to build the kernel and what accelerates the scene.
-    pub build_s: Option<f64>,
-    /// Seconds to find out what the pieces will cost, where their order depends on it.
-    pub pilot_s: Option<f64>,
-    /// Seconds to make the strategy (its pool, if it keeps one).
-    pub setup_s: Option<f64>,
-    /// Seconds from handing the jobs to the strategy until it returned.
-    pub makespan_s: Option<f64>,
-    /// Seconds to put the pieces together.
-    pub merge_s: Option<f64>,
-    /// CPU seconds in the program during the makespan, over all threads.
-    pub cpu_user_s: Option<f64>,
-    /// CPU seconds in the kernel of the operating system, likewise.
-    pub cpu_system_s: Option<f64>,
-    /// Seconds inside jobs, over all workers.
-    pub busy_sum_s: Option<f64>,
-    /// Seconds inside jobs of the busiest worker.
-    pub busy_max_s: Option<f64>,
-    /// Seconds between jobs of workers that had jobs to come, over all workers, the time before the first included.
-    pub gap_sum_s: Option<f64>,
-    /// Seconds from each worker's last job to the end of the run, over all workers. With busy time and gaps it makes workers x makespan.
-    pub tail_sum_s: Option<f64>,
-    /// Shortest job.
-    pub job_min_s: Option<f64>,
-    /// Median job.
-    pub job_median_s: Option<f64>,
-    /// Longest job.
-    pub job_max_s: Option<f64>,
-    /// Times that a thread gave up its processor.
-    pub voluntary_switches: Option<i64>,
-    /// Times that a thread had to.
-    pub involuntary_switches: Option<i64>,
-    /// CPU seconds of everything else on the machine during the makespan.
-    pub foreign_cpu_s: Option<f64>,
-    /// Most memory that the process ever had.
-    pub peak_rss_bytes: Option<i64>,
-    /// Samples.
-    pub paths: Option<u64>,
-    /// Rays.
-    pub rays: Option<u64>,
-    /// Boxes that rays were tested against.
-    pub box_tests: Option<u64>,
-    /// Primitives that rays were tested against.
-    pub primitive_tests: Option<u64>,
-    /// Rays that met nothing.
-    pub escaped: Option<u64>,
-    /// Paths cut at the bounce limit.
-    pub truncated: Option<u64>,
-    /// Samples that were NaN, infinite or negative.
-    pub invalid_samples: Option<u64>,
-    /// RMSE in linear radiance as the samples' own variance tells it; too large where samples are stratified.
-    pub estimated_rmse: Option<f64>,
-    /// Mean squared error in linear radiance, cross form: free of the reference's noise, and so sometimes below zero.
-    pub mse: Option<f64>,
-    /// Its square root, where there is one.
-    pub rmse: Option<f64>,
-    /// Likewise on display values (clamped, gamma 2.2), in units of the display's range.
-    pub mse_display: Option<f64>,
-    /// Its square root, where there is one.
-    pub rmse_display: Option<f64>,
-    /// Mean squared error over the squared reference, cross form.
-    pub rel_mse: Option<f64>,
-    /// What the samples themselves say of the squared error: the mean over pixels of the variance of a pixel's mean, for independent samples. Where
-    /// subpixels or a sampler spread the samples evenly, the true error is below it.
-    pub variance: Option<f64>,
-    /// Mean squared error, cross form, over the pixels of the object that the experiment names; NaN if it is in none.
-    pub object_mse: Option<f64>,
-    /// Share of pixels whose display value is within 0.05 of the reference's in every channel: the share that is accurate.
-    pub within_tolerance: Option<f64>,
-    /// Pixels that are brighter than the reference by more than 1, the display's white, in some channel.
-    pub fireflies: Option<u64>,
-    /// Mean radiance over pixels and channels.
-    pub mean_radiance: Option<f64>,
-    /// Pixels in which every channel is 0.
-    pub black_pixels: Option<u64>,
-    /// Seconds to write the image; empty if it was not kept.
-    pub image_write_s: Option<f64>,
-    /// Checksum of the film; empty if the sampler gives other numbers in each run.
-    pub checksum: String,
-    /// Doubts, separated by semicolons.
-    pub warnings: String,
-    /// Why it failed; empty if it did not.
-    pub error: String,
-    /// Version control revision of the sources.
-    pub commit: String,
-    /// Whether they had uncommitted changes.
-    pub dirty: bool,
-    /// When it started; empty if the system's clock shows no date from 1970 to 9999.
-    pub started_utc: String,
+columns! {
+    /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
+    #[serde(deny_unknown_fields)]
+    pub struct Record {
+        /// Version of the columns.
+        pub schema: u32,
+        /// Name of the experiment; `render` outside of one.
+        pub experiment: String,
+        /// The cell's settings in one word; with `repetition`, unique within an experiment.
+        pub cell: String,
+        /// Name of the scene or workload.
+        pub scene: String,
+        /// Hash of the scene's definition.
+        pub scene_hash: String,
+        /// Effect profile of the kernel.
+        pub effects: String,
+        /// Width of the image in pixels.
+        pub width: u32,
+        /// Height of the image in pixels.
+        pub height: u32,
+        /// Samples per pixel.
+        pub spp: u32,
+        /// Seed of the sampler.
+        pub seed: u64,
+        /// Name of the estimator.
+        pub estimator: String,
+        /// Name of the sampler.
+        pub sampler: String,
+        /// Name of the kernel that rendered: `scalar` or `lanes`.
+        pub kernel: String,
+        /// Why the kernel that was asked for could not render; empty if it did.
+        pub kernel_fallback: String,
+        /// Floating-point format of the kernel that rendered: `f64` or `f32`.
+        pub precision: String,
+        /// Instruction set of the lanes; empty for the scalar kernel.
+        pub simd: String,
+        /// Acceleration structure: `none`, `median` or `sah`.
+        pub accelerator: String,
+        /// Bounces after which paths were cut; empty if only their throughput ended them.
+        pub max_depth: Option<u16>,
+        /// Russian roulette rule; empty if there was none.
+        pub roulette: String,
+        /// Whether the noise of each tile decided its samples; `spp` is their mean then.
+        pub adaptive: bool,
+        /// RMSE at which the render was to stop; empty if samples or time alone decided.
+        pub target_error: Option<f64>,
+        /// Seconds of rendering after which the render was to stop.
+        pub time_limit_s: Option<f64>,
+        /// Rounds in which jobs were handed out.
+        pub rounds: Option<u32>,
+        /// Clamp: `subpixel` or `recursion`, with its limit behind a colon if it is not 1; empty if there was none.
+        pub clamp: String,
+        /// Pixel filter; empty if it was the camera's own.
+        pub filter: String,
+        /// Distance below which nothing was hit; empty if there was none.
+        pub epsilon: String,
+        /// Whether an option was on that changes what the image converges to.
+        pub biased: bool,
+        /// Decomposition: how the film was cut into pieces.
+        pub decomposition: String,
+        /// Name of the scheduling strategy.
+        pub strategy: String,
+        /// Output: how pieces got into the film.
+        pub output: String,
+        /// Threads that were asked for.
+        pub threads: usize,
+        /// Number of the repetition, from 0.
+        pub repetition: u32,
+        /// Position in the order in which the sweep ran.
+        pub order: u64,
+        /// Number of jobs.
+        pub jobs: usize,
+        /// Workers that did at least one job; empty, like all measurements, if the run failed.
+        pub workers_used: Option<u32>,
+        /// Seconds to build the kernel and the scene's acceleration structure.
+        pub build_s: Option<f64>,
+        /// Seconds of the pilot that estimates the cost of the pieces, where the strategy needs it.
+        pub pilot_s: Option<f64>,
+        /// Seconds to make the strategy, with its pool if it keeps one.
+        pub setup_s: Option<f64>,
+        /// Seconds from handing the jobs to the strategy until it returned.
+        pub makespan_s: Option<f64>,
+        /// Seconds to put the pieces together.
+        pub merge_s: Option<f64>,
+        /// CPU seconds in the program during the makespan, over all threads.
+        pub cpu_user_s: Option<f64>,
+        /// CPU seconds in the operating system during the makespan, over all threads.
+        pub cpu_system_s: Option<f64>,
+        /// Seconds inside jobs, over all workers.
+        pub busy_sum_s: Option<f64>,
+        /// Seconds inside jobs of the busiest worker.
+        pub busy_max_s: Option<f64>,
+        /// Seconds between jobs of workers that had jobs to come, over all workers, the time before the first included.
+        pub gap_sum_s: Option<f64>,
+        /// Seconds from each worker's last job to the end of the run, over all workers. With busy time and gaps it makes workers x makespan.
+        pub tail_sum_s: Option<f64>,
+        /// Seconds of the shortest job.
+        pub job_min_s: Option<f64>,
+        /// Seconds of the median job.
+        pub job_median_s: Option<f64>,
+        /// Seconds of the longest job.
+        pub job_max_s: Option<f64>,
+        /// Context switches because a thread waited.
+        pub voluntary_switches: Option<i64>,
+        /// Context switches because the system gave the processor to another thread.
+        pub involuntary_switches: Option<i64>,
+        /// CPU seconds of everything else on the machine during the makespan.
+        pub foreign_cpu_s: Option<f64>,
+        /// Peak resident memory of the process.
+        pub peak_rss_bytes: Option<i64>,
+        /// Paths, which is samples over all pixels.
+        pub paths: Option<u64>,
+        /// Rays that were traced.
+        pub rays: Option<u64>,
+        /// Tests of a ray against a box of the acceleration structure.
+        pub box_tests: Option<u64>,
+        /// Tests of a ray against a primitive.
+        pub primitive_tests: Option<u64>,
+        /// Rays that left the scene.
+        pub escaped: Option<u64>,
+        /// Paths cut at the bounce limit.
+        pub truncated: Option<u64>,
+        /// Samples that were NaN, infinite or negative.
+        pub invalid_samples: Option<u64>,
+        /// RMSE in linear radiance, estimated from the samples' own variance; too large where samples are stratified.
+        pub estimated_rmse: Option<f64>,
+        /// Mean squared error in linear radiance, cross form: free of the reference's noise, and so sometimes below zero.
+        pub mse: Option<f64>,
+        /// Root of `mse`; empty if `mse` is below zero.
+        pub rmse: Option<f64>,
+        /// Mean squared error of display values (clamped to 0 to 1, gamma 2.2), cross form.
+        pub mse_display: Option<f64>,
+        /// Root of `mse_display`; empty if `mse_display` is below zero.
+        pub rmse_display: Option<f64>,
+        /// Mean squared error over the squared reference, cross form.
+        pub rel_mse: Option<f64>,
+        /// Mean over pixels of the variance of a pixel's mean, estimated from the samples as if they were independent. Where
+        /// subpixels or a sampler spread the samples evenly, the true error is below it.
+        pub variance: Option<f64>,
+        /// Mean squared error, cross form, over the pixels of the object that the experiment names; NaN if the object fills no pixel.
+        pub object_mse: Option<f64>,
+        /// Share of pixels whose display value is within 0.05 of the reference's in every channel: the share that is accurate.
+        pub within_tolerance: Option<f64>,
+        /// Pixels that are brighter than the reference by more than 1, the display's white, in some channel.
+        pub fireflies: Option<u64>,
+        /// Mean radiance over pixels and channels.
+        pub mean_radiance: Option<f64>,
+        /// Pixels in which every channel is 0.
+        pub black_pixels: Option<u64>,
+        /// Seconds to write the image; empty if it was not kept.
+        pub image_write_s: Option<f64>,
+        /// Checksum of the film; empty if the sampler draws other numbers in each run.
+        pub checksum: String,
+        /// Warnings, separated by semicolons; `pathmark explain` has their meaning.
+        pub warnings: String,
+        /// Why the run failed; empty if it did not.
+        pub error: String,
+        /// Commit of the program's sources.
+        pub commit: String,
+        /// Whether the sources had uncommitted changes.
+        pub dirty: bool,
+        /// When the run started, in UTC; empty if the system's clock shows no date from 1970 to 9999.
+        pub started_utc: String,
+    }
 }
 
 /// See [`Record::within_tolerance`].

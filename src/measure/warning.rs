@@ -66,6 +66,106 @@ pub enum Warning {
     DebugBuild,
 }
 
+/// What a warning means, and what to do about it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WarningEntry {
+    /// Its name, which stands before any bracket.
+    pub name: &'static str,
+    /// When a row carries it.
+    pub about: &'static str,
+    /// What to do.
+    pub advice: &'static str,
+}
+
+/// All warnings of rows.
+pub const WARNINGS: &[WarningEntry] = &[
+    WarningEntry {
+        name: "workers-unused",
+        about: "Fewer threads did a job than were asked for.",
+        advice: "Cut the image into more pieces, or ask for fewer threads: some of them found no work.",
+    },
+    WarningEntry {
+        name: "oversubscribed",
+        about: "There were more workers than processors.",
+        advice: "Compare such rows with rows of as many workers only; a speedup cannot exceed the number of processors.",
+    },
+    WarningEntry {
+        name: "foreign-load",
+        about: "Other programs, or the host of a virtual machine, used more than 5 % of the processors during the run.",
+        advice: "Close other programs and run the experiment again; trust ratios within a repetition more than seconds.",
+    },
+    WarningEntry {
+        name: "drift",
+        about: "The time is more than a quarter away from the median of the cell's earlier rows.",
+        advice: "Look for load, heat or a changing clock; more repetitions make the interval narrower.",
+    },
+    WarningEntry {
+        name: "slowed",
+        about: "The run needed 15 % more processor time than the cell's earlier rows, for the same work.",
+        advice: "The clock was lower, or a virtual machine's host put two processors on one core: run again on a quiet machine.",
+    },
+    WarningEntry {
+        name: "too-short",
+        about: "The run took less than 5 ms, so starting threads and reading the clock matter.",
+        advice: "Take a larger image or more samples per pixel.",
+    },
+    WarningEntry {
+        name: "partial-subpixels",
+        about: "The samples per pixel are no multiple of 4, so the four subpixels have different numbers of samples.",
+        advice: "Take a multiple of 4 samples per pixel with smallpt's box, or accept that the pixel filter is not symmetric.",
+    },
+    WarningEntry {
+        name: "target-missed",
+        about: "The time limit ended the render before its error was as small as asked for.",
+        advice: "Allow more time, or ask for a larger error.",
+    },
+    WarningEntry {
+        name: "resumed",
+        about: "An earlier process rendered the first samples; times and counts are those of the last process.",
+        advice: "Do not use the row's times; the image is complete.",
+    },
+    WarningEntry {
+        name: "biased",
+        about: "An option changes what the image converges to: a clamp, a bounce limit, an epsilon or another pixel filter.",
+        advice: "Compare the image with renders under the same option only.",
+    },
+    WarningEntry {
+        name: "escaped",
+        about: "Rays left a scene that is closed.",
+        advice: "Look for gaps between the walls; `pathmark replay` shows single paths.",
+    },
+    WarningEntry {
+        name: "truncated",
+        about: "Paths were cut at the bounce limit, so their remaining light is missing.",
+        advice: "Raise `--max-depth`, or use Russian roulette, which ends paths without bias.",
+    },
+    WarningEntry {
+        name: "left-out-triangles",
+        about: "Triangles of a mesh were left out because they have no area.",
+        advice: "Nothing is missing from the image; clean the mesh if you want the warning gone.",
+    },
+    WarningEntry {
+        name: "invalid-samples",
+        about: "Samples were NaN, infinite or negative; they contribute nothing to the image.",
+        advice: "Use `pathmark replay` with the place in the brackets to see the path, and report it as a fault.",
+    },
+    WarningEntry {
+        name: "no-program",
+        about: "The other program that was to be run is not on this machine.",
+        advice: "Install it, or start `pathmark` in the folder of its sources; the report leaves its rows out.",
+    },
+    WarningEntry {
+        name: "no-date",
+        about: "The system's clock shows no date from 1970 to 9999.",
+        advice: "Set the clock; durations are measured with another clock and are right.",
+    },
+    WarningEntry {
+        name: "debug-build",
+        about: "The program was built without the optimisation of a release.",
+        advice: "Measure with `cargo run --release`.",
+    },
+];
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -91,5 +191,65 @@ impl fmt::Display for Warning {
             Self::NoDate => f.write_str("no-date"),
             Self::DebugBuild => f.write_str("debug-build"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One of each kind; the match makes a new kind an error here until it is added.
+    fn one_of_each() -> Vec<Warning> {
+        let all = vec![
+            Warning::WorkersUnused { asked: 2, used: 1 },
+            Warning::Oversubscribed { workers: 2, processors: 1 },
+            Warning::ForeignLoad { percent: 6 },
+            Warning::Drift { percent: 30 },
+            Warning::Slowed { percent: 20 },
+            Warning::TooShort,
+            Warning::PartialSubpixels,
+            Warning::TargetMissed,
+            Warning::Resumed(4),
+            Warning::Biased,
+            Warning::Escaped(1),
+            Warning::Truncated(1),
+            Warning::LeftOut(1),
+            Warning::InvalidSamples { count: 1, first: Vec::new() },
+            Warning::NoProgram,
+            Warning::NoDate,
+            Warning::DebugBuild,
+        ];
+        for warning in &all {
+            match warning {
+                Warning::WorkersUnused { .. }
+                | Warning::Oversubscribed { .. }
+                | Warning::ForeignLoad { .. }
+                | Warning::Drift { .. }
+                | Warning::Slowed { .. }
+                | Warning::TooShort
+                | Warning::PartialSubpixels
+                | Warning::TargetMissed
+                | Warning::Resumed(_)
+                | Warning::Biased
+                | Warning::Escaped(_)
+                | Warning::Truncated(_)
+                | Warning::LeftOut(_)
+                | Warning::InvalidSamples { .. }
+                | Warning::NoProgram
+                | Warning::NoDate
+                | Warning::DebugBuild => {}
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn every_warning_is_explained_once() {
+        let named: Vec<String> = one_of_each()
+            .iter()
+            .map(|warning| warning.to_string().split('(').next().unwrap_or_default().to_string())
+            .collect();
+        let explained: Vec<&str> = WARNINGS.iter().map(|entry| entry.name).collect();
+        assert_eq!(named, explained);
     }
 }

@@ -4,9 +4,10 @@
 
 use super::Figure;
 use super::axis::{Axis, Range};
-use super::drawing::{Align, Drawing};
+use super::drawing::{Align, Drawing, Note, PartKind, Place};
 use super::frame::WIDTH;
 use super::legend::{self, Entry, Sample};
+use super::number::short;
 use super::ruler::{self, GAP, TICK};
 use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
 use super::{font, heading, marker};
@@ -133,13 +134,26 @@ impl DotPlot {
             };
             // An end that has no place because it is too low stands at the edge.
             let end = |value: f64| Some(x(range.place(value).or((value <= 0.0).then_some(0.0))?.clamp(0.0, 1.0)));
-            if let Some((low, high)) = dot.interval.and_then(|(low, high)| end(low).zip(end(high))) {
-                marker::bar(drawing, (low, y), (high, y), look.colour);
-            }
-            marker::draw(drawing, (x(place), y), look.marker, look.colour);
+            let name = &self.groups[group].name;
+            drawing.part(PartKind::Series, name, |drawing| {
+                if let Some((low, high)) = dot.interval.and_then(|(low, high)| end(low).zip(end(high))) {
+                    marker::bar(drawing, (low, y), (high, y), look.colour);
+                }
+                marker::draw(drawing, (x(place), y), look.marker, look.colour);
+            });
+            drawing.note(note(row, name, dot, (x(place), y)));
         }
         lost
     }
+}
+
+fn note(row: &Row, group: &str, dot: &Dot, at: Place) -> Note {
+    let between =
+        dot.interval.map_or_else(String::new, |(low, high)| format!(" ({} to {})", short(low, 4), short(high, 4)));
+    let of_group = if group.is_empty() { String::new() } else { format!(", {group}") };
+    let text = format!("{}{of_group}: {}{between}", row.name, short(dot.value, 4));
+    let (series, of) = (group.to_string(), row.name.clone());
+    Note { at, series, of, value: dot.value, interval: dot.interval, text }
 }
 
 impl Figure for DotPlot {

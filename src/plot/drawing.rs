@@ -2,6 +2,7 @@
 
 use super::font;
 use super::style::{Colour, Dash, HAIRLINE};
+use std::ops::Range;
 
 /// A place in a drawing, in pixels.
 pub type Place = (f64, f64);
@@ -93,6 +94,43 @@ pub enum Mark {
     Text(Text),
 }
 
+/// What a part of a drawing is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PartKind {
+    /// Data of a series.
+    Series,
+    /// The legend's entry of a series.
+    Legend,
+}
+
+/// Marks of one series, or of its entry in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The name of the series.
+    pub series: String,
+    /// Data or legend.
+    pub kind: PartKind,
+    /// Which of the drawing's marks.
+    pub marks: Range<usize>,
+}
+
+/// A value that was drawn, as a page shows it when a reader points at it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// Where it was drawn.
+    pub at: Place,
+    /// The name of its series; empty if there is one only.
+    pub series: String,
+    /// What the value belongs to: a place on the other axis, or the name of a row.
+    pub of: String,
+    /// The value.
+    pub value: f64,
+    /// Its low and high end.
+    pub interval: Option<(f64, f64)>,
+    /// All of it in words.
+    pub text: String,
+}
+
 /// A picture of a given size.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
@@ -104,12 +142,25 @@ pub struct Drawing {
     pub title: String,
     /// What to paint, the lowest first.
     pub marks: Vec<Mark>,
+    /// Marks that belong together, in order, none in two parts.
+    pub parts: Vec<Part>,
+    /// The values that the marks stand for.
+    pub notes: Vec<Note>,
 }
 
 impl Drawing {
     /// An empty drawing.
     pub fn new(title: &str, width: f64, height: f64) -> Self {
-        Self { width, height, title: title.to_string(), marks: Vec::new() }
+        let (marks, parts, notes) = (Vec::new(), Vec::new(), Vec::new());
+        Self { width, height, title: title.to_string(), marks, parts, notes }
+    }
+
+    /// Draws marks of a series; parts do not contain parts.
+    pub fn part<T>(&mut self, kind: PartKind, series: &str, draw: impl FnOnce(&mut Self) -> T) -> T {
+        let from = self.marks.len();
+        let drawn = draw(self);
+        self.parts.push(Part { series: series.to_string(), kind, marks: from..self.marks.len() });
+        drawn
     }
 
     /// A line; nothing for fewer than two places.
@@ -158,6 +209,12 @@ impl Drawing {
     pub fn text_upwards(&mut self, at: Place, text: &str, size: f64, colour: Colour) {
         let align = Align::Centre;
         self.marks.push(Mark::Text(Text { at, text: text.to_string(), size, colour, align, upwards: true }));
+    }
+
+    /// Adds a value that was drawn. An interval with an end that is no number is left out.
+    pub fn note(&mut self, note: Note) {
+        let is_finite = |ends: &(f64, f64)| ends.0.is_finite() && ends.1.is_finite();
+        self.notes.push(Note { interval: note.interval.filter(is_finite), ..note });
     }
 
     /// All text in it.

@@ -1,6 +1,6 @@
 //! The column beside a chart that says what its lines are. It never lies over data.
 
-use super::drawing::{Align, Drawing, Place};
+use super::drawing::{Align, Drawing, PartKind, Place};
 use super::font;
 use super::marker;
 use super::style::{Colour, Dash, INK, LEADING, LINE, Look, SMALL_SIZE};
@@ -41,13 +41,14 @@ pub enum Sample {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     sample: Sample,
+    name: String,
     lines: Vec<String>,
 }
 
 impl Entry {
     /// An entry whose text is broken to fit the column.
     pub fn new(sample: Sample, text: &str) -> Self {
-        Self { sample, lines: font::wrap(text, SMALL_SIZE, WIDEST) }
+        Self { sample, name: text.to_string(), lines: font::wrap(text, SMALL_SIZE, WIDEST) }
     }
 }
 
@@ -67,19 +68,21 @@ pub fn draw(drawing: &mut Drawing, entries: &[Entry], (x, mut y): Place) {
     for entry in entries {
         let middle = y + 0.5 * SMALL_SIZE * LEADING;
         let ends = [(x, middle), (x + SAMPLE, middle)];
-        match entry.sample {
-            Sample::Line { colour, dash, width } => drawing.dashed(&ends, colour, width, dash),
-            Sample::Series { look, line } => {
-                if line {
-                    drawing.dashed(&ends, look.colour, LINE, look.dash);
+        drawing.part(PartKind::Legend, &entry.name, |drawing| {
+            match entry.sample {
+                Sample::Line { colour, dash, width } => drawing.dashed(&ends, colour, width, dash),
+                Sample::Series { look, line } => {
+                    if line {
+                        drawing.dashed(&ends, look.colour, LINE, look.dash);
+                    }
+                    marker::draw(drawing, (x + 0.5 * SAMPLE, middle), look.marker, look.colour);
                 }
-                marker::draw(drawing, (x + 0.5 * SAMPLE, middle), look.marker, look.colour);
             }
-        }
-        for (i, line) in entry.lines.iter().enumerate() {
-            let at = (x + SAMPLE + GAP, middle + i as f64 * SMALL_SIZE * LEADING);
-            drawing.text(at, line, SMALL_SIZE, INK, Align::Left);
-        }
+            for (i, line) in entry.lines.iter().enumerate() {
+                let at = (x + SAMPLE + GAP, middle + i as f64 * SMALL_SIZE * LEADING);
+                drawing.text(at, line, SMALL_SIZE, INK, Align::Left);
+            }
+        });
         y += entry_height(entry);
     }
 }

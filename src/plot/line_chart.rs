@@ -2,10 +2,11 @@
 
 use super::Figure;
 use super::axis::{Axis, Range};
-use super::drawing::{Align, Drawing, Place};
+use super::drawing::{Align, Drawing, Note, PartKind, Place};
 use super::frame::{self, Frame, Words};
 use super::legend::{self, Entry, Sample};
 use super::marker;
+use super::number::short;
 use super::overlay::{Overlay, OverlayKind, inside};
 use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
 
@@ -187,10 +188,21 @@ impl LineChart {
                 marker::bar(drawing, (low + shift, y), (high + shift, y), series.look.colour);
             }
         }
-        for &spot in spots.iter().flatten() {
-            marker::draw(drawing, spot, series.look.marker, series.look.colour);
+        for (point, &spot) in series.points.iter().zip(&spots) {
+            let Some(at) = spot else { continue };
+            marker::draw(drawing, at, series.look.marker, series.look.colour);
+            drawing.note(self.note(series, point, at));
         }
         spots.iter().filter(|spot| spot.is_none()).count()
+    }
+
+    fn note(&self, series: &Series, point: &Point, at: Place) -> Note {
+        let (of, value, interval) = (point.x.to_string(), point.y, point.y_interval);
+        let between =
+            interval.map_or_else(String::new, |(low, high)| format!(" ({} to {})", short(low, 4), short(high, 4)));
+        let text =
+            format!("{}: {} at {} = {}", series.name, short(value, 4) + &between, self.x.label, short(point.x, 4));
+        Note { at, series: series.name.clone(), of, value, interval, text }
     }
 
     /// The band of a series, which lies below every line.
@@ -218,15 +230,20 @@ impl Figure for LineChart {
         let mut lost = 0;
         if ranges.is_some() {
             for series in self.series.iter().filter(|series| series.spread == Spread::Band) {
-                Self::draw_band(&mut drawing, &frame, series);
+                drawing.part(PartKind::Series, &series.name, |drawing| Self::draw_band(drawing, &frame, series));
             }
             for (index, overlay) in self.overlays.iter().enumerate() {
                 let (colour, dash) = self.stroke(index, overlay.kind);
-                for part in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
-                    drawing.dashed(&part, colour, FIT_LINE, dash);
-                }
+                drawing.part(PartKind::Series, &overlay.label, |drawing| {
+                    for stretch in frame.curve(|x, y| inside(&overlay.curve, x, y)) {
+                        drawing.dashed(&stretch, colour, FIT_LINE, dash);
+                    }
+                });
             }
-            lost = (0..self.series.len()).map(|index| self.draw_series(&mut drawing, &frame, index)).sum();
+            for (index, series) in self.series.iter().enumerate() {
+                lost +=
+                    drawing.part(PartKind::Series, &series.name, |drawing| self.draw_series(drawing, &frame, index));
+            }
         } else {
             lost += self.series.iter().map(|series| series.points.len()).sum::<usize>();
             drawing.text(frame.centre(), "no data", TEXT_SIZE, MUTED, Align::Centre);

@@ -12,7 +12,7 @@ use plotters::prelude::{
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, TextStyle};
 
-use super::drawing::{Align, Drawing, Mark, Place, Text};
+use super::drawing::{Align, Drawing, Mark, Note, PartKind, Place, Text};
 use super::style::{Colour, PAPER};
 use super::{font, lettering};
 use crate::error::{Error, Result};
@@ -27,31 +27,76 @@ const SVG_BASE_LINE: f64 = 0.27;
 
 /// A complete SVG document.
 pub(super) fn svg(drawing: &Drawing) -> Result<String> {
-    let mut text = String::new();
     let size = device_size(drawing, SCALE);
-    paint(drawing, &SVGBackend::with_string(&mut text, size).into_drawing_area(), SCALE, true)?;
+    let mut text = format!(
+        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\">\n<title>{}</title>",
+        drawing.width,
+        drawing.height,
+        size.0,
+        size.1,
+        escaped(&drawing.title)
+    );
+    let mut done = 0;
+    for part in &drawing.parts {
+        text += &elements(&drawing.marks[done..part.marks.start], size, done == 0)?;
+        let class = match part.kind {
+            PartKind::Series => "series",
+            PartKind::Legend => "legend",
+        };
+        let own = elements(&drawing.marks[part.marks.clone()], size, false)?;
+        let series = escaped(&part.series);
+        text += &["<g class=\"", class, "\" data-series=\"", &series, "\">", &own, "</g>\n"].concat();
+        done = part.marks.end;
+    }
+    text += &elements(&drawing.marks[done..], size, done == 0)?;
+    for note in &drawing.notes {
+        text += &circle(note);
+    }
+    Ok(text + "</svg>\n")
+}
+
+/// How far from a value a pointer still finds it, in pixels of the drawing.
+const REACH: f64 = 9.0;
+
+/// An invisible circle over a value, which shows the value to a reader who points at it.
+fn circle(note: &Note) -> String {
+    let (low, high) = note.interval.map_or_else(Default::default, |(low, high)| (low.to_string(), high.to_string()));
+    format!(
+        "<circle class=\"note\" cx=\"{:.0}\" cy=\"{:.0}\" r=\"{}\" fill=\"none\" pointer-events=\"all\" data-series=\"{}\" data-of=\"{}\" data-value=\"{}\" data-low=\"{low}\" data-high=\"{high}\"><title>{}</title></circle>\n",
+        note.at.0 * SCALE,
+        note.at.1 * SCALE,
+        REACH * SCALE,
+        escaped(&note.series),
+        escaped(&note.of),
+        note.value,
+        escaped(&note.text),
+    )
+}
+
+/// The elements of some marks, on paper if they are the first.
+fn elements(marks: &[Mark], size: (u32, u32), with_paper: bool) -> Result<String> {
+    if marks.is_empty() && !with_paper {
+        return Ok(String::new());
+    }
+    let mut text = String::new();
+    paint(marks, with_paper, &SVGBackend::with_string(&mut text, size).into_drawing_area(), SCALE, true)?;
     // plotters' own first tag fixes the size at the finer pixels and says nothing to a reader who can't see.
     let body = text.split_once('>').map_or(text.as_str(), |(_, body)| body);
-    let mut head = format!(
-        "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" xmlns=\"http://www.w3.org/2000/svg\" role=\"img\">\n<title>",
-        drawing.width, drawing.height, size.0, size.1
-    );
-    for c in drawing.title.chars() {
-        match c {
-            '<' => head.push_str("&lt;"),
-            '>' => head.push_str("&gt;"),
-            '&' => head.push_str("&amp;"),
-            other => head.push(other),
-        }
-    }
-    Ok(head + "</title>" + body)
+    Ok(body.trim_end().trim_end_matches("</svg>").to_string())
+}
+
+/// Text between tags, or between quotes in a tag.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// The drawing as pixels, `scale` of them to one of its own.
 pub(super) fn pixels(drawing: &Drawing, scale: f64) -> Result<RgbImage> {
     let (width, height) = device_size(drawing, scale);
     let mut image = RgbImage::new(width, height);
-    paint(drawing, &BitMapBackend::with_buffer(&mut image, (width, height)).into_drawing_area(), scale, false)?;
+    let area = BitMapBackend::with_buffer(&mut image, (width, height)).into_drawing_area();
+    paint(&drawing.marks, true, &area, scale, false)?;
+    drop(area);
     for text in drawing.texts() {
         lettering::write(&mut image, text, scale)?;
     }
@@ -75,17 +120,20 @@ fn failure(error: &dyn std::error::Error) -> Error {
     Error::system("drawing", "a figure", IoError::other(error.to_string()))
 }
 
-/// Paints every mark; text only if the backend is to set it.
+/// Paints marks; text only if the backend is to set it.
 fn paint<B: DrawingBackend>(
-    drawing: &Drawing,
+    marks: &[Mark],
+    with_paper: bool,
     area: &DrawingArea<B, Shift>,
     scale: f64,
     with_text: bool,
 ) -> Result<()> {
     font::face()?;
     let painted = || -> std::result::Result<(), DrawingAreaErrorKind<B::ErrorType>> {
-        area.fill(&opaque(PAPER))?;
-        for mark in &drawing.marks {
+        if with_paper {
+            area.fill(&opaque(PAPER))?;
+        }
+        for mark in marks {
             match mark {
                 Mark::Path { places, colour, width } => {
                     let style = opaque(*colour).stroke_width((width * scale).round().max(1.0) as u32);

@@ -4,7 +4,8 @@ use super::block::{Block, Table};
 use super::page::Section;
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
-use crate::experiment::{MACHINE, RunFile, read_run_file};
+use crate::experiment::{Chapter, MACHINE, RunFile, read_run_file};
+use crate::measure::Doubts;
 use crate::plot::{Axis, Dot, DotPlot, Row};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -96,7 +97,11 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         title: "What cargo bench measured".to_string(),
         question: QUESTION.to_string(),
         analysis: ANALYSIS.to_string(),
+        chapter: Some(Chapter::Scheduling),
+        place: u32::MAX,
+        in_short: None,
         failed: Vec::new(),
+        doubts: Doubts::default(),
         rows: rows.len(),
         run,
         blocks,

@@ -51,6 +51,11 @@ impl Block {
         Self::Finding(text.into())
     }
 
+    /// The sentence of a finding.
+    pub(super) fn as_finding(&self) -> Option<&str> {
+        if let Self::Finding(text) = self { Some(text) } else { None }
+    }
+
     pub(super) fn figure(stem: &'static str, figure: impl Figure + 'static) -> Self {
         Self::Figure { stem, figure: Box::new(figure) }
     }

@@ -4,13 +4,14 @@ use super::block::{Block, Table};
 use super::page::Section;
 use crate::check::guards::{FILE, FOLDER, PriceRow, read_prices};
 use crate::error::Result;
-use crate::experiment::read_run_file;
+use crate::experiment::{Chapter, read_run_file};
+use crate::measure::Doubts;
 use crate::plot::{Axis, Dot, DotPlot, Row, number};
 use std::path::Path;
 
 const QUESTION: &str = "What does it cost to be right on hard inputs, and how wrong is what would do on easy ones?";
 
-const ANALYSIS: &str = "A guard is what the program does where something simpler would do on easy inputs. Both are tried on the same hard inputs against the exact answer, and timed by turns on the same work. \
+const ANALYSIS: &str = "A guard is extra work that keeps hard inputs correct; on easy inputs a simpler method would do. Both are tried on the same hard inputs against the exact answer, and timed by turns on the same work. \
 A ratio above 1 is what the guard costs in the operation that it guards; in an image it is far less, because an image does much besides. Where the ratio is below 1, being right is also faster.\n\n\
 The simpler variants are not options of the program: a table of hard cases (`pathmark check`) insists that the program passes where they fail.";
 
@@ -36,7 +37,11 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         title: "What being right costs: the guards".to_string(),
         question: QUESTION.to_string(),
         analysis: ANALYSIS.to_string(),
+        chapter: Some(Chapter::HardInputs),
+        place: 0,
+        in_short: None,
         failed: Vec::new(),
+        doubts: Doubts::default(),
         rows: rows.len(),
         run,
         blocks,

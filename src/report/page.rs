@@ -3,8 +3,8 @@
 use super::block::{Block, Table};
 use super::results::Results;
 use crate::error::Result;
-use crate::experiment::{Definition, RunFile};
-use crate::measure::Record;
+use crate::experiment::{Chapter, Definition, RunFile};
+use crate::measure::{Doubts, Record};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -12,17 +12,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-const STYLE: &str = "
-body { font: 16px/1.55 system-ui, sans-serif; color: #222; background: #fff; max-width: 68rem; margin: 2rem auto; padding: 0 1.5rem; }
-h1 { font-size: 1.9rem; margin-bottom: .2rem; } h2 { margin-top: 3.2rem; border-top: 2px solid #222; padding-top: 1rem; }
-p { max-width: 46rem; } figure { margin: 1.6rem 0; overflow-x: auto; } svg, img { max-width: 100%; height: auto; }
-table { border-collapse: collapse; font-size: .82rem; font-variant-numeric: tabular-nums; } summary { font-weight: 600; padding: .4rem 0; cursor: pointer; }
-.wide { overflow-x: auto; margin: 1.4rem 0; } th, td { padding: .22rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
-th { border-bottom: 2px solid #222; white-space: normal; vertical-align: bottom; } th:first-child, td:first-child { text-align: left; }
-.finding { border-left: 4px solid #0072b2; padding: .1rem 0 .1rem 1rem; } .failed { border-left: 4px solid #d55e00; padding-left: 1rem; }
-code, pre { background: #f3f3f3; padding: .1rem .3rem; } pre { padding: .7rem 1rem; overflow-x: auto; } nav a { margin-right: 1.2rem; }
-details { margin: 1rem 0; } td.text { text-align: left; white-space: normal; }
-";
+const STYLE: &str = include_str!("../../assets/report.css");
+const SCRIPT: &str = include_str!("../../assets/report.js");
 
 const TITLE: &str = "Pathmark: report";
 
@@ -39,17 +30,25 @@ pub(super) fn is_page(path: &Path) -> bool {
 /// Longer tables start closed.
 const OPEN_ROWS: usize = 12;
 
-/// A chapter of the page.
+/// A part of the page: an experiment, the guards, the benches or the claims.
 pub(super) struct Section {
     /// What links point at.
     pub(super) name: String,
     pub(super) title: String,
     pub(super) question: String,
     pub(super) analysis: String,
+    /// The chapter that it is in; none for the claims, which are a chapter of their own.
+    pub(super) chapter: Option<Chapter>,
+    /// Its place in the chapter.
+    pub(super) place: u32,
+    /// What the beginning of the page says of it.
+    pub(super) in_short: Option<String>,
     /// Rows that failed.
     pub(super) failed: Vec<Record>,
     /// How many rows did not.
     pub(super) rows: usize,
+    /// Rows whose times are in doubt.
+    pub(super) doubts: Doubts,
     /// Command and machine.
     pub(super) run: RunFile,
     pub(super) blocks: Vec<Block>,
@@ -59,8 +58,12 @@ impl Section {
     /// An experiment's.
     pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
-        let Definition { name, title, question, analysis, .. } = results.definition;
-        Self { name, title, question, analysis, failed: results.failed, rows, run: results.run, blocks }
+        let doubts = Doubts::of(results.warnings());
+        let Definition { name, title, question, analysis, chapter, place, in_short, .. } = results.definition;
+        let findings = || blocks.iter().filter_map(Block::as_finding);
+        let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
+        let (failed, run, chapter) = (results.failed, results.run, Some(chapter));
+        Self { name, title, question, analysis, chapter, place, in_short, failed, rows, doubts, run, blocks }
     }
 }
 
@@ -69,7 +72,13 @@ const LONGEST_CELL: usize = 56;
 
 /// The page.
 pub(super) fn html(sections: &[Section]) -> Result<String> {
-    let body = sections.iter().map(section).collect::<Result<Vec<Markup>>>()?;
+    let claims = sections.iter().filter(|section| section.chapter.is_none());
+    let claims = claims.map(|section| self::section(section, true)).collect::<Result<Vec<Markup>>>()?;
+    let chapters: Vec<(Chapter, Vec<&Section>)> =
+        Chapter::ALL.into_iter().map(|chapter| (chapter, of_chapter(sections, chapter))).collect();
+    let chapters: Vec<_> = chapters.into_iter().filter(|(_, sections)| !sections.is_empty()).collect();
+    let body = chapters.iter().map(|(chapter, sections)| self::chapter(*chapter, sections));
+    let body = body.collect::<Result<Vec<Markup>>>()?;
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -80,22 +89,120 @@ pub(super) fn html(sections: &[Section]) -> Result<String> {
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                h1 { (TITLE) }
-                p { "How should unequal pieces of work be scheduled on many cores, and what does accuracy cost in time? "
-                    "Every number below comes from the rows in " code { "records.csv" } " beside this page; " code { "METHODOLOGY.md" } " says how." }
-                nav { @for section in sections { a href={ "#" (section.name) } { (section.title) } } }
-                @for part in &body { (part) }
+                nav aria-label="Contents" { (contents(sections, &chapters)) }
+                main {
+                    h1 { (TITLE) }
+                    p { "How should unequal pieces of work be scheduled on many cores, and what does accuracy cost in time? "
+                        "Every number below comes from the rows in " code { "records.csv" } " beside this page; " code { "METHODOLOGY.md" } " says how." }
+                    (in_short(sections, &chapters))
+                    @for part in claims.iter().chain(&body) { (part) }
+                    (sources(sections))
+                }
+                script { (PreEscaped(SCRIPT)) }
             }
         }
     };
     Ok(page.into_string())
 }
 
-fn section(section: &Section) -> Result<Markup> {
-    let parts = section.blocks.iter().map(part).collect::<Result<Vec<Markup>>>()?;
+/// The sections of a chapter, in their order.
+fn of_chapter(sections: &[Section], chapter: Chapter) -> Vec<&Section> {
+    let mut own: Vec<&Section> = sections.iter().filter(|section| section.chapter == Some(chapter)).collect();
+    own.sort_by_key(|section| section.place);
+    own
+}
+
+fn contents(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
+    let link = |name: &str, title: &str| html! { a href={ "#" (name) } { (title) } };
+    html! {
+        details open {
+            summary { "Contents" }
+            ul {
+                @if sections.iter().any(|section| section.in_short.is_some()) { li { (link(IN_SHORT, "In short")) } }
+                @for section in sections.iter().filter(|section| section.chapter.is_none()) {
+                    li { (link(&section.name, &section.title)) }
+                }
+                @for (chapter, sections) in chapters {
+                    li {
+                        (link(chapter.anchor(), chapter.title()))
+                        ul { @for section in sections { li { (link(&section.name, &section.title)) } } }
+                    }
+                }
+                li { (link(SOURCES, SOURCES_TITLE)) }
+            }
+        }
+    }
+}
+
+const IN_SHORT: &str = "in-short";
+const SOURCES: &str = "sources";
+const SOURCES_TITLE: &str = "Machine, method, raw data";
+
+/// The findings that a reader should know first, each with a link to its section.
+fn in_short(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
+    let claims = sections.iter().filter(|section| section.chapter.is_none());
+    let ordered = claims.chain(chapters.iter().flat_map(|(_, sections)| sections.iter().copied()));
+    let found: Vec<(&Section, &str)> =
+        ordered.filter_map(|section| Some((section, section.in_short.as_deref()?))).collect();
+    html! {
+        @if !found.is_empty() {
+            section.in-short id=(IN_SHORT) {
+                h2 { "In short" }
+                ul { @for (section, text) in found { li { (prose(text)) " " a href={ "#" (section.name) } { (section.title) } } } }
+            }
+        }
+    }
+}
+
+fn chapter(chapter: Chapter, sections: &[&Section]) -> Result<Markup> {
+    let parts = sections.iter().map(|own| section(own, false)).collect::<Result<Vec<Markup>>>()?;
+    Ok(html! {
+        h2 id=(chapter.anchor()) { (chapter.title()) }
+        @for part in &parts { (part) }
+    })
+}
+
+/// Where the rows of each section are, and of what program and machine.
+fn sources(sections: &[Section]) -> Markup {
+    let mut runs: Vec<&Section> = sections.iter().filter(|section| section.chapter.is_some()).collect();
+    runs.sort_by(|a, b| a.name.cmp(&b.name));
+    html! {
+        section id=(SOURCES) {
+            h2 { (SOURCES_TITLE) }
+            p { "Each folder holds the raw rows, one for each repetition, the machine and the figures as files. "
+                "Times of different machines, or of different hours of a machine that others use too, do not compare; "
+                "ratios within a folder do, because each repetition visits every cell once." }
+            details.wide open {
+                summary { "Folders" }
+                table {
+                    thead { tr { th { "folder" } th { "rows" } th { "failed" } th { "in doubt" } th { "profile" } th { "processors" } th { "processor" } th { "sources" } } }
+                    tbody {
+                        @for section in runs {
+                            @let machine = &section.run.machine;
+                            tr {
+                                td { a href={ "#" (section.name) } { (section.name) } }
+                                td { (section.rows) }
+                                td { (section.failed.len()) }
+                                td { (section.doubts.count()) }
+                                td { (section.run.profile) }
+                                td { (machine.processors) }
+                                td { (machine.cpu) }
+                                td { (machine.commit) @if machine.dirty { " with changes" } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A section; its heading is that of a chapter if it is one.
+fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
+    let parts = section.blocks.iter().map(|block| part(&section.name, block)).collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
         section id=(section.name) {
-            h2 { (section.title) }
+            @if is_chapter { h2 { (section.title) } } @else { h3 { (section.title) } }
             p { strong { "Question. " } (prose(&section.question)) }
             @if !section.failed.is_empty() {
                 div.failed {
@@ -103,6 +210,7 @@ fn section(section: &Section) -> Result<Markup> {
                     ul { @for record in section.failed.iter().take(10) { li { code { (record.cell) } ": " (record.error) } } }
                 }
             }
+            @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark explain" } " says what each means." } }
             @for part in &parts { (part) }
             @for paragraph in section.analysis.split("\n\n") { p { (prose(paragraph)) } }
             (provenance(section))
@@ -110,12 +218,12 @@ fn section(section: &Section) -> Result<Markup> {
     })
 }
 
-fn part(block: &Block) -> Result<Markup> {
+fn part(section: &str, block: &Block) -> Result<Markup> {
     Ok(match block {
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
-        Block::Figure { figure, .. } => html! { figure { (PreEscaped(figure.svg()?)) } },
-        Block::Picture { title, png, .. } => html! {
-            figure { img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) }; }
+        Block::Figure { stem, figure } => html! { figure id={ (section) "-" (stem) } { (PreEscaped(figure.svg()?)) } },
+        Block::Picture { stem, title, png } => html! {
+            figure id={ (section) "-" (stem) } { img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) }; }
         },
         Block::Table { table, .. } => table_markup(table),
     })
@@ -127,7 +235,15 @@ fn table_markup(table: &Table) -> Markup {
             summary { (table.title) }
             table {
                 thead { tr { @for column in &table.columns { th { (column) } } } }
-                tbody { @for row in &table.rows { tr { @for cell in row { td.text[cell.len() > LONGEST_CELL] { (cell) } } } } }
+                tbody {
+                    @for row in &table.rows {
+                        tr {
+                            @for (cell, column) in row.iter().zip(&table.columns) {
+                                td.text[cell.len() > LONGEST_CELL] data-verdict=[(column == "verdict").then_some(cell)] { (cell) }
+                            }
+                        }
+                    }
+                }
             }
         }
     }

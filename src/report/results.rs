@@ -75,6 +75,11 @@ impl Results {
         Serial::of(self)
     }
 
+    /// The warnings of each row that did not fail.
+    pub(super) fn warnings(&self) -> impl Iterator<Item = &str> {
+        self.rows.iter().map(|row| row.warnings.as_str())
+    }
+
     /// How many rows did not fail.
     pub(super) fn len(&self) -> usize {
         self.rows.len()

@@ -284,3 +284,60 @@ fn every_built_in_experiment_tells_its_figures_what_they_know() {
         check_figures(&definition).unwrap_or_else(|error| panic!("{name}: {error}"));
     }
 }
+
+/// Two strategies beside serial, six times.
+fn speedup_rows() -> Vec<Record> {
+    let times = [("serial", 1, 2.0), ("static-blocks", 2, 1.25), ("rayon", 2, 1.0)];
+    let rows = (0..6).flat_map(|repetition| times.map(|time| (repetition, time)));
+    let row = |(repetition, (strategy, threads, seconds)): (u32, (&str, usize, f64))| Record {
+        repetition,
+        strategy: strategy.to_string(),
+        threads,
+        makespan_s: Some(seconds),
+        ..row()
+    };
+    rows.map(row).collect()
+}
+
+#[test]
+fn the_page_begins_with_the_findings_that_experiments_name() {
+    let out = folder_of(&["speedup"], "chapter = \"scheduling\"\nin-short = 1", speedup_rows());
+    let page = super::write(&Lab::built_in(), out.path()).unwrap();
+    let html = std::fs::read_to_string(page).unwrap();
+    let place = |text: &str| html.find(text).unwrap_or_else(|| panic!("the page lacks {text}"));
+    let (start, short, chapter) = (place("<main"), place("id=\"in-short\""), place("id=\"chapter-scheduling\""));
+    assert!(start < short && short < chapter && chapter < place("id=\"an-experiment\""));
+    assert!(html[short..chapter].contains("2.000 times serial"), "{}", &html[short..chapter]);
+    assert!(html[short..chapter].contains("href=\"#an-experiment\""));
+    // Chapters without a section are left out.
+    assert!(!html.contains("chapter-effects"));
+    // A number of a finding that there is not leaves the beginning out, not the page.
+    let out = folder_of(&["speedup"], "in-short = 99", speedup_rows());
+    let html = std::fs::read_to_string(super::write(&Lab::built_in(), out.path()).unwrap()).unwrap();
+    assert!(!html.contains("id=\"in-short\"") && html.contains("id=\"chapter-others\""));
+}
+
+/// A reader who points at a mark sees the number of the rows.
+#[test]
+fn figures_carry_the_values_that_they_draw() {
+    let results = results(&["speedup"], "", speedup_rows()).unwrap();
+    let blocks = blocks(&results).unwrap();
+    let figure = |name: &str| {
+        blocks.iter().find_map(|block| match block {
+            Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
+            _ => None,
+        })
+    };
+    let svg = figure("speedup").unwrap();
+    let note = |series: &str| {
+        svg.lines().find(|line| line.contains("class=\"note\"") && line.contains(&format!("data-series=\"{series}\"")))
+    };
+    assert!(note("static-blocks").unwrap().contains("data-value=\"1.6\""), "{svg}");
+    assert!(note("rayon").unwrap().contains("<title>rayon: 2 (2 to 2) at threads = 2</title>"), "{svg}");
+    // Each series can be switched off at its entry of the legend.
+    for series in ["rayon", "static-blocks"] {
+        for class in ["series", "legend"] {
+            assert!(svg.contains(&format!("<g class=\"{class}\" data-series=\"{series}\">")), "{class} {series}");
+        }
+    }
+}

@@ -8,6 +8,8 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--strategy", "dynamic:0"], &["strategy", "dynamic:0", "from 1"]),
     (&["--strategy", "rayon:3"], &["strategy", "rayon:3", "none"]),
     (&["--strategy", "steal-half:poorest"], &["strategy", "steal-half:poorest", "richest"]),
+    (&["--strategy", "wrok-stealing"], &["strategy", "wrok-stealing", "did you mean work-stealing?"]),
+    (&["--estimator", "bdsf"], &["did you mean bsdf?"]),
     (&["--output", "pigeon"], &["output", "pigeon", "slots"]),
     (&["--strategy", ""], &["strategy", "work-stealing"]),
     (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:32x32"]),
@@ -135,4 +137,10 @@ fn a_workload_takes_no_options_of_light() {
         let arguments = ["render", "mandelbrot", &format!("--{option}"), value, "--size", "8x8"];
         refused(folder.path(), &arguments, 2, &[option, value, "workload"]);
     }
+}
+
+#[test]
+fn a_warning_that_there_is_not_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    refused(folder.path(), &["explain", "drizzle(25 %)"], 2, &["warning", "drizzle", "drift", "too-short"]);
 }

@@ -1,7 +1,7 @@
 //! F04, F09: files with any damage. Each target reads its seeds, every beginning of each short one, and mutations of them, drawn from a fixed
 //! seed. A reader may accept or refuse; it may not panic, ask for more memory than a refusal may take, or think for a second.
 //!
-//! `PATHMARK_THOROUGH=1` draws a hundred times as many. What fails is written to a folder and its name told: it belongs into
+//! `PATHMARK_THOROUGH=1` draws a hundred times as many. What fails is written to a folder and its name told: add it to
 //! `corpus/TARGET`, where this program finds it by itself.
 
 mod mutate;

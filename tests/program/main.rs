@@ -3,11 +3,13 @@
 mod changed_inputs;
 mod claims;
 mod command_line;
+mod commands;
 #[path = "../support/experiment.rs"]
 mod experiment;
 mod external;
 mod faults;
 mod inspection;
+mod page;
 mod plan;
 mod price;
 #[path = "../support/program.rs"]

@@ -67,6 +67,8 @@ pub struct Place {
 /// assert_eq!(error.to_string(), "--spp = 0: must be at least 1 (allowed: 1 to 16777216)");
 /// let error = InputError::new("radius", "-1", "must be positive").in_file("box.toml", Some((4, 10)));
 /// assert_eq!(error.to_string(), "box.toml:4:10: radius = -1: must be positive");
+/// let error = InputError::new("sampler", "sobel", "there is no such sampler").allowed("hash, sobol");
+/// assert!(error.to_string().starts_with("sampler = sobel: there is no such sampler; did you mean sobol?"));
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError {
@@ -103,6 +105,25 @@ impl InputError {
     }
 }
 
+/// Names below this similarity, from 0 to 1, are not meant.
+const SIMILAR: f64 = 0.65;
+/// Shorter values are as similar to one name as to another.
+const SHORTEST_NAME: usize = 3;
+
+impl InputError {
+    /// The allowed name that the value is most similar to, as after a slip of the finger.
+    fn meant(&self) -> Option<&str> {
+        let is_name = |text: &str| text.len() >= SHORTEST_NAME && text.starts_with(char::is_alphabetic);
+        if !is_name(&self.value) {
+            return None;
+        }
+        let names = self.allowed.split(", ").filter(|name| is_name(name) && !name.contains(' '));
+        let rated = names.map(|name| (strsim::normalized_damerau_levenshtein(&self.value, name), name));
+        let (similarity, name) = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        (SIMILAR..1.0).contains(&similarity).then_some(name)
+    }
+}
+
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(place) = &self.place {
@@ -117,6 +138,9 @@ impl fmt::Display for InputError {
             write!(f, " = {}", self.value)?;
         }
         write!(f, ": {}", self.problem)?;
+        if let Some(name) = self.meant() {
+            write!(f, "; did you mean {name}?")?;
+        }
         if !self.allowed.is_empty() {
             write!(f, " (allowed: {})", self.allowed)?;
         }

@@ -1,6 +1,6 @@
 //! The price list of the guards: what each costs in time, and what goes wrong without it.
 //!
-//! A guard is what the program does where something simpler would do on easy inputs. Both are tried on the same hard inputs against the exact
+//! A guard is extra work that keeps hard inputs correct; on easy inputs a simpler method would do. Both are tried on the same hard inputs against the exact
 //! answer, and both are timed by turns on the same work. The simpler variants stand beside the cases (`unguarded.rs` of a section), and no
 //! option leads to them.
 //!

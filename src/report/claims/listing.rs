@@ -178,6 +178,18 @@ fn capital(verdict: Verdict) -> String {
     first.to_uppercase() + rest
 }
 
+/// How many claims have each verdict, in a sentence.
+pub(super) fn in_short(answers: &[Answer<'_>]) -> String {
+    let count = |name: &str| answers.iter().filter(|answer| answer.verdict.name() == name).count();
+    let counts = NAMES.iter().map(|name| (count(name), name.replace('-', " "))).filter(|(count, _)| *count > 0);
+    let counts: Vec<String> = counts.map(|(count, name)| format!("{count} {name}")).collect();
+    format!(
+        "Verdicts on {} claims of the four reports, computed from these rows: {}.",
+        answers.len(),
+        counts.join(", ")
+    )
+}
+
 /// The verdicts for the page: counts, and a table for each report.
 pub(in crate::report) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
     let mut heads = vec!["report".to_string()];

@@ -23,6 +23,7 @@ use crate::error::Result;
 use crate::experiment::RunFile;
 use crate::files::Files;
 use crate::lab::Lab;
+use crate::measure::Doubts;
 use listing::{CSV, MARKDOWN, is_csv, is_markdown};
 use std::path::Path;
 use std::sync::Arc;
@@ -50,10 +51,14 @@ pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
     save(&answers, out)?;
     Ok(Some(Section {
         name: FOLDER.to_string(),
-        title: "The claims of the four reports".to_string(),
+        title: "What the reports said".to_string(),
         question: QUESTION.to_string(),
         analysis: ANALYSIS.to_string(),
+        chapter: None,
+        place: 0,
+        in_short: Some(listing::in_short(&answers)),
         failed: Vec::new(),
+        doubts: Doubts::default(),
         rows: answered,
         run: RunFile::of_now("pathmark claims".to_string()),
         blocks: listing::blocks(&answers),

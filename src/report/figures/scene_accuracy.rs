@@ -26,8 +26,9 @@ impl Default for Options {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Control {
-    /// With matt balls.
-    matt: String,
+    /// With diffuse balls.
+    #[serde(alias = "matt")]
+    diffuse: String,
     /// With a mirror and a glass ball.
     glass: String,
     /// With two mirror balls.
@@ -134,7 +135,7 @@ fn look(index: usize) -> Look {
 /// Over scenes that differ in everything; the two variants of the control would count one scene three times.
 fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
     let is_variant =
-        |scene: &&Accuracy| control.is_some_and(|control| [&control.matt, &control.mirrors].contains(&&scene.scene));
+        |scene: &&Accuracy| control.is_some_and(|control| [&control.diffuse, &control.mirrors].contains(&&scene.scene));
     let others: Vec<&Accuracy> = scenes.iter().filter(|scene| !is_variant(scene)).collect();
     let pairs: Vec<(f64, f64)> = others.iter().map(|scene| (scene.rays, scene.error.value)).collect();
     let found = spearman(&pairs)?;
@@ -163,8 +164,8 @@ fn error_ratio(above: &Accuracy, below: &Accuracy) -> Option<Estimate> {
 
 fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
     let of = |name: &str| scenes.iter().find(|scene| scene.scene == name);
-    let (matt, own, mirrors) = (of(&control.matt)?, of(&control.glass)?, of(&control.mirrors)?);
-    let (glass, mirror) = (error_ratio(own, matt)?, error_ratio(mirrors, matt)?);
+    let (diffuse, own, mirrors) = (of(&control.diffuse)?, of(&control.glass)?, of(&control.mirrors)?);
+    let (glass, mirror) = (error_ratio(own, diffuse)?, error_ratio(mirrors, diffuse)?);
     let ratio = |found: &Estimate| {
         format!("{:.2} times ({:.2} to {:.2})", found.value, found.interval.low, found.interval.high)
     };
@@ -176,11 +177,11 @@ fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
     };
     let length = |scene: &Accuracy| format!("{:.2}", scene.rays);
     Some(Block::finding(format!(
-        "The control changes the balls of one box and nothing else. With a mirror and a glass ball its relative error is {} that with matt balls, with two mirror balls {}; \
-         rays per sample are {} with matt balls, {} and {}. {verdict}.",
+        "The control changes the balls of one box and nothing else. With a mirror and a glass ball its relative error is {} that with diffuse balls, with two mirror balls {}; \
+         rays per sample are {} with diffuse balls, {} and {}. {verdict}.",
         ratio(&glass),
         ratio(&mirror),
-        length(matt),
+        length(diffuse),
         length(own),
         length(mirrors),
     )))

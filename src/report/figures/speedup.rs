@@ -5,6 +5,7 @@ use super::scaling_laws;
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_estimate};
 use crate::analysis::superlinear::{Evidence, cause};
+use crate::measure::Doubts;
 use crate::report::serial::Serial;
 
 /// More lines than this cannot be told apart in one chart: strategies become named rows instead.
@@ -94,14 +95,12 @@ impl Speedups<'_> {
         let mut alone = schedule.clone();
         alone.key.threads = 1;
         let at_one_worker = || Told::median(&self.serial.paired_speedups(&alone))?.interval;
-        let doubts = ["foreign-load", "drift", "slowed", "too-short"];
-        let doubtful = |warnings: &str| doubts.iter().any(|doubt| warnings.contains(doubt));
         // The baseline's doubts count as well: a serial run that was held up makes all others look fast.
         let concerned = self.serial.rows(schedule).iter().copied().chain(self.serial.on_pieces_of(schedule));
         let machine = &self.results.run.machine;
         Evidence {
             at_one_worker: (schedule.key.threads > 1).then(at_one_worker).flatten(),
-            warnings: concerned.filter(|row| doubtful(&row.warnings)).count(),
+            warnings: concerned.filter(|row| Doubts::concern(&row.warnings)).count(),
             processors: Some(machine.processors),
             physical_cores: Some(machine.physical_cores).filter(|cores| *cores > 0),
         }

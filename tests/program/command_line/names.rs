@@ -1,11 +1,12 @@
 //! Every name that `list` prints runs as it is, and no schedule changes a bit.
 
 use super::{json, names, record, run};
+use crate::program::{finish, pathmark};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 20] = [
+const KINDS: [&str; 23] = [
     "scenes",
     "workloads",
     "strategies",
@@ -26,6 +27,9 @@ const KINDS: [&str; 20] = [
     "metrics",
     "formats",
     "experiments",
+    "figures",
+    "columns",
+    "warnings",
 ];
 
 /// Columns of `records.csv` that say what a row is of and what it measured.
@@ -70,6 +74,32 @@ const COLUMNS: [&str; 39] = [
     "commit",
     "started_utc",
 ];
+
+#[test]
+fn warnings_are_explained_as_rows_have_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let all = run(folder.path(), &["explain"]).out;
+    for name in names("warnings") {
+        assert!(all.lines().any(|line| line == name), "{name}");
+        let alone = run(folder.path(), &["explain", &format!("{name}(25 %)")]).out;
+        assert!(alone.starts_with(&name) && all.contains(alone.trim_end()), "{name}: {alone}");
+        assert_eq!(alone.trim_end().lines().count(), 3, "{name}: its name, its meaning and what to do");
+    }
+}
+
+/// What `new` writes runs as it is, and a file that is there is never replaced.
+#[test]
+fn starters_run_as_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    for (kind, name) in [("experiment", "mine"), ("scene", "room.toml")] {
+        run(folder.path(), &["new", kind, name]);
+        let refused = finish(pathmark(folder.path(), &["new", kind, name])).with_code(2);
+        assert!(refused.err.contains("is there already"), "{}", refused.err);
+    }
+    run(folder.path(), &["run", "mine.toml", "--repetitions", "1"]);
+    run(folder.path(), &["render", "room.toml", "--size", "24x16", "--spp", "4"]);
+    assert!(folder.path().join("out/mine/figures/speedup.svg").is_file());
+}
 
 #[test]
 fn every_kind_is_listed_with_name_and_about() {

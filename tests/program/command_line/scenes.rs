@@ -174,7 +174,7 @@ fn accuracy_by_scene_is_relative_to_its_brightness() {
         assert!((number(3) - number(2) / number(1)).abs() < 1e-3, "{row:?}");
     }
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    // Twice the error of the matt box in the geometric mean; the images' brightness differs a little.
+    // Twice the error of the diffuse box in the geometric mean; the images' brightness differs a little.
     let radiance = |scene: &str| table[scene][1].parse::<f64>().unwrap();
     let ratio = 2.0 * radiance("cornell-diffuse") / radiance("cornell");
     let said = page.split("its relative error is ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap();

@@ -91,7 +91,7 @@ impl Probe for &mut dyn Probe {
 
 /// What tells apart the estimators that follow paths.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Course {
+pub struct PathRules {
     /// At this many vertices, counted from the first, a surface that reflects and transmits is followed both ways; at most 2.
     pub splits: u16,
     /// Whether vertices aim at light, and then whether what is found is weighted with what is arrived at.
@@ -140,7 +140,7 @@ pub trait Estimator: Send + Sync {
     const COMPILED: Compiled = Compiled::WithAllEffects;
 
     /// How it follows paths, for kernels that follow many at once; `None` if it does something else.
-    fn course(&self) -> Option<Course> {
+    fn course(&self) -> Option<PathRules> {
         None
     }
 
@@ -159,14 +159,14 @@ pub trait Estimator: Send + Sync {
 /// sampler and probe; an effect that a scene does not call for changes no bit.
 pub trait AnyEstimator: Send + Sync {
     /// [`Estimator::course`].
-    fn any_course(&self) -> Option<Course>;
+    fn any_course(&self) -> Option<PathRules>;
 
     /// [`Estimator::sample`].
     fn estimate(&self, scene: &Scene, ray: Ray, key: SampleKey, sampler: &dyn Sampler, probe: &mut dyn Probe) -> Rgb;
 }
 
 impl<E: Estimator> AnyEstimator for E {
-    fn any_course(&self) -> Option<Course> {
+    fn any_course(&self) -> Option<PathRules> {
         self.course()
     }
 
@@ -190,7 +190,7 @@ impl<E: Estimator> Estimator for Arc<E> {
     const IS_ONE_PATH: bool = E::IS_ONE_PATH;
     const LARGEST_DEPTH: u16 = E::LARGEST_DEPTH;
 
-    fn course(&self) -> Option<Course> {
+    fn course(&self) -> Option<PathRules> {
         (**self).course()
     }
 

@@ -6,7 +6,7 @@
 use super::aimed::{aimed_at_fog, aimed_at_surface, share_of_arrival};
 use super::direct::{light_at_fog, light_at_surface};
 use super::medium::Medium;
-use super::{Compiled, Course, Estimator, Options, Probe, Roulette};
+use super::{Compiled, Estimator, Options, PathRules, Probe, Roulette};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3, dot};
@@ -80,10 +80,10 @@ impl Path<Aimed> {
 }
 
 impl<R: Rules> Estimator for Path<R> {
-    fn course(&self) -> Option<Course> {
+    fn course(&self) -> Option<PathRules> {
         let is_weighted = self.light == Light::Weighted;
         let aims = R::AIMS.then_some(is_weighted);
-        Some(Course { splits: R::SPLITS, aims, max_depth: self.max_depth, roulette: self.roulette })
+        Some(PathRules { splits: R::SPLITS, aims, max_depth: self.max_depth, roulette: self.roulette })
     }
 
     const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;

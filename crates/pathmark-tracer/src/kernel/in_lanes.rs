@@ -3,7 +3,7 @@
 use super::choice::unknown;
 use super::{KERNELS, SCALAR, Spec};
 use crate::error::{InputError, Result};
-use crate::estimator::Course;
+use crate::estimator::PathRules;
 use crate::material::Diffuse;
 use crate::sampling::InLanes as LaneSampler;
 use crate::scene::{ANGULAR_EMISSION, FOG, LENS, POINT_LIGHT, Scene};
@@ -14,7 +14,7 @@ use crate::simd::{Entry as LevelEntry, LEVELS, Level, Precision};
 pub(super) struct InLanes {
     pub(super) level: Level,
     pub(super) precision: Precision,
-    pub(super) course: Course,
+    pub(super) course: PathRules,
     pub(super) sampler: LaneSampler,
     /// Whether they are compiled for diffuse surfaces alone.
     pub(super) is_matt: bool,
@@ -40,7 +40,7 @@ fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static
 pub(super) fn lanes_for(
     scene: &Scene,
     spec: &Spec,
-    course: Option<Course>,
+    course: Option<PathRules>,
     epsilon: Option<f64>,
 ) -> Result<std::result::Result<InLanes, &'static str>> {
     if !KERNELS.iter().any(|entry| entry.name == spec.kernel) {

@@ -17,7 +17,7 @@ mod wide;
 mod window;
 
 use super::{Choice, Counts, Kernel};
-use crate::estimator::Course;
+use crate::estimator::PathRules;
 use crate::film::{Piece, TileBuffer};
 use crate::kernel::in_lanes::InLanes;
 use crate::math::Rgb;
@@ -40,7 +40,7 @@ pub(super) struct Lanes {
     view: View,
     width: u32,
     seed: u64,
-    course: Course,
+    course: PathRules,
     sampler: Sampler,
     tables: Tables,
     targets: Option<Box<Targets>>,
@@ -137,7 +137,7 @@ const fn held<V: Float>() -> u32 {
     if V::LANES < 8 { 1 } else { 2 }
 }
 
-/// A piece to render: by paths that aim at light or by paths that do not, in a scene in which every surface is matt or in any.
+/// A piece to render: by paths that aim at light or by paths that do not, in a scene in which every surface is diffuse or in any.
 struct Render<'a, const AIMS: bool, const MATT: bool> {
     kernel: &'a Lanes,
     piece: &'a Piece,

@@ -1,0 +1,135 @@
+"use strict";
+// The page is complete without this script: it adds values under the pointer, lines that can be switched off, downloads and sorting.
+(() => {
+  const all = (selector, within = document) => Array.from(within.querySelectorAll(selector));
+
+  // Narrow screens begin with a closed table of contents.
+  if (window.matchMedia("(max-width: 79.99rem)").matches) {
+    all("nav details").forEach((contents) => { contents.open = false; });
+  }
+
+  // Values under the pointer, or under a finger.
+  const value = document.createElement("div");
+  value.id = "value";
+  value.hidden = true;
+  value.setAttribute("role", "status");
+  document.body.append(value);
+  const show = (event) => {
+    const note = event.target.closest ? event.target.closest("circle.note") : null;
+    value.hidden = !note;
+    if (!note) return;
+    value.textContent = note.getAttribute("aria-label");
+    const left = Math.min(event.clientX + 14, window.innerWidth - value.offsetWidth - 8);
+    value.style.left = `${Math.max(8, left)}px`;
+    value.style.top = `${Math.max(8, event.clientY - value.offsetHeight - 12)}px`;
+  };
+  all("circle.note").forEach((note) => {
+    // The browser's own tooltip comes late and not at all for a finger.
+    const title = note.querySelector("title");
+    note.setAttribute("aria-label", title.textContent);
+    title.remove();
+  });
+  document.addEventListener("pointermove", show);
+  document.addEventListener("click", show);
+
+  // A click on an entry of a legend switches its series off and on.
+  all("figure svg").forEach((svg) => {
+    const named = (selector, name) => all(selector, svg).filter((part) => part.dataset.series === name);
+    all("g.legend", svg).forEach((entry) => entry.addEventListener("click", () => {
+      const parts = named("g.series", entry.dataset.series);
+      if (parts.length === 0) return;
+      const off = entry.classList.toggle("is-off");
+      parts.forEach((part) => part.classList.toggle("is-off", off));
+      named("circle.note", entry.dataset.series).forEach((note) => { note.style.display = off ? "none" : ""; });
+    }));
+  });
+
+  // Downloads.
+  const save = (blob, name) => {
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(blob);
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+  };
+  const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const asSvg = (svg) => new Blob([new XMLSerializer().serializeToString(svg)], { type: "image/svg+xml" });
+  const asCsv = (svg) => {
+    const keys = ["series", "of", "value", "low", "high"];
+    const rows = all("circle.note", svg).map((note) => keys.map((key) => quoted(note.dataset[key] || "")).join(","));
+    return new Blob([[keys.join(","), ...rows].join("\n") + "\n"], { type: "text/csv" });
+  };
+  const asPng = (svg, done) => {
+    const [, , width, height] = svg.getAttribute("viewBox").split(" ").map(Number);
+    const picture = new Image();
+    picture.onload = () => {
+      const canvas = document.createElement("canvas");
+      canvas.width = width;
+      canvas.height = height;
+      canvas.getContext("2d").drawImage(picture, 0, 0, width, height);
+      URL.revokeObjectURL(picture.src);
+      canvas.toBlob(done);
+    };
+    picture.src = URL.createObjectURL(asSvg(svg));
+  };
+  all("figure").forEach((figure) => {
+    const svg = figure.querySelector("svg");
+    if (!svg) return;
+    const tools = document.createElement("div");
+    tools.className = "tools";
+    const button = (label, act) => {
+      const made = document.createElement("button");
+      made.type = "button";
+      made.textContent = label;
+      made.addEventListener("click", act);
+      tools.append(made);
+    };
+    button("SVG", () => save(asSvg(svg), `${figure.id}.svg`));
+    button("PNG", () => asPng(svg, (blob) => save(blob, `${figure.id}.png`)));
+    if (svg.querySelector("circle.note")) button("CSV", () => save(asCsv(svg), `${figure.id}.csv`));
+    figure.append(tools);
+  });
+
+  // Tables sort by the column whose head is clicked; a second click turns the order around.
+  const key = (row, column) => {
+    const text = row.cells[column] ? row.cells[column].textContent.trim().replace("\u2212", "-") : "";
+    const number = parseFloat(text);
+    return [Number.isFinite(number) ? number : Infinity, text];
+  };
+  all("main table").forEach((table) => {
+    const body = table.tBodies[0];
+    if (!table.tHead || !body) return;
+    const heads = Array.from(table.tHead.rows[0].cells);
+    heads.forEach((head, column) => {
+      const sorter = document.createElement("button");
+      sorter.type = "button";
+      sorter.textContent = head.textContent;
+      head.replaceChildren(sorter);
+      sorter.addEventListener("click", () => {
+        const up = head.getAttribute("aria-sort") !== "ascending";
+        heads.forEach((other) => other.removeAttribute("aria-sort"));
+        head.setAttribute("aria-sort", up ? "ascending" : "descending");
+        const rows = Array.from(body.rows).map((row) => [key(row, column), row]);
+        rows.sort(([[a, left]], [[b, right]]) => (a === b ? left.localeCompare(right) : a - b) * (up ? 1 : -1));
+        body.append(...rows.map(([, row]) => row));
+      });
+    });
+  });
+
+  // The verdicts on the claims, by verdict.
+  const claims = document.getElementById("claims");
+  if (claims) {
+    const verdicts = ["all", ...new Set(all("td[data-verdict]", claims).map((cell) => cell.dataset.verdict))];
+    if (verdicts.length > 2) {
+      const label = document.createElement("label");
+      label.textContent = "Verdict: ";
+      const choice = document.createElement("select");
+      verdicts.forEach((verdict) => choice.append(new Option(verdict, verdict)));
+      choice.addEventListener("change", () => all("td[data-verdict]", claims).forEach((cell) => {
+        cell.parentElement.hidden = choice.value !== "all" && cell.dataset.verdict !== choice.value;
+      }));
+      label.append(choice);
+      claims.querySelector("h2").after(label);
+    }
+  }
+})();

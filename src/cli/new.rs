@@ -1,0 +1,56 @@
+//! `pathmark new experiment|scene NAME`: a commented file to start from.
+
+use super::output::print;
+use crate::error::{Error, InputError, Result};
+use clap::{Args, ValueEnum};
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
+use std::path::PathBuf;
+
+/// `pathmark new experiment mine`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// What to start
+    kind: Kind,
+    /// Its name, or the path of its file; `.toml` is added where it is missing
+    name: PathBuf,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    Experiment,
+    Scene,
+}
+
+impl Kind {
+    fn text(self) -> &'static str {
+        match self {
+            Self::Experiment => include_str!("../../assets/starter-experiment.toml"),
+            Self::Scene => include_str!("../../assets/starter-scene.toml"),
+        }
+    }
+
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Experiment => "run",
+            Self::Scene => "render",
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let mut path = arguments.name.clone();
+    if path.extension().is_none_or(|ending| ending != "toml") {
+        path.as_mut_os_string().push(".toml");
+    }
+    let shown = path.display().to_string();
+    // A file of the user's is never replaced.
+    let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(|e| match e.kind() {
+        ErrorKind::AlreadyExists => {
+            Error::from(InputError::new("name", &shown, "is there already").allowed("a new name"))
+        }
+        _ => Error::system("creating", &path, e),
+    })?;
+    file.write_all(arguments.kind.text().as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
+    print(&format!("{shown} is there; edit it, then: pathmark {} {shown}", arguments.kind.verb()))
+}

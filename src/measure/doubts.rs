@@ -1,0 +1,98 @@
+//! How many rows have times in doubt, and why.
+
+use std::fmt;
+
+/// The warnings that concern the time of a run; others concern its image.
+const REASONS: [&str; 4] = ["foreign-load", "slowed", "drift", "too-short"];
+
+/// Rows, and those of them whose times are in doubt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Doubts {
+    rows: usize,
+    doubted: usize,
+    /// How many rows have each reason; a row may have several.
+    by_reason: [usize; REASONS.len()],
+}
+
+impl Doubts {
+    /// The doubts about some rows, given the column `warnings` of each.
+    pub fn of<'a>(rows: impl IntoIterator<Item = &'a str>) -> Self {
+        let mut doubts = Self::default();
+        rows.into_iter().for_each(|warnings| doubts.add(warnings));
+        doubts
+    }
+
+    /// Whether the time of a row with these warnings is in doubt.
+    pub fn concern(warnings: &str) -> bool {
+        REASONS.iter().any(|reason| warnings.contains(reason))
+    }
+
+    /// Counts a row.
+    pub fn add(&mut self, warnings: &str) {
+        self.rows += 1;
+        self.doubted += usize::from(Self::concern(warnings));
+        for (count, reason) in self.by_reason.iter_mut().zip(REASONS) {
+            *count += usize::from(warnings.contains(reason));
+        }
+    }
+
+    /// Counts the rows of another sweep.
+    pub fn merge(&mut self, other: &Self) {
+        self.rows += other.rows;
+        self.doubted += other.doubted;
+        for (count, more) in self.by_reason.iter_mut().zip(other.by_reason) {
+            *count += more;
+        }
+    }
+
+    /// How many rows are in doubt.
+    pub fn count(&self) -> usize {
+        self.doubted
+    }
+
+    /// Whether any row is in doubt.
+    pub fn is_any(&self) -> bool {
+        self.doubted > 0
+    }
+
+    /// Whether a tenth of the rows or more are in doubt.
+    pub fn is_high(&self) -> bool {
+        self.is_any() && 10 * self.doubted >= self.rows
+    }
+}
+
+impl fmt::Display for Doubts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { rows, doubted, by_reason } = self;
+        let reasons = by_reason.iter().zip(REASONS).filter(|(count, _)| **count > 0);
+        let reasons: Vec<String> = reasons.map(|(count, reason)| format!("{count} {reason}")).collect();
+        let verb = if *doubted == 1 { "has a time" } else { "have times" };
+        write!(f, "{doubted} of {rows} rows {verb} in doubt")?;
+        if reasons.is_empty() { Ok(()) } else { write!(f, " ({})", reasons.join(", ")) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::WARNINGS;
+
+    #[test]
+    fn rows_are_counted_once_and_reasons_each() {
+        let mut doubts = Doubts::of(["", "drift(+30 %);slowed(+20 % CPU)", "biased"]);
+        assert_eq!(doubts.to_string(), "1 of 3 rows has a time in doubt (1 slowed, 1 drift)");
+        assert!(doubts.is_any() && doubts.is_high());
+        doubts.merge(&Doubts::of(vec![""; 8]));
+        assert_eq!((doubts.is_any(), doubts.is_high()), (true, false));
+        doubts.add("too-short");
+        assert_eq!(doubts.to_string(), "2 of 12 rows have times in doubt (1 slowed, 1 drift, 1 too-short)");
+        assert!(doubts.is_high() && !Doubts::of(["biased"]).is_any() && !Doubts::default().is_high());
+    }
+
+    #[test]
+    fn reasons_are_warnings() {
+        for reason in REASONS {
+            assert!(WARNINGS.iter().any(|entry| entry.name == reason), "{reason}");
+        }
+    }
+}

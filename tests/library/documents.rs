@@ -1,0 +1,74 @@
+//! The documents can be read: short pages of short lines, links that lead somewhere, and no page that the map leaves out.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A page is read in five minutes.
+const MOST_LINES: usize = 200;
+const LONGEST_LINE: usize = 120;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn pages() -> Vec<PathBuf> {
+    let mut pages: Vec<PathBuf> =
+        fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    pages.sort();
+    assert!(pages.len() > 15, "{pages:?}");
+    pages
+}
+
+#[test]
+fn pages_and_lines_are_short() {
+    for page in pages() {
+        let text = fs::read_to_string(&page).unwrap();
+        assert!(text.lines().count() <= MOST_LINES, "{}: more than {MOST_LINES} lines", page.display());
+        for (line, text) in text.lines().enumerate() {
+            let length = text.chars().count();
+            assert!(length <= LONGEST_LINE, "{}:{}: {length} characters", page.display(), line + 1);
+        }
+    }
+}
+
+/// The heading as a browser's address has it.
+fn anchor(heading: &str) -> String {
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || *c == ' ' || *c == '-');
+    kept.collect::<String>().to_lowercase().replace(' ', "-")
+}
+
+/// The targets of a document's links that stay in the repository.
+fn links(text: &str) -> Vec<&str> {
+    let inline = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let named =
+        text.lines().filter(|line| line.starts_with('[')).filter_map(|line| line.split_once("]: ")).map(|(_, to)| to);
+    inline.chain(named).filter(|link| !link.contains("://")).collect()
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let more = ["README.md", "METHODOLOGY.md", "CONTRIBUTING.md", "results/README.md"].map(|name| root().join(name));
+    for page in pages().into_iter().chain(more) {
+        let text = fs::read_to_string(&page).unwrap();
+        for link in links(&text) {
+            let (file, section) = link.split_once('#').map_or((link, None), |(file, section)| (file, Some(section)));
+            let target = if file.is_empty() { page.clone() } else { page.parent().unwrap().join(file) };
+            assert!(target.exists(), "{}: {link}", page.display());
+            if let Some(section) = section {
+                let text = fs::read_to_string(&target).unwrap();
+                let mut headings = text.lines().filter_map(|line| line.trim_start_matches('#').strip_prefix(' '));
+                assert!(headings.any(|heading| anchor(heading) == section), "{}: {link}", page.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_map_has_every_page() {
+    let map = fs::read_to_string(root().join("METHODOLOGY.md")).unwrap();
+    assert!(map.lines().count() <= 60);
+    for page in pages() {
+        let name = page.file_name().unwrap().to_str().unwrap();
+        assert!(map.contains(&format!("(docs/{name})")), "METHODOLOGY.md leaves out {name}");
+    }
+}

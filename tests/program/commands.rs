@@ -1,0 +1,43 @@
+//! The commands that the documents show run as they stand there.
+
+use crate::program::{finish, pathmark};
+use std::fs;
+
+/// The fenced blocks of a document in one language, in order with all others.
+fn blocks(text: &str) -> Vec<(&str, &str)> {
+    let mut parts = text.split("\n```");
+    parts.next();
+    // After each opening fence comes its language and the block; after each closing one the text between blocks.
+    parts.step_by(2).filter_map(|part| part.split_once('\n')).collect()
+}
+
+#[test]
+fn every_command_of_the_tutorial_runs() {
+    let text = include_str!("../../docs/tutorial.md");
+    let folder = tempfile::tempdir().unwrap();
+    let mut commands = 0;
+    for (language, block) in blocks(text) {
+        match language {
+            "toml" => {
+                let name = block.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a file's name");
+                fs::write(folder.path().join(name), block).unwrap();
+            }
+            "sh" => {
+                for line in block.lines() {
+                    let words: Vec<&str> = line.split_whitespace().collect();
+                    assert_eq!(words[0], "pathmark", "{line}");
+                    finish(pathmark(folder.path(), &words[1..])).with_code(0);
+                    commands += 1;
+                }
+            }
+            other => panic!("a block in {other:?}"),
+        }
+    }
+    assert!(commands > 12, "{commands} commands");
+    for made in ["blocks.svg", "out/report.html", "out/speedup/figures/speedup.svg", "elsewhere/report.html"] {
+        assert!(folder.path().join(made).is_file(), "{made}");
+    }
+    // The first three images of the tutorial are the same.
+    let image = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert!(image("box.png") == image("one.png") && image("one.png") == image("four.png"));
+}

@@ -1,0 +1,114 @@
+//! The report page in a browser: what its script adds works, and nothing is wider than the screen.
+//!
+//! Needs a Chromium on the path; without one the test says so and passes, because a browser is no part of Pathmark.
+
+use crate::experiment::{TINY, write_tiny};
+use crate::program::{finish, pathmark};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
+
+/// Widths of the narrowest window that Chromium opens, a desk and a wide screen.
+const WIDTHS: [u32; 3] = [500, 1300, 1900];
+
+/// Runs in the page after its own script, and leaves what it saw in a paragraph of the page.
+const LOOK: &str = r##"
+window.addEventListener("load", () => {
+  const all = (selector) => Array.from(document.querySelectorAll(selector));
+  const seen = { errors: window.pageErrors };
+  seen.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+  seen.emptyFigures = all("figure").filter((figure) => figure.getBoundingClientRect().height < 50).map((f) => f.id);
+  seen.deadLinks = all("a[href^='#']").filter((a) => !document.getElementById(a.hash.slice(1))).map((a) => a.hash);
+  const svg = document.getElementById("tiny-speedup").querySelector("svg");
+  const note = svg.querySelector("circle.note[data-series='work-stealing'][data-of='2']");
+  const box = note.getBoundingClientRect();
+  const at = { clientX: box.x + box.width / 2, clientY: box.y + box.height / 2, bubbles: true };
+  note.dispatchEvent(new PointerEvent("pointermove", at));
+  seen.shown = document.getElementById("value").textContent;
+  seen.value = Number(note.dataset.value);
+  const entry = svg.querySelector("g.legend[data-series='work-stealing']");
+  const line = svg.querySelector("g.series[data-series='work-stealing']");
+  seen.before = getComputedStyle(line).display;
+  entry.dispatchEvent(new MouseEvent("click", { bubbles: true }));
+  seen.after = getComputedStyle(line).display;
+  const table = all("table").find((t) => t.tHead && t.tHead.textContent.includes("work inflation"));
+  const column = Array.from(table.tHead.rows[0].cells).findIndex((cell) => cell.textContent === "speedup");
+  const order = () => Array.from(table.tBodies[0].rows).map((row) => Number(row.cells[column].textContent));
+  table.tHead.rows[0].cells[column].querySelector("button").click();
+  seen.ascending = order();
+  table.tHead.rows[0].cells[column].querySelector("button").click();
+  seen.descending = order();
+  seen.tools = all("#tiny-speedup .tools button").map((button) => button.textContent);
+  seen.background = getComputedStyle(document.body).backgroundColor;
+  const told = document.createElement("script");
+  told.type = "application/json";
+  told.id = "seen";
+  told.textContent = JSON.stringify(seen);
+  document.body.append(told);
+});
+"##;
+
+fn browser() -> Option<&'static str> {
+    let answers = |name: &&str| Command::new(name).arg("--version").output().is_ok_and(|out| out.status.success());
+    BROWSERS.into_iter().find(answers)
+}
+
+/// What the page's elements are and do on a screen of that width.
+fn looked_at(browser: &str, page: &Path, profile: &Path, width: u32, dark: bool) -> Value {
+    let mut command = Command::new(browser);
+    command.args(["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars"]);
+    command.args(["--virtual-time-budget=10000", "--dump-dom"]).arg(format!("--window-size={width},1000"));
+    command.arg(format!("--user-data-dir={}", profile.display()));
+    if dark {
+        command.arg("--blink-settings=preferredColorScheme=0");
+    }
+    let output = command.arg(format!("file://{}", page.display())).output().expect("a browser starts");
+    let dom = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    let (_, seen) = dom.split_once("id=\"seen\">").unwrap_or_else(|| panic!("nothing seen: {errors}"));
+    let (json, _) = seen.split_once("</script>").expect("the end of what was seen");
+    serde_json::from_str(json).unwrap_or_else(|error| panic!("{error} in {json}"))
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().expect("an array").iter().filter_map(Value::as_f64).collect()
+}
+
+#[test]
+fn the_page_works_in_a_browser() {
+    let Some(browser) = browser() else {
+        eprintln!("skipped: none of {BROWSERS:?} is on the path");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
+    let html = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+    let errors = "<script>window.pageErrors = []; window.addEventListener('error', (e) => window.pageErrors.push(e.message));</script>";
+    let watched = html
+        .replacen("<style>", &format!("{errors}<style>"), 1)
+        .replace("</body>", &format!("<script>{LOOK}</script></body>"));
+    let page = folder.path().join("watched.html");
+    fs::write(&page, watched).unwrap();
+    let mut backgrounds = Vec::new();
+    for (index, (width, dark)) in WIDTHS.into_iter().flat_map(|width| [(width, false), (width, true)]).enumerate() {
+        let seen = looked_at(browser, &page, &folder.path().join(format!("profile-{index}")), width, dark);
+        for empty in ["errors", "emptyFigures", "deadLinks"] {
+            assert_eq!(seen[empty].as_array().map(Vec::len), Some(0), "{width} pixels: {empty}: {seen}");
+        }
+        assert!(seen["overflow"].as_f64().unwrap() <= 0.0, "{width} pixels: the page is wider than the screen: {seen}");
+        let shown = seen["shown"].as_str().unwrap();
+        assert!(shown.starts_with("work-stealing: ") && shown.contains("threads = 2"), "{shown}");
+        let value: f64 = shown["work-stealing: ".len()..].split(' ').next().unwrap().parse().unwrap();
+        assert!((value - seen["value"].as_f64().unwrap()).abs() <= 5e-4 * value, "{shown}");
+        assert_eq!((seen["before"].as_str(), seen["after"].as_str()), (Some("inline"), Some("none")), "{seen}");
+        let (up, down) = (numbers(&seen["ascending"]), numbers(&seen["descending"]));
+        assert!(up.len() > 2 && up.is_sorted() && down.iter().rev().eq(&up), "{seen}");
+        assert_eq!(seen["tools"], serde_json::json!(["SVG", "PNG", "CSV"]));
+        backgrounds.push(seen["background"].as_str().unwrap().to_string());
+    }
+    assert!(backgrounds[0] != backgrounds[1], "dark mode has another background: {backgrounds:?}");
+}
