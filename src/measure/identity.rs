@@ -26,7 +26,7 @@ pub struct ImageKey {
     pub seed: u64,
     /// Bounces after which paths are cut, the estimator's own limit included.
     pub max_depth: Option<u16>,
-    /// Russian roulette rule, the estimator's own rule included; empty if it does not.
+    /// Russian roulette rule, the estimator's own rule included; empty if there is none.
     pub roulette: String,
     /// What is clamped; empty if nothing is.
     pub clamp: String,

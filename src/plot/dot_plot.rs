@@ -7,7 +7,7 @@ use super::axis::{Axis, Range};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
 use super::frame::WIDTH;
 use super::legend::{self, Entry, Sample};
-use super::number::short;
+use super::number::{between, short};
 use super::ruler::{self, GAP, TICK};
 use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
 use super::{font, heading, marker};
@@ -148,10 +148,8 @@ impl DotPlot {
 }
 
 fn note(row: &Row, group: &str, dot: &Dot, at: Place) -> Note {
-    let between =
-        dot.interval.map_or_else(String::new, |(low, high)| format!(" ({} to {})", short(low, 4), short(high, 4)));
     let of_group = if group.is_empty() { String::new() } else { format!(", {group}") };
-    let text = format!("{}{of_group}: {}{between}", row.name, short(dot.value, 4));
+    let text = format!("{}{of_group}: {}{}", row.name, short(dot.value, 4), between(dot.interval, 4));
     let (series, of) = (group.to_string(), row.name.clone());
     Note { at, series, of, value: dot.value, interval: dot.interval, text }
 }

@@ -6,7 +6,7 @@ use super::drawing::{Align, Drawing, Note, PartKind, Place};
 use super::frame::{self, Frame, Words};
 use super::legend::{self, Entry, Sample};
 use super::marker;
-use super::number::short;
+use super::number::{between, short};
 use super::overlay::{Overlay, OverlayKind, inside};
 use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
 
@@ -198,10 +198,13 @@ impl LineChart {
 
     fn note(&self, series: &Series, point: &Point, at: Place) -> Note {
         let (of, value, interval) = (point.x.to_string(), point.y, point.y_interval);
-        let between =
-            interval.map_or_else(String::new, |(low, high)| format!(" ({} to {})", short(low, 4), short(high, 4)));
-        let text =
-            format!("{}: {} at {} = {}", series.name, short(value, 4) + &between, self.x.label, short(point.x, 4));
+        let text = format!(
+            "{}: {} at {} = {}",
+            series.name,
+            short(value, 4) + &between(interval, 4),
+            self.x.label,
+            short(point.x, 4)
+        );
         Note { at, series: series.name.clone(), of, value, interval, text }
     }
 

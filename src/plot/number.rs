@@ -18,6 +18,11 @@ pub fn short(value: f64, digits: usize) -> String {
     if is_plain(rounded) { minus(format!("{rounded}")) } else { scientific(rounded, digits.saturating_sub(1)) }
 }
 
+/// An interval in brackets behind a value, with a space before it; nothing where there is none.
+pub fn between(interval: Option<(f64, f64)>, digits: usize) -> String {
+    interval.map_or_else(String::new, |(low, high)| format!(" ({} to {})", short(low, digits), short(high, digits)))
+}
+
 /// Whether `value` is written without a power of ten.
 pub fn is_plain(value: f64) -> bool {
     value.abs() == 0.0 || (SMALL..LARGE).contains(&value.abs())
