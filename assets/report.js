@@ -14,11 +14,29 @@
   value.hidden = true;
   value.setAttribute("role", "status");
   document.body.append(value);
+  const addLine = (text) => {
+    const line = document.createElement("div");
+    line.textContent = text;
+    value.append(line);
+  };
+  // The command that runs what a value stands for: the experiment, with a filter for each name of the series and of the place.
+  const commandOf = (note) => {
+    const section = note.closest("section[data-axes]");
+    if (!section) return "";
+    const axes = JSON.parse(section.dataset.axes);
+    const names = `${note.dataset.series}, ${note.dataset.of}`.split(/,\s|:\s|\s\+\s/);
+    const filters = names.filter((name) => axes[name]).map((name) => ` --filter ${axes[name]}=${name}`);
+    return `pathmark run ${section.id}${[...new Set(filters)].join("")}`;
+  };
   const show = (event) => {
     const note = event.target.closest ? event.target.closest("circle.note") : null;
     value.hidden = !note;
     if (!note) return;
     value.textContent = note.getAttribute("aria-label");
+    const count = Number(note.dataset.count);
+    if (count > 0) addLine(count === 1 ? "one value" : `${count} values`);
+    const command = commandOf(note);
+    if (command) addLine(command);
     const left = Math.min(event.clientX + 14, window.innerWidth - value.offsetWidth - 8);
     value.style.left = `${Math.max(8, left)}px`;
     value.style.top = `${Math.max(8, event.clientY - value.offsetHeight - 12)}px`;
@@ -55,7 +73,7 @@
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const asSvg = (svg) => new Blob([new XMLSerializer().serializeToString(svg)], { type: "image/svg+xml" });
   const asCsv = (svg) => {
-    const keys = ["series", "of", "value", "low", "high"];
+    const keys = ["series", "of", "value", "low", "high", "count"];
     const rows = all("circle.note", svg).map((note) => keys.map((key) => quoted(note.dataset[key] || "")).join(","));
     return new Blob([[keys.join(","), ...rows].join("\n") + "\n"], { type: "text/csv" });
   };
@@ -73,8 +91,8 @@
     picture.src = URL.createObjectURL(asSvg(svg));
   };
   all("figure").forEach((figure) => {
-    const svg = figure.querySelector("svg");
-    if (!svg) return;
+    if (!figure.querySelector("svg")) return;
+    const shown = () => all("svg", figure).find((svg) => !svg.closest("[hidden]") && svg.style.display !== "none");
     const tools = document.createElement("div");
     tools.className = "tools";
     const button = (label, act) => {
@@ -83,10 +101,22 @@
       made.textContent = label;
       made.addEventListener("click", act);
       tools.append(made);
+      return made;
     };
-    button("SVG", () => save(asSvg(svg), `${figure.id}.svg`));
-    button("PNG", () => asPng(svg, (blob) => save(blob, `${figure.id}.png`)));
-    if (svg.querySelector("circle.note")) button("CSV", () => save(asCsv(svg), `${figure.id}.csv`));
+    button("SVG", () => save(asSvg(shown()), `${figure.id}.svg`));
+    button("PNG", () => asPng(shown(), (blob) => save(blob, `${figure.id}.png`)));
+    if (figure.querySelector("circle.note")) button("CSV", () => save(asCsv(shown()), `${figure.id}.csv`));
+    const other = figure.querySelector(".other");
+    if (other) {
+      const first = figure.querySelector("svg");
+      const names = [other.dataset.name, other.dataset.name === "linear axes" ? "logarithmic axes" : "linear axes"];
+      const made = button(names[0], () => {
+        other.hidden = !other.hidden;
+        first.style.display = other.hidden ? "" : "none";
+        made.textContent = names[other.hidden ? 0 : 1];
+      });
+      first.after(other);
+    }
     figure.append(tools);
   });
 

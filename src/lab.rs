@@ -32,6 +32,9 @@ use std::sync::{Arc, LazyLock};
 /// Report A's name for the strategy `thread-per-job` on the decomposition `rows`.
 pub const THREAD_PER_ROW: &str = "thread-per-row";
 
+/// The strategy that speedups are compared with.
+pub const SERIAL: &str = "serial";
+
 /// The tables.
 pub struct Lab {
     strategies: Vec<Strategy>,

@@ -63,6 +63,20 @@ pub fn of_spans(spans: impl IntoIterator<Item = Span>, makespan_s: f64, workers:
     Some(Balance { makespan_s, workers: shares })
 }
 
+/// The share of the processors' time in which a job was there to run, in [0, 1]: the mean over the run of the smaller of jobs under way and
+/// processors, over processors. Where workers have to share processors, their own busy time says nothing: it counts the waiting for one.
+pub fn processors_in_use(spans: impl IntoIterator<Item = Span>, makespan_s: f64, processors: usize) -> f64 {
+    let ends = spans.into_iter().flat_map(|(_, start_s, stop_s)| [(start_s, 1), (stop_s, -1)]);
+    let mut ends: Vec<(f64, isize)> = ends.collect();
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut used_s, mut since_s, mut jobs) = (0.0, 0.0, 0_isize);
+    for (at_s, change) in ends {
+        used_s += (at_s - since_s) * jobs.min(processors as isize) as f64;
+        (since_s, jobs) = (at_s, jobs + change);
+    }
+    used_s / (processors as f64 * makespan_s)
+}
+
 impl Balance {
     /// Seconds in jobs, of all workers.
     pub fn busy_s(&self) -> f64 {
@@ -111,6 +125,14 @@ mod tests {
         let sum = balance.busy_s() + balance.gap_s() + balance.tail_s();
         let time = balance.workers.len() as f64 * balance.makespan_s;
         assert!((sum - time).abs() <= 1e-12 * time, "{sum} of {time}");
+    }
+
+    /// Three workers on two processors: two jobs at a time for 2 s, three for 1 s, one for 1 s.
+    #[test]
+    fn jobs_that_wait_for_a_processor_use_none() {
+        let spans = [(0, 0.0, 3.0), (1, 0.0, 4.0), (2, 2.0, 3.0)];
+        assert_eq!(processors_in_use(spans, 4.0, 2), (2.0 * 3.0 + 1.0) / 8.0);
+        assert_eq!(processors_in_use([], 4.0, 2), 0.0);
     }
 
     #[test]

@@ -86,17 +86,15 @@ pub(super) fn no_paths(workload: &str) -> Error {
 }
 
 /// The estimator that a scene names; `scene` itself is a layer below estimators and cannot know whether there is one.
-fn default_estimator(lab: &Lab, scene: &str) -> Result<Option<String>> {
-    let name = lab.load_scene(scene)?.default_estimator;
-    match name.as_deref().filter(|name| !lab.estimators().any(|entry| entry.name == *name)) {
-        None => Ok(name),
-        Some(unknown) => {
-            let names: Vec<&str> = lab.estimators().map(|entry| entry.name).collect();
-            let at = read_text(Path::new(scene)).ok().and_then(|text| locate(&text, "estimator", unknown));
-            let error = InputError::new("estimator", unknown, "there is none of that name");
-            Err(error.allowed(names.join(", ")).in_file(scene, at).into())
-        }
+fn default_estimator(lab: &Lab, scene: &str) -> Result<String> {
+    let name = lab.load_scene(scene)?.estimator().to_string();
+    if lab.estimators().any(|entry| entry.name == name) {
+        return Ok(name);
     }
+    let names: Vec<&str> = lab.estimators().map(|entry| entry.name).collect();
+    let at = read_text(Path::new(scene)).ok().and_then(|text| locate(&text, "estimator", &name));
+    let error = InputError::new("estimator", name, "there is none of that name");
+    Err(error.allowed(names.join(", ")).in_file(scene, at).into())
 }
 
 /// Refuses options that a workload, which has nothing to do with light, would not look at.
@@ -129,7 +127,7 @@ impl What {
         if lab.workload_named(scene).is_some() {
             check_for_workload(&settings)?;
         } else if self.value("estimator").is_none() {
-            settings.spec.estimator = default_estimator(lab, scene)?.unwrap_or(Spec::default().estimator);
+            settings.spec.estimator = default_estimator(lab, scene)?;
         }
         Ok(settings)
     }

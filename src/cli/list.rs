@@ -1,6 +1,6 @@
 //! `pathmark list [KIND]`: what there is to choose from.
 
-use super::output::{print, print_json};
+use super::output::{counted, print, print_json};
 use crate::error::Result;
 use crate::experiment::Definition;
 use crate::film::DECOMPOSITIONS;
@@ -92,7 +92,7 @@ fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
         calls_for: effect_names(scene.effects()),
         profile: choice.profile(),
         primitives: scene.owners.len(),
-        estimator: scene.default_estimator.unwrap_or(Spec::default().estimator),
+        estimator: scene.estimator().to_string(),
     };
     Ok(Item { scene: Some(more), ..item(name, &scene.about) })
 }
@@ -151,8 +151,8 @@ fn table(items: &[Item]) -> String {
     let lines = items.iter().map(|item| {
         let first = format!("  {:width$}  {}", item.name, item.about);
         let Some(SceneItem { calls_for, profile, primitives, estimator }) = &item.scene else { return first };
-        let noun = if *primitives == 1 { "primitive" } else { "primitives" };
-        format!("{first}\n  {:width$}    {primitives} {noun}, {estimator}, profile {profile}: {calls_for}", "")
+        let primitives = counted(*primitives, "primitive");
+        format!("{first}\n  {:width$}    {primitives}, {estimator}, profile {profile}: {calls_for}", "")
     });
     lines.collect::<Vec<_>>().join("\n")
 }

@@ -8,9 +8,11 @@ mod cases;
 mod check;
 mod claims;
 mod compare;
+mod completions;
 mod explain;
 mod guards;
 mod list;
+mod man;
 mod new;
 mod out_of_memory;
 mod output;
@@ -32,7 +34,7 @@ mod whole;
 
 use crate::error::{Error, Result};
 use crate::lab::Lab;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use progress::Talk;
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -48,7 +50,7 @@ Examples:
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
 Measure: reproduce, run, price, report, claims   Render: render, reference, compare
-Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check";
+Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check, man, completions";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]
@@ -95,6 +97,10 @@ enum Verb {
     Explain(explain::Arguments),
     /// Show what there is to choose from.
     List(list::Arguments),
+    /// Print a script that completes commands in a shell.
+    Completions(completions::Arguments),
+    /// Print a manual page.
+    Man(man::Arguments),
     /// One cell of a sweep, read from standard input.
     #[command(hide = true)]
     Cell,
@@ -131,6 +137,11 @@ fn tell(told: &clap::Error) -> ExitCode {
     }
 }
 
+/// The command line as data.
+fn described() -> clap::Command {
+    Cli::command()
+}
+
 fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     match verb {
         Verb::Reproduce(arguments) => reproduce::run(&arguments, lab, talk),
@@ -149,6 +160,8 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::New(arguments) => new::run(&arguments),
         Verb::Explain(arguments) => explain::run(&arguments),
         Verb::List(arguments) => list::run(&arguments, lab),
+        Verb::Completions(arguments) => completions::run(&arguments),
+        Verb::Man(arguments) => man::run(&arguments),
         Verb::Cell => crate::experiment::child_main(lab),
     }
 }

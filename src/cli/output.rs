@@ -13,6 +13,11 @@ pub(super) fn lock_folder(out: &Path, sharing: Sharing) -> Result<Lock> {
     Lock::of_folder(out, "out", sharing)
 }
 
+/// A number of things: `1 worker`, `2 workers`.
+pub(super) fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
 /// Prints a text and a line end.
 pub(super) fn print(text: &str) -> Result<()> {
     match writeln!(std::io::stdout().lock(), "{text}") {

@@ -1,13 +1,16 @@
 //! `pathmark price SCENE --rmse E,E`: what accuracies cost, and with `--pay` whether that was right.
+//!
+//! `--estimator all` prices every unbiased estimator. For one estimator, small pilots of the others tell whether one of them would be sooner.
 
 use super::axes::Axes;
-use super::output::{print, print_json};
+use super::output::{counted, print, print_json};
 use super::progress::Talk;
 use crate::analysis::price::{Price, Renderer};
 use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Paid, Pilot, pay};
+use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{LARGEST_SEED, LARGEST_SPP, Settings};
 use clap::Args;
@@ -16,6 +19,13 @@ use std::sync::Arc;
 
 /// Confidence of the intervals.
 const LEVEL: f64 = 0.95;
+
+/// The word for all estimators.
+const ALL: &str = "all";
+/// The pilot of an estimator that was not asked for is so much shorter.
+const SHORTER: u32 = 4;
+/// And has so many seeds, the fewest that give an interval of use.
+const FEW_SEEDS: u32 = 4;
 
 /// `pathmark price cornell --rmse 0.05,0.02,0.01 --pay`
 #[derive(Args)]
@@ -45,8 +55,9 @@ pub(super) struct Arguments {
 }
 
 /// A goal, its price, and what was paid.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 struct Row {
+    estimator: String,
     rmse: f64,
     /// Samples per pixel that will be rendered: those of the price, rounded up.
     spp: u32,
@@ -80,15 +91,79 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         let error = InputError::new("seed", arguments.seed.to_string(), "belongs to pilots and references");
         return Err(error.allowed(format!("0 to {}", LARGEST_SEED / 2 - 1)).into());
     }
-    let settings = arguments.axes.settings(lab, &arguments.scene, arguments.pilot_spp, arguments.seed)?;
+    let asked = arguments.axes.settings(lab, &arguments.scene, arguments.pilot_spp, arguments.seed)?;
+    let is_comparison = asked.spec.estimator == ALL;
+    let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
+    let (mut priced, mut texts) = (Vec::new(), Vec::new());
+    for settings in &each {
+        let (renderer, rows) = price(lab, arguments, settings, talk)?;
+        texts.push(table(settings, arguments, &renderer, &rows));
+        priced.extend(rows);
+    }
+    if arguments.json {
+        return print_json(&priced);
+    }
+    if is_comparison {
+        texts.push(ranking(&arguments.rmse, &priced));
+    } else {
+        texts.extend(sooner(lab, arguments, &each[0], &priced, talk)?);
+    }
+    print(&texts.join("\n\n"))
+}
+
+/// The settings with every estimator that has no limit of its own, and so no error that samples cannot mend.
+fn unbiased<'a>(lab: &'a Lab, settings: &'a Settings) -> impl Iterator<Item = Settings> + 'a {
+    let names = lab.estimators().filter(|entry| entry.max_depth.is_none()).map(|entry| entry.name.to_string());
+    names.map(|estimator| Settings { spec: Spec { estimator, ..settings.spec.clone() }, ..settings.clone() })
+}
+
+/// The pilot of an estimator, and the price of each goal.
+fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, talk: &Talk) -> Result<(Renderer, Vec<Row>)> {
     let fewest = lab.prepare(settings.clone())?.fewest_spp();
     let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
-    let (renderer, tail) = pilot.run(lab, &settings, LEVEL, talk)?;
+    let (renderer, tail) = pilot.run(lab, settings, LEVEL, talk)?;
     let mut rows = Vec::new();
     for &goal in &arguments.rmse {
-        rows.push(Row { tail, ..row(lab, arguments, &settings, &renderer, goal, fewest, talk)? });
+        rows.push(Row { tail, ..row(lab, arguments, settings, &renderer, goal, fewest, talk)? });
     }
-    if arguments.json { print_json(&rows) } else { print(&table(&settings, arguments, &renderer, &rows)) }
+    Ok((renderer, rows))
+}
+
+/// The estimators by their seconds to each goal.
+fn ranking(goals: &[f64], rows: &[Row]) -> String {
+    let line = |goal: &f64| {
+        let mut of_goal: Vec<&Row> = rows.iter().filter(|row| row.rmse == *goal).collect();
+        of_goal.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+        let each = of_goal.iter().map(|row| format!("{} {:.3} s", row.estimator, row.seconds));
+        format!("RMSE {goal}: {}", each.collect::<Vec<_>>().join(", "))
+    };
+    goals.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// The estimator that would surely reach the first goal in less time than the one that was asked for, if a short pilot finds one.
+fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], talk: &Talk) -> Result<Option<String>> {
+    let Some(first) = rows.first().filter(|_| unbiased(lab, own).any(|other| other == *own)) else { return Ok(None) };
+    let mut others = Vec::new();
+    for other in unbiased(lab, own).filter(|other| other != own) {
+        let fewest = lab.prepare(Settings { spp: arguments.pilot_spp, ..other.clone() })?.fewest_spp();
+        let spp = (arguments.pilot_spp / SHORTER).next_multiple_of(fewest).max(fewest);
+        // A scene may leave too few samples for a law; then nothing is claimed.
+        let Ok((renderer, _)) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, talk) else { continue };
+        others.extend(renderer.price(first.rmse).map(|price| (other.spec.estimator, price.seconds)));
+    }
+    Ok(soonest(first, others))
+}
+
+/// Whose interval lies wholly below that of the row, and who of those is the soonest.
+fn soonest(row: &Row, others: Vec<(String, Estimate)>) -> Option<String> {
+    let sooner = others.into_iter().filter(|(_, seconds)| seconds.interval.high < row.seconds_low);
+    let (name, seconds) = sooner.min_by(|(_, a), (_, b)| a.value.total_cmp(&b.value))?;
+    let Interval { low, high, .. } = seconds.interval;
+    let times = row.seconds / seconds.value;
+    Some(format!(
+        "{name} would reach RMSE {} in {:.3} s ({low:.3} to {high:.3}), {times:.1} times as soon; --estimator {ALL} compares",
+        row.rmse, seconds.value
+    ))
 }
 
 fn row(
@@ -110,7 +185,7 @@ fn row(
     }
     let spp = wanted as u32;
     let paid = if arguments.pay { Some(pay(lab, settings, spp, talk)?) } else { None };
-    Ok(Row::new(&price, (spp, fewest), renderer, paid))
+    Ok(Row { estimator: settings.spec.estimator.clone(), ..Row::new(&price, (spp, fewest), renderer, paid) })
 }
 
 /// So many samples, rounded up to whole images.
@@ -130,6 +205,7 @@ impl Row {
         let expected_s = f64::from(spp) * renderer.seconds_per_spp.value;
         let expected = renderer.rmse_after(expected_s).map(|error| error.value);
         Self {
+            estimator: String::new(),
             rmse,
             spp,
             spp_low: samples.low,
@@ -153,7 +229,7 @@ fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: 
     let Interval { low, high, .. } = renderer.seconds_per_spp.interval;
     let mut lines = vec![
         format!(
-            "{}, {} + {}, {}x{}, {} on {}, {} threads",
+            "{}, {} + {}, {}x{}, {} on {}, {}",
             settings.scene,
             spec.estimator,
             spec.sampler,
@@ -161,7 +237,7 @@ fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: 
             spec.height,
             settings.strategy,
             settings.decomposition,
-            settings.threads
+            counted(settings.threads, "thread")
         ),
         format!(
             "pilot of {} seeds at {} spp: {:.4} s per sample and pixel ({low:.4} to {high:.4}); intervals are of 95 %",
@@ -195,4 +271,25 @@ fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: 
         }
     }
     lines.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(value: f64, low: f64, high: f64) -> Estimate {
+        Estimate { value, interval: Interval { low, high, level: LEVEL } }
+    }
+
+    #[test]
+    fn the_soonest_is_told_if_it_surely_is_sooner() {
+        let row = Row { rmse: 0.1, seconds: 4.0, seconds_low: 3.0, seconds_high: 5.0, ..Row::default() };
+        let told = |others: &[(&str, Estimate)]| {
+            soonest(&row, others.iter().map(|(name, seconds)| ((*name).to_string(), *seconds)).collect())
+        };
+        assert_eq!(told(&[]), None);
+        assert_eq!(told(&[("a", seconds(2.0, 1.0, 3.0))]), None, "the intervals touch");
+        let text = told(&[("a", seconds(2.0, 1.0, 2.9)), ("b", seconds(0.5, 0.4, 0.6))]).unwrap();
+        assert!(text.starts_with("b would reach RMSE 0.1 in 0.500 s (0.400 to 0.600), 8.0 times as soon"), "{text}");
+    }
 }

@@ -1,7 +1,7 @@
 //! `pathmark render SCENE`: one image.
 
 use super::axes::Axes;
-use super::output::{print, print_json};
+use super::output::{counted, print, print_json};
 use super::progress::Talk;
 use super::strict::Strict;
 use super::{replay, rounds};
@@ -61,6 +61,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.name())));
     let spec = &setup.settings().spec;
     let format = image_io::check_picture(&path, spec.width, spec.height)?;
+    for remark in setup.remarks() {
+        talk.note(remark);
+    }
     let mut files = Files::default();
     files.reads_scene(setup.files());
     let outputs = [("image", Some(&path)), ("trace", arguments.trace.as_ref()), arguments.rounds.output()];
@@ -120,9 +123,9 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
         "nothing was left to render".to_string()
     } else {
         let (speed, length) = (paths / makespan_s * 1e-6, rays / paths);
-        let workers = outcome.workers_used;
+        let workers = counted(outcome.workers_used as usize, "worker");
         format!(
-            "{strategy} on {decomposition}, {workers} workers: {makespan_s:.3} s, {speed:.3} Msamples/s{}",
+            "{strategy} on {decomposition}, {workers}: {makespan_s:.3} s, {speed:.3} Msamples/s{}",
             if is_workload { String::new() } else { format!(", {length:.2} rays per sample") }
         )
     };

@@ -9,12 +9,12 @@ use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
 use crate::measure::Doubts;
-use crate::report::{self, check_figures};
+use crate::report::{self, check_figures, figure_of_serial};
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// `pathmark run thread-scaling --filter strategy=rayon`
+/// `pathmark run thread-scaling --filter strategy=rayon --set scene=my/room.toml`
 #[derive(Args)]
 pub(super) struct Arguments {
     /// An experiment of `pathmark list experiments`, or the path of a .toml file
@@ -28,8 +28,12 @@ pub(super) struct Arguments {
     /// How often each cell is run [default: what the experiment says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repetitions: Option<u32>,
-    /// Only cells with this value, as in strategy=rayon; may be given several times
-    #[arg(long = "filter", value_name = "FIELD=VALUE")]
+    /// Other values of an axis, as in scene=my/room.toml or threads=1,2,4,8; may be given several times
+    #[arg(long = "set", value_name = "AXIS=VALUES")]
+    values: Vec<String>,
+    /// Only cells with one of these values, as in strategy=rayon or threads=1,2; may be given several times. Serial runs
+    /// that a figure compares with stay in
+    #[arg(long = "filter", value_name = "AXIS=VALUES")]
     filters: Vec<String>,
     #[command(flatten)]
     size: profile::Choice,
@@ -38,7 +42,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
-    let definition = Definition::load(lab, &arguments.experiment)?;
+    let definition = Definition::load(lab, &arguments.experiment)?.with_values(&arguments.values)?;
     check_figures(&definition)?;
     let options = Options {
         out: arguments.out.clone(),
@@ -46,6 +50,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         resume: arguments.resume,
         repetitions: arguments.repetitions,
         filters: arguments.filters.clone(),
+        serial_for: figure_of_serial(&definition),
         command: command_line(),
     };
     let mut files = Files::default();

@@ -264,7 +264,11 @@ fn show(blocks: &[Block]) -> Result<()> {
     for block in blocks {
         match block {
             Block::Finding(text) => print(&format!("{text}\n"))?,
-            Block::Table { table, .. } => print(&format!("{}\n{}", table.title, aligned(&table.columns, &table.rows)))?,
+            Block::Table { table, .. } => {
+                let (heads, rows): (Vec<String>, Vec<_>) =
+                    (table.heads().map(str::to_string).collect(), table.rows().collect());
+                print(&format!("{}\n{}", table.title, aligned(&heads, &rows)))?;
+            }
             Block::Figure { .. } | Block::Picture { .. } => {}
         }
     }

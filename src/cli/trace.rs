@@ -1,6 +1,6 @@
 //! `pathmark trace FILE`: one run, job by job.
 
-use super::output::print;
+use super::output::{counted, print};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
@@ -38,10 +38,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let percent = |seconds: f64| 100.0 * seconds / capacity_s;
     let number = |value: Option<f64>| value.map_or_else(|| "-".to_string(), |value| format!("{value:.3}"));
     print(&format!(
-        "{}\n{} jobs on {} workers, makespan {:.3} ms\nbusy {:.2} %, gaps {:.2} %, tail {:.2} %\nload imbalance {}, gap per job {} µs",
+        "{}\n{} on {}, makespan {:.3} ms\nbusy {:.2} %, gaps {:.2} %, tail {:.2} %\nload imbalance {}, gap per job {} µs",
         timeline::name(&trace),
-        balance.jobs(),
-        balance.workers.len(),
+        counted(balance.jobs(), "job"),
+        counted(balance.workers.len(), "worker"),
         balance.makespan_s * 1e3,
         percent(balance.busy_s()),
         percent(balance.gap_s()),

@@ -2,7 +2,7 @@
 
 use super::{External, SceneVersion};
 use crate::error::{InputError, Result};
-use crate::measure::{AXES, Axis, ImageKey, Settings, Setup, available_threads, schedule_name};
+use crate::measure::{AXES, Axis, ImageKey, SERIAL, Settings, Setup, available_threads, schedule_name};
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,6 +40,22 @@ impl CellPoint {
 }
 
 impl Cell {
+    /// Whether it is one after the other on one thread.
+    pub(super) fn is_serial(&self) -> bool {
+        self.settings.strategy == SERIAL
+    }
+
+    /// Whether it is a serial run of the other's image, in whatever pieces.
+    pub(super) fn is_baseline_of(&self, other: &Self) -> bool {
+        let image = |cell: &Self| Settings {
+            strategy: String::new(),
+            threads: 0,
+            decomposition: String::new(),
+            ..cell.settings.clone()
+        };
+        self.is_serial() && image(self) == image(other)
+    }
+
     /// The cell of a setup. What a strategy ignores does not tell cells apart.
     pub fn new(setup: &Setup) -> Self {
         Self::with_points(setup, &[setup.settings().spp], "")
@@ -80,13 +96,13 @@ impl Cell {
         Self { id, points, weight: weight.max(1), external: None, scene, settings }
     }
 
-    /// Whether it has the value that a filter `field=value` asks for.
+    /// Whether it has one of the values that a filter `field=value,value...` asks for.
     pub fn matches(&self, filter: &str) -> Result<bool> {
         let strategy = schedule_name(&self.settings.strategy, &self.settings.decomposition).to_string();
         let settings = Settings { strategy, ..self.settings.clone() };
         let pair = filter.split_once('=');
         let known = pair.and_then(|(field, value)| Some((Axis::named(field)?, value)));
-        known.map(|(axis, value)| axis.show(&settings) == value).ok_or_else(|| {
+        known.map(|(axis, values)| values.split(',').any(|value| axis.show(&settings) == value)).ok_or_else(|| {
             let names = AXES.each_ref().map(|axis| axis.name);
             InputError::new("filter", filter, "names no field")
                 .allowed(format!("{}=VALUE", names.join("=VALUE, ")))

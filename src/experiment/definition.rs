@@ -3,7 +3,7 @@
 //! ```toml
 //! title = "Time against threads"
 //! question = "How much faster do more threads make it?"
-//! analysis = "How to read the figures."
+//! analysis = "How to read the figures."   # optional
 //! figures = ["speedup"]
 //! chapter = "scheduling"          # optional: accuracy, scheduling, hard-inputs or effects; where the page has it
 //! place = 3                       # optional: its place among the experiments of the chapter
@@ -12,9 +12,9 @@
 //!
 //! [matrix]                       # cells are all combinations
 //! scene = ["cornell"]            # or "all"
-//! estimator = ["smallpt"]        # or "default", the scene's own
+//! estimator = ["smallpt"]        # or "default", the scene's own, which is meant without this line
 //! spp = [16]
-//! seed = [1]
+//! seed = [1]                     # optional
 //! strategy = ["serial", "rayon"]  # or "all"
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
@@ -32,9 +32,9 @@
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
 //! repetitions = 6
-//! reference-spp = 2000
+//! reference-spp = 2000           # optional: ten times the largest spp
 //!
-//! [full]                         # `--full`; there must be at least one of [quick], [full] and [reports]
+//! [full]                         # `--full`; without any of [quick], [full] and [reports] there is a [quick] of 320x240, 6 repetitions
 //! size = [1024, 768]
 //! repetitions = 9
 //! reference-spp = 2000
@@ -58,6 +58,9 @@ use std::sync::Arc;
 
 /// Name and text of the experiments that the binary carries.
 pub const EXPERIMENTS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/experiments.rs"));
+
+/// The field of a profile for the samples of each half-reference.
+pub(super) const REFERENCE_SPP: &str = "reference-spp";
 
 /// What else there is in a folder of results.
 const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
@@ -90,6 +93,9 @@ pub struct Definition {
     /// The file's name, for errors.
     #[serde(skip)]
     pub file: String,
+    /// Whether values were set besides, so that no line of the text is one of the file.
+    #[serde(skip)]
+    pub(super) is_changed: bool,
     /// What its names mean.
     #[serde(skip, default = "Lab::built_in")]
     pub lab: Arc<Lab>,
@@ -98,6 +104,7 @@ pub struct Definition {
     /// What is asked.
     pub question: String,
     /// How to read what comes out.
+    #[serde(default)]
     pub analysis: String,
     /// The chapter of the report page that it belongs to.
     #[serde(default)]
@@ -152,6 +159,9 @@ impl Definition {
         definition.name = name.to_string();
         definition.text = text.to_string();
         definition.file = file.to_string();
+        if definition.profiles().next().is_none() {
+            definition.quick = Some(Scale::usual());
+        }
         definition.check_profiles()?;
         Ok(definition)
     }
@@ -236,17 +246,13 @@ impl Definition {
         // Seeds share the references' noise, which the cross form removes in the mean only. A curve's end is one of many points.
         let times = if self.matrices(profile).all(|matrix| matrix.curve) { 4 } else { 10 };
         let needed = largest.saturating_mul(times);
-        match scale.reference_spp {
-            Some(spp) if spp >= needed => Ok(Some((table.estimator.clone(), spp))),
-            given => {
-                let value = given.map_or_else(String::new, |spp| spp.to_string());
-                let problem = format!("each half-reference needs {times} times the samples of the largest spp");
-                Err(self.located(
-                    profile,
-                    InputError::new("reference-spp", value, problem).allowed(format!("from {needed}")),
-                ))
-            }
+        let spp = scale.reference_spp.unwrap_or(needed);
+        if spp >= needed {
+            return Ok(Some((table.estimator.clone(), spp)));
         }
+        let problem = format!("each half-reference needs {times} times the samples of the largest spp");
+        let error = InputError::new(REFERENCE_SPP, spp.to_string(), problem).allowed(format!("from {needed}"));
+        Err(self.located(profile, error))
     }
 
     /// The object on whose pixels errors are measured besides.
@@ -258,12 +264,12 @@ impl Definition {
     pub(super) fn reference_error(&self, profile: Profile, error: Error) -> Error {
         match error {
             Error::Input(mut input) if input.place.is_none() && input.field == "spp" => {
-                input.field = "reference-spp".to_string();
+                input.field = REFERENCE_SPP.to_string();
                 self.located(profile, *input)
             }
             Error::Input(input) if input.place.is_none() => {
                 let at = locate_in("reference", &self.text, &input.field, &input.value);
-                input.in_file(&self.file, at).into()
+                input.in_file(&self.file, at.filter(|_| !self.is_changed)).into()
             }
             other => other,
         }
@@ -271,6 +277,9 @@ impl Definition {
 
     /// Adds the place where the field and its value stand in the definition: the profile's own table comes before the matrix.
     pub(super) fn located(&self, profile: Profile, error: InputError) -> Error {
+        if self.is_changed {
+            return error.in_file(&self.file, None).into();
+        }
         let (text, key, value) = (&self.text, &error.field, &error.value);
         let at = locate_in(profile.name(), text, key, value).or_else(|| locate(text, key, value));
         error.in_file(&self.file, at).into()

@@ -4,7 +4,6 @@ use super::definition::FEATURES;
 use super::table::{Matrix, Scale};
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::kernel::Spec;
 use crate::measure::{AXES, Axis, Field, ImageKey, LARGEST_SEED, ScheduleKey, Settings, Setup};
 use crate::sampling::{SAMPLERS, is_deterministic};
 use std::collections::HashSet;
@@ -105,7 +104,11 @@ impl<'a> Product<'a> {
     fn add(&self, axes: &[Axis], settings: &Settings, cells: &mut Cells) -> Result<()> {
         let Some((axis, inner)) = axes.split_first() else { return self.add_cell(settings.clone(), cells) };
         let Some(written) = self.written(axis).filter(|values| !values.is_empty()) else {
-            return self.add(inner, settings, cells);
+            let mut settings = settings.clone();
+            if axis.name == "estimator" {
+                settings.spec.estimator = self.own_estimator(&settings.scene)?;
+            }
+            return self.add(inner, &settings, cells);
         };
         for value in written.iter().flat_map(|value| match axis.all {
             Some(all) if value == "all" => all(&self.definition.lab),
@@ -133,7 +136,7 @@ impl<'a> Product<'a> {
             return Ok(String::new());
         }
         let scene = lab.load_scene(scene).map_err(|error| self.at_field(error))?;
-        Ok(scene.default_estimator.unwrap_or(Spec::default().estimator))
+        Ok(scene.estimator().to_string())
     }
 
     fn add_cell(&self, mut settings: Settings, cells: &mut Cells) -> Result<()> {

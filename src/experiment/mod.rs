@@ -23,6 +23,7 @@ mod scene_version;
 mod shuffle;
 mod sweep;
 mod table;
+mod with_values;
 
 pub use calibration_file::read_calibration;
 pub use cell::{Cell, CellPoint, trace_file};

@@ -69,15 +69,8 @@ impl Definition {
         options.join(", ")
     }
 
-    /// Refuses a definition without a profile, a matrix for a profile that is not there, and a profile without a matrix.
+    /// Refuses a matrix for a profile that is not there, and a profile without a matrix.
     pub(super) fn check_profiles(&self) -> Result<()> {
-        if self.profiles().next().is_none() {
-            let error = InputError::new("profile", "", "the definition has none, so there is nothing to run");
-            return Err(error
-                .allowed("at least one table of [quick], [full], [reports]")
-                .in_file(&self.file, None)
-                .into());
-        }
         let named = self.matrix.iter().filter_map(|matrix| matrix.profiles.as_ref()).flatten();
         if let Some(absent) = named.copied().find(|profile| !self.has(*profile)) {
             let problem = format!("there is no table [{}] in the definition", absent.name());

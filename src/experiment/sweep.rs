@@ -35,8 +35,10 @@ pub struct Options {
     pub resume: bool,
     /// Repetitions, if not the definition's.
     pub repetitions: Option<u32>,
-    /// `field=value` pairs: only cells that have all of them.
+    /// `field=value,value...`: only cells that have one of the values of each.
     pub filters: Vec<String>,
+    /// The figure that compares with serial runs: filters leave them in, and there must be one.
+    pub serial_for: Option<&'static str>,
     /// The command as the user gave it.
     pub command: String,
 }
@@ -67,14 +69,10 @@ pub struct Sweep<'a> {
 impl<'a> Sweep<'a> {
     /// Checks an experiment and enters its files into those of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
-        let mut cells = definition.cells(options.profile)?;
-        for filter in &options.filters {
-            let matches = cells.iter().map(|cell| cell.matches(filter)).collect::<Result<Vec<bool>>>()?;
-            let mut matches = matches.into_iter();
-            cells.retain(|_| matches.next().unwrap_or(false));
-            if cells.is_empty() {
-                return Err(InputError::new("filter", filter, "leaves no cell to run").into());
-            }
+        let cells = filtered(&definition.cells(options.profile)?, options)?;
+        if let Some(figure) = options.serial_for.filter(|_| !cells.iter().any(Cell::is_serial)) {
+            let error = InputError::new("strategy", "", format!("the figure `{figure}` compares with serial runs"));
+            return Err(definition.located(options.profile, error.allowed("serial beside the other strategies")));
         }
         check_names(definition, options, &cells)?;
         let references = wanted_references(definition, options.profile, &cells)?;
@@ -201,6 +199,24 @@ impl<'a> Sweep<'a> {
         file.check_own()?;
         Ok(summary)
     }
+}
+
+/// The cells that all filters let through, and the serial runs that their times are compared with.
+fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
+    let mut wanted: Vec<&Cell> = cells.iter().collect();
+    for filter in &options.filters {
+        let matches = wanted.iter().map(|cell| cell.matches(filter)).collect::<Result<Vec<bool>>>()?;
+        let mut matches = matches.into_iter();
+        wanted.retain(|_| matches.next().unwrap_or(false));
+        if wanted.is_empty() {
+            return Err(InputError::new("filter", filter, "leaves no cell to run").into());
+        }
+    }
+    let is_wanted = |cell: &Cell| {
+        let is_baseline = || wanted.iter().any(|other| cell.is_baseline_of(other));
+        wanted.iter().any(|other| other.id == cell.id) || (options.serial_for.is_some() && is_baseline())
+    };
+    Ok(cells.iter().filter(|cell| is_wanted(cell)).cloned().collect())
 }
 
 /// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.

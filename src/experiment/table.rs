@@ -1,6 +1,7 @@
 //! The tables of a definition that give values to axes: `[matrix]`, and a table for each profile.
 
 use super::Profile;
+use super::definition::REFERENCE_SPP;
 use crate::measure::{AXES, Axis, Field, Settings, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
@@ -30,14 +31,24 @@ pub(super) type Matrix = Table<false>;
 /// How large a profile is, and the axes that it replaces.
 pub(super) type Scale = Table<true>;
 
-/// The axes and fields that cannot be left out.
-const REQUIRED: [&[&str]; 2] =
-    [&["scene", "estimator", "spp", "seed", "strategy", "threads", "decomposition"], &["size", "repetitions"]];
+/// The axes that a matrix cannot leave out.
+const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "decomposition"];
+
+/// What a profile renders that does not say it, and how often: the fewest repetitions that allow an interval with 95 % confidence.
+const SIZE: &str = "320x240";
+const REPETITIONS: u32 = 6;
 
 impl Matrix {
     /// Whether that profile has it.
     pub(super) fn is_for(&self, profile: Profile) -> bool {
         self.profiles.as_ref().is_none_or(|profiles| profiles.contains(&profile))
+    }
+}
+
+impl Scale {
+    /// What a profile is that says nothing.
+    pub(super) fn usual() -> Self {
+        Self { axes: BTreeMap::from([("size", vec![SIZE.to_string()])]), repetitions: REPETITIONS, ..Self::default() }
     }
 }
 
@@ -59,7 +70,7 @@ struct Key<const PROFILE: bool>(String);
 impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
-        let others: &[&str] = if PROFILE { &["repetitions", "reference-spp"] } else { &["weak", "curve", "profiles"] };
+        let others: &[&str] = if PROFILE { &["repetitions", REFERENCE_SPP] } else { &["weak", "curve", "profiles"] };
         let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
         if known.contains(&name.as_str()) {
             return Ok(Self(name));
@@ -129,7 +140,8 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
     }
 
     fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Self::Value, M::Error> {
-        let (mut table, mut names) = (Table::default(), Vec::new());
+        let usual = if PROFILE { Scale::usual() } else { Scale::default() };
+        let mut table = Table::<PROFILE> { axes: usual.axes, repetitions: usual.repetitions, ..Table::default() };
         while let Some(Key(name)) = map.next_key::<Key<PROFILE>>()? {
             match (Axis::named(&name), name.as_str()) {
                 (Some(axis), _) => _ = table.axes.insert(axis.name, map.next_value_seed(Values(axis))?),
@@ -139,10 +151,8 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                 (None, "repetitions") => table.repetitions = map.next_value()?,
                 (None, _) => table.reference_spp = Some(map.next_value()?),
             }
-            names.push(name);
         }
-        let mut required = REQUIRED[usize::from(PROFILE)].iter();
-        match required.find(|required| !names.iter().any(|name| name == *required)) {
+        match REQUIRED.iter().find(|required| !PROFILE && !table.axes.contains_key(*required)) {
             Some(missing) => Err(M::Error::missing_field(missing)),
             None => Ok(table),
         }

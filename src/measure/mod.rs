@@ -31,7 +31,7 @@ mod trace_file;
 mod usage;
 mod warning;
 
-pub use crate::lab::THREAD_PER_ROW;
+pub use crate::lab::{SERIAL, THREAD_PER_ROW};
 pub use axes::{AXES, Axis, Field, parse_size};
 pub use calibration::{CalibrationRow, calibrate};
 pub use checkpoint::{Checkpoint, Saved};

@@ -205,6 +205,11 @@ impl Setup {
         self.scene().map_or(&[], |(scene, _)| &scene.files)
     }
 
+    /// What the scene's author should hear of how its files were read.
+    pub fn remarks(&self) -> &[String] {
+        self.scene().map_or(&[], |(scene, _)| &scene.remarks)
+    }
+
     /// The scene, and what the settings come to for it; `None` for a workload.
     pub fn scene(&self) -> Option<(&Arc<Scene>, &Choice)> {
         match &self.subject {

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use image::RgbImage;
 use image::imageops;
+use serde::Serialize;
 
 use super::drawing::{Align, Drawing};
 use super::style::{INK, LEADING, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
@@ -48,6 +49,31 @@ pub struct ColourBar {
     pub full: f64,
 }
 
+/// How a page lets the reader compare the images.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Comparison {
+    /// Columns are steps of a slider.
+    Steps,
+    /// Any two lie over each other, with an edge to move.
+    Wipe,
+    /// Each by itself.
+    Single,
+}
+
+/// Where an image lies on the sheet, in pixels, for a page that shows parts of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Placed {
+    /// Its row, from the top.
+    pub row: usize,
+    /// Its column, from the left.
+    pub column: usize,
+    /// Left, top, width and height.
+    pub area: [u32; 4],
+    /// Lines above it.
+    pub caption: Vec<String>,
+}
+
 /// The sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSheet {
@@ -59,11 +85,13 @@ pub struct ContactSheet {
     pub rows: Vec<Vec<Option<Cell>>>,
     /// The scale of the heat maps, if there are any.
     pub bar: Option<ColourBar>,
+    /// How the images are compared on a page.
+    pub comparison: Comparison,
 }
 
 impl ContactSheet {
-    /// The sheet as pixels.
-    pub fn pixels(&self) -> Result<RgbImage> {
+    /// The sheet as pixels, and where its images lie.
+    pub fn pixels(&self) -> Result<(RgbImage, Vec<Placed>)> {
         let rows = self.rows.iter().map(|row| row.iter().map(|cell| cell.as_ref().map(shown).transpose()).collect());
         let images: Vec<Vec<Option<RgbImage>>> = rows.collect::<Result<_>>()?;
         let all = || images.iter().flatten().flatten();
@@ -74,7 +102,7 @@ impl ContactSheet {
         let mut drawing = Drawing::new(&self.title, width, 0.0);
         let mut y = heading::above(&mut drawing, &self.title, &self.subtitle);
         let mut placed = Vec::new();
-        for (cells, row) in self.rows.iter().zip(&images) {
+        for (number, (cells, row)) in self.rows.iter().zip(&images).enumerate() {
             y += GAP;
             let captions: Vec<Vec<(String, usize)>> = cells.iter().map(|cell| caption(cell.as_ref(), column)).collect();
             let lines = captions.iter().map(Vec::len).max().unwrap_or(0) as f64;
@@ -86,7 +114,10 @@ impl ContactSheet {
                     drawing.text(at, line, size, colour, Align::Left);
                 }
                 let top = y + lines * TEXT_SIZE * LEADING + 4.0;
-                placed.extend(image.iter().map(|image| (image, x, top)));
+                placed.extend(image.iter().zip(&cells[i]).map(|(image, cell)| {
+                    let area = [x.round() as u32, top.round() as u32, image.width(), image.height()];
+                    (image, Placed { row: number, column: i, area, caption: cell.caption.clone() })
+                }));
             }
             let tallest = row.iter().flatten().map(RgbImage::height).max().unwrap_or(0);
             y += lines * TEXT_SIZE * LEADING + 4.0 + f64::from(tallest);
@@ -105,20 +136,21 @@ impl ContactSheet {
         }
         drawing.height = (y + MARGIN).ceil();
         let mut sheet = paint::pixels(&drawing, 1.0)?;
-        for (image, x, top) in placed {
-            imageops::replace(&mut sheet, image, x.round() as i64, top.round() as i64);
+        for (image, Placed { area: [left, top, ..], .. }) in &placed {
+            imageops::replace(&mut sheet, *image, i64::from(*left), i64::from(*top));
         }
-        Ok(sheet)
+        Ok((sheet, placed.into_iter().map(|(_, place)| place).collect()))
     }
 
-    /// The bytes of a PNG file.
-    pub fn png(&self) -> Result<Vec<u8>> {
-        paint::png(&self.pixels()?)
+    /// The bytes of a PNG file, and where its images lie.
+    pub fn png(&self) -> Result<(Vec<u8>, Vec<Placed>)> {
+        let (sheet, placed) = self.pixels()?;
+        Ok((paint::png(&sheet)?, placed))
     }
 
     /// Writes `stem.png` into `dir`, which is made if need be.
     pub fn save(&self, dir: &Path, stem: &str) -> Result<()> {
-        save_bytes(dir, &format!("{stem}.png"), &self.png()?)
+        save_bytes(dir, &format!("{stem}.png"), &self.png()?.0)
     }
 }
 

@@ -28,6 +28,15 @@ pub struct Dot {
     pub value: f64,
     /// Its low and high end.
     pub interval: Option<(f64, f64)>,
+    /// How many values it is of, where they were counted.
+    pub count: Option<usize>,
+}
+
+impl Dot {
+    /// A value of nobody knows how many.
+    pub fn new(value: f64, interval: Option<(f64, f64)>) -> Self {
+        Self { value, interval, count: None }
+    }
 }
 
 /// A row.
@@ -151,7 +160,7 @@ fn note(row: &Row, group: &str, dot: &Dot, at: Place) -> Note {
     let of_group = if group.is_empty() { String::new() } else { format!(", {group}") };
     let text = format!("{}{of_group}: {}{}", row.name, short(dot.value, 4), between(dot.interval, 4));
     let (series, of) = (group.to_string(), row.name.clone());
-    Note { at, series, of, value: dot.value, interval: dot.interval, text }
+    Note { at, series, of, value: dot.value, interval: dot.interval, count: dot.count, text }
 }
 
 impl Figure for DotPlot {

@@ -127,6 +127,8 @@ pub struct Note {
     pub value: f64,
     /// Its low and high end.
     pub interval: Option<(f64, f64)>,
+    /// How many values it is of, where they were counted.
+    pub count: Option<usize>,
     /// All of it in words.
     pub text: String,
 }

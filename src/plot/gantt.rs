@@ -14,6 +14,7 @@ use super::ruler::{self, GAP, TICK};
 use super::style::{INK, LEADING, LINE, MARGIN, MUTED, PAPER, SMALL_SIZE, TEXT_SIZE};
 use super::{colour_bar, font, heading, number};
 use crate::metric::heat_colour;
+use serde::Serialize;
 
 /// The tallest schedule.
 const TALLEST: f64 = 260.0;
@@ -37,6 +38,8 @@ const EDGE: f64 = 0.5;
 /// One job in a schedule.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JobBar {
+    /// Its number.
+    pub job: usize,
     /// Its worker, from 0.
     pub worker: usize,
     /// Seconds from the schedule's start to the job's.
@@ -158,7 +161,34 @@ fn number_lanes(drawing: &mut Drawing, shown: &[usize], left: f64, top: f64, lan
     }
 }
 
+/// A job as a page reads it: its number, its worker, and start and stop in microseconds.
+type JobData = (usize, usize, f64, f64);
+
+/// A schedule as a page reads it.
+#[derive(Serialize)]
+struct ScheduleData<'a> {
+    title: &'a str,
+    workers: usize,
+    end: f64,
+    jobs: Vec<JobData>,
+}
+
+impl<'a> ScheduleData<'a> {
+    fn of(schedule: &'a Schedule) -> Self {
+        // A nanosecond is less than any clock resolves.
+        let microseconds = |seconds: f64| (seconds * 1e9).round() / 1e3;
+        let job = |job: &JobBar| (job.job, job.worker, microseconds(job.start_s), microseconds(job.stop_s));
+        let jobs = schedule.jobs.iter().filter(|job| schedule.holds(job)).map(job).collect();
+        Self { title: &schedule.title, workers: schedule.workers, end: microseconds(schedule.makespan_s), jobs }
+    }
+}
+
 impl Figure for GanttChart {
+    fn data(&self) -> Option<String> {
+        let schedules: Vec<ScheduleData<'_>> = self.schedules.iter().map(ScheduleData::of).collect();
+        serde_json::to_string(&schedules).ok()
+    }
+
     fn drawing(&self) -> Drawing {
         let mut drawing = Drawing::new(&self.title, WIDTH, 0.0);
         let mut y = heading::above(&mut drawing, &self.title, &self.subtitle);

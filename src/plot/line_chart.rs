@@ -1,7 +1,7 @@
 //! Lines and points over two axes: error against samples, speedup against threads, time against samples.
 
 use super::Figure;
-use super::axis::{Axis, Range};
+use super::axis::{Axis, Range, Scale, Ticks};
 use super::drawing::{Align, Drawing, Note, PartKind, Place};
 use super::frame::{self, Frame, Words};
 use super::legend::{self, Entry, Sample};
@@ -24,12 +24,14 @@ pub struct Point {
     pub x_interval: Option<(f64, f64)>,
     /// Low and high end of y.
     pub y_interval: Option<(f64, f64)>,
+    /// How many values y is of, where they were counted.
+    pub count: Option<usize>,
 }
 
 impl Point {
     /// A point without intervals.
     pub fn new(x: f64, y: f64) -> Self {
-        Self { x, y, x_interval: None, y_interval: None }
+        Self { x, y, x_interval: None, y_interval: None, count: None }
     }
 
     /// Adds the interval of y; `None` leaves the point bare.
@@ -123,6 +125,23 @@ pub struct LineChart {
 }
 
 impl LineChart {
+    /// The chart on linear axes if one is logarithmic, else on logarithmic ones; `None` if a value would have no place on those.
+    fn toggled(&self) -> Option<Self> {
+        let is_log = [&self.x, &self.y].iter().any(|axis| axis.scale == Scale::Log);
+        let values = || self.series.iter().flat_map(|series| &series.points).flat_map(|point| [point.x, point.y]);
+        if values().next().is_none() || (!is_log && values().any(|value| value <= 0.0)) {
+            return None;
+        }
+        let toggled = |axis: &Axis| Axis {
+            scale: if is_log { Scale::Linear } else { Scale::Log },
+            // Labels that stand apart on one scale run into each other on the other.
+            ticks: if is_log { Ticks::Auto } else { axis.ticks.clone() },
+            include: axis.include.iter().copied().filter(|value| is_log || *value > 0.0).collect(),
+            label: axis.label.clone(),
+        };
+        Some(Self { x: toggled(&self.x), y: toggled(&self.y), ..self.clone() })
+    }
+
     /// A chart of `series`, without guides.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Self {
         let (subtitle, caption) = (String::new(), String::new());
@@ -205,7 +224,7 @@ impl LineChart {
             self.x.label,
             short(point.x, 4)
         );
-        Note { at, series: series.name.clone(), of, value, interval, text }
+        Note { at, series: series.name.clone(), of, value, interval, count: point.count, text }
     }
 
     /// The band of a series, which lies below every line.
@@ -225,6 +244,12 @@ impl LineChart {
 }
 
 impl Figure for LineChart {
+    fn other_axes(&self) -> Option<(&'static str, Drawing)> {
+        let toggled = self.toggled()?;
+        let name = if toggled.y.scale == Scale::Log { "logarithmic axes" } else { "linear axes" };
+        Some((name, toggled.drawing()))
+    }
+
     fn drawing(&self) -> Drawing {
         let entries = self.entries();
         let ranges = self.ranges();

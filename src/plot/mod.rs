@@ -35,7 +35,7 @@ use crate::atomic_file;
 use crate::error::{Error, Result};
 
 pub use axis::{Axis, Scale, Ticks};
-pub use contact_sheet::{Cell, ColourBar, ContactSheet};
+pub use contact_sheet::{Cell, ColourBar, Comparison, ContactSheet, Placed};
 pub use dot_plot::{Dot, DotPlot, Group, Row};
 pub use drawing::Drawing;
 pub use gantt::{GanttChart, JobBar, Schedule, Shade};
@@ -48,9 +48,24 @@ pub trait Figure {
     /// The marks it consists of.
     fn drawing(&self) -> Drawing;
 
+    /// The same on other axes, and how those are called, for a page to switch to.
+    fn other_axes(&self) -> Option<(&'static str, Drawing)> {
+        None
+    }
+
+    /// What a page needs to show single jobs, as JSON.
+    fn data(&self) -> Option<String> {
+        None
+    }
+
     /// The figure as a complete SVG document, which can stand in an HTML page as it is.
     fn svg(&self) -> Result<String> {
         paint::svg(&self.drawing())
+    }
+
+    /// [`Figure::other_axes`] as an SVG document.
+    fn other_svg(&self) -> Result<Option<(&'static str, String)>> {
+        self.other_axes().map(|(name, drawing)| Ok((name, paint::svg(&drawing)?))).transpose()
     }
 
     /// The figure as a PNG file, at twice the pixels that the SVG asks for.

@@ -61,8 +61,9 @@ const REACH: f64 = 9.0;
 /// An invisible circle over a value, which shows the value to a reader who points at it.
 fn circle(note: &Note) -> String {
     let (low, high) = note.interval.map_or_else(Default::default, |(low, high)| (low.to_string(), high.to_string()));
+    let count = note.count.map_or_else(String::new, |count| count.to_string());
     format!(
-        "<circle class=\"note\" cx=\"{:.0}\" cy=\"{:.0}\" r=\"{}\" fill=\"none\" pointer-events=\"all\" data-series=\"{}\" data-of=\"{}\" data-value=\"{}\" data-low=\"{low}\" data-high=\"{high}\"><title>{}</title></circle>\n",
+        "<circle class=\"note\" cx=\"{:.0}\" cy=\"{:.0}\" r=\"{}\" fill=\"none\" pointer-events=\"all\" data-series=\"{}\" data-of=\"{}\" data-value=\"{}\" data-low=\"{low}\" data-high=\"{high}\" data-count=\"{count}\"><title>{}</title></circle>\n",
         note.at.0 * SCALE,
         note.at.1 * SCALE,
         REACH * SCALE,

@@ -13,7 +13,7 @@ fn schedule(workers: usize, jobs: usize) -> Schedule {
     let rounds = jobs.div_ceil(workers.max(1)).max(1) as f64;
     let job = |i: usize| {
         let start_s = (i / workers) as f64 / rounds;
-        JobBar { worker: i % workers, start_s, stop_s: start_s + 0.9 / rounds, value: (i % 7) as f64 }
+        JobBar { job: i, worker: i % workers, start_s, stop_s: start_s + 0.9 / rounds, value: (i % 7) as f64 }
     };
     let title = format!("strategy, {workers} threads: 1.05 s, utilisation 86 %");
     Schedule { title, workers, makespan_s: 1.05, jobs: (0..jobs).map(job).collect() }
@@ -53,9 +53,8 @@ fn map(panels: usize, value: impl Fn(u32) -> f64) -> HeatMap {
 }
 
 fn dots(rows: usize, groups: usize, axis: Axis) -> DotPlot {
-    let dot = |i: usize| {
-        Some(Dot { value: 1e-7 * (i + 1) as f64, interval: Some((0.8e-7 * (i + 1) as f64, 1.3e-7 * (i + 1) as f64)) })
-    };
+    let dot =
+        |i: usize| Some(Dot::new(1e-7 * (i + 1) as f64, Some((0.8e-7 * (i + 1) as f64, 1.3e-7 * (i + 1) as f64))));
     let rows = (0..rows)
         .map(|i| Row { name: format!("strategy-number-{i}"), dots: (0..groups).map(|g| dot(i + g)).collect() });
     let mut plot = DotPlot::new("Overhead of a job", axis, rows.collect());
@@ -166,8 +165,8 @@ fn rows_and_groups_are_all_there() {
 #[test]
 fn dots_without_a_place_are_counted() {
     let mut plot = dots(3, 1, Axis::log("s"));
-    plot.rows[0].dots[0] = Some(Dot { value: 0.0, interval: None });
-    plot.rows[1].dots[0] = Some(Dot { value: 1e-7, interval: Some((-1.0, f64::INFINITY)) });
+    plot.rows[0].dots[0] = Some(Dot::new(0.0, None));
+    plot.rows[1].dots[0] = Some(Dot::new(1e-7, Some((-1.0, f64::INFINITY))));
     plot.rows[2].dots[0] = None;
     assert!(says(&plot.drawing(), "1 dot has no place"));
     assert_legible(&plot.drawing());

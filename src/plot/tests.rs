@@ -145,14 +145,21 @@ fn image(width: u32, height: u32) -> Cell {
 
 fn sheet(rows: Vec<Vec<Option<Cell>>>) -> ContactSheet {
     let bar = Some(ColourBar { label: "|error|, linear radiance".into(), full: 0.25 });
-    ContactSheet { title: "Five sample counts".into(), subtitle: "cornell".into(), rows, bar }
+    ContactSheet {
+        title: "Five sample counts".into(),
+        subtitle: "cornell".into(),
+        rows,
+        bar,
+        comparison: super::Comparison::Steps,
+    }
 }
 
 #[test]
 fn sheets_enlarge_small_images_and_thin_out_large_ones() {
     let pixels = sheet(vec![vec![Some(image(96, 64)), Some(image(1024, 768))], vec![Some(image(96, 64)), None]])
         .pixels()
-        .unwrap();
+        .unwrap()
+        .0;
     // 96 pixels are shown as 288, 1024 as 256: two columns of the wider, a gap and two margins.
     assert_eq!(pixels.width(), 2 * 288 + 16 + 48);
     let source = image(96, 64).rgb;

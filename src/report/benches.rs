@@ -1,7 +1,8 @@
 //! What `cargo bench --bench scheduling` measured: `benches/benches.csv`, which it writes into the folder that `PATHMARK_BENCH_OUT` names.
 
-use super::block::{Block, Table};
+use super::block::Block;
 use super::page::Section;
+use super::table::Digits::Decimals;
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Chapter, MACHINE, RunFile, read_run_file};
@@ -82,13 +83,13 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
     let mut blocks = Vec::new();
     if !speedups.is_empty() {
         blocks.push(Block::Figure { stem: "speedup", figure: Box::new(plot(&speedups, run.machine.line())) });
-        blocks.push(Block::Table { stem: "speedup", table: speedup_table(&speedups) });
+        blocks.push(speedup_table(&speedups));
     }
     let seam = pairs(&rows);
     if !seam.is_empty() {
-        blocks.push(Block::Table { stem: "seam", table: seam_table(&seam) });
+        blocks.push(seam_table(&seam));
     }
-    blocks.push(Block::Table { stem: "rounds", table: all(&rows) });
+    blocks.push(all(&rows));
     for block in &blocks {
         block.save(&folder.join("figures"))?;
     }
@@ -100,6 +101,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         chapter: Some(Chapter::Scheduling),
         place: u32::MAX,
         in_short: None,
+        axes: None,
         failed: Vec::new(),
         doubts: Doubts::default(),
         rows: rows.len(),
@@ -127,7 +129,7 @@ fn pairs(rows: &[BenchRow]) -> Vec<(&BenchRow, &BenchRow)> {
 
 fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
     let row = |(row, [speedup, low, high]): &(&BenchRow, [f64; 3])| {
-        let dot = Dot { value: *speedup, interval: Some((*low, *high)) };
+        let dot = Dot::new(*speedup, Some((*low, *high)));
         Row::new(format!("{}, {}", row.case, row.parameter), vec![Some(dot)])
     };
     let mut plot = DotPlot::new(
@@ -142,52 +144,39 @@ fn plot(speedups: &[(&BenchRow, [f64; 3])], machine: String) -> DotPlot {
     plot
 }
 
-fn table(title: &str, columns: &[&str], rows: Vec<Vec<String>>) -> Table {
-    Table { title: title.to_string(), columns: columns.iter().map(ToString::to_string).collect(), rows }
+fn speedup_table(speedups: &[(&BenchRow, [f64; 3])]) -> Block {
+    Block::table("speedup", "Speedup against serial", speedups)
+        .column("strategy", |(row, _)| row.case.clone())
+        .column("threads", |(row, _)| row.parameter.clone())
+        .number("speedup", Decimals(3), |(_, [speedup, ..])| *speedup)
+        .number("low", Decimals(3), |(_, [_, low, _])| *low)
+        .number("high", Decimals(3), |(_, [.., high])| *high)
+        .end()
 }
 
-fn speedup_table(speedups: &[(&BenchRow, [f64; 3])]) -> Table {
-    let row = |(row, [speedup, low, high]): &(&BenchRow, [f64; 3])| {
-        let interval = format!("{low:.3} to {high:.3}");
-        vec![row.case.clone(), row.parameter.clone(), format!("{speedup:.3}"), interval]
-    };
-    let columns = ["strategy", "threads", "speedup", "interval"];
-    table("Speedup against serial", &columns, speedups.iter().map(row).collect())
-}
-
-fn seam_table(pairs: &[(&BenchRow, &BenchRow)]) -> Table {
+fn seam_table(pairs: &[(&BenchRow, &BenchRow)]) -> Block {
     let ns = |seconds: f64, row: &BenchRow| 1e9 * seconds / row.elements as f64;
-    let row = |(own, bare): &(&BenchRow, &BenchRow)| {
-        let [least, most] = [own.low_s - bare.high_s, own.high_s - bare.low_s];
-        vec![
-            own.case.clone(),
-            own.parameter.clone(),
-            format!("{:.1}", ns(bare.median_s, bare)),
-            format!("{:.1}", ns(own.median_s, own)),
-            format!("{:.1}", ns(own.median_s - bare.median_s, own)),
-            format!("{:.1} to {:.1}", ns(least, own), ns(most, own)),
-        ]
-    };
-    let columns =
-        ["strategy", "threads", "bare mechanism, ns a job", "strategy, ns a job", "difference, ns", "interval"];
-    table("What the seam between scheduling and work costs", &columns, pairs.iter().map(row).collect())
+    Block::table("seam", "What the seam between scheduling and work costs", pairs)
+        .column("strategy", |(own, _)| own.case.clone())
+        .column("threads", |(own, _)| own.parameter.clone())
+        .number("bare mechanism, ns a job", Decimals(1), |(_, bare)| ns(bare.median_s, bare))
+        .number("strategy, ns a job", Decimals(1), |(own, _)| ns(own.median_s, own))
+        .number("difference, ns", Decimals(1), |(own, bare)| ns(own.median_s - bare.median_s, own))
+        .number("low", Decimals(1), |(own, bare)| ns(own.low_s - bare.high_s, own))
+        .number("high", Decimals(1), |(own, bare)| ns(own.high_s - bare.low_s, own))
+        .end()
 }
 
-fn all(rows: &[BenchRow]) -> Table {
-    let row = |row: &BenchRow| {
-        let us = |seconds: f64| format!("{:.2}", 1e6 * seconds);
-        let interval = format!("{} to {}", us(row.low_s), us(row.high_s));
-        vec![
-            row.group.clone(),
-            row.case.clone(),
-            row.parameter.clone(),
-            row.elements.to_string(),
-            us(row.median_s),
-            interval,
-        ]
-    };
-    let columns = ["group", "case", "threads or pieces", "samples or jobs", "median of a round, us", "95 % interval"];
-    table("All cases", &columns, rows.iter().map(row).collect())
+fn all(rows: &[BenchRow]) -> Block {
+    Block::table("rounds", "All cases, intervals of 95 %", rows)
+        .column("group", |row| row.group.clone())
+        .column("case", |row| row.case.clone())
+        .column("threads or pieces", |row| row.parameter.clone())
+        .column("samples or jobs", |row| row.elements.to_string())
+        .number("median of a round, us", Decimals(2), |row| 1e6 * row.median_s)
+        .number("low", Decimals(2), |row| 1e6 * row.low_s)
+        .number("high", Decimals(2), |row| 1e6 * row.high_s)
+        .end()
 }
 
 #[cfg(test)]
@@ -217,7 +206,8 @@ mod tests {
         assert!((low - 1.8 / 1.1).abs() < 1e-12 && (high - 2.2 / 0.9).abs() < 1e-12, "{low} to {high}");
         let seam = seam_table(&pairs(&rows));
         // 1 us more for 1000 jobs is 1 ns a job; from 2.7 - 2.2 to 3.3 - 1.8.
-        assert_eq!(seam.rows, [["rayon", "2", "2.0", "3.0", "1.0", "0.5 to 1.5"].map(String::from)]);
+        let Block::Table { table: seam, .. } = seam else { panic!("a table") };
+        assert_eq!(seam.rows().collect::<Vec<_>>(), [["rayon", "2", "2.0", "3.0", "1.0", "0.5", "1.5"]]);
         assert!(section(folder.path()).unwrap().is_some());
         assert!(section(&folder.path().join("none")).unwrap().is_none());
     }

@@ -1,21 +1,10 @@
 //! What a page is made of.
 
+use super::table::{Columns, Table};
 use crate::atomic_file;
 use crate::error::{Error, Result};
-use crate::plot::{ContactSheet, Figure};
-use serde::Serialize;
+use crate::plot::{Comparison, ContactSheet, Figure, Placed};
 use std::path::Path;
-
-/// Columns of text.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Table {
-    /// What it shows.
-    pub title: String,
-    /// Heads of the columns, with units.
-    pub columns: Vec<String>,
-    /// Rows, as wide as the heads.
-    pub rows: Vec<Vec<String>>,
-}
 
 /// One part of an experiment's section.
 pub enum Block {
@@ -36,6 +25,10 @@ pub enum Block {
         title: String,
         /// The PNG file.
         png: Vec<u8>,
+        /// How its images are compared.
+        comparison: Comparison,
+        /// Where they lie.
+        images: Vec<Placed>,
     },
     /// A table.
     Table {
@@ -62,7 +55,8 @@ impl Block {
 
     /// A sheet of pictures.
     pub(super) fn sheet(stem: &'static str, sheet: &ContactSheet) -> Result<Self> {
-        Ok(Self::Picture { stem, title: sheet.title.clone(), png: sheet.png()? })
+        let (png, images) = sheet.png()?;
+        Ok(Self::Picture { stem, title: sheet.title.clone(), png, comparison: sheet.comparison, images })
     }
 
     /// A table with a row for each thing; its columns follow.
@@ -71,9 +65,7 @@ impl Block {
         title: impl Into<String>,
         things: impl IntoIterator<Item = T>,
     ) -> Columns<T> {
-        let things: Vec<T> = things.into_iter().collect();
-        let table = Table { title: title.into(), columns: Vec::new(), rows: vec![Vec::new(); things.len()] };
-        Columns { stem, table, things }
+        Columns::of(stem, title, things)
     }
 
     /// Writes figure, picture or table (as CSV) into the folder.
@@ -85,38 +77,7 @@ impl Block {
             Self::Picture { stem, png, .. } => {
                 atomic_file::write(&folder.join(format!("{stem}.png")), |file| file.write_all(png))
             }
-            Self::Table { stem, table } => {
-                let path = folder.join(format!("{stem}.csv"));
-                let mut writer = csv::Writer::from_writer(Vec::new());
-                let rows = std::iter::once(&table.columns).chain(&table.rows);
-                let written = rows.map(|row| writer.write_record(row)).collect::<csv::Result<Vec<()>>>();
-                let system = |e: std::io::Error| Error::system("writing", &path, e);
-                written.map_err(|e| system(e.into()))?;
-                let bytes = writer.into_inner().map_err(|e| system(e.into_error()))?;
-                atomic_file::write(&path, |file| file.write_all(&bytes))
-            }
+            Self::Table { stem, table } => table.save(&folder.join(format!("{stem}.csv"))),
         }
-    }
-}
-
-/// A table whose columns are being added.
-pub(super) struct Columns<T> {
-    stem: &'static str,
-    table: Table,
-    things: Vec<T>,
-}
-
-impl<T> Columns<T> {
-    /// A column: its head, and what it says of a thing.
-    pub(super) fn column(mut self, head: impl Into<String>, cell: impl Fn(&T) -> String) -> Self {
-        self.table.columns.push(head.into());
-        for (row, thing) in self.table.rows.iter_mut().zip(&self.things) {
-            row.push(cell(thing));
-        }
-        self
-    }
-
-    pub(super) fn end(self) -> Block {
-        Block::Table { stem: self.stem, table: self.table }
     }
 }

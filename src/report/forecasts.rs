@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::results::Results;
 use super::rows::Row;
+use super::table::Digits::Decimals;
 use crate::analysis::speedup::serial_fraction;
 use crate::error::Result;
 use crate::plot::style::Look;
@@ -69,18 +70,18 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
             percent(told.worst_absolute),
         ),
     };
-    let off = |ratio: f64| format!("{:+.1} %", 100.0 * (ratio - 1.0));
+    let off = |ratio: f64| 100.0 * (ratio - 1.0);
     let table = Block::table("predictions", "The simulator predicts this machine", predictions)
         .column("strategy", |p| p.strategy.clone())
         .column("pieces", |p| p.decomposition.clone())
         .column("threads", |p| p.workers.to_string())
         .column("runs", |p| p.runs.to_string())
-        .column("predicted ms", |p| format!("{:.2}", p.predicted_s * 1e3))
-        .column("measured ms", |p| format!("{:.2}", p.measured_s * 1e3))
+        .number("predicted ms", Decimals(2), |p| p.predicted_s * 1e3)
+        .number("measured ms", Decimals(2), |p| p.measured_s * 1e3)
         .column("undisturbed runs", |p| p.undisturbed.to_string())
-        .column("error, undisturbed runs", |p| p.undisturbed_ratio.map_or_else(|| "-".to_string(), off))
-        .column("error, all runs", |p| off(p.plain_ratio))
-        .column("error, told the CPU time", |p| off(p.ratio))
+        .number("error in undisturbed runs, %", Decimals(1), |p| p.undisturbed_ratio.map(off))
+        .number("error in all runs, %", Decimals(1), |p| off(p.plain_ratio))
+        .number("error if told the CPU time, %", Decimals(1), |p| off(p.ratio))
         .end();
     vec![Block::Finding(finding), table]
 }
@@ -110,7 +111,10 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
         };
         Series::by_name(shown.iter().map(|name| (name, points(name))))
     };
-    let axis = || Axis::log("cores").ticks_at(rows.iter().map(|row| row.workers as f64));
+    let most = rows.iter().map(|row| row.workers).max().unwrap_or(1);
+    let doubled = std::iter::successors(Some(1), |cores| Some(2 * cores)).take_while(|cores| *cores <= most);
+    let ticks: Vec<f64> = rows.iter().map(|row| row.workers).chain(doubled).map(|cores| cores as f64).collect();
+    let axis = || Axis::log("cores").ticks_at(ticks.clone());
     let mut speedup = LineChart::new("Forecast: speedup", axis(), Axis::log("speedup"), series(|row| row.speedup));
     speedup.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
     if let Some(bound) = bound {
@@ -128,20 +132,17 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
         chart.caption = "Simulated from the jobs of one serial run. Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all.".to_string();
         blocks.push(Block::figure(stem, chart));
     }
-    let seconds = |value: f64| format!("{value:.5}");
     blocks.push(
         Block::table("forecast", "Forecast", rows)
             .column("strategy", |row| row.strategy.clone())
             .column("cores", |row| row.workers.to_string())
-            .column("makespan, s", |row| seconds(row.makespan_s))
-            .column("speedup", |row| format!("{:.2}", row.speedup))
-            .column("efficiency", |row| format!("{:.3}", row.efficiency))
-            .column("serial fraction (Karp and Flatt)", |row| {
-                serial_fraction(row.speedup, row.workers).map_or_else(|| "-".to_string(), |e| format!("{e:.4}"))
-            })
-            .column("work / cores, s", |row| seconds(row.share_s))
-            .column("longest job, s", |row| seconds(row.longest_s))
-            .column("Graham's bound, s", |row| seconds(row.greedy_s))
+            .number("makespan, s", Decimals(5), |row| row.makespan_s)
+            .number("speedup", Decimals(2), |row| row.speedup)
+            .number("efficiency", Decimals(3), |row| row.efficiency)
+            .number("serial fraction (Karp and Flatt)", Decimals(4), |row| serial_fraction(row.speedup, row.workers))
+            .number("work / cores, s", Decimals(5), |row| row.share_s)
+            .number("longest job, s", Decimals(5), |row| row.longest_s)
+            .number("Graham's bound, s", Decimals(5), |row| row.greedy_s)
             .end(),
     );
     blocks

@@ -1,12 +1,15 @@
 //! The price list of the guards: `guards/guards.csv`, which `pathmark check --out` and `reproduce` write.
 
-use super::block::{Block, Table};
+use super::block::Block;
 use super::page::Section;
+use super::table::Digits::{Decimals, Significant};
+use super::words::{LEVEL, Told};
+use crate::analysis::Interval;
 use crate::check::guards::{FILE, FOLDER, PriceRow, read_prices};
 use crate::error::Result;
 use crate::experiment::{Chapter, read_run_file};
 use crate::measure::Doubts;
-use crate::plot::{Axis, Dot, DotPlot, Row, number};
+use crate::plot::{Axis, Dot, DotPlot, Row};
 use std::path::Path;
 
 const QUESTION: &str = "What does it cost to be right on hard inputs, and how wrong is what would do on easy ones?";
@@ -26,8 +29,8 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
     let run = read_run_file(&folder.join("machine.toml"))?;
     let blocks = vec![
         Block::Figure { stem: "guards", figure: Box::new(plot(&rows, run.machine.line())) },
-        Block::Table { stem: "price-list", table: prices(&rows) },
-        Block::Table { stem: "meanings", table: meanings(&rows) },
+        prices(&rows),
+        meanings(&rows),
     ];
     for block in &blocks {
         block.save(&folder.join("figures"))?;
@@ -40,6 +43,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         chapter: Some(Chapter::HardInputs),
         place: 0,
         in_short: None,
+        axes: None,
         failed: Vec::new(),
         doubts: Doubts::default(),
         rows: rows.len(),
@@ -49,8 +53,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
 }
 
 fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
-    let dot =
-        |row: &PriceRow| Some(Dot { value: row.time_ratio?, interval: row.time_ratio_low.zip(row.time_ratio_high) });
+    let dot = |row: &PriceRow| Some(Dot::new(row.time_ratio?, row.time_ratio_low.zip(row.time_ratio_high)));
     let named = rows.iter().map(|row| Row { name: row.guard.clone(), dots: vec![dot(row)] }).collect();
     let mut plot = DotPlot::new("What each guard costs", Axis::log("time with the guard / time without"), named);
     plot.subtitle = machine;
@@ -59,35 +62,30 @@ fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
     plot
 }
 
-fn prices(rows: &[PriceRow]) -> Table {
-    let columns = ["guard", "error with it", "error without", "ns with it", "ns without", "time with / without"];
-    let short = |value: f64| number::short(value, 3);
-    let error = |value: f64, low: f64, high: f64| {
-        if low < high { format!("{} ({} to {})", short(value), short(low), short(high)) } else { short(value) }
+fn prices(rows: &[PriceRow]) -> Block {
+    let told = |value: f64, low: f64, high: f64| {
+        // What is no estimate has no interval.
+        Told::of(value, (low < high).then_some(Interval { low, high, level: LEVEL }))
     };
-    let cell = |value: Option<f64>| value.map_or_else(|| "-".to_string(), short);
-    let row = |row: &PriceRow| {
-        let ratio = match (row.time_ratio, row.time_ratio_low, row.time_ratio_high) {
-            (Some(value), Some(low), Some(high)) => format!("{value:.2} ({low:.2} to {high:.2})"),
-            _ => "-".to_string(),
-        };
-        vec![
-            row.guard.clone(),
-            error(row.error_with, row.error_with_low, row.error_with_high),
-            error(row.error_without, row.error_without_low, row.error_without_high),
-            cell(row.ns_with),
-            cell(row.ns_without),
-            ratio,
-        ]
-    };
-    let title = "Price list of the guards, intervals of 95 %".to_string();
-    Table { title, columns: columns.map(String::from).to_vec(), rows: rows.iter().map(row).collect() }
+    let ratio = |row: &PriceRow| Some(told(row.time_ratio?, row.time_ratio_low?, row.time_ratio_high?));
+    Block::table("price-list", "Price list of the guards", rows)
+        .column("guard", |row| row.guard.clone())
+        .told("error with it", Significant(3), |row| told(row.error_with, row.error_with_low, row.error_with_high))
+        .told("error without", Significant(3), |row| {
+            told(row.error_without, row.error_without_low, row.error_without_high)
+        })
+        .number("ns with it", Significant(3), |row| row.ns_with)
+        .number("ns without", Significant(3), |row| row.ns_without)
+        .told("time with / without", Decimals(2), |row| ratio(row))
+        .end()
 }
 
-fn meanings(rows: &[PriceRow]) -> Table {
-    let columns = ["guard", "the program's way", "the other way", "what the error is", "what is timed"];
-    let row =
-        |row: &PriceRow| [&row.guard, &row.with, &row.without, &row.error, &row.operation].map(String::clone).to_vec();
-    let title = "What is compared".to_string();
-    Table { title, columns: columns.map(String::from).to_vec(), rows: rows.iter().map(row).collect() }
+fn meanings(rows: &[PriceRow]) -> Block {
+    Block::table("meanings", "What is compared", rows)
+        .column("guard", |row| row.guard.clone())
+        .column("the program's way", |row| row.with.clone())
+        .column("the other way", |row| row.without.clone())
+        .column("what the error is", |row| row.error.clone())
+        .column("what is timed", |row| row.operation.clone())
+        .end()
 }

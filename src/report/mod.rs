@@ -14,14 +14,15 @@ mod results;
 mod rows;
 mod schedule;
 mod serial;
+mod table;
 #[cfg(test)]
 mod tests;
 pub mod timeline;
 mod words;
 
 pub use benches::{BenchRow, write_benches};
-pub use block::{Block, Table};
-pub use figures::{FIGURES, FigureEntry, check_figures};
+pub use block::Block;
+pub use figures::{FIGURES, FigureEntry, check_figures, figure_of_serial};
 pub use results::Results;
 
 use crate::atomic_file;

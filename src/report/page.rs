@@ -1,19 +1,26 @@
 //! `report.html`: one file with everything in it, readable without a network.
 
-use super::block::{Block, Table};
+use super::block::Block;
 use super::results::Results;
+use super::table::Table;
 use crate::error::Result;
 use crate::experiment::{Chapter, Definition, RunFile};
 use crate::measure::{Doubts, Record};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 const STYLE: &str = include_str!("../../assets/report.css");
-const SCRIPT: &str = include_str!("../../assets/report.js");
+const SCRIPTS: [&str; 3] = [
+    include_str!("../../assets/report.js"),
+    include_str!("../../assets/report-pictures.js"),
+    include_str!("../../assets/report-timelines.js"),
+];
 
 const TITLE: &str = "Pathmark: report";
 
@@ -43,6 +50,8 @@ pub(super) struct Section {
     pub(super) place: u32,
     /// What the beginning of the page says of it.
     pub(super) in_short: Option<String>,
+    /// The axis of each value that the rows have, for commands that run a part again; none where there is no such command.
+    pub(super) axes: Option<BTreeMap<String, &'static str>>,
     /// Rows that failed.
     pub(super) failed: Vec<Record>,
     /// How many rows did not.
@@ -59,12 +68,32 @@ impl Section {
     pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = Doubts::of(results.warnings());
+        let axes = Some(axes(&results));
         let Definition { name, title, question, analysis, chapter, place, in_short, .. } = results.definition;
         let findings = || blocks.iter().filter_map(Block::as_finding);
         let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
         let (failed, run, chapter) = (results.failed, results.run, Some(chapter));
-        Self { name, title, question, analysis, chapter, place, in_short, failed, rows, doubts, run, blocks }
+        Self { name, title, question, analysis, chapter, place, in_short, axes, failed, rows, doubts, run, blocks }
     }
+}
+
+/// Values that are names, with the axis of each.
+fn axes(results: &Results) -> BTreeMap<String, &'static str> {
+    let mut axes = BTreeMap::new();
+    for row in results.rows() {
+        let names = [
+            ("scene", &row.scene),
+            ("estimator", &row.estimator),
+            ("sampler", &row.sampler),
+            ("kernel", &row.kernel),
+            ("accelerator", &row.accelerator),
+            ("decomposition", &row.decomposition),
+            ("output", &row.output),
+            ("strategy", &row.strategy),
+        ];
+        axes.extend(names.map(|(axis, value)| (value.clone(), axis)));
+    }
+    axes
 }
 
 /// Longer cells are prose and may be broken.
@@ -98,7 +127,7 @@ pub(super) fn html(sections: &[Section]) -> Result<String> {
                     @for part in claims.iter().chain(&body) { (part) }
                     (sources(sections))
                 }
-                script { (PreEscaped(SCRIPT)) }
+                @for script in SCRIPTS { script { (PreEscaped(script)) } }
             }
         }
     };
@@ -201,7 +230,7 @@ fn sources(sections: &[Section]) -> Markup {
 fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
     let parts = section.blocks.iter().map(|block| part(&section.name, block)).collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
-        section id=(section.name) {
+        section id=(section.name) data-axes=[section.axes.as_ref().map(json)] {
             @if is_chapter { h2 { (section.title) } } @else { h3 { (section.title) } }
             p { strong { "Question. " } (prose(&section.question)) }
             @if !section.failed.is_empty() {
@@ -221,24 +250,43 @@ fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
 fn part(section: &str, block: &Block) -> Result<Markup> {
     Ok(match block {
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
-        Block::Figure { stem, figure } => html! { figure id={ (section) "-" (stem) } { (PreEscaped(figure.svg()?)) } },
-        Block::Picture { stem, title, png } => html! {
-            figure id={ (section) "-" (stem) } { img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) }; }
+        Block::Figure { stem, figure } => html! {
+            figure id={ (section) "-" (stem) } {
+                (PreEscaped(figure.svg()?))
+                @if let Some((name, svg)) = figure.other_svg()? { div.other hidden data-name=(name) { (PreEscaped(svg)) } }
+                @if let Some(data) = figure.data() { script.jobs type="application/json" { (PreEscaped(in_script(&data))) } }
+            }
+        },
+        Block::Picture { stem, title, png, comparison, images } => html! {
+            figure.sheet id={ (section) "-" (stem) } {
+                img alt=(title) src={ "data:image/png;base64," (STANDARD.encode(png)) };
+                script.images type="application/json" { (PreEscaped(in_script(&json(&(comparison, images))))) }
+            }
         },
         Block::Table { table, .. } => table_markup(table),
     })
 }
 
+/// Data for the page's script.
+fn json(data: &impl Serialize) -> String {
+    serde_json::to_string(data).unwrap_or_default()
+}
+
+/// JSON between the tags of a script, which a name with a tag in it must not end.
+fn in_script(json: &str) -> String {
+    json.replace('<', "\\u003c")
+}
+
 fn table_markup(table: &Table) -> Markup {
     html! {
-        details.wide open[table.rows.len() <= OPEN_ROWS] {
+        details.wide open[table.len() <= OPEN_ROWS] {
             summary { (table.title) }
             table {
-                thead { tr { @for column in &table.columns { th { (column) } } } }
+                thead { tr { @for head in table.heads() { th { (head) } } } }
                 tbody {
-                    @for row in &table.rows {
+                    @for row in table.rows() {
                         tr {
-                            @for (cell, column) in row.iter().zip(&table.columns) {
+                            @for (cell, column) in row.iter().zip(table.heads()) {
                                 td.text[cell.len() > LONGEST_CELL] data-verdict=[(column == "verdict").then_some(cell)] { (cell) }
                             }
                         }

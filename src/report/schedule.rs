@@ -1,6 +1,6 @@
 //! A schedule as figures name it.
 
-use crate::measure::{Record, ScheduleKey, THREAD_PER_ROW, schedule_name};
+use crate::measure::{Record, SERIAL, ScheduleKey, THREAD_PER_ROW, schedule_name};
 
 /// A schedule with its name. Schedules are listed by name, then by pieces, then by threads.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,9 +24,6 @@ impl Schedule {
         schedule_name(&self.key.strategy, &self.key.decomposition) == THREAD_PER_ROW
     }
 }
-
-/// The strategy that others are compared with.
-pub(super) const SERIAL: &str = "serial";
 
 /// Who renders, with how many threads.
 pub(super) fn crew(strategy: &str, threads: usize) -> String {

@@ -89,7 +89,7 @@ fn words(blocks: &[Block]) -> String {
         Block::Finding(text) => text.clone(),
         Block::Figure { figure, .. } => figure.svg().unwrap(),
         Block::Picture { title, .. } => title.clone(),
-        Block::Table { table, .. } => table.rows.concat().join("\n"),
+        Block::Table { table, .. } => table.rows().flatten().collect::<Vec<String>>().join("\n"),
     };
     blocks.iter().map(of).collect::<Vec<_>>().join("\n")
 }

@@ -1,7 +1,7 @@
 //! One run drawn with a lane for each worker: for the figure of many runs and for the verb that shows one.
 
-use crate::analysis::balance::Balance;
-use crate::measure::{TraceFile, TraceRow, schedule_name};
+use crate::analysis::balance::{Balance, processors_in_use};
+use crate::measure::{TraceFile, TraceRow, available_threads, schedule_name};
 use crate::plot::gantt::{GanttChart, JobBar, Schedule, Shade};
 
 /// The balance of a traced run; `None` if its workers or times cannot be.
@@ -18,17 +18,25 @@ pub fn name(trace: &TraceFile) -> String {
 }
 
 /// The lanes of a traced run.
-pub(super) fn lanes(trace: &TraceFile, balance: &Balance) -> Schedule {
+pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> Schedule {
     let bar = |row: &TraceRow| JobBar {
+        job: row.job,
         worker: row.worker as usize,
         start_s: row.start_s,
         stop_s: row.stop_s,
         value: (row.stop_s - row.start_s) * 1e3,
     };
     let makespan_s = trace.header.makespan_s;
-    let used = 100.0 * balance.utilisation();
+    let workers = trace.header.workers as usize;
+    let utilisation = if workers > processors {
+        let spans = trace.rows.iter().map(|row| (row.worker as usize, row.start_s, row.stop_s));
+        let used = 100.0 * processors_in_use(spans, makespan_s, processors);
+        format!("utilisation of {processors} processors {used:.0} %")
+    } else {
+        format!("utilisation {:.0} %", 100.0 * balance.utilisation())
+    };
     Schedule {
-        title: format!("{}: {:.1} ms, utilisation {used:.0} %", name(trace), makespan_s * 1e3),
+        title: format!("{}: {:.1} ms, {utilisation}", name(trace), makespan_s * 1e3),
         workers: trace.header.workers as usize,
         makespan_s,
         jobs: trace.rows.iter().map(bar).collect(),
@@ -53,6 +61,6 @@ pub fn chart(trace: &TraceFile) -> GanttChart {
     let spec = &settings.spec;
     let workload =
         format!("{}, {}x{}, {} spp, {}", settings.scene, spec.width, spec.height, settings.spp, spec.estimator);
-    let lanes = balance(trace).map(|balance| lanes(trace, &balance));
+    let lanes = balance(trace).map(|balance| lanes(trace, &balance, available_threads()));
     charts(lanes.into_iter().collect(), workload)
 }

@@ -11,34 +11,40 @@ use std::collections::BTreeSet;
 pub(super) const LEVEL: f64 = 0.95;
 
 /// A value and its interval, if there were enough of them for one.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Told {
     pub(super) value: f64,
     pub(super) interval: Option<Interval>,
+    /// How many values it is of, where they were counted.
+    pub(super) count: Option<usize>,
 }
 
 impl From<Estimate> for Told {
     fn from(Estimate { value, interval }: Estimate) -> Self {
-        Self { value, interval: Some(interval) }
+        Self::of(value, Some(interval))
     }
 }
 
 impl Told {
+    pub(super) fn of(value: f64, interval: Option<Interval>) -> Self {
+        Self { value, interval, count: None }
+    }
+
     /// The median of some values with its distribution-free interval.
     pub(super) fn median(values: &[f64]) -> Option<Self> {
-        Some(Self { value: median(values)?, interval: median_interval(values, LEVEL) })
+        Some(Self { value: median(values)?, interval: median_interval(values, LEVEL), count: Some(values.len()) })
     }
 
     /// The mean of values that scatter alike, with Student's interval.
     pub(super) fn mean(values: &[f64]) -> Option<Self> {
         let interval = t_interval(values, LEVEL).map(|estimate| estimate.interval);
-        Some(Self { value: Moments::of(values).mean()?, interval })
+        Some(Self { value: Moments::of(values).mean()?, interval, count: Some(values.len()) })
     }
 
     /// In another unit.
     pub(super) fn times(&self, factor: f64) -> Self {
         let times = |i: Interval| Interval { low: factor * i.low, high: factor * i.high, level: i.level };
-        Self { value: factor * self.value, interval: self.interval.map(times) }
+        Self { value: factor * self.value, interval: self.interval.map(times), count: self.count }
     }
 
     /// The ends of the interval.
@@ -47,12 +53,12 @@ impl Told {
     }
 
     pub(super) fn dot(&self) -> Dot {
-        Dot { value: self.value, interval: self.bar() }
+        Dot { value: self.value, interval: self.bar(), count: self.count }
     }
 
     /// The point above `x`.
     pub(super) fn above(&self, x: f64) -> Point {
-        Point::new(x, self.value).with_y(self.bar())
+        Point { count: self.count, ..Point::new(x, self.value).with_y(self.bar()) }
     }
 
     /// Whether it has an interval: an estimate.

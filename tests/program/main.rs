@@ -22,3 +22,4 @@ mod shared_seeds;
 mod snapshot;
 #[path = "../support/watchdog.rs"]
 mod watchdog;
+mod with_values;

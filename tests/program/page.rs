@@ -21,6 +21,8 @@ window.addEventListener("load", () => {
   const seen = { errors: window.pageErrors };
   seen.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
   seen.emptyFigures = all("figure").filter((figure) => figure.getBoundingClientRect().height < 50).map((f) => f.id);
+  const marks = (svg) => svg.querySelectorAll("g.series *, circle.note").length;
+  seen.blankFigures = all("figure svg").filter((svg) => marks(svg) === 0).map((svg) => svg.parentElement.id);
   seen.deadLinks = all("a[href^='#']").filter((a) => !document.getElementById(a.hash.slice(1))).map((a) => a.hash);
   const svg = document.getElementById("tiny-speedup").querySelector("svg");
   const note = svg.querySelector("circle.note[data-series='work-stealing'][data-of='2']");
@@ -35,8 +37,8 @@ window.addEventListener("load", () => {
   entry.dispatchEvent(new MouseEvent("click", { bubbles: true }));
   seen.after = getComputedStyle(line).display;
   const table = all("table").find((t) => t.tHead && t.tHead.textContent.includes("work inflation"));
-  const column = Array.from(table.tHead.rows[0].cells).findIndex((cell) => cell.textContent === "speedup");
-  const order = () => Array.from(table.tBodies[0].rows).map((row) => Number(row.cells[column].textContent));
+  const column = Array.from(table.tHead.rows[0].cells).findIndex((cell) => cell.textContent === "speedup (confidence)");
+  const order = () => Array.from(table.tBodies[0].rows).map((row) => parseFloat(row.cells[column].textContent));
   table.tHead.rows[0].cells[column].querySelector("button").click();
   seen.ascending = order();
   table.tHead.rows[0].cells[column].querySelector("button").click();
@@ -96,7 +98,7 @@ fn the_page_works_in_a_browser() {
     let mut backgrounds = Vec::new();
     for (index, (width, dark)) in WIDTHS.into_iter().flat_map(|width| [(width, false), (width, true)]).enumerate() {
         let seen = looked_at(browser, &page, &folder.path().join(format!("profile-{index}")), width, dark);
-        for empty in ["errors", "emptyFigures", "deadLinks"] {
+        for empty in ["errors", "emptyFigures", "blankFigures", "deadLinks"] {
             assert_eq!(seen[empty].as_array().map(Vec::len), Some(0), "{width} pixels: {empty}: {seen}");
         }
         assert!(seen["overflow"].as_f64().unwrap() <= 0.0, "{width} pixels: the page is wider than the screen: {seen}");
@@ -107,7 +109,7 @@ fn the_page_works_in_a_browser() {
         assert_eq!((seen["before"].as_str(), seen["after"].as_str()), (Some("inline"), Some("none")), "{seen}");
         let (up, down) = (numbers(&seen["ascending"]), numbers(&seen["descending"]));
         assert!(up.len() > 2 && up.is_sorted() && down.iter().rev().eq(&up), "{seen}");
-        assert_eq!(seen["tools"], serde_json::json!(["SVG", "PNG", "CSV"]));
+        assert_eq!(seen["tools"], serde_json::json!(["SVG", "PNG", "CSV", "logarithmic axes"]));
         backgrounds.push(seen["background"].as_str().unwrap().to_string());
     }
     assert!(backgrounds[0] != backgrounds[1], "dark mode has another background: {backgrounds:?}");

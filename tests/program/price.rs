@@ -57,6 +57,21 @@ fn paying_gives_what_was_predicted() {
 }
 
 #[test]
+fn a_comparison_ends_with_all_estimators_in_a_line() {
+    let all = price(&["--size", "32x24", "--rmse", "0.2", "--estimator", "all"]).with_code(0).out;
+    let (last, names) = (all.lines().last().unwrap(), ["smallpt", "bsdf", "nee", "mis"]);
+    assert!(last.starts_with("RMSE 0.2: ") && names.iter().all(|name| last.contains(name)), "{all}");
+    assert!(!last.contains("whitted"), "its error has a part that no sample mends: {all}");
+}
+
+#[test]
+fn every_estimator_is_priced_in_one_array() {
+    let rows = rows(&["--size", "24x18", "--rmse", "0.2,0.1", "--estimator", "all", "--pilot-spp", "8"]);
+    let names: Vec<&str> = rows.iter().map(|row| row["estimator"].as_str().unwrap()).collect();
+    assert_eq!(names, ["smallpt", "smallpt", "bsdf", "bsdf", "nee", "nee", "mis", "mis"]);
+}
+
+#[test]
 fn what_cannot_be_priced_is_refused() {
     for (arguments, field) in [
         (["--rmse", "0"].as_slice(), "rmse"),

@@ -6,7 +6,8 @@ use super::verdict::{NAMES, Verdict};
 use crate::atomic_file;
 use crate::error::{Error, Result};
 use crate::plot::number;
-use crate::report::block::{Block, Table};
+use crate::report::block::Block;
+use crate::report::table::Table;
 use std::fmt::Write;
 use std::fs::File;
 use std::io::Read;
@@ -192,12 +193,12 @@ pub(super) fn in_short(answers: &[Answer<'_>]) -> String {
 
 /// The verdicts for the page: counts, and a table for each report.
 pub(in crate::report) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
-    let mut heads = vec!["report".to_string()];
-    heads.extend(NAMES.map(|name| name.replace('-', " ")));
+    let heads: Vec<String> = std::iter::once("report").chain(NAMES).map(|name| name.replace('-', " ")).collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let rows = counts(answers).into_iter().map(|(report, counts)| {
         std::iter::once(report).chain(counts.iter().map(ToString::to_string)).collect::<Vec<String>>()
     });
-    let counted = Table { title: "Verdicts".to_string(), columns: heads, rows: rows.collect() };
+    let counted = Table::of_text("Verdicts", &heads, &rows.collect::<Vec<_>>());
     let mut blocks = vec![Block::Table { stem: "verdicts", table: counted }];
     for (stem, letter) in [("claims-a", "A"), ("claims-b", "B"), ("claims-c", "C"), ("claims-d", "D")] {
         let own: Vec<&Answer<'_>> = answers.iter().filter(|answer| answer.report.report == letter).collect();

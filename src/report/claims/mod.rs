@@ -57,6 +57,7 @@ pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
         chapter: None,
         place: 0,
         in_short: Some(listing::in_short(&answers)),
+        axes: None,
         failed: Vec::new(),
         doubts: Doubts::default(),
         rows: answered,

@@ -169,17 +169,17 @@ fn marginal(rows: &[&Row], yardstick: &str, name: &str) -> Vec<Block> {
 fn table(results: &Results, accelerators: &[(usize, &str)]) -> Block {
     let place = |name: &str| accelerators.iter().position(|(_, own)| *own == name);
     let kinds = results.by(|row| (primitives(row), &row.scene, place(&row.accelerator))).into_values();
-    let typical = |rows: &[&Row], digits: usize, value: &dyn Fn(&Row) -> Option<f64>| {
-        number(typical(rows.iter().copied(), value), digits)
-    };
+    let typical = |rows: &[&Row], value: &dyn Fn(&Row) -> Option<f64>| typical(rows.iter().copied(), value);
     Block::table("acceleration-table", "What rays are tested against: medians over repetitions", kinds)
         .column("scene", |rows| rows[0].scene.clone())
         .column("accelerator", |rows| rows[0].accelerator.clone())
-        .column("ns per ray", |rows| typical(rows, 0, &ns_per_ray))
-        .column("boxes per ray", |rows| typical(rows, 1, &|row| Some(row.box_tests? as f64 / row.rays? as f64)))
-        .column("primitives per ray", |rows| {
-            typical(rows, 1, &|row| Some(row.primitive_tests? as f64 / row.rays? as f64))
+        .number("ns per ray", Decimals(0), |rows| typical(rows, &ns_per_ray))
+        .number("boxes per ray", Decimals(1), |rows| {
+            typical(rows, &|row| Some(row.box_tests? as f64 / row.rays? as f64))
         })
-        .column("ms to build", |rows| typical(rows, 3, &|row| Some(row.build_s? * 1e3)))
+        .number("primitives per ray", Decimals(1), |rows| {
+            typical(rows, &|row| Some(row.primitive_tests? as f64 / row.rays? as f64))
+        })
+        .number("ms to build", Decimals(3), |rows| typical(rows, &|row| Some(row.build_s? * 1e3)))
         .end()
 }

@@ -86,16 +86,13 @@ fn finding(all: &[Against<'_>]) -> Option<Block> {
 }
 
 fn table(all: &[Against<'_>]) -> Block {
-    let fraction = |against: &&Against<'_>| {
-        let found = serial_fraction_estimate(&against.speedups, against.workers(), LEVEL);
-        found.map_or_else(|| "-".to_string(), |estimate| told(&estimate, 3))
-    };
+    let fraction =
+        |against: &&Against<'_>| serial_fraction_estimate(&against.speedups, against.workers(), LEVEL).map(Told::from);
     Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
         .column("schedule", |against| told_kind(against.own))
         .column("baseline", |against| told_kind(against.baseline))
-        .column("speedup", |against| format!("{:.3}", against.speedup.value))
-        .column("interval (confidence)", |against| with_level(&against.speedup.interval, 3))
-        .column("e (confidence)", fraction)
+        .told("speedup (confidence)", Decimals(3), |against| Told::from(against.speedup))
+        .told("e (confidence)", Decimals(3), fraction)
         .column("remark", |against| if against.is_superlinear() { "superlinear".into() } else { String::new() })
         .end()
 }

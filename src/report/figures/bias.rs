@@ -108,20 +108,16 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             )),
         ))
     });
-    let share = |value: Option<f64>, digits| number(value.map(|value| 100.0 * value), digits);
+    let percent = |share: Option<f64>| share.map(|share| 100.0 * share);
     let table = Block::table("bias", format!("Light, noise and doubtful pixels by {}", axis.name()), &costs)
         .column("scene", |cost| cost.scene.clone())
         .column(axis.name(), |cost| cost.value.clone())
         .column("spp", |cost| cost.spp.to_string())
-        .column("light, %", |cost| format!("{:.3}", 100.0 * cost.light.value))
-        .column("95 % interval", |cost| {
-            let percent = cost.light.times(100.0);
-            percent.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.3} to {high:.3}"))
-        })
-        .column("RMSE", |cost| number(cost.rmse, 5))
-        .column("pixels within 0.05 of the display, %", |cost| share(cost.within, 2))
-        .column("black pixels, %", |cost| share(cost.black, 3))
-        .column("fireflies in a million pixels", |cost| number(cost.fireflies.map(|share| 1e6 * share), 0))
+        .told("light, %", Decimals(3), |cost| cost.light.times(100.0))
+        .number("RMSE", Decimals(5), |cost| cost.rmse)
+        .number("pixels within 0.05 of the display, %", Decimals(2), |cost| percent(cost.within))
+        .number("black pixels, %", Decimals(3), |cost| percent(cost.black))
+        .number("fireflies in a million pixels", Decimals(0), |cost| cost.fireflies.map(|share| 1e6 * share))
         .end();
     let mut blocks = vec![Block::figure("bias", plot)];
     blocks.extend(finding);

@@ -58,13 +58,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("bounces", "Light and paths by bounces", &steps)
         .column("scene and estimator", |step| step.name.clone())
         .column("bounces", |step| step.limit.to_string())
-        .column("share of the light, %", |step| format!("{:.3}", 100.0 * step.light.value))
-        .column("95 % interval", |step| {
-            let percent = step.light.times(100.0);
-            percent.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.3} to {high:.3}"))
-        })
-        .column("share up to here, %", |step| format!("{:.3}", 100.0 * step.up_to))
-        .column("paths that are longer, %", |step| format!("{:.3}", 100.0 * step.cut))
+        .told("share of the light, %", Decimals(3), |step| step.light.times(100.0))
+        .number("share up to here, %", Decimals(3), |step| 100.0 * step.up_to)
+        .number("paths that are longer, %", Decimals(3), |step| 100.0 * step.cut)
         .end();
     let mut blocks = vec![Block::figure("bounces", light), Block::figure("path-lengths", paths)];
     blocks.extend(findings);

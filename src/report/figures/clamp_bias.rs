@@ -74,13 +74,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("clamp-bias", "Bias of the subpixel clamp", &losses)
         .column("spp", |loss| loss.spp.to_string())
         .column("seeds", |loss| loss.seeds.to_string())
-        .column("bias against the clamped limit, %", |loss| format!("{:.2}", loss.lost.value))
-        .column("95 % interval", |loss| {
-            loss.lost.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.2} to {high:.2}"))
-        })
-        .column("prototype, %", |loss| number(loss.prototype, 1))
-        .column("bias against the true light, %", |loss| {
-            format!("{:.2}", 100.0 * ((1.0 + loss.lost.value / 100.0) * limit / truth - 1.0))
+        .told("bias against the clamped limit, %", Decimals(2), |loss| loss.lost)
+        .number("prototype, %", Decimals(1), |loss| loss.prototype)
+        .number("bias against the true light, %", Decimals(2), |loss| {
+            100.0 * ((1.0 + loss.lost.value / 100.0) * limit / truth - 1.0)
         })
         .end();
     let mut blocks = vec![Block::figure("clamp-bias", chart), Block::finding(finding), table];

@@ -28,11 +28,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("clock", "Wall time and CPU time: medians over repetitions", &times)
         .column("strategy", |times| times.schedule.name.clone())
         .column("threads", |times| times.schedule.key.threads.to_string())
-        .column("wall seconds", |times| format!("{:.4}", times.wall_s))
-        .column("CPU seconds, as clock() counts", |times| format!("{:.4}", times.cpu_s))
-        .column("CPU / wall", |times| format!("{:.2}", times.cpu_s / times.wall_s))
-        .column("speedup by wall time", |times| format!("{:.3}", serial.wall_s / times.wall_s))
-        .column("speedup that clock() would claim", |times| format!("{:.3}", serial.cpu_s / times.cpu_s))
+        .number("wall seconds", Decimals(4), |times| times.wall_s)
+        .number("CPU seconds, as clock() counts", Decimals(4), |times| times.cpu_s)
+        .number("CPU / wall", Decimals(2), |times| times.cpu_s / times.wall_s)
+        .number("speedup by wall time", Decimals(3), |times| serial.wall_s / times.wall_s)
+        .number("speedup that clock() would claim", Decimals(3), |times| serial.cpu_s / times.cpu_s)
         .end();
     Ok(finding.into_iter().chain([table]).collect())
 }

@@ -33,6 +33,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         subtitle: results.workload(),
         rows: vec![pictures, maps],
         bar: Some(ColourBar { label: "error of a pixel, linear radiance".to_string(), full: scale }),
+        comparison: Comparison::Steps,
     };
     Ok(vec![Block::sheet("contact-sheet", &sheet)?])
 }

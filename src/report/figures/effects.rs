@@ -69,8 +69,8 @@ impl Times {
         Told::median(&ratios.collect::<Vec<f64>>())?.estimate()
     }
 
-    fn nanoseconds(&self) -> String {
-        number(median(&self.by_repetition.values().map(|s| s * 1e9).collect::<Vec<f64>>()), 0)
+    fn nanoseconds(&self) -> Option<f64> {
+        median(&self.by_repetition.values().map(|s| s * 1e9).collect::<Vec<f64>>())
     }
 }
 
@@ -122,15 +122,15 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
     let table = Block::table("effects-table", "The price of an effect: absent, compiled in but unused, used", &found)
         .column("effect", |found| found.price.effect.clone())
         .column("absent", |found| place(&found.price.absent))
-        .column("ns per sample", |found| found.absent.nanoseconds())
-        .column("rays per sample", |found| number(found.absent.rays, 2))
+        .number("ns per sample, absent", Decimals(0), |found| found.absent.nanoseconds())
+        .number("rays per sample, absent", Decimals(2), |found| found.absent.rays)
         .column("unused: profile", |found| found.price.unused.profile.clone())
-        .column("ns per sample", |found| found.unused.0.nanoseconds())
-        .column("ratio (confidence)", |found| told(&found.unused.1, 3))
+        .number("ns per sample, unused", Decimals(0), |found| found.unused.0.nanoseconds())
+        .told("ratio unused / absent (confidence)", Decimals(3), |found| Told::from(found.unused.1))
         .column("used", |found| place(&found.price.used))
-        .column("ns per sample", |found| found.used.0.nanoseconds())
-        .column("rays per sample", |found| number(found.used.0.rays, 2))
-        .column("ratio (confidence)", |found| told(&found.used.1, 3))
+        .number("ns per sample, used", Decimals(0), |found| found.used.0.nanoseconds())
+        .number("rays per sample, used", Decimals(2), |found| found.used.0.rays)
+        .told("ratio used / absent (confidence)", Decimals(3), |found| Told::from(found.used.1))
         .end();
     [Block::figure("effects", plot)].into_iter().chain(generality(&found)).chain([table]).collect()
 }
@@ -222,9 +222,9 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
     let table = Block::table("profiles-table", "Every scene under the fitting and the largest profile", &fits)
         .column("scene", |fit| fit.scene.to_string())
         .column("fitting profile", |fit| fit.profile.to_string())
-        .column("ns per sample", |fit| fit.fitting.nanoseconds())
-        .column("ns per sample with all effects", |fit| fit.largest.nanoseconds())
-        .column("ratio (confidence)", |fit| told(&fit.ratio, 3))
+        .number("ns per sample", Decimals(0), |fit| fit.fitting.nanoseconds())
+        .number("ns per sample with all effects", Decimals(0), |fit| fit.largest.nanoseconds())
+        .told("ratio (confidence)", Decimals(3), |fit| Told::from(fit.ratio))
         .end();
     [Block::figure("profiles", plot), finding].into_iter().chain(diffuse).chain([table]).collect()
 }

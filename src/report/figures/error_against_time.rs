@@ -27,17 +27,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("scene", |(contender, _)| contender.image.scene.clone())
         .column("estimator + sampler", |(contender, _)| contender.name.clone())
         .column("spp", |(_, point)| point.spp.to_string())
-        .column("seconds", |(_, point)| format!("{:.4}", point.seconds))
-        .column("RMSE", |(_, point)| format!("{:.5}", point.rmse))
-        .column("95 % interval", |(_, point)| {
-            point.interval.map_or_else(|| "none".to_string(), |i| format!("{:.5} to {:.5}", i.low, i.high))
-        })
-        .column("variation over seeds", |(_, point)| number(point.variation, 3))
+        .number("seconds", Decimals(4), |(_, point)| point.seconds)
+        .told("RMSE", Decimals(5), |(_, point)| Told::of(point.rmse, point.interval))
+        .number("variation over seeds", Decimals(3), |(_, point)| point.variation)
         .end();
     Ok(vec![Block::figure("error-against-time", chart), table])
 }
 
 fn series(index: usize, contender: &Contender) -> Series {
-    let point = |point: &CostPoint| Told { value: point.rmse, interval: point.interval }.above(point.seconds);
+    let point = |point: &CostPoint| Told::of(point.rmse, point.interval).above(point.seconds);
     Series::new(&contender.name, Look::nth(index), contender.points.iter().map(point).collect()).banded()
 }

@@ -24,9 +24,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let found: Vec<String> = rows
         .iter()
         .filter_map(|row| {
-            let best = row.dots.iter().zip(others).filter_map(|(dot, name)| Some((dot.as_ref()?.value, name)));
-            let (value, name) = best.max_by(|a, b| a.0.total_cmp(&b.0))?;
-            Some(format!("{} {value:.2} ({name})", row.name))
+            let best = row.dots.iter().zip(others).filter_map(|(dot, name)| Some((dot.as_ref()?, name)));
+            let (dot, name) = best.max_by(|a, b| a.0.value.total_cmp(&b.0.value))?;
+            let (low, high) = dot.interval?;
+            let found = format!("{name} {:.2} ({low:.2} to {high:.2})", dot.value);
+            Some(match (low > 1.0, high < 1.0) {
+                (true, _) => format!("{}: {found}", row.name),
+                (_, true) => format!("{}: {first}, beside {found}", row.name),
+                _ => format!("{}: {first} or {found}, not told apart", row.name),
+            })
         })
         .collect();
     let plot = DotPlot::new(
@@ -40,6 +46,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.caption = "Bars: 95 % interval over seeds, of error and time together.".to_string();
     Ok(vec![
         Block::figure("estimators", plot),
-        Block::finding(format!("The best estimator of each scene, in times as fast as {first}: {}.", found.join(", "))),
+        Block::finding(format!("The best estimator of each scene, in times as fast as {first}. {}.", found.join("; "))),
     ])
 }

@@ -28,6 +28,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .to_string(),
         rows: cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect(),
         bar: None,
+        comparison: Comparison::Single,
     };
     Ok(vec![Block::sheet("gallery", &sheet)?])
 }

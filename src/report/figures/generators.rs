@@ -40,8 +40,8 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>, digits: usize) -> String {
-        number(typical(self.rows.iter().copied(), value), digits)
+    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
+        typical(self.rows.iter().copied(), value)
     }
 }
 
@@ -70,11 +70,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
         .column("threads", |line| line.crew.to_string())
-        .column("median seconds", |line| format!("{:.4}", line.seconds.value))
-        .column("interval (confidence)", |line| line.seconds.interval.map_or(String::new(), |i| with_level(&i, 4)))
-        .column("switches per second", |line| line.typical(switches_per_second, 0))
-        .column("CPU / wall", |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?), 2))
-        .column("system share of CPU", |line| line.typical(|row| Some(row.cpu_system_s? / row.cpu_s()?), 2))
+        .told("median seconds (confidence)", Decimals(4), |line| line.seconds)
+        .number("switches per second", Decimals(0), |line| line.typical(switches_per_second))
+        .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
+        .number("system share of CPU", Decimals(2), |line| line.typical(|row| Some(row.cpu_system_s? / row.cpu_s()?)))
         .end();
     Ok([Block::figure("generators", plot)].into_iter().chain(finding).chain([table]).collect())
 }

@@ -70,22 +70,20 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .column("", |line| line.name.clone())
             .column("threads", |line| line.threads.to_string())
             .column("kernel", |line| line.kernel.clone())
-            .column("Msamples/s", |line| line.rate(|row| row.paths))
-            .column("Mrays/s", |line| line.rate(|row| row.rays))
-            .column(format!("times as fast as {yardstick} (confidence)"), |line| {
-                line.ratio.map_or_else(|| "-".to_string(), |ratio| told(&ratio, 2))
-            })
+            .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
+            .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
+            .told(format!("times as fast as {yardstick} (confidence)"), Decimals(2), |line| line.ratio.map(Told::from))
             .end(),
     );
     Ok(blocks)
 }
 
 impl Line<'_> {
-    fn rate(&self, count: fn(&Row) -> Option<u64>) -> String {
+    fn rate(&self, count: fn(&Row) -> Option<u64>) -> Option<f64> {
         // Of a curve, its end: the longest of its renders.
         let spp = self.rows.iter().map(|row| row.spp).max();
         let longest = self.rows.iter().copied().filter(|row| Some(row.spp) == spp);
-        number(median(&values(longest, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6))), 2)
+        median(&values(longest, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6)))
     }
 }
 

@@ -54,22 +54,26 @@ pub struct FigureEntry {
     /// What it shows, in a line.
     pub about: &'static str,
     make: fn(&Results) -> Result<Vec<Block>>,
+    /// Whether it compares with serial runs.
+    of_serial: bool,
     /// Refuses options that it does not have.
     check: fn(&Definition, &str) -> Result<()>,
 }
 
 macro_rules! entries {
-    ($($module:ident, $name:literal, $options:ty, $about:literal;)*) => {
+    ($($module:ident, $name:literal, $options:ty, $(needs $baseline:ident,)? $about:literal;)*) => {
         &[$(FigureEntry {
             name: $name,
             about: $about,
             make: $module::blocks,
+            of_serial: !<[&str]>::is_empty(&[$(stringify!($baseline))?]),
             check: options::check::<$options>,
         }),*]
     };
 }
 
-/// The figures, in the order in which they are listed: module, name, what the experiment may tell it, and what it shows.
+/// The figures, in the order in which they are listed: module, name, what the experiment may tell it, whether it needs serial runs to compare
+/// with, and what it shows.
 pub const FIGURES: &[FigureEntry] = entries! {
     contact_sheet, "contact-sheet", NoOptions, "renders at growing spp beside the reference, with maps of their error";
     rmse_against_spp, "rmse-against-spp", NoOptions, "error against samples per pixel, with the fitted slope";
@@ -84,10 +88,10 @@ pub const FIGURES: &[FigureEntry] = entries! {
     bias, "bias", bias::Options, "light, noise and doubtful pixels by epsilon, filter or clamp";
     clamp_bias, "clamp-bias", clamp_bias::Options, "light lost by clamping each subpixel before averaging, by samples per pixel";
     time_against_spp, "time-against-spp", NoOptions, "seconds against samples per pixel, with the linear fit";
-    speedup, "speedup", NoOptions, "speedup, efficiency and Karp-Flatt serial fraction against threads";
+    speedup, "speedup", NoOptions, needs serial, "speedup, efficiency and Karp-Flatt serial fraction against threads";
     baselines, "baselines", NoOptions, "speedups of one schedule against several baselines, and those above the number of workers";
-    scaling_laws, "scaling-laws", NoOptions, "Amdahl's law and the Universal Scalability Law fitted to the speedups";
-    weak_scaling, "weak-scaling", NoOptions, "scaled speedup against threads, with Gustafson's law";
+    scaling_laws, "scaling-laws", NoOptions, needs serial, "Amdahl's law and the Universal Scalability Law fitted to the speedups";
+    weak_scaling, "weak-scaling", NoOptions, needs serial, "scaled speedup against threads, with Gustafson's law";
     clock, "clock", NoOptions, "what CPU time, as clock() counts it, would have claimed";
     granularity, "granularity", NoOptions, "efficiency against the size of a job, METG(50 %), overhead of a job";
     oversubscription, "oversubscription", oversubscription::Options, "time against threads and pieces beyond the number of processors";
@@ -123,6 +127,12 @@ pub fn check_figures(definition: &Definition) -> Result<()> {
             .into());
     }
     options::check_tables(definition)
+}
+
+/// The first of the experiment's figures that compares with serial runs.
+pub fn figure_of_serial(definition: &Definition) -> Option<&'static str> {
+    let figures = definition.figures.iter().filter_map(|name| find(name));
+    figures.into_iter().find(|entry| entry.of_serial).map(|entry| entry.name)
 }
 
 /// Everything that the experiment's figures show.

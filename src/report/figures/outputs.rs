@@ -13,8 +13,8 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>, digits: usize) -> String {
-        number(typical(self.rows.iter().copied(), value), digits)
+    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
+        typical(self.rows.iter().copied(), value)
     }
 }
 
@@ -54,13 +54,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("output", |line| line.output.to_string())
         .column("pieces", |line| line.decomposition.to_string())
         .column("threads", |line| line.threads.to_string())
-        .column("median ms", |line| line.typical(|row| Some(row.makespan_s? * 1e3), 3))
-        .column(format!("time / time with {yardstick}"), |line| {
-            line.ratio.map_or_else(|| "1".to_string(), |e| told(&e, 3))
+        .number("median ms", Decimals(3), |line| line.typical(|row| Some(row.makespan_s? * 1e3)))
+        .told(format!("time / time with {yardstick}"), Decimals(3), |line| {
+            line.ratio.map_or(Told::of(1.0, None), Told::from)
         })
-        .column("ms to put the film together", |line| line.typical(|row| Some(row.merge_s? * 1e3), 3))
-        .column("peak memory, MiB", |line| line.typical(|row| Some(row.peak_rss_bytes? as f64 / f64::from(1 << 20)), 1))
-        .column("voluntary switches", |line| line.typical(|row| Some(row.voluntary_switches? as f64), 0))
+        .number("ms to put the film together", Decimals(3), |line| line.typical(|row| Some(row.merge_s? * 1e3)))
+        .number("peak memory, MiB", Decimals(1), |line| {
+            line.typical(|row| Some(row.peak_rss_bytes? as f64 / f64::from(1 << 20)))
+        })
+        .number("voluntary switches", Decimals(0), |line| line.typical(|row| Some(row.voluntary_switches? as f64)))
         .end();
     Ok(vec![Block::figure("outputs", plot), table])
 }

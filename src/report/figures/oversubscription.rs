@@ -91,7 +91,7 @@ fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
         against_few.extend(ratio(few, &row.decomposition));
     }
     let in_words = |ratios: &[f64]| {
-        let Told { value, interval } = Told::median(ratios)?;
+        let Told { value, interval, .. } = Told::median(ratios)?;
         let interval = interval?;
         let verdict = match (interval.low > 1.0, interval.high < 1.0) {
             (true, _) => "longer",

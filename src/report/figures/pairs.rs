@@ -32,21 +32,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     if pairs.is_empty() {
         return Ok(Vec::new());
     }
-    let value = |e: &Option<Estimate>| e.map_or("-".to_string(), |e| format!("{:.3}", e.value));
-    let interval = |e: &Option<Estimate>| {
-        e.map_or("-".to_string(), |e| format!("{:.3} to {:.3}", e.interval.low, e.interval.high))
-    };
     blocks.push(
         Block::table("pairs", "A against B: at equal error, and at equal time", pairs)
             .column("scene", |pair| pair.a.image.scene.clone())
             .column("A", |pair| pair.a.name.clone())
             .column("B", |pair| pair.b.name.clone())
-            .column("at RMSE", |pair| format!("{:.4}", pair.place.rmse))
-            .column("seconds of A / seconds of B", |pair| value(&pair.time))
-            .column("95 % interval", |pair| interval(&pair.time))
-            .column("after seconds", |pair| format!("{:.3}", pair.place.seconds))
-            .column("RMSE of A / RMSE of B", |pair| value(&pair.error))
-            .column("95 % interval", |pair| interval(&pair.error))
+            .number("at RMSE", Decimals(4), |pair| pair.place.rmse)
+            .told("seconds of A / seconds of B", Decimals(3), |pair| pair.time.map(Told::from))
+            .number("after seconds", Decimals(3), |pair| pair.place.seconds)
+            .told("RMSE of A / RMSE of B", Decimals(3), |pair| pair.error.map(Told::from))
             .end(),
     );
     Ok(blocks)

@@ -55,26 +55,21 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         "Mean over seeds, both precisions with the same random numbers to fewer digits. Bars: 95 %.".to_string();
     let rmse = |rows: &[&Row]| {
         let mse = values(rows.iter().copied(), |row| row.mse);
-        format!("{:.4}", (mse.iter().sum::<f64>() / mse.len() as f64).sqrt())
+        (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
     };
     let sum = |rows: &[&Row], count: fn(&Row) -> Option<u64>| {
         rows.iter().filter_map(|row| count(row)).sum::<u64>().to_string()
     };
     let table = Block::table("precision", "Single precision beside double", &pairs)
         .column("", |pair| pair.name.clone())
-        .column("seconds of double / seconds of single (95 %)", |pair| {
-            format!("{:.2} ({:.2} to {:.2})", pair.time.value, pair.time.interval.low, pair.time.interval.high)
-        })
-        .column("RMSE, double", |pair| rmse(&pair.double))
-        .column("RMSE, single", |pair| rmse(&pair.single))
-        .column("light of single / light of double - 1 (95 %)", |pair| {
-            let words = |e: Estimate| format!("{:+.1e} ({:+.1e} to {:+.1e})", e.value, e.interval.low, e.interval.high);
-            pair.light.map_or_else(|| "-".to_string(), words)
-        })
+        .told("seconds of double / seconds of single", Decimals(2), |pair| Told::from(pair.time))
+        .number("RMSE, double", Decimals(4), |pair| rmse(&pair.double))
+        .number("RMSE, single", Decimals(4), |pair| rmse(&pair.single))
+        .told("light of single / light of double - 1", Significant(2), |pair| pair.light.map(Told::from))
         .column("rays that met nothing, double", |pair| sum(&pair.double, |row| row.escaped))
-        .column("single", |pair| sum(&pair.single, |row| row.escaped))
+        .column("rays that met nothing, single", |pair| sum(&pair.single, |row| row.escaped))
         .column("invalid samples, double", |pair| sum(&pair.double, |row| row.invalid_samples))
-        .column("single", |pair| sum(&pair.single, |row| row.invalid_samples))
+        .column("invalid samples, single", |pair| sum(&pair.single, |row| row.invalid_samples))
         .end();
     Ok(vec![Block::figure("precision", plot), table])
 }

@@ -7,13 +7,14 @@ pub(super) use crate::error::Result;
 pub(super) use crate::measure::ImageKey;
 pub(super) use crate::plot::style::Look;
 pub(super) use crate::plot::{
-    Axis, Cell, ContactSheet, Curve, DotPlot, LineChart, Overlay, Point, Row as PlotRow, Series,
+    Axis, Cell, Comparison, ContactSheet, Curve, DotPlot, LineChart, Overlay, Point, Row as PlotRow, Series,
 };
 pub(super) use crate::report::block::Block;
 pub(super) use crate::report::naming::joined;
 pub(super) use crate::report::results::Results;
 pub(super) use crate::report::rows::{Row, gathered, group, ratios, time_ratio, unique};
 pub(super) use crate::report::schedule::Schedule;
+pub(super) use crate::report::table::Digits::{Decimals, Significant};
 pub(super) use crate::report::words::{
     LEVEL, Told, confidence, in_table_order, number, told, typical, values, with_level,
 };

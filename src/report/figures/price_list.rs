@@ -1,7 +1,6 @@
 //! The price list: samples and seconds to each accuracy, and how well a part of the measurements predicts the rest.
 
 use super::prelude::*;
-use crate::plot::number::short;
 use crate::report::contenders::{Check, Contender, contenders, missing};
 
 #[derive(Deserialize)]
@@ -44,29 +43,21 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     blocks.extend(missing(results));
     blocks.extend(checked(&checks));
 
-    let check = |check: &Option<Check>, of: &dyn Fn(&Check) -> String| check.as_ref().map_or("-".to_string(), of);
     let mut table = Block::table("price-list", "Price list, intervals of 95 %", checks)
         .column("", |(contender, _)| name(contender))
-        .column("variance of a sample", |(contender, _)| variance(contender).map_or("-".to_string(), |v| short(v, 3)))
-        .column("s per sample and pixel", |(contender, _)| text(Some(contender.renderer.seconds_per_spp)))
-        .column("efficiency, 1 / (variance x s)", |(contender, _)| text(contender.renderer.efficiency()));
+        .number("variance of a sample", Significant(3), |(contender, _)| variance(contender))
+        .told("s per sample and pixel", Significant(3), |(own, _)| Told::from(own.renderer.seconds_per_spp))
+        .told("efficiency, 1 / (variance x s)", Significant(3), |(own, _)| own.renderer.efficiency().map(Told::from));
     for goal in &goals {
         let head = format!("seconds to an RMSE of {}", goal.0);
-        table = table.column(head, |(contender, _)| text(seconds(contender, *goal)));
+        table = table.told(head, Significant(3), |(contender, _)| seconds(contender, *goal).map(Told::from));
     }
     let table = table
-        .column("predicted for spp", |(_, found)| check(found, &|check| check.spp.to_string()))
-        .column("RMSE, measured / predicted", |(_, found)| check(found, &|check| format!("{:.3}", check.rmse)))
-        .column("seconds, measured / predicted", |(_, found)| check(found, &|check| format!("{:.3}", check.seconds)));
+        .number("predicted for spp", Decimals(0), |(_, found)| found.as_ref().map(|check| f64::from(check.spp)))
+        .number("RMSE, measured / predicted", Decimals(3), |(_, found)| found.as_ref().map(|check| check.rmse))
+        .number("seconds, measured / predicted", Decimals(3), |(_, found)| found.as_ref().map(|check| check.seconds));
     blocks.push(table.end());
     Ok(blocks)
-}
-
-/// Three significant digits, with the interval.
-fn text(estimate: Option<Estimate>) -> String {
-    let words =
-        |e: Estimate| format!("{} ({} to {})", short(e.value, 3), short(e.interval.low, 3), short(e.interval.high, 3));
-    estimate.map_or_else(|| "-".to_string(), words)
 }
 
 fn variance(contender: &Contender) -> Option<f64> {

@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let at_spp = group(rows.iter().copied(), |row| row.spp).into_iter().filter_map(|(spp, rows)| {
             let mse = one_per_seed(&rows, |row| row.mse);
             let interval = over_seeds(&mse, LEVEL).map(|error| error.rmse.interval);
-            let error = Told { value: root_of_mean(&mse), interval };
+            let error = Told { count: Some(mse.len()), ..Told::of(root_of_mean(&mse), interval) };
             let shown = root_of_mean(&one_per_seed(&rows, |row| row.mse_display));
             (!mse.is_empty()).then(|| Line { image: name.clone(), spp, seeds: mse.len(), error, shown })
         });
@@ -73,11 +73,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("image", |line| line.image.clone())
         .column("spp", |line| line.spp.to_string())
         .column("seeds", |line| line.seeds.to_string())
-        .column("RMSE, linear", |line| format!("{:.5}", line.error.value))
-        .column("95 % interval", |line| {
-            line.error.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.5} to {high:.5}"))
-        })
-        .column("RMSE, display", |line| format!("{:.5}", line.shown))
+        .told("RMSE, linear", Decimals(5), |line| line.error)
+        .number("RMSE, display", Decimals(5), |line| line.shown)
         .end();
     let mut blocks = vec![Block::figure("rmse-against-spp", chart)];
     blocks.extend(findings);

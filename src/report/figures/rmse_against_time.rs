@@ -71,12 +71,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("rmse-against-time", "Price of accuracy by schedule", &places)
         .column("schedule", |place| label(&place.key))
         .column("spp", |place| place.spp.to_string())
-        .column("median seconds", |place| format!("{:.4}", place.seconds.value))
-        .column("interval (confidence)", |place| {
-            place.seconds.interval.map_or("one run".to_string(), |i| with_level(&i, 4))
-        })
-        .column("RMSE, linear", |place| format!("{:.5}", place.mse.sqrt()))
-        .column("MSE x seconds", |place| format!("{:.3e}", place.price()))
+        .told("median seconds (confidence)", Decimals(4), |place| place.seconds)
+        .number("RMSE, linear", Decimals(5), |place| place.mse.sqrt())
+        .number("MSE x seconds", Significant(4), |place| place.price())
         .end();
     Ok([Block::figure("rmse-against-time", chart)].into_iter().chain(price).chain([table]).collect())
 }

@@ -114,9 +114,9 @@ fn table(pairs: &[Pair<'_>]) -> Block {
         .column("scene", |(scene, ..)| (*scene).to_string())
         .column("directions", |(_, directions, ..)| (*directions).to_string())
         .column("runs", |(_, _, runs, ..)| runs.to_string())
-        .column("RMSE, linear", |(.., variance, _)| number(variance.map(f64::sqrt), 4))
-        .column("ns a sample", |(.., time)| format!("{time:.0}"))
-        .column("1 / (variance x us a sample)", |(.., variance, time)| number(efficiency(*variance, *time), 3))
+        .number("RMSE, linear", Decimals(4), |(.., variance, _)| variance.map(f64::sqrt))
+        .number("ns a sample", Decimals(0), |(.., time)| *time)
+        .number("1 / (variance x us a sample)", Decimals(3), |(.., variance, time)| efficiency(*variance, *time))
         .end()
 }
 
@@ -128,6 +128,12 @@ fn sheet(results: &Results, pairs: &[Pair<'_>]) -> Result<Option<Block>> {
         cells.push(Some(Cell::of(&image, vec![pair.scene.to_string(), "reference".to_string()])?));
     }
     let title = "Report B's material by roughness".to_string();
-    let sheet = ContactSheet { title, subtitle: results.machine_line(), rows: vec![cells], bar: None };
+    let sheet = ContactSheet {
+        title,
+        subtitle: results.machine_line(),
+        rows: vec![cells],
+        bar: None,
+        comparison: Comparison::Wipe,
+    };
     Block::sheet("roughness-images", &sheet).map(Some)
 }

@@ -2,6 +2,7 @@
 
 use super::prelude::*;
 use crate::report::contenders::{Contender, contenders};
+use std::cmp::Ordering;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let yardstick = yardstick(results, "roulette", "albedo:5")?;
@@ -13,7 +14,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             Some((contender, gain(contender, contenders.iter().find(same)?)?))
         })
     });
-    let compared: Vec<(&Contender, Estimate)> = compared.collect();
+    let mut compared: Vec<(&Contender, Estimate)> = compared.collect();
+    compared.sort_by(|(a, _), (b, _)| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
     let Some((best, most)) = first_largest(&compared) else {
         let text = format!("There is no comparison of rules: it takes rows with {yardstick}.");
         return Ok(vec![Block::finding(text)]);
@@ -33,8 +35,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     chart.subtitle = results.workload();
     chart.caption = "Efficiency: 1 / (variance of a sample x its seconds). Bars: 95 % interval over seeds.".to_string();
     chart.dodge = 6.0;
-    let finding =
-        format!("Of the rules that were tried, the most efficient is {}: {most:.2} times {yardstick}.", best.name);
+    let Interval { low, high, .. } = most.interval;
+    let finding = format!(
+        "Of the rules that were tried, {} is the most efficient: {:.2} ({low:.2} to {high:.2}) times {yardstick}.",
+        best.name, most.value
+    );
     // Over all schedules of the image.
     let totals = results.by(|row| (&row.scene, &row.estimator, &row.roulette));
     let rays = |contender: &Contender| {
@@ -50,19 +55,24 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("roulette", title, &compared)
         .column("scene", |(contender, _)| contender.image.scene.clone())
         .column("rule", |(contender, _)| format!("{} {}", contender.image.estimator, contender.image.roulette))
-        .column("variance of a sample", |(contender, _)| format!("{:.4}", variance(contender)))
-        .column("s per sample and pixel", |(contender, _)| format!("{:.6}", contender.renderer.seconds_per_spp.value))
-        .column("rays per sample", |(contender, _)| format!("{:.2}", rays(contender)))
-        .column("efficiency", |(_, gain)| format!("{:.3}", gain.value))
-        .column("95 % interval", |(_, gain)| format!("{:.3} to {:.3}", gain.interval.low, gain.interval.high))
+        .number("variance of a sample", Decimals(4), |(contender, _)| variance(contender))
+        .number("s per sample and pixel", Decimals(6), |(contender, _)| contender.renderer.seconds_per_spp.value)
+        .number("rays per sample", Decimals(2), |(contender, _)| rays(contender))
+        .told("efficiency", Decimals(3), |(_, gain)| Told::from(*gain))
         .end();
     Ok(vec![Block::figure("roulette", chart), Block::finding(finding), table])
 }
 
+/// Scene, estimator and rule in the order of a reader, who counts 2 before 10.
+fn place(contender: &Contender) -> (&str, &str, &str, f64) {
+    let image = &contender.image;
+    let (rule, start) = image.roulette.split_once(':').unwrap_or((&image.roulette, ""));
+    (&image.scene, &image.estimator, rule, start.parse().unwrap_or(0.0))
+}
+
 /// The first of the largest gains.
-fn first_largest<'a>(compared: &[(&'a Contender, Estimate)]) -> Option<(&'a Contender, f64)> {
-    let largest = compared.iter().rev().max_by(|a, b| a.1.value.total_cmp(&b.1.value))?;
-    Some((largest.0, largest.1.value))
+fn first_largest<'a>(compared: &[(&'a Contender, Estimate)]) -> Option<(&'a Contender, Estimate)> {
+    compared.iter().rev().max_by(|a, b| a.1.value.total_cmp(&b.1.value)).copied()
 }
 
 /// Both of independent seeds' errors and times.

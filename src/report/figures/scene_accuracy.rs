@@ -90,7 +90,7 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
             rows.iter().filter_map(|row| Some((row.seed, row.mse? / (radiance * radiance)))).collect();
         let squares: Vec<f64> = mse.values().copied().collect();
         let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
-        let error = Told { value: (squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval };
+        let error = Told::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
         let series = results.series_name(first);
         let accuracy = Accuracy {
             name: if series.is_empty() { image.scene.clone() } else { series },
@@ -191,18 +191,15 @@ fn table(scenes: &[Accuracy], goal: f64) -> Block {
     let variance = |scene: &Accuracy| f64::from(scene.spp) * scene.error.value * scene.error.value;
     Block::table("scene-accuracy-table", "Accuracy by scene, most accurate first", scenes)
         .column("scene", |scene| scene.name.clone())
-        .column("mean radiance", |scene| format!("{:.4}", scene.radiance))
-        .column("RMSE, linear", |scene| format!("{:.4}", scene.error.value * scene.radiance))
-        .column("RMSE / mean radiance", |scene| format!("{:.4}", scene.error.value))
-        .column("95 % interval over seeds", |scene| {
-            scene.error.bar().map_or_else(|| "none".to_string(), |(low, high)| format!("{low:.4} to {high:.4}"))
-        })
+        .number("mean radiance", Decimals(4), |scene| scene.radiance)
+        .number("RMSE, linear", Decimals(4), |scene| scene.error.value * scene.radiance)
+        .told("RMSE / mean radiance", Decimals(4), |scene| scene.error)
         .column("seeds", |scene| scene.by_seed.len().to_string())
-        .column("rays per sample", |scene| format!("{:.2}", scene.rays))
-        .column("ns per sample", |scene| format!("{:.0}", scene.sample_s * 1e9))
-        .column("efficiency, 1 / (relative variance of a sample x µs)", |scene| {
-            format!("{:.4}", 1.0 / (variance(scene) * scene.sample_s * 1e6))
+        .number("rays per sample", Decimals(2), |scene| scene.rays)
+        .number("ns per sample", Decimals(0), |scene| scene.sample_s * 1e9)
+        .number("efficiency, 1 / (relative variance of a sample x µs)", Decimals(4), |scene| {
+            1.0 / (variance(scene) * scene.sample_s * 1e6)
         })
-        .column(format!("processor seconds to {} % error", 100.0 * goal), |scene| format!("{:.2}", scene.price_s(goal)))
+        .number(format!("processor seconds to {} % error", 100.0 * goal), Decimals(2), |scene| scene.price_s(goal))
         .end()
 }

@@ -12,8 +12,8 @@ struct Line<'a> {
 }
 
 impl Line<'_> {
-    fn typical(&self, value: impl Fn(&Row) -> Option<f64>, digits: usize) -> String {
-        number(typical(self.rows.iter().copied(), value), digits)
+    fn typical(&self, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
+        typical(self.rows.iter().copied(), value)
     }
 }
 
@@ -39,15 +39,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .column("threads", |line| line.first.threads.to_string())
             .column("jobs", |line| line.first.jobs.to_string())
             .column("runs", |line| line.times.len().to_string())
-            .column("median seconds", |line| format!("{:.4}", line.seconds.value))
-            .column("interval (confidence)", |line| {
-                line.seconds.interval.map_or("one run".to_string(), |i| with_level(&i, 4))
+            .told("median seconds (confidence)", Decimals(4), |line| line.seconds)
+            .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
+            .number("load imbalance", Decimals(3), |line| line.typical(imbalance))
+            .number("longest job, ms", Decimals(1), |line| {
+                line.typical(|row| alone(row).and(Some(row.job_max_s? * 1e3)))
             })
-            .column("CPU / wall", |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?), 2))
-            .column("load imbalance", |line| line.typical(imbalance, 3))
-            .column("longest job, ms", |line| line.typical(|row| alone(row).and(Some(row.job_max_s? * 1e3)), 1))
-            .column("voluntary switches", |line| line.typical(|row| Some(row.voluntary_switches? as f64), 0))
-            .column("forced switches", |line| line.typical(|row| Some(row.involuntary_switches? as f64), 0))
+            .number("voluntary switches", Decimals(0), |line| line.typical(|row| Some(row.voluntary_switches? as f64)))
+            .number("forced switches", Decimals(0), |line| line.typical(|row| Some(row.involuntary_switches? as f64)))
             .end(),
     ])
 }

@@ -11,6 +11,9 @@ use crate::report::serial::Serial;
 /// More lines than this cannot be told apart in one chart: strategies become named rows instead.
 const MOST_LINES: usize = 8;
 
+/// Up to so many threads have a linear axis.
+const FEW_THREADS: f64 = 16.0;
+
 /// The speedups, and what is known beside them.
 struct Speedups<'a> {
     results: &'a Results,
@@ -60,8 +63,7 @@ impl Speedups<'_> {
 
     fn table(&self) -> Block {
         let fraction = |schedule: &Schedule, workers: usize| {
-            let found = serial_fraction_estimate(&self.serial.paired_speedups(schedule), workers, LEVEL);
-            found.map_or_else(|| "-".to_string(), |e| told(&e, 3))
+            serial_fraction_estimate(&self.serial.paired_speedups(schedule), workers, LEVEL).map(Told::from)
         };
         let used = |schedule: &Schedule| self.in_use(schedule.key.threads);
         let title = "Speedup against serial, efficiency and Karp-Flatt serial fraction";
@@ -69,13 +71,14 @@ impl Speedups<'_> {
             .column("strategy", |(schedule, _)| schedule.name.clone())
             .column("pieces", |(schedule, _)| schedule.key.decomposition.clone())
             .column("threads", |(schedule, _)| schedule.key.threads.to_string())
-            .column("speedup", |(_, speedup)| format!("{:.3}", speedup.value))
-            .column("interval (confidence)", |(_, speedup)| with_level(&speedup.interval, 3))
-            .column("efficiency per thread", |(s, speedup)| number(efficiency(speedup.value, s.key.threads), 3))
-            .column("efficiency per processor in use", |(s, speedup)| number(efficiency(speedup.value, used(s)), 3))
-            .column("work inflation", |(schedule, _)| number(self.serial.work_inflation(schedule), 3))
-            .column("e, p = threads (confidence)", |(schedule, _)| fraction(schedule, schedule.key.threads))
-            .column("e, p = processors in use (confidence)", |(schedule, _)| fraction(schedule, used(schedule)))
+            .told("speedup (confidence)", Decimals(3), |(_, speedup)| Told::from(*speedup))
+            .number("efficiency per thread", Decimals(3), |(s, speedup)| efficiency(speedup.value, s.key.threads))
+            .number("efficiency per processor in use", Decimals(3), |(s, speedup)| efficiency(speedup.value, used(s)))
+            .number("work inflation", Decimals(3), |(schedule, _)| self.serial.work_inflation(schedule))
+            .told("e, p = threads (confidence)", Decimals(3), |(schedule, _)| fraction(schedule, schedule.key.threads))
+            .told("e, p = processors in use (confidence)", Decimals(3), |(schedule, _)| {
+                fraction(schedule, used(schedule))
+            })
             .column("remark", |(schedule, speedup)| self.remark(schedule, speedup))
             .end()
     }
@@ -128,8 +131,9 @@ impl Speedups<'_> {
             dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)).dot());
         }
         let mut rows: Vec<PlotRow> = rows.into_iter().map(|(name, dots)| PlotRow::new(name, dots)).collect();
-        let best = |row: &PlotRow| row.dots.iter().flatten().map(|dot| dot.value).fold(0.0, f64::max);
-        rows.sort_by(|a, b| best(b).total_cmp(&best(a)));
+        // By the most threads, which is what a reader looks for.
+        let at_most = |row: &PlotRow| row.dots.iter().flatten().next_back().map_or(0.0, |dot| dot.value);
+        rows.sort_by(|a, b| at_most(b).total_cmp(&at_most(a)));
         let name = |threads: &usize| if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") };
         let mut names: Vec<String> = threads.iter().map(name).collect();
         if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
@@ -154,8 +158,10 @@ impl Speedups<'_> {
     }
 
     fn chart(&self, title: &str, y: Axis, series: Vec<Series>, caption: &str) -> LineChart {
-        let ticks = series.iter().flat_map(|series| &series.points).map(|point| point.x);
-        let x = Axis::log("threads").ticks_at(ticks);
+        let ticks: Vec<f64> = series.iter().flat_map(|series| &series.points).map(|point| point.x).collect();
+        // A speedup in proportion to the threads is a straight line on linear axes; many threads have no room there.
+        let few = ticks.iter().all(|threads| *threads <= FEW_THREADS);
+        let x = if few { Axis::linear("threads") } else { Axis::log("threads") }.ticks_at(ticks);
         let mut chart = LineChart::new(title, x, y, series);
         chart.subtitle = self.results.workload();
         chart.caption = caption.to_string();

@@ -16,7 +16,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let Some(row) = Results::typical(&rows) else { continue };
         let Some(trace) = results.trace(row)? else { continue };
         let Some(balance) = timeline::balance(&trace) else { continue };
-        schedules.push(timeline::lanes(&trace, &balance));
+        schedules.push(timeline::lanes(&trace, &balance, processors));
         runs.push((timeline::name(&trace), balance, schedule.key.threads <= processors));
     }
     let mut chart = timeline::charts(schedules, results.workload());
@@ -28,11 +28,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("balance", "Where workers times makespan went", &runs)
         .column("schedule", |(name, ..)| name.clone())
         .column("jobs", |(_, balance, _)| balance.jobs().to_string())
-        .column("makespan, ms", |(_, balance, _)| format!("{:.2}", balance.makespan_s * 1e3))
+        .number("makespan, ms", Decimals(2), |(_, balance, _)| balance.makespan_s * 1e3)
         .column("busy", |(_, balance, _)| share(balance, balance.busy_s()))
         .column("gaps", |(_, balance, _)| share(balance, balance.gap_s()))
         .column("tail", |(_, balance, _)| share(balance, balance.tail_s()))
-        .column("load imbalance", |(_, balance, alone)| number(balance.imbalance().filter(|_| *alone), 3))
+        .number("load imbalance", Decimals(3), |(_, balance, alone)| balance.imbalance().filter(|_| *alone))
         .column("gap per job, µs", |(_, balance, alone)| {
             number(balance.overhead_per_job_s().map(|seconds| seconds * 1e6).filter(|_| *alone), 2)
         })

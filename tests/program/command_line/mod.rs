@@ -57,3 +57,24 @@ fn quiet_is_quiet_and_talk_goes_to_stderr() {
     let finished = run(folder.path(), &sweep);
     assert!(finished.err.contains("tiny") && finished.out.lines().count() == 1, "{}{}", finished.err, finished.out);
 }
+
+/// A script for each shell names the verbs, and a manual page has a head and the options.
+#[test]
+fn completions_and_manual_pages_know_verbs_and_options() {
+    let folder = tempfile::tempdir().unwrap();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = run(folder.path(), &["completions", shell]).out;
+        assert!(
+            ["reproduce", "thread-scaling", "estimator"].iter().filter(|word| script.contains(**word)).count() >= 2
+        );
+    }
+    let page = run(folder.path(), &["man"]).out;
+    assert!(
+        page.contains(".TH pathmark") && page.contains("reproduce") && !page.contains("One cell of a sweep"),
+        "{page}"
+    );
+    let page = run(folder.path(), &["man", "render"]).out;
+    assert!(page.contains("pathmark render") && page.contains("\\-\\-spp"), "{page}");
+    let refused = finish(pathmark(folder.path(), &["man", "rendr"])).with_code(2);
+    assert!(refused.err.contains("did you mean render?"), "{}", refused.err);
+}

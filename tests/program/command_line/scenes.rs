@@ -27,7 +27,7 @@ fn an_experiment_can_take_all_scenes_with_their_own_estimators() {
     let cells = definition.cells(Profile::Quick).unwrap();
     let found: Vec<(&str, &str)> = cells.iter().map(|c| (&*c.settings.scene, &*c.settings.spec.estimator)).collect();
     for ((name, _), (scene, estimator)) in SCENES.iter().zip(&found) {
-        let own = load(name).unwrap().default_estimator.unwrap_or_else(|| "smallpt".to_string());
+        let own = load(name).unwrap().estimator().to_string();
         assert_eq!((*scene, *estimator), (*name, &*own));
     }
     assert_eq!(found.len(), SCENES.len());
@@ -138,13 +138,21 @@ fn the_price_of_an_effect_is_a_ratio_of_times() {
     let profiles = with_rows(folder.path(), &text, change, "profiles-table.csv");
     for scene in ["cornell", "cornell-diffuse"] {
         let row = &profiles[scene];
-        assert_eq!((row[2].as_str(), row[3].as_str()), ("2000", "2500"), "{row:?}");
-        assert!(row[4].starts_with("1.250, 1.250 to 1.250"), "{row:?}");
+        // Fitting and largest profile, and the ratio with its ends.
+        for (text, expected) in row[2..7].iter().zip([2000.0, 2500.0, 1.25, 1.25, 1.25]) {
+            assert!((text.parse::<f64>().unwrap() / expected - 1.0).abs() < 1e-12, "{row:?}");
+        }
     }
     assert_eq!((profiles["cornell"][1].as_str(), profiles["cornell-diffuse"][1].as_str()), ("smallpt", "diffuse"));
-    let effects = fs::read_to_string(folder.path().join("out/tiny/figures/effects-table.csv")).unwrap();
-    let glass = effects.lines().find(|line| line.starts_with("mirror and glass")).unwrap();
-    assert!(glass.contains("1.100, 1.100 to 1.100") && glass.contains("1.000, 1.000 to 1.000"), "{glass}");
+    let effects = csv::Reader::from_path(folder.path().join("out/tiny/figures/effects-table.csv")).unwrap();
+    let rows: Vec<BTreeMap<String, String>> = effects.into_deserialize().collect::<csv::Result<_>>().unwrap();
+    let glass = rows.iter().find(|row| row["effect"] == "mirror and glass").unwrap();
+    for (head, expected) in [("ratio unused / absent (confidence)", 1.1), ("ratio used / absent (confidence)", 1.0)] {
+        for end in ["", ": low", ": high"] {
+            let value: f64 = glass[&format!("{head}{end}")].parse().unwrap();
+            assert!((value - expected).abs() < 1e-12, "{head}{end}: {glass:?}");
+        }
+    }
 }
 
 /// Errors are put into the rows: relative ones are those over the mean radiance of the kept images, and the most accurate comes first.
@@ -180,4 +188,21 @@ fn accuracy_by_scene_is_relative_to_its_brightness() {
     let said = page.split("its relative error is ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap();
     assert!((said - ratio).abs() < 0.01, "{said} instead of {ratio}");
     assert!(page.contains("Over 3 different scenes"));
+}
+
+/// A mesh with parts that nothing is done with: said once, however many objects use the file.
+#[test]
+fn unused_parts_of_a_mesh_are_told_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = "mtllib a.mtl\nv 0 0 0\nv 9 0 0\nv 0 9 0\nvn 0 0 1\nvt 0 0\no one\nusemtl red\nf 1/1/1 2/1/1 3/1/1\no two\nf 1 2 3\n";
+    fs::write(folder.path().join("a.obj"), mesh).unwrap();
+    let object = |name: &str| {
+        format!(
+            "[[objects]]\nname = \"{name}\"\nshape = {{ mesh = {{ file = \"a.obj\", object = \"{name}\" }} }}\nmaterial = {{ diffuse = {{ albedo = [0.5, 0.5, 0.5] }} }}\n"
+        )
+    };
+    let scene = format!("about = \"Two\"\nbase = \"cornell\"\n{}{}", object("one"), object("two"));
+    fs::write(folder.path().join("two.toml"), scene).unwrap();
+    let told = run(folder.path(), &["render", "two.toml", "--size", "8x8", "--spp", "4"]).err;
+    assert_eq!(told.matches("a.obj: materials, normals, texture coordinates are not used").count(), 1, "{told}");
 }

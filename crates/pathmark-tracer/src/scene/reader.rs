@@ -132,6 +132,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         about,
         hash: String::new(),
         files: draft.files,
+        remarks: Vec::new(),
         default_estimator: draft.estimator,
         camera,
         primitives: Primitives::default(),
@@ -154,7 +155,8 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
     let mut owners: Vec<Vec<u32>> = vec![Vec::new(); scene.primitives.counts().len()];
     for (index, part) in (0u32..).zip(parts) {
         let before = scene.primitives.counts();
-        let mut files = Files { folder: &part.source.folder, hash, read: &mut scene.files };
+        let mut files =
+            Files { folder: &part.source.folder, hash, read: &mut scene.files, remarks: &mut scene.remarks };
         for shape in part.shapes {
             shape
                 .add_to(&mut scene.primitives, &mut files)

@@ -62,9 +62,17 @@ pub(super) struct Files<'a> {
     pub(super) folder: &'a Folder,
     pub(super) hash: &'a mut Fingerprint,
     pub(super) read: &'a mut Vec<PathBuf>,
+    pub(super) remarks: &'a mut Vec<String>,
 }
 
 impl Files<'_> {
+    /// Something that the user should hear, once: a file may be used by several objects.
+    pub(super) fn remark(&mut self, text: String) {
+        if !self.remarks.contains(&text) {
+            self.remarks.push(text);
+        }
+    }
+
     /// The text of a file.
     pub(super) fn read(&mut self, name: &str) -> Result<String> {
         let text = self.folder.read(name)?;

@@ -32,7 +32,10 @@ impl Shape for Mesh {
     fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
         let text = files.read(&self.file)?;
         let folder = files.folder;
-        let text = essence(&text, &folder.place_of(&self.file))?;
+        let (text, unused) = essence(&text, &folder.place_of(&self.file))?;
+        if !unused.is_empty() {
+            files.remark(format!("{}: {} are not used", folder.place_of(&self.file), unused.join(", ")));
+        }
         let options = tobj::LoadOptions { triangulate: true, single_index: true, ..tobj::LoadOptions::default() };
         let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
         let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, no_materials)

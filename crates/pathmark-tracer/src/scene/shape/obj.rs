@@ -5,9 +5,18 @@ use crate::error::{Error, InputError, Result};
 use crate::input::coordinate_limit;
 use std::fmt::Write;
 
-/// The file with nothing in it but that.
-pub(super) fn essence(text: &str, file: &str) -> Result<String> {
-    let mut essence = String::with_capacity(text.len());
+/// First words of lines that are not used, and what they hold.
+const UNUSED: [(&str, &str); 5] = [
+    ("vn", "normals"),
+    ("vt", "texture coordinates"),
+    ("mtllib", "materials"),
+    ("usemtl", "materials"),
+    ("l", "lines"),
+];
+
+/// The file with nothing in it but that, and the names of what was left out.
+pub(super) fn essence(text: &str, file: &str) -> Result<(String, Vec<&'static str>)> {
+    let (mut essence, mut unused) = (String::with_capacity(text.len()), Vec::new());
     let mut vertices = 0_i64;
     for (line, words) in (1..).zip(text.lines()) {
         let error = |field: &str, value: &str, problem: &str, allowed: String| {
@@ -54,8 +63,12 @@ pub(super) fn essence(text: &str, file: &str) -> Result<String> {
             Some(name @ ("o" | "g")) => {
                 let _ = writeln!(essence, "{name} {}", words.collect::<Vec<_>>().join(" "));
             }
-            _ => {}
+            Some(word) => {
+                let left_out = UNUSED.iter().find(|(own, _)| *own == word).map(|(_, what)| *what);
+                unused.extend(left_out.filter(|what| !unused.contains(what)));
+            }
+            None => {}
         }
     }
-    Ok(essence)
+    Ok((essence, unused))
 }

@@ -1,0 +1,20 @@
+//! `pathmark completions SHELL`: a script that completes verbs, options and their values.
+
+use super::described;
+use super::output::print;
+use crate::error::Result;
+use clap::Args;
+use clap_complete::Shell;
+
+/// `pathmark completions bash > /etc/bash_completion.d/pathmark`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// The shell
+    shell: Shell,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut described(), "pathmark", &mut script);
+    print(String::from_utf8_lossy(&script).trim_end())
+}

@@ -1,0 +1,101 @@
+//! `run EXPERIMENT --set AXIS=VALUES`: the same question asked of other values.
+//!
+//! ```text
+//! pathmark run thread-scaling --set scene=my/room.toml --set threads=1,2,4,8
+//! ```
+//!
+//! The result is the text of a definition of its own, which is kept beside the rows: it can be run again without the options.
+
+use super::Definition;
+use super::definition::REFERENCE_SPP;
+use crate::error::{InputError, Result};
+use crate::input::parse;
+use crate::measure::{AXES, Axis, Field, Settings, parse_size};
+use toml::{Table, Value};
+
+/// The tables of profiles, in which a value may stand instead of in the matrix.
+const PROFILES: [&str; 3] = ["quick", "full", "reports"];
+
+impl Definition {
+    /// The definition with other values of some axes: `AXIS=VALUE,VALUE...` in every matrix and profile.
+    pub fn with_values(self, pairs: &[String]) -> Result<Self> {
+        if pairs.is_empty() {
+            return Ok(self);
+        }
+        let mut table: Table = parse(&self.text, &self.file)?;
+        for pair in pairs {
+            set(&mut table, pair)?;
+        }
+        let given: Vec<String> = pairs.iter().map(|pair| format!("--set {pair}")).collect();
+        let text = toml::to_string_pretty(&table)
+            .map_err(|e| InputError::new("set", given.join(" "), format!("cannot be written as TOML: {e}")))?;
+        let text = format!("# {} with {}\n{text}", self.file, given.join(" "));
+        let mut changed = Self::from_text(&self.lab, &self.name, &self.file, &text)?;
+        changed.is_changed = true;
+        Ok(changed)
+    }
+}
+
+fn set(table: &mut Table, pair: &str) -> Result<()> {
+    let names: Vec<&str> = AXES.iter().map(|axis| axis.name).chain([REFERENCE_SPP]).collect();
+    let Some((name, values)) = pair.split_once('=') else {
+        let problem = "has no =, so that it is not clear which values it gives to which axis";
+        return Err(InputError::new("set", pair, problem).allowed("AXIS=VALUE,VALUE...").into());
+    };
+    if name == REFERENCE_SPP {
+        let spp = number(name, values)?;
+        profiles(table).for_each(|profile| _ = profile.insert(name.to_string(), spp.clone()));
+        return Ok(());
+    }
+    let Some(axis) = Axis::named(name) else {
+        return Err(InputError::new("set", name, "there is no axis of that name").allowed(names.join(", ")).into());
+    };
+    let value = value_of(axis, values)?;
+    for profile in profiles(table) {
+        // A profile's size cannot be left out, and stands behind the matrix's own.
+        if name != "size" {
+            profile.remove(name);
+        }
+    }
+    for matrix in matrices(table) {
+        matrix.insert(name.to_string(), value.clone());
+    }
+    Ok(())
+}
+
+fn profiles(table: &mut Table) -> impl Iterator<Item = &mut Table> {
+    let profiles = table.iter_mut().filter(|(name, _)| PROFILES.contains(&name.as_str()));
+    profiles.filter_map(|(_, value)| value.as_table_mut())
+}
+
+fn matrices(table: &mut Table) -> Vec<&mut Table> {
+    match table.get_mut("matrix") {
+        Some(Value::Table(matrix)) => vec![matrix],
+        Some(Value::Array(matrices)) => matrices.iter_mut().filter_map(Value::as_table_mut).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The value as a definition has it: one size, or a list of words or numbers.
+fn value_of(axis: &Axis, values: &str) -> Result<Value> {
+    let each = values.split(',').map(str::trim);
+    Ok(match (axis.field)(&mut Settings::default()) {
+        Field::Size(_) => {
+            let (width, height) = parse_size(values)?;
+            Value::Array(vec![Value::Integer(width.into()), Value::Integer(height.into())])
+        }
+        Field::Name(_) | Field::Fitting(_) => Value::Array(each.map(Value::from).collect()),
+        Field::Workers(_) => {
+            let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };
+            Value::Array(each.map(workers).collect::<Result<_>>()?)
+        }
+        Field::Depth(_) | Field::Samples(_) | Field::Seed(_) => {
+            Value::Array(each.map(|value| number(axis.name, value)).collect::<Result<_>>()?)
+        }
+    })
+}
+
+fn number(name: &str, value: &str) -> Result<Value> {
+    let parsed = value.parse().map(Value::Integer);
+    parsed.map_err(|_| InputError::new(name, value, "is not a whole number").into())
+}

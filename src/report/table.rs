@@ -1,0 +1,219 @@
+//! Tables: read on the page with as many digits as make sense, and written to CSV files with all of them.
+
+use super::block::Block;
+use super::words::Told;
+use crate::error::{Error, Result};
+use crate::{atomic_file, plot};
+use std::path::Path;
+
+/// How many digits the page shows of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Digits {
+    /// So many behind the point.
+    Decimals(usize),
+    /// So many that count.
+    Significant(usize),
+}
+
+impl Digits {
+    fn show(self, value: f64) -> String {
+        match self {
+            Self::Decimals(digits) => format!("{value:.digits$}"),
+            Self::Significant(digits) => plot::number::short(value, digits),
+        }
+    }
+}
+
+/// What stands in a place of a table.
+#[derive(Debug, Clone, PartialEq)]
+enum Entry {
+    Text(String),
+    Number(Option<f64>, Digits),
+    Told(Option<Told>, Digits),
+}
+
+/// What the page shows where there is no number.
+const NONE: &str = "-";
+
+impl Entry {
+    fn shown(&self) -> String {
+        match self {
+            Self::Text(text) => text.clone(),
+            Self::Number(None, _) | Self::Told(None, _) => NONE.to_string(),
+            Self::Number(Some(value), digits) => digits.show(*value),
+            Self::Told(Some(Told { value, interval: None, .. }), digits) => {
+                format!("{}, no interval", digits.show(*value))
+            }
+            Self::Told(Some(Told { value, interval: Some(interval), .. }), digits) => {
+                let [value, low, high] = [*value, interval.low, interval.high].map(|number| digits.show(number));
+                format!("{value}, {low} to {high} ({:.1} %)", 100.0 * interval.level)
+            }
+        }
+    }
+
+    /// Its places in a CSV file, as many as [`Column::heads`] has.
+    fn written(&self) -> Vec<String> {
+        let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+        match self {
+            Self::Text(text) => vec![text.clone()],
+            Self::Number(value, _) => vec![number(*value)],
+            Self::Told(told, _) => {
+                let interval = told.and_then(|told| told.interval);
+                let ends = [interval.map(|i| i.low), interval.map(|i| i.high), interval.map(|i| i.level)];
+                [told.map(|told| told.value)].into_iter().chain(ends).map(number).collect()
+            }
+        }
+    }
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Column {
+    head: String,
+    entries: Vec<Entry>,
+}
+
+impl Column {
+    /// Its heads in a CSV file: a value with an interval has four.
+    fn heads(&self) -> Vec<String> {
+        let head = &self.head;
+        if self.entries.iter().any(|entry| matches!(entry, Entry::Told(..))) {
+            return vec![head.clone(), format!("{head}: low"), format!("{head}: high"), format!("{head}: confidence")];
+        }
+        vec![head.clone()]
+    }
+}
+
+/// A table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// What it shows.
+    pub title: String,
+    length: usize,
+    columns: Vec<Column>,
+}
+
+impl Table {
+    /// One of text alone, whose rows are as wide as its heads.
+    pub(super) fn of_text(title: impl Into<String>, heads: &[&str], rows: &[Vec<String>]) -> Self {
+        let column = |(index, head): (usize, &&str)| Column {
+            head: (*head).to_string(),
+            entries: rows.iter().map(|row| Entry::Text(row[index].clone())).collect(),
+        };
+        let columns = heads.iter().enumerate().map(column).collect();
+        Self { title: title.into(), length: rows.len(), columns }
+    }
+
+    /// How many rows it has.
+    pub fn len(&self) -> usize {
+        self.length
+    }
+
+    /// Whether it has none.
+    pub fn is_empty(&self) -> bool {
+        self.length == 0
+    }
+
+    /// The heads of its columns, as the page shows them.
+    pub fn heads(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|column| column.head.as_str())
+    }
+
+    /// Its rows, as the page shows them.
+    pub fn rows(&self) -> impl Iterator<Item = Vec<String>> {
+        (0..self.length).map(|row| self.columns.iter().map(|column| column.entries[row].shown()).collect())
+    }
+
+    /// Writes it as a CSV file.
+    pub(super) fn save(&self, path: &Path) -> Result<()> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let heads: Vec<String> = self.columns.iter().flat_map(Column::heads).collect();
+        let row = |row: usize| self.columns.iter().flat_map(|column| column.entries[row].written()).collect();
+        let rows = std::iter::once(heads).chain((0..self.length).map(row));
+        let written = rows.map(|row: Vec<String>| writer.write_record(row)).collect::<csv::Result<Vec<()>>>();
+        let system = |e: std::io::Error| Error::system("writing", path, e);
+        written.map_err(|e| system(e.into()))?;
+        let bytes = writer.into_inner().map_err(|e| system(e.into_error()))?;
+        atomic_file::write(path, |file| file.write_all(&bytes))
+    }
+}
+
+/// A table whose columns are being added.
+pub(super) struct Columns<T> {
+    stem: &'static str,
+    table: Table,
+    things: Vec<T>,
+}
+
+impl<T> Columns<T> {
+    /// A table with a row for each thing; `stem` is its file's name without the ending.
+    pub(super) fn of(stem: &'static str, title: impl Into<String>, things: impl IntoIterator<Item = T>) -> Self {
+        let things: Vec<T> = things.into_iter().collect();
+        Self { stem, table: Table { title: title.into(), length: things.len(), columns: Vec::new() }, things }
+    }
+
+    fn add(mut self, head: impl Into<String>, entry: impl Fn(&T) -> Entry) -> Self {
+        self.table.columns.push(Column { head: head.into(), entries: self.things.iter().map(entry).collect() });
+        self
+    }
+
+    /// A column of text: its head, and what it says of a thing.
+    pub(super) fn column(self, head: impl Into<String>, text: impl Fn(&T) -> String) -> Self {
+        self.add(head, |thing| Entry::Text(text(thing)))
+    }
+
+    /// A column of numbers.
+    pub(super) fn number<N: Into<Option<f64>>>(
+        self,
+        head: impl Into<String>,
+        digits: Digits,
+        value: impl Fn(&T) -> N,
+    ) -> Self {
+        self.add(head, |thing| Entry::Number(value(thing).into(), digits))
+    }
+
+    /// A column of values with their intervals.
+    pub(super) fn told<N: Into<Option<Told>>>(
+        self,
+        head: impl Into<String>,
+        digits: Digits,
+        value: impl Fn(&T) -> N,
+    ) -> Self {
+        self.add(head, |thing| Entry::Told(value(thing).into(), digits))
+    }
+
+    pub(super) fn end(self) -> Block {
+        Block::Table { stem: self.stem, table: self.table }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Digits::{Decimals, Significant};
+    use super::*;
+    use crate::analysis::Interval;
+
+    /// The page rounds, the file does not; an interval takes four columns there, and a value without one leaves three empty.
+    #[test]
+    fn files_have_all_digits_and_ends_of_intervals() {
+        let third = 1.0 / 3.0;
+        let interval = Interval { low: 0.25, high: 0.5, level: 0.96875 };
+        let rows = [Some(Told::of(third, Some(interval))), Some(Told::of(2.0, None)), None];
+        let block = Columns::of("table", "A table", rows)
+            .column("name", |told| format!("{}", told.is_some()))
+            .number("value", Significant(2), |told| told.map(|told| told.value))
+            .told("ratio", Decimals(2), |told| *told)
+            .end();
+        let Block::Table { table, .. } = &block else { panic!("a table") };
+        let shown: Vec<Vec<String>> = table.rows().collect();
+        assert_eq!(shown[0], ["true", "0.33", "0.33, 0.25 to 0.50 (96.9 %)"]);
+        assert_eq!(shown[1], ["true", "2", "2.00, no interval"]);
+        assert_eq!(shown[2], ["false", "-", "-"]);
+        let folder = tempfile::tempdir().unwrap();
+        block.save(folder.path()).unwrap();
+        let text = std::fs::read_to_string(folder.path().join("table.csv")).unwrap();
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines[0], "name,value,ratio,ratio: low,ratio: high,ratio: confidence");
+        assert_eq!(lines[1], format!("true,{third},{third},0.25,0.5,0.96875"));
+        assert_eq!(lines[2..], ["true,2,2,,,", "false,,,,,"]);
+    }
+}
