@@ -47,7 +47,7 @@
     figure.append(details);
 
     const shown = { from: 0, to: end };
-    const lanes = schedules.map((schedule) => Math.max(3, Math.min(LANE, TALLEST / schedule.workers)));
+    const lanes = schedules.map((schedule) => Math.max(3, Math.min(LANE, TALLEST / Math.max(1, schedule.workers))));
     const heights = schedules.map((schedule, place) => TITLE + lanes[place] * schedule.workers);
     const height = heights.reduce((a, b) => a + b, AXIS);
     const x = (time, width) => LEFT + ((time - shown.from) / (shown.to - shown.from)) * (width - LEFT - 4);

@@ -161,31 +161,39 @@ fn number_lanes(drawing: &mut Drawing, shown: &[usize], left: f64, top: f64, lan
     }
 }
 
+/// A page of which each schedule has so many jobs is still read in a second.
+const MOST_JOBS: usize = 2000;
+
 /// A job as a page reads it: its number, its worker, and start and stop in microseconds.
 type JobData = (usize, usize, f64, f64);
 
 /// A schedule as a page reads it.
 #[derive(Serialize)]
-struct ScheduleData<'a> {
-    title: &'a str,
+struct ScheduleData {
+    title: String,
     workers: usize,
     end: f64,
     jobs: Vec<JobData>,
 }
 
-impl<'a> ScheduleData<'a> {
-    fn of(schedule: &'a Schedule) -> Self {
+impl ScheduleData {
+    fn of(schedule: &Schedule) -> Self {
         // A nanosecond is less than any clock resolves.
         let microseconds = |seconds: f64| (seconds * 1e9).round() / 1e3;
         let job = |job: &JobBar| (job.job, job.worker, microseconds(job.start_s), microseconds(job.stop_s));
-        let jobs = schedule.jobs.iter().filter(|job| schedule.holds(job)).map(job).collect();
-        Self { title: &schedule.title, workers: schedule.workers, end: microseconds(schedule.makespan_s), jobs }
+        let jobs: Vec<JobData> = schedule.jobs.iter().filter(|job| schedule.holds(job)).map(job).collect();
+        let (title, workers, end) = (schedule.title.clone(), schedule.workers, microseconds(schedule.makespan_s));
+        if jobs.len() <= MOST_JOBS {
+            return Self { title, workers, end, jobs };
+        }
+        let title = format!("{title}; its {} jobs are too many for a page, and pathmark trace draws them", jobs.len());
+        Self { title, workers: 0, end: 0.0, jobs: Vec::new() }
     }
 }
 
 impl Figure for GanttChart {
     fn data(&self) -> Option<String> {
-        let schedules: Vec<ScheduleData<'_>> = self.schedules.iter().map(ScheduleData::of).collect();
+        let schedules: Vec<ScheduleData> = self.schedules.iter().map(ScheduleData::of).collect();
         serde_json::to_string(&schedules).ok()
     }
 

@@ -83,7 +83,9 @@ fn elements(marks: &[Mark], size: (u32, u32), with_paper: bool) -> Result<String
     paint(marks, with_paper, &SVGBackend::with_string(&mut text, size).into_drawing_area(), SCALE, true)?;
     // plotters' own first tag fixes the size at the finer pixels and says nothing to a reader who can't see.
     let body = text.split_once('>').map_or(text.as_str(), |(_, body)| body);
-    Ok(body.trim_end().trim_end_matches("</svg>").to_string())
+    let body = body.trim_end().trim_end_matches("</svg>");
+    // What is so anyway takes a quarter of the text.
+    Ok(body.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", ""))
 }
 
 /// Text between tags, or between quotes in a tag.

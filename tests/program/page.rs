@@ -37,7 +37,7 @@ window.addEventListener("load", () => {
   entry.dispatchEvent(new MouseEvent("click", { bubbles: true }));
   seen.after = getComputedStyle(line).display;
   const table = all("table").find((t) => t.tHead && t.tHead.textContent.includes("work inflation"));
-  const column = Array.from(table.tHead.rows[0].cells).findIndex((cell) => cell.textContent === "speedup (confidence)");
+  const column = Array.from(table.tHead.rows[0].cells).findIndex((cell) => cell.textContent === "speedup");
   const order = () => Array.from(table.tBodies[0].rows).map((row) => parseFloat(row.cells[column].textContent));
   table.tHead.rows[0].cells[column].querySelector("button").click();
   seen.ascending = order();

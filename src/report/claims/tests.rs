@@ -261,3 +261,20 @@ fn cells(lab: &Arc<Lab>, experiment: &str) -> Vec<Columns> {
     };
     cells.filter(|cell| cell.external.is_none()).flat_map(row).collect()
 }
+
+/// Where noise decides, two verdicts are expected; any other is still a surprise.
+#[test]
+fn a_number_near_the_limit_may_have_either_verdict() {
+    let evidence =
+        "experiment = \"an-experiment\"\nlevel = 0.95\nstatistic = \"value\"\ncolumn = \"makespan_s\"\nat-least = 1e-9";
+    let out = folder_of(&[], "", rows(9, |_, _| ()));
+    let surprises = |expected: &str| {
+        let text = claim(evidence).replace("\"confirmed\"", &format!("\"{expected}\""));
+        let reports = [Report::from_text("X.toml", &text).unwrap()];
+        judge(&Lab::built_in(), &reports, &[out.path().to_path_buf()]).unwrap()[0].is_unexpected()
+    };
+    assert!(!surprises("confirmed") && !surprises("open or confirmed"));
+    assert!(surprises("open") && surprises("open or refuted"));
+    let wrong = claim(evidence).replace("\"confirmed\"", "\"open or so\"");
+    assert!(Report::from_text("X.toml", &wrong).unwrap_err().to_string().contains("open or so"));
+}

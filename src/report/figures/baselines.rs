@@ -91,8 +91,8 @@ fn table(all: &[Against<'_>]) -> Block {
     Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
         .column("schedule", |against| told_kind(against.own))
         .column("baseline", |against| told_kind(against.baseline))
-        .told("speedup (confidence)", Decimals(3), |against| Told::from(against.speedup))
-        .told("e (confidence)", Decimals(3), fraction)
+        .told("speedup", Decimals(3), |against| Told::from(against.speedup))
+        .told("e", Decimals(3), fraction)
         .column("remark", |against| if against.is_superlinear() { "superlinear".into() } else { String::new() })
         .end()
 }

@@ -126,11 +126,11 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
         .number("rays per sample, absent", Decimals(2), |found| found.absent.rays)
         .column("unused: profile", |found| found.price.unused.profile.clone())
         .number("ns per sample, unused", Decimals(0), |found| found.unused.0.nanoseconds())
-        .told("ratio unused / absent (confidence)", Decimals(3), |found| Told::from(found.unused.1))
+        .told("ratio unused / absent", Decimals(3), |found| Told::from(found.unused.1))
         .column("used", |found| place(&found.price.used))
         .number("ns per sample, used", Decimals(0), |found| found.used.0.nanoseconds())
         .number("rays per sample, used", Decimals(2), |found| found.used.0.rays)
-        .told("ratio used / absent (confidence)", Decimals(3), |found| Told::from(found.used.1))
+        .told("ratio used / absent", Decimals(3), |found| Told::from(found.used.1))
         .end();
     [Block::figure("effects", plot)].into_iter().chain(generality(&found)).chain([table]).collect()
 }
@@ -224,7 +224,7 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
         .column("fitting profile", |fit| fit.profile.to_string())
         .number("ns per sample", Decimals(0), |fit| fit.fitting.nanoseconds())
         .number("ns per sample with all effects", Decimals(0), |fit| fit.largest.nanoseconds())
-        .told("ratio (confidence)", Decimals(3), |fit| Told::from(fit.ratio))
+        .told("ratio", Decimals(3), |fit| Told::from(fit.ratio))
         .end();
     [Block::figure("profiles", plot), finding].into_iter().chain(diffuse).chain([table]).collect()
 }

@@ -70,7 +70,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
         .column("threads", |line| line.crew.to_string())
-        .told("median seconds (confidence)", Decimals(4), |line| line.seconds)
+        .told("median seconds", Decimals(4), |line| line.seconds)
         .number("switches per second", Decimals(0), |line| line.typical(switches_per_second))
         .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
         .number("system share of CPU", Decimals(2), |line| line.typical(|row| Some(row.cpu_system_s? / row.cpu_s()?)))

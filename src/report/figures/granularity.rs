@@ -3,6 +3,14 @@
 use super::prelude::*;
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
 
+/// What an experiment tells this figure.
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Options {
+    /// Two strategies whose times are compared piece by piece.
+    compare: Option<[String; 2]>,
+}
+
 /// The serial program on each image, in seconds: a job by decomposition, the fastest run by repetition, the work by decomposition and repetition.
 struct Baseline<'a> {
     per_job: BTreeMap<(&'a ImageKey, &'a str), f64>,
@@ -75,7 +83,50 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("METG(50 %), microseconds", |(_, [value, _])| value.clone())
         .column("how sure", |(_, [_, remark])| remark.clone())
         .end();
-    Ok(vec![Block::figure("granularity", chart), table, overhead(results, &baseline)])
+    let mut blocks = vec![Block::figure("granularity", chart), table, overhead(results, &baseline)];
+    let Options { compare } = options(results, "granularity")?;
+    if let Some([first, second]) = compare {
+        blocks.extend(compared(results, &first, &second)?);
+    }
+    Ok(blocks)
+}
+
+/// One strategy against another on the same pieces in the same repetition, from the smallest jobs to the largest.
+fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> {
+    let groups = results.by(|row| (&row.image, row.decomposition.as_str(), row.threads));
+    let mut lines: Vec<(&Row, Estimate)> = Vec::new();
+    for rows in groups.into_values() {
+        let of = |name: &str| rows.iter().copied().filter(|row| row.strategy == name).collect::<Vec<&Row>>();
+        if let Some(ratio) = time_ratio(of(first), of(second), |row| row.repetition)? {
+            lines.push((rows[0], ratio));
+        }
+    }
+    if lines.is_empty() {
+        return Ok(Vec::new());
+    }
+    lines.sort_by_key(|(row, _)| std::cmp::Reverse(row.jobs));
+    let told = |is_meant: fn(&Interval) -> bool| {
+        let meant = lines.iter().filter(|(_, ratio)| is_meant(&ratio.interval));
+        let each = meant.map(|(row, ratio)| {
+            let Interval { low, high, .. } = ratio.interval;
+            format!("{} ({:.2}, {low:.2} to {high:.2})", row.decomposition, ratio.value)
+        });
+        let each: Vec<String> = each.collect();
+        if each.is_empty() { "none".to_string() } else { each.join(", ") }
+    };
+    let finding = format!(
+        "{first} takes longer than {second} on the pieces {}; shorter on {}. On the others the two are not told apart.",
+        told(|interval| interval.low > 1.0),
+        told(|interval| interval.high < 1.0),
+    );
+    let title = format!("Seconds of {first} over seconds of {second} on the same pieces");
+    let table = Block::table("compared", title, lines)
+        .column("pieces", |(row, _)| row.decomposition.clone())
+        .column("jobs", |(row, _)| row.jobs.to_string())
+        .column("threads", |(row, _)| row.threads.to_string())
+        .told("ratio", Decimals(3), |(_, ratio)| Told::from(*ratio))
+        .end();
+    Ok(vec![Block::finding(finding), table])
 }
 
 /// The strategy, and the image where there are several.

@@ -67,12 +67,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     blocks.extend(scenes.iter().filter_map(|(scene, all)| finding(scene, all, &yardstick, goal.0)));
     blocks.push(
         Block::table("kernels", "Samples and rays per second, medians", works.iter().flatten())
-            .column("", |line| line.name.clone())
+            .column("workload", |line| line.name.clone())
             .column("threads", |line| line.threads.to_string())
             .column("kernel", |line| line.kernel.clone())
             .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
             .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
-            .told(format!("times as fast as {yardstick} (confidence)"), Decimals(2), |line| line.ratio.map(Told::from))
+            .told(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Told::from))
             .end(),
     );
     Ok(blocks)

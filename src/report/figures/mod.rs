@@ -93,7 +93,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     scaling_laws, "scaling-laws", NoOptions, needs serial, "Amdahl's law and the Universal Scalability Law fitted to the speedups";
     weak_scaling, "weak-scaling", NoOptions, needs serial, "scaled speedup against threads, with Gustafson's law";
     clock, "clock", NoOptions, "what CPU time, as clock() counts it, would have claimed";
-    granularity, "granularity", NoOptions, "efficiency against the size of a job, METG(50 %), overhead of a job";
+    granularity, "granularity", granularity::Options, "efficiency against the size of a job, METG(50 %), overhead of a job";
     oversubscription, "oversubscription", oversubscription::Options, "time against threads and pieces beyond the number of processors";
     timelines, "timelines", NoOptions, "who did what when, and where workers times makespan went";
     cost_map, "cost-map", NoOptions, "seconds of each tile over the image";

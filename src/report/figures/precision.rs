@@ -61,7 +61,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         rows.iter().filter_map(|row| count(row)).sum::<u64>().to_string()
     };
     let table = Block::table("precision", "Single precision beside double", &pairs)
-        .column("", |pair| pair.name.clone())
+        .column("scene and estimator", |pair| pair.name.clone())
         .told("seconds of double / seconds of single", Decimals(2), |pair| Told::from(pair.time))
         .number("RMSE, double", Decimals(4), |pair| rmse(&pair.double))
         .number("RMSE, single", Decimals(4), |pair| rmse(&pair.single))

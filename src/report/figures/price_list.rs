@@ -44,7 +44,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     blocks.extend(checked(&checks));
 
     let mut table = Block::table("price-list", "Price list, intervals of 95 %", checks)
-        .column("", |(contender, _)| name(contender))
+        .column("renderer", |(contender, _)| name(contender))
         .number("variance of a sample", Significant(3), |(contender, _)| variance(contender))
         .told("s per sample and pixel", Significant(3), |(own, _)| Told::from(own.renderer.seconds_per_spp))
         .told("efficiency, 1 / (variance x s)", Significant(3), |(own, _)| own.renderer.efficiency().map(Told::from));

@@ -71,7 +71,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let table = Block::table("rmse-against-time", "Price of accuracy by schedule", &places)
         .column("schedule", |place| label(&place.key))
         .column("spp", |place| place.spp.to_string())
-        .told("median seconds (confidence)", Decimals(4), |place| place.seconds)
+        .told("median seconds", Decimals(4), |place| place.seconds)
         .number("RMSE, linear", Decimals(5), |place| place.mse.sqrt())
         .number("MSE x seconds", Significant(4), |place| place.price())
         .end();

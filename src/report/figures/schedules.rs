@@ -39,7 +39,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             .column("threads", |line| line.first.threads.to_string())
             .column("jobs", |line| line.first.jobs.to_string())
             .column("runs", |line| line.times.len().to_string())
-            .told("median seconds (confidence)", Decimals(4), |line| line.seconds)
+            .told("median seconds", Decimals(4), |line| line.seconds)
             .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
             .number("load imbalance", Decimals(3), |line| line.typical(imbalance))
             .number("longest job, ms", Decimals(1), |line| {

@@ -71,14 +71,12 @@ impl Speedups<'_> {
             .column("strategy", |(schedule, _)| schedule.name.clone())
             .column("pieces", |(schedule, _)| schedule.key.decomposition.clone())
             .column("threads", |(schedule, _)| schedule.key.threads.to_string())
-            .told("speedup (confidence)", Decimals(3), |(_, speedup)| Told::from(*speedup))
+            .told("speedup", Decimals(3), |(_, speedup)| Told::from(*speedup))
             .number("efficiency per thread", Decimals(3), |(s, speedup)| efficiency(speedup.value, s.key.threads))
             .number("efficiency per processor in use", Decimals(3), |(s, speedup)| efficiency(speedup.value, used(s)))
             .number("work inflation", Decimals(3), |(schedule, _)| self.serial.work_inflation(schedule))
-            .told("e, p = threads (confidence)", Decimals(3), |(schedule, _)| fraction(schedule, schedule.key.threads))
-            .told("e, p = processors in use (confidence)", Decimals(3), |(schedule, _)| {
-                fraction(schedule, used(schedule))
-            })
+            .told("e, p = threads", Decimals(3), |(schedule, _)| fraction(schedule, schedule.key.threads))
+            .told("e, p = processors in use", Decimals(3), |(schedule, _)| fraction(schedule, used(schedule)))
             .column("remark", |(schedule, speedup)| self.remark(schedule, speedup))
             .end()
     }

@@ -25,6 +25,13 @@ fn columns<T: Copy + Default, const N: usize>(rows: &[[T; 4]]) -> Option<[[T; N]
     })
 }
 
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn start<T>(rows: &[[T; 4]], number: i32) -> *const [T; 4] {
+    let number = number as usize;
+    rows.as_ptr().wrapping_add(number.wrapping_mul(usize::from(number < rows.len())))
+}
+
 impl Table {
     /// A table; there must be a row.
     pub fn new(rows: Vec<[f64; 4]>) -> Self {
@@ -38,6 +45,19 @@ impl Table {
             rows,
             singles,
         }
+    }
+
+    /// Where the row of that number begins, as [`Table::row`] has it: without a branch, for loads into registers.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) fn row_start(&self, number: i32) -> *const f64 {
+        start(&self.rows, number).cast()
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub(super) fn single_row_start(&self, number: i32) -> *const f32 {
+        start(&self.singles, number).cast()
     }
 
     /// The row of that number; the first if there is none, since what is in a lane without a ray may be anything.

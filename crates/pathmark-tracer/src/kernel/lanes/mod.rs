@@ -25,7 +25,7 @@ use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
 use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level};
 use filter::Filter;
-use packet::{LanesOf, Packet};
+use packet::{LanesOf, NextPart, Packet};
 use singles::Singles;
 use std::sync::Arc;
 use supply::Supply;
@@ -98,7 +98,7 @@ impl Lanes {
         packet.collected.g.store(&mut g);
         packet.collected.b.store(&mut b);
         for lane in LanesOf(ended) {
-            if !MATT && self.course.splits > 0 && packet.pop(lane) {
+            if !MATT && self.course.splits > 0 && V::apart(NextPart { packet, lane }) {
                 packet.alive |= 1 << lane;
             } else {
                 window.give_back(packet.slots[lane], Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() });

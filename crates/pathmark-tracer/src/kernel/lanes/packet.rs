@@ -2,7 +2,7 @@
 
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::PathWords;
-use crate::simd::{Float, MOST_LANES, Mask, Words};
+use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
 
 /// Two splits leave at most three unfinished parts.
 const LARGEST_STACK: usize = 3;
@@ -92,7 +92,7 @@ impl<V: Float> Packet<V> {
 
     /// Goes on with the part that was put aside last; `false` if there is none.
     #[inline(always)]
-    pub(super) fn pop(&mut self, lane: usize) -> bool {
+    fn pop(&mut self, lane: usize) -> bool {
         if self.depth[lane] == 0 {
             return false;
         }
@@ -108,6 +108,21 @@ impl<V: Float> Packet<V> {
         self.vertices.set_word(lane, part.vertices);
         self.branch.set_word(lane, part.branch);
         true
+    }
+}
+
+/// A lane whose part of a path has ended, in a packet of paths that split. A function of its own for the sake of compilation, see [`super::supply`].
+pub(super) struct NextPart<'a, V: Float> {
+    pub(super) packet: &'a mut Packet<V>,
+    pub(super) lane: usize,
+}
+
+impl<V: Float> Apart for NextPart<'_, V> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        self.packet.pop(self.lane)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::kernel::Counts;
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::{PathWords, Purpose, SampleKey};
 use crate::scene::SUBPIXELS;
-use crate::simd::{Float, MOST_LANES, Mask, Words};
+use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
 
 /// Rays that can wait, twice: what is read begins at any of them and is as long as all.
 const SIZE: usize = 2 * MOST_LANES;
@@ -41,6 +41,23 @@ impl<V: Float> Supply<V> {
     }
 }
 
+/// Rays made ahead. A function of its own, because a call for as many rays as there are lanes costs nothing, every kind of kernel shares it, and
+/// the time to compile a function grows with the square of its length.
+struct Produce<'a, 'w, V: Float> {
+    kernel: &'a Lanes,
+    supply: &'a mut Supply<V>,
+    window: &'a mut Window<'w>,
+}
+
+impl<V: Float> Apart for Produce<'_, '_, V> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.kernel.produce::<V>(self.supply, self.window);
+    }
+}
+
 impl Lanes {
     /// Gives free lanes their next samples.
     #[inline(always)]
@@ -55,7 +72,7 @@ impl Lanes {
         while free != 0 {
             if supply.count == 0 {
                 window.settle(counts);
-                self.produce::<V>(supply, window);
+                V::apart(Produce { kernel: self, supply, window });
                 if supply.count == 0 {
                     return;
                 }

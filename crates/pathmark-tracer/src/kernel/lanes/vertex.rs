@@ -193,7 +193,8 @@ impl Lanes {
         }
         let is_other = others & vertex.kind.equal(V::splat(Kind::Other.number()));
         if is_other.any() {
-            self.scatter_one_by_one(at, wo, numbers, is_other, &mut scattered);
+            let (inside, primitive) = (at.inside.bits(), at.primitive);
+            scattered = V::apart(OneByOne { kernel: self, primitive, wo, numbers, lanes: is_other, inside, scattered });
         }
         (scattered, split)
     }
@@ -248,31 +249,42 @@ impl Lanes {
         let lanes = goes_both_ways.bits();
         (lanes != 0).then(|| Split { lanes, wi: refracted, weight: tint * transmittance })
     }
+}
 
-    /// Surfaces that lanes have no code for.
+/// Surfaces that lanes have no code for. A function of its own for the sake of compilation, see [`super::supply`]; it is handed copies, because what a
+/// function is given the address of can be in no register, not even where it is not called.
+struct OneByOne<'a, V: Float> {
+    kernel: &'a Lanes,
+    primitive: V,
+    /// Local directions to where the paths come from.
+    wo: Vec3<V>,
+    numbers: [V; 2],
+    lanes: V::Mask,
+    inside: u32,
+    scattered: Scattered<V>,
+}
+
+impl<V: Float> Apart for OneByOne<'_, V> {
+    type Output = Scattered<V>;
+
     #[inline(always)]
-    fn scatter_one_by_one<V: Float>(
-        &self,
-        at: &Arrival<V>,
-        wo: Vec3<V>,
-        numbers: [V; 2],
-        lanes: V::Mask,
-        scattered: &mut Scattered<V>,
-    ) {
+    fn run(self) -> Scattered<V> {
+        let Self { kernel, primitive, wo, numbers, lanes, inside, mut scattered } = self;
         let mut all = AllScattered { numbers: [[V::One::default(); MOST_LANES]; 13], deltas: 0, absorbed: 0 };
         let Scattered { wi, weight, density, .. } = &scattered;
-        let vectors = [at.primitive, wo.x, wo.y, wo.z, numbers[0], numbers[1]];
+        let vectors = [primitive, wo.x, wo.y, wo.z, numbers[0], numbers[1]];
         let results = [wi.x, wi.y, wi.z, weight.r, weight.g, weight.b, *density];
         for (numbers, vector) in all.numbers.iter_mut().zip(vectors.into_iter().chain(results)) {
             vector.store(numbers);
         }
-        all.scatter(&self.scene, lanes.bits(), at.inside.bits(), V::one);
+        all.scatter(&kernel.scene, lanes.bits(), inside, V::one);
         let [.., x, y, z, r, g, b, density] = &all.numbers;
         scattered.wi = Vec3 { x: V::load(x), y: V::load(y), z: V::load(z) };
         scattered.weight = Rgb { r: V::load(r), g: V::load(g), b: V::load(b) };
         scattered.density = V::load(density);
         scattered.is_delta = scattered.is_delta | V::Mask::from_bits(all.deltas);
         scattered.absorbed |= all.absorbed;
+        scattered
     }
 }
 

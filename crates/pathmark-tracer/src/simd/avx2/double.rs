@@ -58,8 +58,8 @@ register! {
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             let mut numbers = [0; 4];
             op!(x86::_mm_storeu_si128(numbers.as_mut_ptr().cast(), x86::_mm256_cvttpd_epi32(rows.0)));
-            let (a, b) = (Self::load(table.row(numbers[0])).0, Self::load(table.row(numbers[1])).0);
-            let (c, d) = (Self::load(table.row(numbers[2])).0, Self::load(table.row(numbers[3])).0);
+            let (a, b) = (op!(x86::_mm256_loadu_pd(table.row_start(numbers[0]))), op!(x86::_mm256_loadu_pd(table.row_start(numbers[1]))));
+            let (c, d) = (op!(x86::_mm256_loadu_pd(table.row_start(numbers[2]))), op!(x86::_mm256_loadu_pd(table.row_start(numbers[3]))));
             // The transpose of four by four.
             op!({
                 let (ab0, ab1) = (x86::_mm256_unpacklo_pd(a, b), x86::_mm256_unpackhi_pd(a, b));

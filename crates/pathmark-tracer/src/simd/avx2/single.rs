@@ -49,10 +49,10 @@ register! {
         fn rows(table: &Table, rows: Self) -> [Self; 4] {
             let mut n = [0; 8];
             op!(x86::_mm256_storeu_si256(n.as_mut_ptr().cast(), x86::_mm256_cvttps_epi32(rows.0)));
-            let a = pair(table.single_row(n[0]), table.single_row(n[4]));
-            let b = pair(table.single_row(n[1]), table.single_row(n[5]));
-            let c = pair(table.single_row(n[2]), table.single_row(n[6]));
-            let d = pair(table.single_row(n[3]), table.single_row(n[7]));
+            let a = pair(table, n[0], n[4]);
+            let b = pair(table, n[1], n[5]);
+            let c = pair(table, n[2], n[6]);
+            let d = pair(table, n[3], n[7]);
             // The transpose of four by four, in each half of the register.
             op!({
                 let (ab0, ab1) = (x86::_mm256_unpacklo_ps(a, b), x86::_mm256_unpackhi_ps(a, b));
@@ -70,10 +70,10 @@ register! {
 
 /// Two rows in one register.
 #[inline(always)]
-fn pair(lower: &[f32; 4], upper: &[f32; 4]) -> x86::__m256 {
+fn pair(table: &Table, lower: i32, upper: i32) -> x86::__m256 {
     op!({
-        let lower = x86::_mm256_castps128_ps256(x86::_mm_loadu_ps(lower.as_ptr()));
-        x86::_mm256_insertf128_ps::<1>(lower, x86::_mm_loadu_ps(upper.as_ptr()))
+        let lower = x86::_mm256_castps128_ps256(x86::_mm_loadu_ps(table.single_row_start(lower)));
+        x86::_mm256_insertf128_ps::<1>(lower, x86::_mm_loadu_ps(table.single_row_start(upper)))
     })
 }
 

@@ -66,10 +66,10 @@ register! {
             }
             let mut n = [0; 8];
             op!(x86::_mm256_storeu_si256(n.as_mut_ptr().cast(), x86::_mm512_cvttpd_epi32(rows.0)));
-            let a = pair(table.row(n[0]), table.row(n[4]));
-            let b = pair(table.row(n[1]), table.row(n[5]));
-            let c = pair(table.row(n[2]), table.row(n[6]));
-            let d = pair(table.row(n[3]), table.row(n[7]));
+            let a = pair(table, n[0], n[4]);
+            let b = pair(table, n[1], n[5]);
+            let c = pair(table, n[2], n[6]);
+            let d = pair(table, n[3], n[7]);
             // The transpose of four by four, in each half of the register.
             op!({
                 let (ab0, ab1) = (x86::_mm512_unpacklo_pd(a, b), x86::_mm512_unpackhi_pd(a, b));
@@ -101,9 +101,9 @@ fn entries(column: &[f64; 16], index: x86::__m512i) -> F64x8 {
 
 /// Two rows in one register.
 #[inline(always)]
-fn pair(lower: &[f64; 4], upper: &[f64; 4]) -> x86::__m512d {
+fn pair(table: &Table, lower: i32, upper: i32) -> x86::__m512d {
     op!({
-        let lower = x86::_mm512_castpd256_pd512(x86::_mm256_loadu_pd(lower.as_ptr()));
-        x86::_mm512_insertf64x4::<1>(lower, x86::_mm256_loadu_pd(upper.as_ptr()))
+        let lower = x86::_mm512_castpd256_pd512(x86::_mm256_loadu_pd(table.row_start(lower)));
+        x86::_mm512_insertf64x4::<1>(lower, x86::_mm256_loadu_pd(table.row_start(upper)))
     })
 }

@@ -89,10 +89,10 @@ fn entries(column: &[f32; 32], index: x86::__m512i) -> F32x16 {
 #[inline(always)]
 fn four(table: &Table, numbers: [i32; 4]) -> x86::__m512 {
     let [a, b, c, d] = [
-        table.single_row(numbers[0]).as_ptr(),
-        table.single_row(numbers[1]).as_ptr(),
-        table.single_row(numbers[2]).as_ptr(),
-        table.single_row(numbers[3]).as_ptr(),
+        table.single_row_start(numbers[0]),
+        table.single_row_start(numbers[1]),
+        table.single_row_start(numbers[2]),
+        table.single_row_start(numbers[3]),
     ];
     op!({
         let first = x86::_mm512_castps128_ps512(x86::_mm_loadu_ps(a));
