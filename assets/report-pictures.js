@@ -106,6 +106,7 @@
     const [comparison, images] = JSON.parse(figure.querySelector("script.images").textContent);
     const sheet = figure.querySelector("img");
     if (comparison === "single" || images.length < 2) return;
-    sheet.decode().then(() => viewer(figure, sheet, comparison, images));
+    const build = () => viewer(figure, sheet, comparison, images);
+    if (sheet.complete) build(); else sheet.addEventListener("load", build);
   });
 })();

@@ -3,6 +3,7 @@
 //!
 //! Criterion calls its files a private detail, so this is the only place that reads them; what is missing or unreadable is left out.
 
+use pathmark::measure::Machine;
 use pathmark::report::{BenchRow, write_benches};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -30,6 +31,8 @@ pub(crate) fn print(group: &str, start: SystemTime) {
     for (row, [speedup, low, high]) in speedups {
         println!("{:<16} {:>7} {speedup:>9.3}   {low:.3} to {high:.3}", row.case, row.parameter);
     }
+    println!("\n{}. Cases ran one after the other, so a drift of the machine is in the table;", Machine::look().line());
+    println!("`pathmark run thread-scaling` interleaves them and tells which runs were disturbed.");
 }
 
 fn stored() -> PathBuf {

@@ -1,13 +1,20 @@
-//! `pathmark compare IMAGE REFERENCE`: how far an image is from another.
+//! `pathmark compare IMAGE REFERENCE [HALF]`: how far an image is from another, or from two references without their noise.
 
 use super::output::{number, print, print_json};
+use super::picture;
+use crate::analysis::Interval;
+use crate::analysis::mean::t_interval;
 use crate::error::{InputError, Result};
 use crate::files::Files;
-use crate::film_file::{FilmKey, read_film};
+use crate::film_file::FilmKey;
 use crate::image_io::{self, Image};
-use crate::metric::{METRICS, heatmap};
+use crate::metric::{METRICS, cross_products, cross_rel_mse, heatmap, root};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// Confidence of the cross form's interval.
+const LEVEL: f64 = 0.95;
 
 /// `pathmark compare box.pfm reference.exr --heatmap error.png`
 #[derive(Args)]
@@ -16,21 +23,18 @@ pub(super) struct Arguments {
     image: PathBuf,
     /// What it is compared with, likewise
     reference: PathBuf,
+    /// A second reference that shares no samples with the first, as `pathmark reference` makes them: the error is then free of their noise, and has
+    /// an interval
+    half: Option<PathBuf>,
     /// Write a picture of each pixel's error
     #[arg(long, value_name = "FILE.png")]
     heatmap: Option<PathBuf>,
+    /// Error of a pixel that has the heat map's lightest colour [default: one that one pixel in a hundred exceeds]
+    #[arg(long, value_name = "ERROR", requires = "heatmap")]
+    scale: Option<f64>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-}
-
-/// A picture, and what it is of where its file knows.
-fn read(path: &Path) -> Result<(Image, Option<FilmKey>)> {
-    if path.extension().is_some_and(|extension| extension == "film") && path.is_file() {
-        let (key, film) = read_film(path)?;
-        return Ok((film.image(), Some(key)));
-    }
-    Ok((image_io::read(path)?, None))
 }
 
 /// Images of one scene and one seed share samples, and look more alike than they are.
@@ -42,35 +46,96 @@ fn check_independent(image: &FilmKey, reference: &FilmKey) -> Result<()> {
     Err(InputError::new("seed", image.seed.to_string(), problem).allowed("two different seeds").into())
 }
 
+/// A line of what is printed.
+struct Line {
+    name: &'static str,
+    value: f64,
+    interval: Option<Interval>,
+    about: &'static str,
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    if let Some(scale) = arguments.scale.filter(|scale| !(*scale > 0.0 && scale.is_finite())) {
+        let error = InputError::new("scale", scale.to_string(), "must be a positive number");
+        return Err(error.allowed("an error of linear radiance, like 0.5").into());
+    }
+    let inputs = [Some(&arguments.image), Some(&arguments.reference), arguments.half.as_ref()];
+    let names = ["the image", "the reference", "the second reference"];
     if let Some(path) = &arguments.heatmap {
         image_io::check_format(path)?;
         let mut files = Files::default();
-        files.reads("the image", &arguments.image);
-        files.reads("the reference", &arguments.reference);
+        for (name, input) in names.into_iter().zip(inputs) {
+            if let Some(input) = input {
+                files.reads(name, input);
+            }
+        }
         files.writes("heatmap", path)?;
     }
-    let ((image, key), (reference, reference_key)) = (read(&arguments.image)?, read(&arguments.reference)?);
-    if let (Some(key), Some(reference_key)) = (key, reference_key) {
-        check_independent(&key, &reference_key)?;
+    let read = inputs.into_iter().flatten().map(|path| picture::read(path)).collect::<Result<Vec<_>>>()?;
+    for (index, (_, key)) in read.iter().enumerate() {
+        for (_, other) in &read[..index] {
+            if let (Some(key), Some(other)) = (key, other) {
+                check_independent(key, other)?;
+            }
+        }
     }
-    let mut values = Vec::new();
-    for metric in METRICS {
-        values.push((metric, metric.compute(&image, &reference)?));
-    }
+    let images: Vec<&Image> = read.iter().map(|(image, _)| image).collect();
+    let lines = match images[..] {
+        [image, first, second] => cross(image, first, second)?,
+        [image, reference, ..] => plain(image, reference)?,
+        _ => Vec::new(),
+    };
+    let mut remark = None;
     if let Some(path) = &arguments.heatmap {
-        let map = heatmap(&image, &reference, None)?;
+        let map = heatmap(images[0], images[1], arguments.scale)?;
         image_io::write(path, &map.to_image())?;
+        remark = Some(format!("{}: from 0, dark, to {:.4}, light", path.display(), map.scale));
     }
     if arguments.json {
-        let object: serde_json::Map<String, serde_json::Value> =
-            values.iter().map(|(metric, value)| (metric.name.to_string(), number(*value))).collect();
-        return print_json(&object);
+        return print_json(&object(&lines));
     }
-    let width = values.iter().map(|(metric, _)| metric.name.len()).max().unwrap_or(0);
-    let lines: Vec<String> = values
-        .iter()
-        .map(|(metric, value)| format!("{:width$}  {value:<12.6}  {}", metric.name, metric.about))
-        .collect();
-    print(&lines.join("\n"))
+    let width = lines.iter().map(|line| line.name.len()).max().unwrap_or(0);
+    let line = |Line { name, value, interval, about }: &Line| {
+        let between = interval.map_or_else(String::new, |i| format!("({:.6} to {:.6})  ", i.low, i.high));
+        format!("{name:width$}  {value:<12.6}  {between}{about}")
+    };
+    let told: Vec<String> = lines.iter().map(line).chain(remark).collect();
+    print(&told.join("\n"))
+}
+
+/// Every metric against one reference.
+fn plain(image: &Image, reference: &Image) -> Result<Vec<Line>> {
+    let line = |metric: &'static crate::metric::Entry| {
+        let value = metric.compute(image, reference)?;
+        Ok(Line { name: metric.name, value, interval: None, about: metric.about })
+    };
+    METRICS.iter().map(line).collect()
+}
+
+/// The cross form, with an interval by the scatter of the pixels' products: the noise of neighbours is independent, and what pixels differ in
+/// besides makes the interval wider, never too narrow.
+fn cross(image: &Image, first: &Image, second: &Image) -> Result<Vec<Line>> {
+    let products = cross_products(image, first, second)?;
+    let mean = products.iter().sum::<f64>() / products.len() as f64;
+    let interval = t_interval(&products, LEVEL).map(|estimate| estimate.interval);
+    let rmse = root(mean).unwrap_or(f64::NAN);
+    let of_roots = |i: Interval| Interval { low: i.low.max(0.0).sqrt(), high: i.high.max(0.0).sqrt(), level: i.level };
+    let rel_mse = cross_rel_mse(image, first, second)?;
+    Ok(vec![
+        Line { name: "mse", value: mean, interval, about: "mean squared error, free of the references' noise (95 %)" },
+        Line { name: "rmse", value: rmse, interval: interval.map(of_roots), about: "its root; NaN if it is negative" },
+        Line { name: "rel-mse", value: rel_mse, interval: None, about: "over the squared reference, likewise" },
+    ])
+}
+
+fn object(lines: &[Line]) -> serde_json::Map<String, Value> {
+    let mut object = serde_json::Map::new();
+    for Line { name, value, interval, .. } in lines {
+        object.insert((*name).to_string(), number(*value));
+        if let Some(Interval { low, high, .. }) = interval {
+            object.insert(format!("{name}_low"), number(*low));
+            object.insert(format!("{name}_high"), number(*high));
+        }
+    }
+    object
 }

@@ -2,7 +2,7 @@
 
 use super::output::{counted, print, print_json};
 use crate::error::Result;
-use crate::experiment::Definition;
+use crate::experiment::{Definition, keys};
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
 use crate::kernel::{KERNELS, Spec, choose};
@@ -50,6 +50,7 @@ enum Kind {
     Metrics,
     Formats,
     Experiments,
+    Keys,
     Figures,
     Columns,
     Warnings,
@@ -122,6 +123,7 @@ fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
             let experiment = |(name, _): (&str, &str)| Ok(item(name, &Definition::load(lab, name)?.title));
             Definition::known(lab).map(experiment).collect::<Result<_>>()?
         }
+        Kind::Keys => keys().map(|(key, about)| item(&key, &about)).collect(),
         Kind::Figures => FIGURES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Columns => COLUMNS.iter().map(|column| item(column.name, &about_column(column))).collect(),
         Kind::Warnings => WARNINGS.iter().map(|entry| item(entry.name, entry.about)).collect(),

@@ -9,6 +9,7 @@ mod check;
 mod claims;
 mod compare;
 mod completions;
+mod convert;
 mod explain;
 mod guards;
 mod list;
@@ -16,6 +17,7 @@ mod man;
 mod new;
 mod out_of_memory;
 mod output;
+mod picture;
 mod plan;
 mod price;
 mod profile;
@@ -49,7 +51,7 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, price, report, claims   Render: render, reference, compare
+Measure: reproduce, run, price, report, claims   Render: render, reference, compare, convert
 Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check, man, completions";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
@@ -71,8 +73,10 @@ enum Verb {
     Render(render::Arguments),
     /// Run one experiment.
     Run(run::Arguments),
-    /// Measure the error of an image against a reference image.
+    /// Measure the error of an image against a reference image, or against two without their noise.
     Compare(compare::Arguments),
+    /// Write a film or an image in another format.
+    Convert(convert::Arguments),
     /// Predict what accuracies cost in samples and seconds, and check it by paying.
     Price(price::Arguments),
     /// Render the two half-references of a scene.
@@ -148,6 +152,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Render(arguments) => render::run(&arguments, lab, talk),
         Verb::Run(arguments) => run::run(&arguments, lab, talk),
         Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Convert(arguments) => convert::run(&arguments),
         Verb::Price(arguments) => price::run(&arguments, lab, talk),
         Verb::Reference(arguments) => reference::run(&arguments, lab, talk),
         Verb::Claims(arguments) => claims::run(&arguments, lab),

@@ -45,10 +45,16 @@ impl RunFile {
 
     /// Refuses to mix rows that are not repetitions of each other: another processor, revision, profile or definition.
     pub(super) fn check_same(&self, now: &Self, path: &Path) -> Result<()> {
-        let mut pairs = vec![
-            ("profile", self.profile.clone(), now.profile.clone()),
-            ("definition_hash", self.definition_hash.clone(), now.definition_hash.clone()),
-        ];
+        if self.definition_hash != now.definition_hash {
+            let problem = "was edited since these rows were measured";
+            return Err(InputError::new("experiment", "", problem)
+                .allowed(
+                    "another --out for the new text, or the old text, which stands beside the rows as experiment.toml",
+                )
+                .in_file(path.display().to_string(), None)
+                .into());
+        }
+        let mut pairs = vec![("profile", self.profile.clone(), now.profile.clone())];
         let (then, here) = (self.machine.identity(), now.machine.identity());
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));
         match pairs.into_iter().find(|(_, old, new)| old != new) {

@@ -32,7 +32,7 @@ pub(super) type Matrix = Table<false>;
 pub(super) type Scale = Table<true>;
 
 /// The axes that a matrix cannot leave out.
-const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "decomposition"];
+pub(super) const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "decomposition"];
 
 /// What a profile renders that does not say it, and how often: the fewest repetitions that allow an interval with 95 % confidence.
 const SIZE: &str = "320x240";

@@ -15,6 +15,17 @@ pub fn cross_mse(test: &Image, reference1: &Image, reference2: &Image) -> Result
     mean_product(test, reference1, reference2, |value| value)
 }
 
+/// The terms of [`cross_mse`]: for each pixel the mean of (T - R1)(T - R2) over its channels.
+pub fn cross_products(test: &Image, reference1: &Image, reference2: &Image) -> Result<Vec<f64>> {
+    check_sizes(test, reference1)?;
+    check_sizes(test, reference2)?;
+    let pixels = test.pixels.iter().zip(&reference1.pixels).zip(&reference2.pixels);
+    let product = |((t, r1), r2): ((&[f64; 3], &[f64; 3]), &[f64; 3])| {
+        t.iter().zip(r1).zip(r2).map(|((t, r1), r2)| (t - r1) * (t - r2)).sum::<f64>() / 3.0
+    };
+    Ok(pixels.map(product).collect())
+}
+
 /// [`cross_mse`] of display values in [0, 1].
 ///
 /// Not exactly unbiased: the display value of a noisy mean is not, on average, the display value of the mean, since clamp and

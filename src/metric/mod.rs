@@ -14,7 +14,7 @@ mod pointwise;
 mod ssim;
 mod tolerance;
 
-pub use cross::{bias_squared, cross_mse, cross_mse_display, cross_rel_mse, root};
+pub use cross::{bias_squared, cross_mse, cross_mse_display, cross_products, cross_rel_mse, root};
 pub use heatmap::{Heatmap, heat_colour, heatmap};
 pub use pointwise::REL_MSE_EPSILON;
 pub use tolerance::{brighter_pixels, share_within};

@@ -164,10 +164,20 @@ fn images_that_cannot_be_compared_are_refused() {
         (&["a.pfm", "a.pfm", "--heatmap", "map.tga"], &["map.tga", "png"]),
         (&["a.pfm", "a.pfm", "--heatmap", "nowhere/map.png"], &["nowhere/map.png", "does not exist"]),
         (&["a.pfm", "."], &["png"]),
+        (&["a.pfm", "a.pfm", "b.pfm"], &["8x8", "8x4"]),
+        (&["a.pfm", "a.pfm", "--heatmap", "map.png", "--scale", "0"], &["scale = 0", "positive number"]),
+        (&["a.pfm", "a.pfm", "--scale", "1"], &["--heatmap"]),
     ];
     for (arguments, said) in cases {
         println!("{arguments:?}");
         refused(folder.path(), &[&["compare"], *arguments].concat(), 2, said);
+    }
+    for (arguments, said) in [
+        (["convert", "a.pfm", "-o", "a.tga"], ["a.tga", "png"]),
+        (["convert", "a.film", "-o", "a.png"], ["a.film", "no such file"]),
+        (["convert", "text.png", "-o", "a.png"], ["image", "text.png"]),
+    ] {
+        refused(folder.path(), &arguments, 2, &said);
     }
 }
 

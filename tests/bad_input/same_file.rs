@@ -30,6 +30,7 @@ const VERBS: &[Verb] = &[
         inputs: &["image.png", "reference.png"],
         outputs: &[("--heatmap", "heatmap")],
     },
+    Verb { arguments: &["convert", "image.png"], inputs: &["image.png"], outputs: &[("-o", "output")] },
 ];
 
 const BASE: &str = r#"about = "a base"

@@ -11,6 +11,33 @@ fn blocks(text: &str) -> Vec<(&str, &str)> {
     parts.step_by(2).filter_map(|part| part.split_once('\n')).collect()
 }
 
+/// The README's commands in a small size: what takes an hour, what needs a feature, and what other tests run is left out.
+#[test]
+fn the_commands_of_the_readme_run() {
+    const ELSEWHERE: [&str; 4] = ["pathmark reproduce", "pathmark check", "pathmark run openmp", "pathmark VERB"];
+    let folder = tempfile::tempdir().unwrap();
+    let mut commands = 0;
+    let text = include_str!("../../README.md");
+    for line in blocks(text).into_iter().filter(|(language, _)| *language == "sh").flat_map(|(_, block)| block.lines())
+    {
+        let (command, _) = line.split_once('#').unwrap_or((line, ""));
+        if !command.starts_with("pathmark ") || ELSEWHERE.iter().any(|own| command.starts_with(own)) {
+            continue;
+        }
+        let mut small = command.replace("256x192", "32x24").replace("room.toml", "cornell");
+        let more = match command.split_whitespace().nth(1) {
+            Some("run") => " --set size=32x24 --repetitions 1",
+            Some("price" | "render" | "replay") if !command.contains("--size") => " --size 128x201",
+            _ => "",
+        };
+        small += more;
+        let words: Vec<&str> = small.split_whitespace().collect();
+        finish(pathmark(folder.path(), &words[1..])).with_code(0);
+        commands += 1;
+    }
+    assert!(commands > 10, "{commands} commands");
+}
+
 #[test]
 fn every_command_of_the_tutorial_runs() {
     let text = include_str!("../../docs/tutorial.md");

@@ -44,6 +44,14 @@ window.addEventListener("load", () => {
   table.tHead.rows[0].cells[column].querySelector("button").click();
   seen.descending = order();
   seen.tools = all("#tiny-speedup .tools button").map((button) => button.textContent);
+  const slider = document.querySelector("#pictures-contact-sheet .viewer input[type=range]");
+  const canvas = document.querySelector("#pictures-contact-sheet .viewer canvas");
+  const pictures = [0, 1].map((step) => {
+    slider.value = step;
+    slider.dispatchEvent(new Event("input"));
+    return canvas.toDataURL();
+  });
+  seen.slides = pictures[0] !== pictures[1];
   seen.background = getComputedStyle(document.body).backgroundColor;
   const told = document.createElement("script");
   told.type = "application/json";
@@ -88,6 +96,12 @@ fn the_page_works_in_a_browser() {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
     finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
+    let pictures = TINY
+        .replace("figures = [\"speedup\", \"schedules\"]", "figures = [\"contact-sheet\"]\nkeep = [\"images\"]")
+        .replace("spp = [4]", "spp = [4, 8]")
+        .replace("[quick]", "[reference]\nestimator = \"bsdf\"\n\n[quick]");
+    fs::write(folder.path().join("pictures.toml"), pictures).unwrap();
+    finish(pathmark(folder.path(), &["run", "pictures.toml", "--out", "out", "--repetitions", "1"])).with_code(0);
     let html = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     let errors = "<script>window.pageErrors = []; window.addEventListener('error', (e) => window.pageErrors.push(e.message));</script>";
     let watched = html
@@ -109,6 +123,7 @@ fn the_page_works_in_a_browser() {
         assert_eq!((seen["before"].as_str(), seen["after"].as_str()), (Some("inline"), Some("none")), "{seen}");
         let (up, down) = (numbers(&seen["ascending"]), numbers(&seen["descending"]));
         assert!(up.len() > 2 && up.is_sorted() && down.iter().rev().eq(&up), "{seen}");
+        assert_eq!(seen["slides"], true, "the slider changes the picture: {seen}");
         assert_eq!(seen["tools"], serde_json::json!(["SVG", "PNG", "CSV", "logarithmic axes"]));
         backgrounds.push(seen["background"].as_str().unwrap().to_string());
     }

@@ -132,7 +132,7 @@ fn resuming_with_another_definition_or_machine_is_refused() {
     };
     refused(&[RESUME.as_slice(), &["--full"]].concat(), "profile = quick");
     write_tiny(folder.path(), &TINY.replace("seed = [1]", "seed = [2]"));
-    refused(&RESUME, "definition_hash");
+    refused(&RESUME, "was edited since these rows were measured");
     write_tiny(folder.path(), TINY);
 
     let machine = records.with_file_name("machine.toml");

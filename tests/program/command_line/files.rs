@@ -2,6 +2,7 @@
 
 use super::{json, names, record, run};
 use crate::experiment::{TINY, write_tiny};
+use crate::program::{finish, pathmark};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -42,7 +43,7 @@ fn automatic_exposure_changes_only_what_is_shown() {
         record
     };
     let bytes = |image: &str| fs::read(folder.path().join(image)).unwrap();
-    let linear = |image: &str| pathmark::image_io::read(&folder.path().join(image)).unwrap();
+    let linear = |image: &str| ::pathmark::image_io::read(&folder.path().join(image)).unwrap();
     for format in names("formats") {
         let (plain, exposed) = (format!("plain.{format}"), format!("exposed.{format}"));
         assert_eq!(render(&plain, &[]), render(&exposed, &["--auto-exposure"]), "{format}");
@@ -54,7 +55,7 @@ fn automatic_exposure_changes_only_what_is_shown() {
     let largest = light.pixels.iter().flatten().copied().fold(0.0, f64::max);
     assert!(!(0.9..=1.1).contains(&largest), "no power: the brightest channel is {largest}");
     for (light, shown) in light.pixels.iter().flatten().zip(shown.pixels.iter().flatten()) {
-        let display = pathmark::image_io::tone_map::display;
+        let display = ::pathmark::image_io::tone_map::display;
         assert!((display(light / largest) - display(*shown)).abs() <= 0.5001 / 255.0, "{light} is shown as {shown}");
     }
 }
@@ -80,6 +81,51 @@ fn a_reference_is_cached_and_a_heat_map_is_drawn() {
     assert_png(&folder.path().join("map.png"));
     let same = json(&run(folder.path(), &["compare", "a.pfm", "a.pfm", "--json"]).out);
     assert_eq!(same["rmse"], 0.0);
+}
+
+/// From a reference to a comparison: the two films that `reference` writes, against an image that shares no sample with them.
+#[test]
+fn an_image_is_compared_with_both_halves_of_a_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    let reference = ["reference", "cornell", "--size", "24x16", "--spp", "64", "--out", "films"];
+    let told = run(folder.path(), &reference).out;
+    let films: Vec<&str> = told.lines().take(2).collect();
+    record(folder.path(), "cornell", &["-o", "a.pfm"]);
+    let compared = json(&run(folder.path(), &["compare", "a.pfm", films[0], films[1], "--json"]).out);
+    let number = |name: &str| compared[name].as_f64().unwrap();
+    let read = |name: &str| ::pathmark::image_io::read(&folder.path().join(name)).unwrap();
+    for (film, image) in films.iter().zip(["first.pfm", "second.pfm"]) {
+        run(folder.path(), &["convert", film, "-o", image]);
+    }
+    let [image, first, second] = ["a.pfm", "first.pfm", "second.pfm"].map(read);
+    // A picture file has fewer digits than a film.
+    let expected = ::pathmark::metric::cross_mse(&image, &first, &second).unwrap();
+    assert!((number("mse") / expected - 1.0).abs() < 1e-5, "{compared} beside {expected}");
+    assert!(number("mse_low") < number("mse") && number("mse") < number("mse_high"));
+    for end in ["", "_low", "_high"] {
+        let (root, square) = (number(&format!("rmse{end}")), number(&format!("mse{end}")));
+        assert!((root * root / square - 1.0).abs() < 1e-9, "{compared}");
+    }
+    // The noise of the references is in the plain form and not in this one.
+    let plain = json(&run(folder.path(), &["compare", "a.pfm", films[0], "--json"]).out);
+    assert!(plain["mse"].as_f64().unwrap() > number("mse"), "{plain}");
+    let same = finish(pathmark(folder.path(), &["compare", "a.pfm", films[0], films[0]])).with_code(2);
+    assert!(same.err.contains("seed of both"), "{}", same.err);
+}
+
+/// The same errors on a wider scale are darker.
+#[test]
+fn a_heat_map_has_the_scale_that_was_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path(), "cornell", &["--seed", "1", "-o", "a.pfm"]);
+    record(folder.path(), "cornell", &["--seed", "2", "-o", "b.pfm"]);
+    let light = |scale: &str| {
+        let map = ["compare", "a.pfm", "b.pfm", "--heatmap", "map.png", "--scale", scale];
+        assert!(run(folder.path(), &map).out.contains(&format!("from 0, dark, to {scale}000, light")));
+        let image = ::pathmark::image_io::read(&folder.path().join("map.png")).unwrap();
+        image.pixels.as_flattened().iter().sum::<f64>()
+    };
+    assert!(light("0.5") > light("9.5"));
 }
 
 fn assert_png(path: &Path) {

@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 23] = [
+const KINDS: [&str; 24] = [
     "scenes",
     "workloads",
     "strategies",
@@ -15,6 +15,7 @@ const KINDS: [&str; 23] = [
     "estimators",
     "samplers",
     "kernels",
+    "keys",
     "simd",
     "effects",
     "accelerators",

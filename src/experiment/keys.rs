@@ -1,0 +1,79 @@
+//! The keys of an experiment's file, for `pathmark list keys`.
+
+use super::table::REQUIRED;
+use crate::measure::AXES;
+
+/// Key and meaning of everything but the axes.
+const KEYS: &[(&str, &str)] = &[
+    ("title", "heading of its section [required]"),
+    ("question", "what is asked [required]"),
+    ("figures", "names of `pathmark list figures` [required]"),
+    ("analysis", "how to read the figures; empty lines part paragraphs"),
+    ("chapter", "chapter of the page: accuracy, scheduling, hard-inputs or effects"),
+    ("place", "place among the chapter's experiments"),
+    ("in-short", "number of the finding that stands at the beginning of the page"),
+    ("keep", "what stays beside the rows: images, traces, calibration"),
+    ("unverified", "true for samplers that give other numbers in each run, so that no checksum can be expected"),
+    ("requires", "features that the program must be built with: openmp"),
+    ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
+    ("matrix.weak", "true: samples per pixel are for each thread"),
+    ("matrix.curve", "true: a row at 1, 2, 4 ... times the fewest samples on the way to each spp"),
+    ("matrix.profiles", "the profiles that the matrix is for [default: all]"),
+    ("figure", "a table [figure.NAME] for what a figure is told about the experiment"),
+    ("reference", "measures errors"),
+    ("reference.estimator", "estimator of the references"),
+    ("reference.object", "measures errors on the pixels of this object, too"),
+    ("external", "another program beside the cells, under [[external]]"),
+    ("quick", "the profile --quick: any axis, size, repetitions, reference-spp [default: 320x240, 6 repetitions]"),
+    ("full", "the profile --full, likewise"),
+    ("reports", "the profile --reports, likewise"),
+];
+
+/// Key and meaning of everything that an experiment's file may say.
+pub fn keys() -> impl Iterator<Item = (String, String)> {
+    let axes = AXES.iter().map(|axis| {
+        let about = if axis.about.is_empty() { "values of this axis" } else { axis.about };
+        let required = if REQUIRED.contains(&axis.name) { " [required]" } else { "" };
+        (format!("matrix.{}", axis.name), format!("{about}{required}"))
+    });
+    KEYS.iter().map(|(key, about)| ((*key).to_string(), (*about).to_string())).chain(axes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::Definition;
+    use crate::lab::Lab;
+    use std::collections::BTreeSet;
+
+    /// The reader's own list stands in the error about a key that it does not know.
+    #[test]
+    fn the_listed_keys_are_those_that_are_read() {
+        let read = |text: &str| Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap_err().to_string();
+        let told = read("mood = 1");
+        let names = told.split('`').skip(1).step_by(2).filter(|name| *name != "mood");
+        let listed: BTreeSet<&str> = KEYS.iter().map(|(key, _)| *key).filter(|key| !key.contains('.')).collect();
+        assert_eq!(names.collect::<BTreeSet<&str>>(), listed, "{told}");
+        let told = read("title = \"t\"\nquestion = \"q\"\nfigures = []\n[matrix]\nmood = 1");
+        for (key, _) in keys().filter(|(key, _)| key.starts_with("matrix.")) {
+            assert!(told.contains(&format!("`{}`", key.trim_start_matches("matrix."))), "{key}: {told}");
+        }
+    }
+
+    #[test]
+    fn what_is_required_is_missed() {
+        let matrix: Vec<String> = REQUIRED.iter().map(|axis| value(axis)).collect();
+        for (index, axis) in REQUIRED.iter().enumerate() {
+            let mut left = matrix.clone();
+            left.remove(index);
+            let text = format!("title = \"t\"\nquestion = \"q\"\nfigures = []\n[matrix]\n{}", left.join("\n"));
+            let told = Definition::from_text(&Lab::built_in(), "x", "x.toml", &text).unwrap_err().to_string();
+            assert!(told.contains(&format!("`{axis}`")), "{axis}: {told}");
+        }
+    }
+
+    fn value(axis: &str) -> String {
+        let value = if ["spp", "threads"].contains(&axis) { "1" } else { "\"rows\"" };
+        format!("{axis} = [{value}]")
+    }
+}
