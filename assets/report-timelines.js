@@ -106,13 +106,7 @@
       const centre = at === undefined ? (shown.from + shown.to) / 2 : at;
       move(centre - (centre - shown.from) * factor, centre + (shown.to - centre) * factor);
     };
-    const button = (label, act) => {
-      const made = document.createElement("button");
-      made.type = "button";
-      made.textContent = label;
-      made.addEventListener("click", act);
-      tools.append(made);
-    };
+    const button = (label, act) => addButton(tools, label, act);
     button("Zoom in", () => zoom(0.5));
     button("Zoom out", () => zoom(2));
     button("All", () => move(0, end));
@@ -123,10 +117,7 @@
           name: `job ${job}`, ph: "X", pid: place, tid: worker, ts: start, dur: stop - start,
         })),
       ]);
-      const link = document.createElement("a");
-      link.href = URL.createObjectURL(new Blob([JSON.stringify({ traceEvents: events })], { type: "application/json" }));
-      link.download = `${figure.id}.json`;
-      link.click();
+      save(new Blob([JSON.stringify({ traceEvents: events })], { type: "application/json" }), `${figure.id}.json`);
     });
     const where = document.createElement("a");
     where.href = "https://ui.perfetto.dev";

@@ -1,5 +1,23 @@
 "use strict";
 // The page is complete without this script: it adds values under the pointer, lines that can be switched off, downloads and sorting.
+
+// For this script and those behind it.
+const save = (blob, name) => {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+};
+const addButton = (within, label, act) => {
+  const made = document.createElement("button");
+  made.type = "button";
+  made.textContent = label;
+  made.addEventListener("click", act);
+  within.append(made);
+  return made;
+};
+
 (() => {
   const all = (selector, within = document) => Array.from(within.querySelectorAll(selector));
 
@@ -63,13 +81,6 @@
   });
 
   // Downloads.
-  const save = (blob, name) => {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  };
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const asSvg = (svg) => new Blob([new XMLSerializer().serializeToString(svg)], { type: "image/svg+xml" });
   const asCsv = (svg) => {
@@ -95,14 +106,7 @@
     const shown = () => all("svg", figure).find((svg) => !svg.closest("[hidden]") && svg.style.display !== "none");
     const tools = document.createElement("div");
     tools.className = "tools";
-    const button = (label, act) => {
-      const made = document.createElement("button");
-      made.type = "button";
-      made.textContent = label;
-      made.addEventListener("click", act);
-      tools.append(made);
-      return made;
-    };
+    const button = (label, act) => addButton(tools, label, act);
     button("SVG", () => save(asSvg(shown()), `${figure.id}.svg`));
     button("PNG", () => asPng(shown(), (blob) => save(blob, `${figure.id}.png`)));
     if (figure.querySelector("circle.note")) button("CSV", () => save(asCsv(shown()), `${figure.id}.csv`));

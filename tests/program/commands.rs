@@ -24,7 +24,7 @@ fn the_commands_of_the_readme_run() {
         if !command.starts_with("pathmark ") || ELSEWHERE.iter().any(|own| command.starts_with(own)) {
             continue;
         }
-        let mut small = command.replace("256x192", "32x24").replace("room.toml", "cornell");
+        let mut small = command.replace("256x192", "32x24");
         let more = match command.split_whitespace().nth(1) {
             Some("run") => " --set size=32x24 --repetitions 1",
             Some("price" | "render" | "replay") if !command.contains("--size") => " --size 128x201",
