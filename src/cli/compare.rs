@@ -8,7 +8,7 @@ use crate::error::{InputError, Result};
 use crate::files::Files;
 use crate::film_file::FilmKey;
 use crate::image_io::{self, Image};
-use crate::metric::{METRICS, cross_products, cross_rel_mse, heatmap, root};
+use crate::metric::{METRICS, cross_products, cross_rel_mse, flip_map, heatmap, root};
 use clap::Args;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -32,18 +32,34 @@ pub(super) struct Arguments {
     /// Error of a pixel that has the heat map's lightest colour [default: one that one pixel in a hundred exceeds]
     #[arg(long, value_name = "ERROR", requires = "heatmap")]
     scale: Option<f64>,
+    /// Write a picture of how large each pixel's difference looks: FLIP, from 0 to 1
+    #[arg(long, value_name = "FILE.png")]
+    flip: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// Images of one scene and one seed share samples, and look more alike than they are.
-fn check_independent(image: &FilmKey, reference: &FilmKey) -> Result<()> {
-    if (&image.scene_hash, image.seed) != (&reference.scene_hash, reference.seed) {
-        return Ok(());
+/// Images of one scene and one seed share samples, and look more alike than they are. Between films, which are there to measure errors, that is
+/// refused; of pictures, which may be two ways to render one image, it is told.
+fn shared_samples(inputs: &[(&PathBuf, Option<FilmKey>)]) -> Result<Option<String>> {
+    let mut remark = None;
+    for (index, (path, key)) in inputs.iter().enumerate() {
+        for (other_path, other) in &inputs[..index] {
+            let (Some(key), Some(other)) = (key, other) else { continue };
+            if (&key.scene_hash, key.seed) != (&other.scene_hash, other.seed) {
+                continue;
+            }
+            let problem = "is the seed of both, so that they share samples and look more alike than they are";
+            if picture::is_film(path) && picture::is_film(other_path) {
+                return Err(InputError::new("seed", key.seed.to_string(), problem)
+                    .allowed("two different seeds")
+                    .into());
+            }
+            remark = Some(format!("seed {} {problem}", key.seed));
+        }
     }
-    let problem = "is the seed of both, so that they share samples and look more alike than they are";
-    Err(InputError::new("seed", image.seed.to_string(), problem).allowed("two different seeds").into())
+    Ok(remark)
 }
 
 /// A line of what is printed.
@@ -61,35 +77,39 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     let inputs = [Some(&arguments.image), Some(&arguments.reference), arguments.half.as_ref()];
     let names = ["the image", "the reference", "the second reference"];
-    if let Some(path) = &arguments.heatmap {
+    let maps = [("heatmap", arguments.heatmap.as_ref()), ("flip", arguments.flip.as_ref())];
+    let mut files = Files::default();
+    for (name, input) in names.into_iter().zip(inputs) {
+        if let Some(input) = input {
+            files.reads(name, input);
+        }
+    }
+    for (option, path) in maps.into_iter().filter_map(|(option, path)| Some((option, path?))) {
         image_io::check_format(path)?;
-        let mut files = Files::default();
-        for (name, input) in names.into_iter().zip(inputs) {
-            if let Some(input) = input {
-                files.reads(name, input);
-            }
-        }
-        files.writes("heatmap", path)?;
+        files.writes(option, path)?;
     }
-    let read = inputs.into_iter().flatten().map(|path| picture::read(path)).collect::<Result<Vec<_>>>()?;
-    for (index, (_, key)) in read.iter().enumerate() {
-        for (_, other) in &read[..index] {
-            if let (Some(key), Some(other)) = (key, other) {
-                check_independent(key, other)?;
-            }
-        }
+    let (mut read, mut shown) = (Vec::new(), Vec::new());
+    for path in inputs.into_iter().flatten() {
+        let (image, film) = picture::read(path)?;
+        shown.push((path, film.map(|film| film.key)));
+        read.push(image);
     }
-    let images: Vec<&Image> = read.iter().map(|(image, _)| image).collect();
+    let shared = shared_samples(&shown)?;
+    let images: Vec<&Image> = read.iter().collect();
     let lines = match images[..] {
         [image, first, second] => cross(image, first, second)?,
         [image, reference, ..] => plain(image, reference)?,
         _ => Vec::new(),
     };
-    let mut remark = None;
-    if let Some(path) = &arguments.heatmap {
-        let map = heatmap(images[0], images[1], arguments.scale)?;
+    let mut remarks: Vec<String> = shared.into_iter().collect();
+    for (option, path) in maps {
+        let Some(path) = path else { continue };
+        let map = match option {
+            "flip" => flip_map(images[0], images[1])?,
+            _ => heatmap(images[0], images[1], arguments.scale)?,
+        };
         image_io::write(path, &map.to_image())?;
-        remark = Some(format!("{}: from 0, dark, to {:.4}, light", path.display(), map.scale));
+        remarks.push(format!("{}: from 0, dark, to {:.4}, light", path.display(), map.scale));
     }
     if arguments.json {
         return print_json(&object(&lines));
@@ -99,7 +119,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         let between = interval.map_or_else(String::new, |i| format!("({:.6} to {:.6})  ", i.low, i.high));
         format!("{name:width$}  {value:<12.6}  {between}{about}")
     };
-    let told: Vec<String> = lines.iter().map(line).chain(remark).collect();
+    let told: Vec<String> = lines.iter().map(line).chain(remarks).collect();
     print(&told.join("\n"))
 }
 

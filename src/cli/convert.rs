@@ -27,8 +27,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let mut files = Files::default();
     files.reads("the input", input);
     files.writes("output", output)?;
-    let (image, _) = picture::read(input)?;
+    let (image, film) = picture::read(input)?;
     let shown = if *auto_exposure && !format.linear { image_io::auto_exposed(&image) } else { image };
-    image_io::write(output, &shown)?;
+    let notes = film.map_or_else(Vec::new, |film| film.notes());
+    image_io::write_with_notes(output, &shown, &notes)?;
     print(&format!("{}: {}x{}", output.display(), shown.width, shown.height))
 }

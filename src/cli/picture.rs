@@ -1,19 +1,27 @@
 //! Pictures that verbs are given: image files, and film files of references and checkpoints.
 
 use crate::error::{InputError, Result};
-use crate::film_file::{FilmKey, read_film};
+use crate::film_file::read_film;
 use crate::image_io::{self, Image};
+use crate::measure::Provenance;
 use std::path::Path;
 
+/// Whether the file's name is that of a film, which keeps sums in full precision.
+pub(super) fn is_film(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "film")
+}
+
 /// A picture, and what it is of where its file knows.
-pub(super) fn read(path: &Path) -> Result<(Image, Option<FilmKey>)> {
-    let is_film = path.extension().is_some_and(|extension| extension == "film");
+pub(super) fn read(path: &Path) -> Result<(Image, Option<Provenance>)> {
+    let is_film = is_film(path);
     if is_film && !path.exists() {
         return Err(InputError::new("image", path.display().to_string(), "there is no such file").into());
     }
     if is_film && path.is_file() {
         let (key, film) = read_film(path)?;
-        return Ok((film.image(), Some(key)));
+        let checksum = Some(film.checksum());
+        return Ok((film.image(), Some(Provenance { key, checksum })));
     }
-    Ok((image_io::read(path)?, None))
+    let (image, notes) = image_io::read_with_notes(path)?;
+    Ok((image, Provenance::of_notes(&notes)))
 }

@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     };
     let image = outcome.film.image();
     let shown = if arguments.auto_exposure && !format.linear { image_io::auto_exposed(&image) } else { image };
-    image_io::write(&path, &shown)?;
+    image_io::write_with_notes(&path, &shown, &outcome.provenance(&setup).notes())?;
     if let Some(trace) = &arguments.trace {
         TraceFile::new(&setup, &outcome).write(trace)?;
     }

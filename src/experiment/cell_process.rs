@@ -187,7 +187,8 @@ impl CellJob {
     ) -> Result<Record> {
         let image = outcome.film.image();
         let begun = Instant::now();
-        point.image.as_ref().map_or(Ok(()), |path| image_io::write(path, &image))?;
+        let notes = || outcome.provenance(setup).notes();
+        point.image.as_ref().map_or(Ok(()), |path| image_io::write_with_notes(path, &image, &notes()))?;
         let image_write_s = point.image.as_ref().map(|_| begun.elapsed().as_secs_f64());
         let errors = match references {
             Some([first, second]) => Measured::against(&image, first, second)?,

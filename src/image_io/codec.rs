@@ -23,7 +23,7 @@ const MAX_PIXELS_PER_BYTE: u64 = 8 * 1032;
 pub(super) const MAX_FILE_LENGTH: u64 = 20 * MAX_PIXELS;
 #[cfg(feature = "program")]
 /// What a decoder may allocate for anything but pixels.
-const MAX_METADATA: u64 = 64 << 20;
+pub(super) const MAX_METADATA: u64 = 64 << 20;
 
 /// Whether a picture of this size is one that Pathmark reads and writes.
 pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {

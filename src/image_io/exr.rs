@@ -2,22 +2,24 @@
 //!
 //! Source of the header's layout: the file layout document of openexr.com.
 
+use std::collections::BTreeMap;
 use std::io::Cursor;
 
-use image::codecs::openexr::{OpenExrDecoder, OpenExrEncoder};
-use image::{ExtendedColorType, ImageEncoder};
+use exr::prelude::{SpecificChannels, Text, Vec2, WritableImage};
+use image::codecs::openexr::OpenExrDecoder;
 
 use super::codec::{self, Decoded};
-use super::{Format, Image};
+use super::{Format, Image, Note};
 use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
     name: "exr",
-    about: "linear radiance in f32, compressed, lossless",
+    about: "linear radiance in f32, compressed, lossless, with notes",
     linear: true,
     forbidden_width: None,
     decode,
     encode,
+    notes,
 };
 
 /// Bits of the version field that ask for more than one picture of plain pixels: deep data, several parts.
@@ -82,11 +84,34 @@ fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     Some(head)
 }
 
-fn encode(image: &Image) -> Result<Vec<u8>> {
-    let samples: Vec<u8> = codec::to_f32(image)?.into_iter().flat_map(f32::to_ne_bytes).collect();
+fn encode(image: &Image, notes: &[Note]) -> Result<Vec<u8>> {
+    let samples = codec::to_f32(image)?;
+    let (pixels, _) = samples.as_chunks::<3>();
+    let size = Vec2(image.width as usize, image.height as usize);
+    let channels = SpecificChannels::rgb(|at: Vec2<usize>| {
+        let [r, g, b] = pixels[at.flat_index_for_size(size)];
+        (r, g, b)
+    });
+    let mut file = exr::prelude::Image::from_channels(size, channels);
+    if !notes.is_empty() {
+        // One attribute holds them all, since the library writes those without a name of its own in any order.
+        let json = serde_json::to_string(&notes.iter().cloned().collect::<BTreeMap<_, _>>()).unwrap_or_default();
+        // Attributes have one byte a letter.
+        let plain: String = json.chars().map(|letter| if letter.is_ascii() { letter } else { '?' }).collect();
+        file.layer_data.attributes.comments = Text::new_or_none(plain);
+    }
     let mut bytes = Cursor::new(Vec::new());
-    OpenExrEncoder::new(&mut bytes)
-        .write_image(&samples, image.width, image.height, ExtendedColorType::Rgb32F)
-        .map_err(|e| InputError::new("image", "exr", e.to_string()))?;
+    file.write().to_buffered(&mut bytes).map_err(|e| InputError::new("image", "exr", e.to_string()))?;
     Ok(bytes.into_inner())
+}
+
+/// The comment; nothing where the header cannot be read or another program wrote it.
+fn notes(bytes: &[u8]) -> Vec<(String, String)> {
+    if !matches!(check_header(bytes), Some(Ok(()))) {
+        return Vec::new();
+    }
+    let Ok(header) = exr::meta::MetaData::read_from_buffered(bytes, false) else { return Vec::new() };
+    let comment = header.headers.first().and_then(|header| header.own_attributes.comments.as_ref());
+    let notes = comment.and_then(|text| serde_json::from_str::<BTreeMap<_, _>>(&text.to_string()).ok());
+    notes.into_iter().flatten().collect()
 }

@@ -19,7 +19,8 @@ pub(super) const FORMAT: Format = Format {
     linear: true,
     forbidden_width: Some(UNREADABLE_WIDTH),
     decode,
-    encode,
+    encode: |image, _| encode(image),
+    notes: |_| Vec::new(),
 };
 
 /// Values of this size and more do not fit: the exponent byte ends at 2^127.

@@ -1,6 +1,6 @@
 //! Every file of a small picture with each byte cut off or changed, decoded in memory: thousands of files would take a disk's time.
 
-use super::{FORMATS, Image};
+use super::{FORMATS, Image, Note};
 
 fn sample() -> Image {
     let mut image = Image::new(9, 4);
@@ -10,10 +10,14 @@ fn sample() -> Image {
     image
 }
 
+fn notes() -> [Note; 2] {
+    [("Software", "Pathmark".to_string()), ("scene", "{\"spp\": 4}".to_string())]
+}
+
 #[test]
 fn a_file_cut_off_anywhere_or_with_more_behind_it_is_refused() {
     for format in FORMATS {
-        let bytes = (format.encode)(&sample()).unwrap();
+        let bytes = (format.encode)(&sample(), &notes()).unwrap();
         (format.decode)(&bytes).unwrap();
         for length in 0..bytes.len() {
             assert!((format.decode)(&bytes[..length]).is_err(), "{length} bytes of {} {}", bytes.len(), format.name);
@@ -27,11 +31,12 @@ fn a_file_cut_off_anywhere_or_with_more_behind_it_is_refused() {
 #[test]
 fn a_damaged_byte_never_panics() {
     for format in FORMATS {
-        let bytes = (format.encode)(&sample()).unwrap();
+        let bytes = (format.encode)(&sample(), &notes()).unwrap();
         for at in 0..bytes.len() {
             for value in [0, 1, 0x7f, 0x80, 0xff, bytes[at] ^ 1, b'-', b'9'] {
                 let mut bytes = bytes.clone();
                 bytes[at] = value;
+                (format.notes)(&bytes);
                 // A picture or an error, both are fine; what is decoded must be of the size that it tells.
                 if let Ok(image) = (format.decode)(&bytes) {
                     assert_eq!(image.pixels.len(), image.width as usize * image.height as usize, "{}", format.name);

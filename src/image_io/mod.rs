@@ -46,8 +46,13 @@ pub struct Format {
     /// The picture in a file's bytes, or what is wrong with them.
     decode: fn(&[u8]) -> std::result::Result<Image, String>,
     /// The bytes of the file; the picture has the number of pixels it says.
-    encode: fn(&Image) -> Result<Vec<u8>>,
+    encode: fn(&Image, &[Note]) -> Result<Vec<u8>>,
+    /// The notes in a file's bytes, as far as they can be read.
+    notes: fn(&[u8]) -> Vec<(String, String)>,
 }
+
+/// A text beside the pixels: its name, of letters, and the text. `png` and `exr` keep it, the others drop it.
+pub type Note = (&'static str, String);
 
 /// Every format, for reading and for writing.
 #[cfg(feature = "program")]
@@ -80,6 +85,11 @@ pub fn check_picture(path: &Path, width: u32, height: u32) -> Result<&'static Fo
 
 /// Reads the picture in `path`.
 pub fn read(path: &Path) -> Result<Image> {
+    Ok(read_with_notes(path)?.0)
+}
+
+/// Reads the picture in `path`, and each text beside it with its name.
+pub fn read_with_notes(path: &Path) -> Result<(Image, Vec<(String, String)>)> {
     let format = check_format(path)?;
     let refuse = |problem: String| Error::from(InputError::new("image", path.display().to_string(), problem));
     let metadata = fs::metadata(path).map_err(|e| match e.kind() {
@@ -93,14 +103,20 @@ pub fn read(path: &Path) -> Result<Image> {
         return Err(refuse(format!("{} bytes are more than a picture can have", metadata.len())));
     }
     let bytes = fs::read(path).map_err(|e| Error::system("reading", path, e))?;
-    (format.decode)(&bytes).map_err(|problem| refuse(format!("not a readable {} picture: {problem}", format.name)))
+    let unreadable = |problem| refuse(format!("not a readable {} picture: {problem}", format.name));
+    Ok(((format.decode)(&bytes).map_err(unreadable)?, (format.notes)(&bytes)))
 }
 
 /// Writes `image` to `path`, whole or not at all.
 pub fn write(path: &Path, image: &Image) -> Result<()> {
+    write_with_notes(path, image, &[])
+}
+
+/// Writes `image` to `path`, whole or not at all, with `notes` where the format keeps them.
+pub fn write_with_notes(path: &Path, image: &Image, notes: &[Note]) -> Result<()> {
     let (width, height, count) = (image.width, image.height, image.pixels.len());
     assert_eq!(width as usize * height as usize, count, "a picture of {width} x {height} holds {count} pixels");
     let format = check_picture(path, width, height)?;
-    let bytes = (format.encode)(image)?;
+    let bytes = (format.encode)(image, notes)?;
     atomic_file::write(path, |out| out.write_all(&bytes))
 }

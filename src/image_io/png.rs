@@ -2,20 +2,20 @@
 
 use std::io::Cursor;
 
-use image::codecs::png::{PngDecoder, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder};
+use image::codecs::png::PngDecoder;
 
 use super::codec::{self, Decoded};
-use super::{Format, Image, tone_map};
+use super::{Format, Image, Note, tone_map};
 use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
     name: "png",
-    about: "what a display shows, 8 bits, compressed",
+    about: "what a display shows, 8 bits, compressed, with notes",
     linear: false,
     forbidden_width: None,
     decode,
     encode,
+    notes,
 };
 
 /// The chunk that ends a PNG: length 0, its name, its checksum.
@@ -30,11 +30,32 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     codec::from_display(codec::decode(decoder, bytes.len())?)
 }
 
-fn encode(image: &Image) -> Result<Vec<u8>> {
+fn encode(image: &Image, notes: &[Note]) -> Result<Vec<u8>> {
     let pixels = tone_map::quantise_image(image)?;
+    pack(image, &pixels, notes).map_err(|e| InputError::new("image", "png", e.to_string()).into())
+}
+
+/// The file of these display values. Notes are chunks of UTF-8 text before the pixels.
+fn pack(image: &Image, pixels: &[u8], notes: &[Note]) -> std::result::Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
-    PngEncoder::new(&mut bytes)
-        .write_image(&pixels, image.width, image.height, ExtendedColorType::Rgb8)
-        .map_err(|e| InputError::new("image", "png", e.to_string()))?;
+    let mut encoder = png::Encoder::new(&mut bytes, image.width, image.height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    for (name, text) in notes {
+        encoder.add_itxt_chunk((*name).to_string(), text.clone())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
     Ok(bytes)
+}
+
+/// The texts before the pixels, but for packed ones, which might unpack to anything; nothing where that cannot be read.
+fn notes(bytes: &[u8]) -> Vec<(String, String)> {
+    let limits = png::Limits { bytes: codec::MAX_METADATA as usize };
+    let Ok(reader) = png::Decoder::new_with_limits(Cursor::new(bytes), limits).read_info() else { return Vec::new() };
+    let note = |chunk: &png::text_metadata::ITXtChunk| Some((chunk.keyword.clone(), chunk.get_text().ok()?));
+    reader.info().utf8_text.iter().filter(|chunk| !chunk.compressed).filter_map(note).collect()
 }

@@ -15,7 +15,8 @@ pub(super) const FORMAT: Format = Format {
     linear: false,
     forbidden_width: None,
     decode,
-    encode,
+    encode: |image, _| encode(image),
+    notes: |_| Vec::new(),
 };
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {

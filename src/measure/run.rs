@@ -4,10 +4,12 @@ use super::history::History;
 use super::invalid::{InvalidSample, first_invalid};
 use super::ledger::Ledger;
 use super::output::{Delivery, Output};
+use super::provenance::Provenance;
 use super::usage::Usage;
 use super::{JobSpan, Setup, Trace, Warning, available_threads, utc_now};
 use crate::error::{Error, Result};
 use crate::film::{Film, Plan, Reserve, Sections};
+use crate::film_file::FilmKey;
 use crate::kernel::{Counts, Kernel};
 use crate::strategy::Strategy;
 use std::cell::Cell;
@@ -71,6 +73,12 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// What a picture of the film is of.
+    pub fn provenance(&self, setup: &Setup) -> Provenance {
+        let key = FilmKey { spp: self.spp, adaptive: self.adaptive, ..setup.film_key() };
+        Provenance { key, checksum: self.checksum.clone() }
+    }
+
     /// What happened on the paths that this process rendered during the makespan.
     pub fn rendered(&self) -> Counts {
         let mut rendered = Counts::default();

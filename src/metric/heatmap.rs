@@ -25,7 +25,7 @@ pub struct Heatmap {
     pub height: u32,
     /// Red, green, blue per pixel, row 0 at the top, as a display shows them.
     pub pixels: Vec<[u8; 3]>,
-    /// The error, in linear radiance, that the brightest colour stands for.
+    /// What the lightest colour stands for, and more: an error of linear radiance, or FLIP.
     pub scale: f64,
 }
 
@@ -47,11 +47,16 @@ pub fn heatmap(test: &Image, reference: &Image, scale: Option<f64>) -> Result<He
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(InputError::new("scale", scale.to_string(), "must be positive and finite").into());
     }
+    Ok(painted(test, &errors, scale))
+}
+
+/// `errors` of the pixels of `image` as colours.
+pub(super) fn painted(image: &Image, errors: &[f64], scale: f64) -> Heatmap {
     let colours: Vec<[u8; 3]> = (0..=u8::MAX).map(|step| heat_colour(f64::from(step) / 255.0)).collect();
     let paint = |error: &f64| {
         if error.is_finite() { colours[(error / scale * 255.0).round().min(255.0) as usize] } else { NOT_FINITE }
     };
-    Ok(Heatmap { width: test.width, height: test.height, pixels: errors.iter().map(paint).collect(), scale })
+    Heatmap { width: image.width, height: image.height, pixels: errors.iter().map(paint).collect(), scale }
 }
 
 /// The scale that the data choose: 1 where there is no error to show.

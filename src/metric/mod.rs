@@ -1,5 +1,5 @@
 //! How far a picture is from a reference: one number each, listed in [`METRICS`]; against two references without their noise
-//! ([`cross_mse`]); and as a picture ([`heatmap`]).
+//! ([`cross_mse`]); and as pictures ([`heatmap`], [`flip_map`]).
 //!
 //! The error of a Monte Carlo estimate is the one of linear radiance: `linear` metrics fall as spp grows along the law that
 //! theory gives. The others compare what a display shows (clamp and gamma, [`crate::image_io::tone_map`]), which bends the curve
@@ -8,13 +8,16 @@
 //! A NaN in either picture makes every number that it enters NaN. Pictures of different sizes are an [`InputError`].
 
 mod cross;
+mod flip;
 mod heatmap;
 mod percentile;
 mod pointwise;
+mod separable;
 mod ssim;
 mod tolerance;
 
 pub use cross::{bias_squared, cross_mse, cross_mse_display, cross_products, cross_rel_mse, root};
+pub use flip::flip_map;
 pub use heatmap::{Heatmap, heat_colour, heatmap};
 pub use pointwise::REL_MSE_EPSILON;
 pub use tolerance::{brighter_pixels, share_within};
@@ -73,6 +76,12 @@ pub const METRICS: &[Entry] = &[
     error("error-100", "the largest error of a pixel", percentile::largest),
     displayed("rmse-display", "rmse of display values in [0, 1]", 0.0, pointwise::rmse_display),
     displayed("psnr", "peak signal-to-noise ratio of display values, in dB", f64::INFINITY, pointwise::psnr),
+    displayed(
+        "flip",
+        "how large the difference looks, 0 to 1, when flipping between both on a display (Andersson and others 2020)",
+        0.0,
+        flip::flip,
+    ),
     displayed("ssim", "structural similarity of display luma; 1 is equal, NaN below 11 x 11 pixels", 1.0, ssim::ssim),
 ];
 

@@ -40,13 +40,15 @@ impl Cell {
     }
 }
 
-/// The scale of the heat maps.
+/// The scale of heat maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColourBar {
     /// What the colours mean, with the unit.
     pub label: String,
     /// The value of the lightest colour; the darkest is 0.
     pub full: f64,
+    /// Whether no value can be larger; otherwise larger ones have the lightest colour too.
+    pub is_largest: bool,
 }
 
 /// How a page lets the reader compare the images.
@@ -83,8 +85,8 @@ pub struct ContactSheet {
     pub subtitle: String,
     /// Rows of images. `None` leaves a place empty, as below a reference that has no error.
     pub rows: Vec<Vec<Option<Cell>>>,
-    /// The scale of the heat maps, if there are any.
-    pub bar: Option<ColourBar>,
+    /// The scales of the heat maps, if there are any.
+    pub bars: Vec<ColourBar>,
     /// How the images are compared on a page.
     pub comparison: Comparison,
 }
@@ -127,11 +129,11 @@ impl ContactSheet {
             drawing.text((MARGIN, y + 0.5 * TEXT_SIZE), "no data", TEXT_SIZE, MUTED, Align::Left);
             y += TEXT_SIZE;
         }
-        if let Some(bar) = &self.bar {
+        for bar in &self.bars {
             let width = (2.0 * column + GAP).min(width - 2.0 * MARGIN - 40.0);
             let quarters = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| number::short(share * bar.full, 3));
             let [zero, first, half, third, full] = quarters;
-            let labels = [zero, first, half, third, format!("≥ {full}")];
+            let labels = [zero, first, half, third, if bar.is_largest { full } else { format!("≥ {full}") }];
             y = colour_bar::draw(&mut drawing, (MARGIN, y + 1.5 * GAP), width, (0.0, 1.0), &bar.label, &labels);
         }
         drawing.height = (y + MARGIN).ceil();

@@ -48,7 +48,12 @@ pub struct Entry {
 impl Entry {
     /// An entry whose text is broken to fit the column.
     pub fn new(sample: Sample, text: &str) -> Self {
-        Self { sample, name: text.to_string(), lines: font::wrap(text, SMALL_SIZE, WIDEST) }
+        Self::of(sample, text, text)
+    }
+
+    /// Likewise, for the part of the figure called `name`.
+    pub fn of(sample: Sample, name: &str, text: &str) -> Self {
+        Self { sample, name: name.to_string(), lines: font::wrap(text, SMALL_SIZE, WIDEST) }
     }
 }
 

@@ -160,11 +160,27 @@ impl LineChart {
         Some((x, y))
     }
 
-    fn entries(&self) -> Vec<Entry> {
-        let series = self.series.iter().map(|series| {
+    /// For each series the first one that has the same points: the second would hide it, so that both are drawn as one.
+    fn first_alike(&self) -> Vec<usize> {
+        let first = |(index, series): (usize, &Series)| {
+            let alike = |other: &Series| !series.points.is_empty() && other.points == series.points;
+            self.series[..index].iter().position(alike).unwrap_or(index)
+        };
+        self.series.iter().enumerate().map(first).collect()
+    }
+
+    /// The series that are drawn as number `index`, itself first.
+    fn alike<'a>(&'a self, first_alike: &'a [usize], index: usize) -> impl Iterator<Item = &'a Series> {
+        self.series.iter().zip(first_alike).filter(move |(_, first)| **first == index).map(|(series, _)| series)
+    }
+
+    fn entries(&self, first_alike: &[usize]) -> Vec<Entry> {
+        let own = self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
+        let series = own.map(|(index, series)| {
             let sample = Sample::Series { look: series.look, line: series.line };
+            let names: Vec<&str> = self.alike(first_alike, index).map(|series| series.name.as_str()).collect();
             let note = if series.points.is_empty() { " (no data)" } else { "" };
-            Entry::new(sample, &format!("{}{note}", series.name))
+            Entry::of(sample, &series.name, &format!("{}{note}", names.join(" = ")))
         });
         let overlays = self.overlays.iter().enumerate().map(|(index, overlay)| {
             let (colour, dash) = self.stroke(index, overlay.kind);
@@ -181,8 +197,8 @@ impl LineChart {
         }
     }
 
-    /// Draws a series into the frame; returns how many of its points have no place.
-    fn draw_series(&self, drawing: &mut Drawing, frame: &Frame, index: usize) -> usize {
+    /// Draws a series, and those alike, into the frame; returns how many of its points have no place.
+    fn draw_series(&self, drawing: &mut Drawing, frame: &Frame, first_alike: &[usize], index: usize) -> usize {
         let series = &self.series[index];
         let shift = self.dodge * (index as f64 - 0.5 * (self.series.len() as f64 - 1.0));
         let moved = |place: Place| (place.0 + shift, place.1);
@@ -210,7 +226,9 @@ impl LineChart {
         for (point, &spot) in series.points.iter().zip(&spots) {
             let Some(at) = spot else { continue };
             marker::draw(drawing, at, series.look.marker, series.look.colour);
-            drawing.note(self.note(series, point, at));
+            for alike in self.alike(first_alike, index) {
+                drawing.note(self.note(alike, point, at));
+            }
         }
         spots.iter().filter(|spot| spot.is_none()).count()
     }
@@ -251,7 +269,8 @@ impl Figure for LineChart {
     }
 
     fn drawing(&self) -> Drawing {
-        let entries = self.entries();
+        let first_alike = self.first_alike();
+        let entries = self.entries(&first_alike);
         let ranges = self.ranges();
         let words = Words { title: &self.title, subtitle: &self.subtitle, caption: &self.caption };
         let (mut drawing, frame) = Frame::begin(&words, (&self.x, &self.y), ranges, legend::size(&entries));
@@ -268,9 +287,10 @@ impl Figure for LineChart {
                     }
                 });
             }
-            for (index, series) in self.series.iter().enumerate() {
-                lost +=
-                    drawing.part(PartKind::Series, &series.name, |drawing| self.draw_series(drawing, &frame, index));
+            for (index, series) in self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index) {
+                lost += drawing.part(PartKind::Series, &series.name, |drawing| {
+                    self.draw_series(drawing, &frame, &first_alike, index)
+                });
             }
         } else {
             lost += self.series.iter().map(|series| series.points.len()).sum::<usize>();

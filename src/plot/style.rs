@@ -96,16 +96,17 @@ pub struct Look {
 }
 
 impl Look {
-    /// The look of series number `index`: colour and marker change first, and the dashes after each eight.
+    /// The look of series number `index`: colour and marker change first; after each eight the colours meet other markers and other dashes.
     pub fn nth(index: usize) -> Self {
         Self::of(index, index / SERIES.len())
     }
 
-    /// Colour and marker from one property of a series, such as its strategy, and the dashes from another, such as its threads.
+    /// Colour from one property of a series, such as its strategy, and the dashes from another, such as its threads. The marker is of both, so
+    /// that points can be told apart without their lines.
     pub fn of(colour: usize, dash: usize) -> Self {
         Self {
             colour: SERIES[colour % SERIES.len()],
-            marker: MARKERS[colour % MARKERS.len()],
+            marker: MARKERS[(colour + 3 * dash) % MARKERS.len()],
             dash: DASHES[dash % DASHES.len()],
         }
     }
@@ -135,10 +136,11 @@ mod tests {
     }
 
     #[test]
-    fn thirty_two_series_look_different() {
-        let looks: Vec<Look> = (0..32).map(Look::nth).collect();
+    fn sixty_four_series_look_different_in_colour_and_marker() {
+        let looks: Vec<Look> = (0..64).map(Look::nth).collect();
         for (i, look) in looks.iter().enumerate() {
-            assert!(!looks[..i].contains(look), "{i}");
+            let same = |other: &Look| (other.colour, other.marker) == (look.colour, look.marker);
+            assert!(!looks[..i].iter().any(same), "{i}");
         }
         // Within the first eight, colour alone and marker alone tell them apart.
         for (i, look) in looks[..8].iter().enumerate() {

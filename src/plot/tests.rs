@@ -54,6 +54,21 @@ fn same_data_same_bytes() {
 }
 
 #[test]
+fn equal_lines_are_one_with_both_names() {
+    let mut chart = speedups(3);
+    chart.series[2].points = chart.series[0].points.clone();
+    let drawing = chart.drawing();
+    assert!(says(&drawing, "strategy-number-0 ="), "both names");
+    // As many lines as for two series; the values of all three can still be asked for.
+    let two = LineChart { series: chart.series[..2].to_vec(), ..chart.clone() }.drawing();
+    let lines = |drawing: &Drawing| drawing.marks.iter().filter(|mark| matches!(mark, Mark::Path { .. })).count();
+    assert_eq!(lines(&drawing), lines(&two));
+    let svg = chart.svg().unwrap();
+    assert_eq!(svg.matches("strategy-number-2: ").count(), 4);
+    assert_legible(&drawing);
+}
+
+#[test]
 fn text_is_legible_and_the_legend_beside_the_data() {
     for count in [1, 8, 32] {
         let drawing = speedups(count).drawing();
@@ -144,12 +159,12 @@ fn image(width: u32, height: u32) -> Cell {
 }
 
 fn sheet(rows: Vec<Vec<Option<Cell>>>) -> ContactSheet {
-    let bar = Some(ColourBar { label: "|error|, linear radiance".into(), full: 0.25 });
+    let bars = vec![ColourBar { label: "|error|, linear radiance".into(), full: 0.25, is_largest: false }];
     ContactSheet {
         title: "Five sample counts".into(),
         subtitle: "cornell".into(),
         rows,
-        bar,
+        bars,
         comparison: super::Comparison::Steps,
     }
 }

@@ -14,6 +14,7 @@ mod estimators;
 mod every_scene;
 mod hard_cases;
 mod image_io;
+mod image_notes;
 mod lanes;
 mod layering;
 mod metric;

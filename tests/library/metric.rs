@@ -244,9 +244,11 @@ fn pictures_of_two_sizes_are_refused_with_both() {
         assert_eq!(error.exit_code(), 2);
         assert!(error.to_string().contains("4x3") && error.to_string().contains("3x4"), "{error}");
     }
-    let error = metric::find("flip").unwrap_err().to_string();
+    let error = metric::find("butterflies").unwrap_err().to_string();
     assert!(
-        error.contains("mse, rmse, rel-mse, mae, error-50, error-90, error-99, error-100, rmse-display, psnr, ssim"),
+        error.contains(
+            "mse, rmse, rel-mse, mae, error-50, error-90, error-99, error-100, rmse-display, psnr, flip, ssim"
+        ),
         "{error}"
     );
 }

@@ -1,8 +1,8 @@
-//! The renders at growing spp beside their reference, and where they are wrong.
+//! The renders at growing spp beside their reference, and where they are wrong: by how much, and by how much a person would see.
 
 use super::prelude::*;
 use crate::image_io::Image;
-use crate::metric::heatmap;
+use crate::metric::{self, Heatmap, flip_map, heatmap};
 use crate::plot::ColourBar;
 use crate::report::reference_image::reference_image;
 
@@ -16,26 +16,35 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some((_, noisiest)) = images.first() else { return Ok(Vec::new()) };
     // One scale for all maps: a level at which the noisiest one is not yet saturated.
     let scale = heatmap(noisiest, &reference, None)?.scale;
-    let (mut pictures, mut maps) = (Vec::new(), Vec::new());
+    let flip = metric::find("flip")?;
+    let (mut pictures, mut errors, mut flips) = (Vec::new(), Vec::new(), Vec::new());
     for (record, image) in &images {
         let rmse = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {rmse:.4}"));
         pictures.push(Some(Cell::of(image, vec![format!("{} spp", record.spp), rmse])?));
-        let map = heatmap(image, &reference, Some(scale))?;
-        let caption = vec!["error".to_string(), record.makespan_s.map_or_else(String::new, |s| format!("{s:.2} s"))];
-        let rgb = map.pixels.concat();
-        maps.push(Some(Cell { caption, width: map.width, height: map.height, rgb }));
+        let seconds = record.makespan_s.map_or_else(String::new, |s| format!("{s:.2} s"));
+        errors.push(Some(map(&heatmap(image, &reference, Some(scale))?, &["error".to_string(), seconds])));
+        let mean = format!("mean {:.3}", flip.compute(image, &reference)?);
+        flips.push(Some(map(&flip_map(image, &reference)?, &["FLIP".to_string(), mean])));
     }
     pictures.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
-    maps.push(None);
+    errors.push(None);
+    flips.push(None);
     let estimator = images.first().map_or("", |(record, _)| record.estimator.as_str());
     let sheet = ContactSheet {
         title: format!("Renders at growing samples per pixel ({estimator})"),
         subtitle: results.workload(),
-        rows: vec![pictures, maps],
-        bar: Some(ColourBar { label: "error of a pixel, linear radiance".to_string(), full: scale }),
+        rows: vec![pictures, errors, flips],
+        bars: vec![
+            ColourBar { label: "error of a pixel, linear radiance".to_string(), full: scale, is_largest: false },
+            ColourBar { label: "FLIP: how large the difference looks".to_string(), full: 1.0, is_largest: true },
+        ],
         comparison: Comparison::Steps,
     };
     Ok(vec![Block::sheet("contact-sheet", &sheet)?])
+}
+
+fn map(map: &Heatmap, caption: &[String; 2]) -> Cell {
+    Cell { caption: caption.to_vec(), width: map.width, height: map.height, rgb: map.pixels.concat() }
 }
 
 /// The kept image of each spp, of the first estimator and the lowest seed, with its record.

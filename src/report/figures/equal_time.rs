@@ -40,7 +40,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         title: format!("{scene} after about {time:.2} s"),
         subtitle: "Of each curve the point that is nearest in time; neighbouring points differ by a factor of two. Values above 1 are white.".to_string(),
         rows: cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect(),
-        bar: None,
+        bars: Vec::new(),
         comparison: Comparison::Wipe,
     };
     Ok(vec![Block::sheet("equal-time", &sheet)?])

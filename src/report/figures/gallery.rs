@@ -27,7 +27,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         subtitle: "Below each name: what the scene calls for, and the profile that its kernel is compiled for. Values above 1 are white."
             .to_string(),
         rows: cells.chunks(COLUMNS).map(<[Option<Cell>]>::to_vec).collect(),
-        bar: None,
+        bars: Vec::new(),
         comparison: Comparison::Single,
     };
     Ok(vec![Block::sheet("gallery", &sheet)?])

@@ -132,7 +132,7 @@ fn sheet(results: &Results, pairs: &[Pair<'_>]) -> Result<Option<Block>> {
         title,
         subtitle: results.machine_line(),
         rows: vec![cells],
-        bar: None,
+        bars: Vec::new(),
         comparison: Comparison::Wipe,
     };
     Block::sheet("roughness-images", &sheet).map(Some)

@@ -5,7 +5,6 @@ use super::prelude::*;
 use crate::analysis::mean::t_interval;
 use crate::analysis::mse::over_seeds;
 use crate::analysis::rank::spearman;
-use crate::plot::style::{MARKERS, SERIES};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -115,7 +114,7 @@ fn kind(row: &Row) -> ImageKey {
 
 fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
     let point = |(index, scene): (usize, &Accuracy)| {
-        Series::new(&scene.name, look(index), vec![scene.error.above(scene.rays)]).scattered()
+        Series::new(&scene.name, Look::nth(index), vec![scene.error.above(scene.rays)]).scattered()
     };
     let (x, y) = (Axis::log("rays per sample"), Axis::log("RMSE / mean radiance"));
     let series = scenes.iter().enumerate().map(point).collect();
@@ -125,11 +124,6 @@ fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
     chart.caption =
         "Bars: 95 % interval over seeds. The legend goes from the smallest error to the largest.".to_string();
     chart
-}
-
-/// Colour and marker of a single point, which has no dashes to tell it from the one eight places before it.
-fn look(index: usize) -> Look {
-    Look { marker: MARKERS[(index + 3 * (index / SERIES.len())) % MARKERS.len()], ..Look::nth(index) }
 }
 
 /// Over scenes that differ in everything; the two variants of the control would count one scene three times.

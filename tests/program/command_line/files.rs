@@ -176,3 +176,27 @@ fn a_run_leaves_rows_figures_and_a_page_that_report_draws_again() {
     assert!(page.starts_with("<!DOCTYPE html>") && page.contains("</html>") && page.contains("Does it run?"));
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
 }
+
+#[test]
+fn pictures_say_what_they_are_of() {
+    let folder = tempfile::tempdir().unwrap();
+    for (seed, output) in [("1", "a.png"), ("1", "b.exr"), ("2", "c.png")] {
+        run(folder.path(), &["render", "cornell", "--size", "16x12", "--spp", "4", "--seed", seed, "-o", output]);
+    }
+    let shared = "seed 1 is the seed of both";
+    assert!(run(folder.path(), &["compare", "a.png", "b.exr"]).out.contains(shared));
+    assert!(!run(folder.path(), &["compare", "a.png", "c.png"]).out.contains("is the seed of both"));
+    // What was converted still says so; a format without notes cannot.
+    run(folder.path(), &["convert", "a.png", "-o", "d.exr"]);
+    assert!(run(folder.path(), &["compare", "d.exr", "b.exr"]).out.contains(shared));
+    run(folder.path(), &["convert", "a.png", "-o", "e.ppm"]);
+    assert!(!run(folder.path(), &["compare", "e.ppm", "b.exr"]).out.contains("is the seed of both"));
+    let notes = std::fs::read(folder.path().join("a.png")).unwrap();
+    let text = String::from_utf8_lossy(&notes);
+    for part in ["pathmark.film", "\"scene\":\"cornell\"", "\"spp\":4", "pathmark.checksum", "Software"] {
+        assert!(text.contains(part), "{part}");
+    }
+    let flip = run(folder.path(), &["compare", "a.png", "c.png", "--flip", "flip.png"]).out;
+    assert!(flip.contains("flip.png: from 0, dark, to 1.0000, light"), "{flip}");
+    assert!(folder.path().join("flip.png").is_file());
+}
