@@ -278,16 +278,21 @@ fn in_script(json: &str) -> String {
 }
 
 fn table_markup(table: &Table) -> Markup {
+    // A column reads as text where one of its cells does.
+    let mut is_text = vec![false; table.heads().count()];
+    for row in table.rows() {
+        is_text.iter_mut().zip(&row).for_each(|(is_text, cell)| *is_text |= cell.len() > LONGEST_CELL);
+    }
     html! {
         details.wide open[table.len() <= OPEN_ROWS] {
             summary { (table.title) }
             table {
-                thead { tr { @for head in table.heads() { th { (head) } } } }
+                thead { tr { @for (head, is_text) in table.heads().zip(&is_text) { th.text[*is_text] { (head) } } } }
                 tbody {
                     @for row in table.rows() {
                         tr {
-                            @for (cell, column) in row.iter().zip(table.heads()) {
-                                td.text[cell.len() > LONGEST_CELL] data-verdict=[(column == "verdict").then_some(cell)] { (cell) }
+                            @for ((cell, column), is_text) in row.iter().zip(table.heads()).zip(&is_text) {
+                                td.text[*is_text] data-verdict=[(column == "verdict").then_some(cell)] { (cell) }
                             }
                         }
                     }

@@ -2,6 +2,7 @@
 
 use crate::program::{finish, pathmark};
 use std::fs;
+use std::process::Command;
 
 /// The fenced blocks of a document in one language, in order with all others.
 fn blocks(text: &str) -> Vec<(&str, &str)> {
@@ -67,4 +68,40 @@ fn every_command_of_the_tutorial_runs() {
     // The first three images of the tutorial are the same.
     let image = |name: &str| fs::read(folder.path().join(name)).unwrap();
     assert!(image("box.png") == image("one.png") && image("one.png") == image("four.png"));
+}
+
+/// The programs of docs/data.md draw a figure from rows: each where its language and the packages that it uses are installed.
+#[test]
+fn the_programs_that_read_rows_draw_a_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let probes = [
+        ("python", "python3", ["-c", "import pandas, matplotlib"], ["program.py"]),
+        ("r", "Rscript", ["-e", "0"], ["program.r"]),
+    ];
+    let (mut has_rows, text) = (false, include_str!("../../docs/data.md"));
+    for (language, interpreter, probe, file) in probes {
+        let run = |arguments: &[&str]| {
+            Command::new(interpreter).args(arguments).env("MPLBACKEND", "Agg").current_dir(folder.path()).output()
+        };
+        let blocks: Vec<&str> = blocks(text).into_iter().filter(|(own, _)| *own == language).map(|(_, b)| b).collect();
+        assert_eq!(blocks.len(), 1, "{language}");
+        if !run(&probe).is_ok_and(|output| output.status.success()) {
+            eprintln!("{interpreter} or its packages are missing: the program in docs/data.md is not run");
+            continue;
+        }
+        if !has_rows {
+            let small =
+                "run thread-scaling --set size=64x48 --filter decomposition=tiles:16x16 --repetitions 3 --out out";
+            finish(pathmark(folder.path(), &small.split_whitespace().collect::<Vec<_>>())).with_code(0);
+            has_rows = true;
+        }
+        fs::write(folder.path().join(file[0]), blocks[0]).unwrap();
+        let output = run(&file).unwrap();
+        let told = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{told}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(told.contains("work-stealing") && told.contains("serial"), "{told}");
+        let figure = folder.path().join("speedup.png");
+        assert!(fs::metadata(&figure).unwrap().len() > 2000);
+        fs::remove_file(figure).unwrap();
+    }
 }
