@@ -101,18 +101,21 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         [image, reference, ..] => plain(image, reference)?,
         _ => Vec::new(),
     };
+    let shares_samples = shared.is_some();
     let mut remarks: Vec<String> = shared.into_iter().collect();
     for (option, path) in maps {
         let Some(path) = path else { continue };
         let map = match option {
-            "flip" => flip_map(images[0], images[1])?,
+            "flip" => flip_map(images[0], images[1])?.1,
             _ => heatmap(images[0], images[1], arguments.scale)?,
         };
         image_io::write(path, &map.to_image())?;
         remarks.push(format!("{}: from 0, dark, to {:.4}, light", path.display(), map.scale));
     }
     if arguments.json {
-        return print_json(&object(&lines));
+        let mut told = object(&lines);
+        told.insert("shares_samples".to_string(), shares_samples.into());
+        return print_json(&told);
     }
     let width = lines.iter().map(|line| line.name.len()).max().unwrap_or(0);
     let line = |Line { name, value, interval, about }: &Line| {

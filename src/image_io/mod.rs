@@ -85,26 +85,39 @@ pub fn check_picture(path: &Path, width: u32, height: u32) -> Result<&'static Fo
 
 /// Reads the picture in `path`.
 pub fn read(path: &Path) -> Result<Image> {
-    Ok(read_with_notes(path)?.0)
+    let (format, bytes) = bytes_of(path)?;
+    decoded(path, format, &bytes)
 }
 
 /// Reads the picture in `path`, and each text beside it with its name.
 pub fn read_with_notes(path: &Path) -> Result<(Image, Vec<(String, String)>)> {
+    let (format, bytes) = bytes_of(path)?;
+    Ok((decoded(path, format, &bytes)?, (format.notes)(&bytes)))
+}
+
+fn refused(path: &Path, problem: String) -> Error {
+    InputError::new("image", path.display().to_string(), problem).into()
+}
+
+fn decoded(path: &Path, format: &Format, bytes: &[u8]) -> Result<Image> {
+    let unreadable = |problem| refused(path, format!("not a readable {} picture: {problem}", format.name));
+    (format.decode)(bytes).map_err(unreadable)
+}
+
+/// The format and the bytes of the picture in `path`.
+fn bytes_of(path: &Path) -> Result<(&'static Format, Vec<u8>)> {
     let format = check_format(path)?;
-    let refuse = |problem: String| Error::from(InputError::new("image", path.display().to_string(), problem));
     let metadata = fs::metadata(path).map_err(|e| match e.kind() {
-        ErrorKind::NotFound | ErrorKind::NotADirectory => refuse("there is no such file".into()),
+        ErrorKind::NotFound | ErrorKind::NotADirectory => refused(path, "there is no such file".into()),
         _ => Error::system("reading", path, e),
     })?;
     if !metadata.is_file() {
-        return Err(refuse("is not a regular file".into()));
+        return Err(refused(path, "is not a regular file".into()));
     }
     if metadata.len() > codec::MAX_FILE_LENGTH {
-        return Err(refuse(format!("{} bytes are more than a picture can have", metadata.len())));
+        return Err(refused(path, format!("{} bytes are more than a picture can have", metadata.len())));
     }
-    let bytes = fs::read(path).map_err(|e| Error::system("reading", path, e))?;
-    let unreadable = |problem| refuse(format!("not a readable {} picture: {problem}", format.name));
-    Ok(((format.decode)(&bytes).map_err(unreadable)?, (format.notes)(&bytes)))
+    Ok((format, fs::read(path).map_err(|e| Error::system("reading", path, e))?))
 }
 
 /// Writes `image` to `path`, whole or not at all.

@@ -43,14 +43,18 @@ const FROM_XYZ: [[f64; 3]; 3] = [
 
 /// The mean of the map.
 pub(super) fn flip(test: &Image, reference: &Image) -> f64 {
-    let map = differences(test, reference);
-    map.iter().sum::<f64>() / map.len() as f64
+    mean(&differences(test, reference))
 }
 
-/// FLIP of each pixel as colours; the lightest stands for 1, the largest difference there is.
-pub fn flip_map(test: &Image, reference: &Image) -> Result<Heatmap> {
+/// The mean of FLIP, and FLIP of each pixel as colours; the lightest stands for 1, the largest difference there is.
+pub fn flip_map(test: &Image, reference: &Image) -> Result<(f64, Heatmap)> {
     check_sizes(test, reference)?;
-    Ok(painted(test, &differences(test, reference), 1.0))
+    let map = differences(test, reference);
+    Ok((mean(&map), painted(test, &map, 1.0)))
+}
+
+fn mean(map: &[f64]) -> f64 {
+    map.iter().sum::<f64>() / map.len() as f64
 }
 
 /// FLIP of each pixel.
@@ -103,7 +107,8 @@ fn seen(planes: &[Vec<f64>; 3], width: usize) -> Vec<[f64; 3]> {
                 libm::exp(-PI * PI * degrees * degrees / spread)
             });
             let total = weight * (PI / spread).sqrt() * bell.sum() * bell.sum();
-            (total, convolve(&planes[channel], width, &bell.scaled(1.0 / bell.sum()), &bell.scaled(1.0 / bell.sum())))
+            let bell = bell.scaled(1.0 / bell.sum());
+            (total, convolve(&planes[channel], width, &bell, &bell))
         });
         let gaussians: Vec<(f64, Vec<f64>)> = gaussians.collect();
         let total: f64 = gaussians.iter().map(|(weight, _)| weight).sum();

@@ -276,7 +276,8 @@ impl Figure for LineChart {
         let (mut drawing, frame) = Frame::begin(&words, (&self.x, &self.y), ranges, legend::size(&entries));
         let mut lost = 0;
         if ranges.is_some() {
-            for series in self.series.iter().filter(|series| series.spread == Spread::Band) {
+            let own = self.series.iter().enumerate().filter(|(index, _)| first_alike[*index] == *index);
+            for (_, series) in own.filter(|(_, series)| series.spread == Spread::Band) {
                 drawing.part(PartKind::Series, &series.name, |drawing| Self::draw_band(drawing, &frame, series));
             }
             for (index, overlay) in self.overlays.iter().enumerate() {

@@ -3,7 +3,8 @@
 use super::drawing::{Mark, Text};
 use super::style::{GRID, Look};
 use super::{
-    Axis, Cell, ColourBar, ContactSheet, Curve, Drawing, Figure, LineChart, Overlay, Point, Scale, Series, paint,
+    Axis, Cell, ColourBar, ContactSheet, Curve, Drawing, Figure, LineChart, Overlay, Point, Scale, Series, Spread,
+    paint,
 };
 
 const THREADS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
@@ -57,15 +58,18 @@ fn same_data_same_bytes() {
 fn equal_lines_are_one_with_both_names() {
     let mut chart = speedups(3);
     chart.series[2].points = chart.series[0].points.clone();
-    let drawing = chart.drawing();
-    assert!(says(&drawing, "strategy-number-0 ="), "both names");
-    // As many lines as for two series; the values of all three can still be asked for.
-    let two = LineChart { series: chart.series[..2].to_vec(), ..chart.clone() }.drawing();
-    let lines = |drawing: &Drawing| drawing.marks.iter().filter(|mark| matches!(mark, Mark::Path { .. })).count();
-    assert_eq!(lines(&drawing), lines(&two));
-    let svg = chart.svg().unwrap();
-    assert_eq!(svg.matches("strategy-number-2: ").count(), 4);
-    assert_legible(&drawing);
+    let marks =
+        |drawing: &Drawing| drawing.marks.iter().filter(|m| matches!(m, Mark::Path { .. } | Mark::Area { .. })).count();
+    for spread in [Spread::Bars, Spread::Band] {
+        chart.series.iter_mut().for_each(|series| series.spread = spread);
+        let drawing = chart.drawing();
+        assert!(says(&drawing, "strategy-number-0 ="), "both names");
+        // As many marks as for two series; the values of all three can still be asked for.
+        let two = LineChart { series: chart.series[..2].to_vec(), ..chart.clone() }.drawing();
+        assert_eq!(marks(&drawing), marks(&two), "{spread:?}");
+        assert_eq!(chart.svg().unwrap().matches("strategy-number-2: ").count(), 4);
+        assert_legible(&drawing);
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::prelude::*;
 use crate::image_io::Image;
-use crate::metric::{self, Heatmap, flip_map, heatmap};
+use crate::metric::{Heatmap, flip_map, heatmap};
 use crate::plot::ColourBar;
 use crate::report::reference_image::reference_image;
 
@@ -16,15 +16,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some((_, noisiest)) = images.first() else { return Ok(Vec::new()) };
     // One scale for all maps: a level at which the noisiest one is not yet saturated.
     let scale = heatmap(noisiest, &reference, None)?.scale;
-    let flip = metric::find("flip")?;
     let (mut pictures, mut errors, mut flips) = (Vec::new(), Vec::new(), Vec::new());
     for (record, image) in &images {
         let rmse = record.rmse.map_or_else(String::new, |rmse| format!("RMSE {rmse:.4}"));
         pictures.push(Some(Cell::of(image, vec![format!("{} spp", record.spp), rmse])?));
         let seconds = record.makespan_s.map_or_else(String::new, |s| format!("{s:.2} s"));
         errors.push(Some(map(&heatmap(image, &reference, Some(scale))?, &["error".to_string(), seconds])));
-        let mean = format!("mean {:.3}", flip.compute(image, &reference)?);
-        flips.push(Some(map(&flip_map(image, &reference)?, &["FLIP".to_string(), mean])));
+        let (flip, flips_map) = flip_map(image, &reference)?;
+        flips.push(Some(map(&flips_map, &["FLIP".to_string(), format!("mean {flip:.3}")])));
     }
     pictures.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
     errors.push(None);

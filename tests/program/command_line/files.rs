@@ -186,6 +186,9 @@ fn pictures_say_what_they_are_of() {
     let shared = "seed 1 is the seed of both";
     assert!(run(folder.path(), &["compare", "a.png", "b.exr"]).out.contains(shared));
     assert!(!run(folder.path(), &["compare", "a.png", "c.png"]).out.contains("is the seed of both"));
+    for (other, shares) in [("b.exr", true), ("c.png", false)] {
+        assert_eq!(json(&run(folder.path(), &["compare", "a.png", other, "--json"]).out)["shares_samples"], shares);
+    }
     // What was converted still says so; a format without notes cannot.
     run(folder.path(), &["convert", "a.png", "-o", "d.exr"]);
     assert!(run(folder.path(), &["compare", "d.exr", "b.exr"]).out.contains(shared));
