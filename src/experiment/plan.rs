@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Seconds of rendering for each kind of image.
-const RENDER_S: f64 = 0.05;
+const RENDER_S: f64 = 0.01;
 /// Seconds after which no other kind is rendered.
-const MOST_S: f64 = 15.0;
+const MOST_S: f64 = 10.0;
 /// Columns of the pilot's images: lanes have enough paths at a time.
 const WIDTH: u32 = 64;
 /// Seconds of a row besides rendering: its process starts, and its image is checked.

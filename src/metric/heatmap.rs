@@ -13,6 +13,8 @@ use crate::image_io::{Image, tone_map};
 
 /// No error has this colour, and no number: the error is NaN or infinite here.
 const NOT_FINITE: [u8; 3] = [0, 255, 255];
+/// Colours of a map: neighbours differ by three steps of CIE L*, and a map packs into three quarters of the bytes that 256 take.
+const COLOURS: u32 = 32;
 /// The share of pixels that a scale chosen from the data leaves below its end; a few fireflies would leave the rest black.
 const QUANTILE: f64 = 0.99;
 
@@ -52,9 +54,10 @@ pub fn heatmap(test: &Image, reference: &Image, scale: Option<f64>) -> Result<He
 
 /// `errors` of the pixels of `image` as colours.
 pub(super) fn painted(image: &Image, errors: &[f64], scale: f64) -> Heatmap {
-    let colours: Vec<[u8; 3]> = (0..=u8::MAX).map(|step| heat_colour(f64::from(step) / 255.0)).collect();
+    let last = f64::from(COLOURS - 1);
+    let colours: Vec<[u8; 3]> = (0..COLOURS).map(|step| heat_colour(f64::from(step) / last)).collect();
     let paint = |error: &f64| {
-        if error.is_finite() { colours[(error / scale * 255.0).round().min(255.0) as usize] } else { NOT_FINITE }
+        if error.is_finite() { colours[(error / scale * last).round().min(last) as usize] } else { NOT_FINITE }
     };
     Heatmap { width: image.width, height: image.height, pixels: errors.iter().map(paint).collect(), scale }
 }

@@ -1,7 +1,8 @@
 //! The boxes of one lane: none too thin to see, and no more of them than pixels.
 
-/// The thinnest box in pixels: one pixel of the finer grid that figures are painted on.
-const THINNEST: f64 = 0.5;
+/// The thinnest box in pixels. Half of it could be painted, but pages would carry twice the boxes, and read job by job they
+/// have the times of all jobs besides.
+const THINNEST: f64 = 1.0;
 
 /// Left and right end in pixels, and the place on the colour bar.
 pub(super) type Piece = (f64, f64, f64);
@@ -34,7 +35,7 @@ mod tests {
     #[test]
     fn wide_boxes_stay_and_thin_ones_never_vanish() {
         let pieces = vec![(20.0, 30.0, 1.0), (0.0, 10.0, 0.0), (40.0, 40.0, 0.5)];
-        assert_eq!(merged(pieces), [(0.0, 10.0, 0.0), (20.0, 30.0, 1.0), (40.0, 40.5, 0.5)]);
+        assert_eq!(merged(pieces), [(0.0, 10.0, 0.0), (20.0, 30.0, 1.0), (40.0, 41.0, 0.5)]);
         assert!(merged(Vec::new()).is_empty());
     }
 
@@ -43,7 +44,7 @@ mod tests {
         let crowd: Vec<Piece> =
             (0..10_000).map(|i| (f64::from(i) * 1e-3, f64::from(i + 1) * 1e-3, f64::from(i % 2))).collect();
         let boxes = merged(crowd);
-        assert!((19..=21).contains(&boxes.len()), "{}", boxes.len());
+        assert!((9..=11).contains(&boxes.len()), "{}", boxes.len());
         for (left, right, share) in boxes {
             assert!(right - left >= THINNEST - 1e-9 && right - left < 2.0 * THINNEST && (share - 0.5).abs() < 0.01);
         }
