@@ -14,6 +14,7 @@ mod explain;
 mod guards;
 mod list;
 mod man;
+mod merge;
 mod new;
 mod out_of_memory;
 mod output;
@@ -29,6 +30,7 @@ mod report;
 mod reproduce;
 mod rounds;
 mod run;
+mod shard;
 mod simulate;
 mod strict;
 mod trace;
@@ -51,7 +53,7 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, price, report, claims   Render: render, reference, compare, convert
+Measure: reproduce, run, price, report, claims   Render: render, merge, reference, compare, convert
 Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check, man, completions";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
@@ -71,6 +73,8 @@ enum Verb {
     Reproduce(reproduce::Arguments),
     /// Render a scene.
     Render(render::Arguments),
+    /// Make an image of the parts that `render --shard` made on several machines.
+    Merge(merge::Arguments),
     /// Run one experiment.
     Run(run::Arguments),
     /// Measure the error of an image against a reference image, or against two without their noise.
@@ -150,6 +154,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     match verb {
         Verb::Reproduce(arguments) => reproduce::run(&arguments, lab, talk),
         Verb::Render(arguments) => render::run(&arguments, lab, talk),
+        Verb::Merge(arguments) => merge::run(&arguments, talk),
         Verb::Run(arguments) => run::run(&arguments, lab, talk),
         Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Convert(arguments) => convert::run(&arguments),

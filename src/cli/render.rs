@@ -4,16 +4,17 @@ use super::axes::Axes;
 use super::output::{counted, print, print_json};
 use super::progress::Talk;
 use super::strict::Strict;
-use super::{replay, rounds};
-use crate::error::Result;
+use super::{replay, rounds, shard};
+use crate::error::{InputError, Result};
 use crate::experiment::Progress;
 use crate::files::Files;
+use crate::film::Shard;
 use crate::image_io;
 use crate::kernel::workload::WORKLOAD;
 use crate::lab::Lab;
-use crate::measure::{Measured, Outcome, Record, TraceFile};
+use crate::measure::{Measured, Outcome, Record, Setup, TraceFile};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// `pathmark render cornell --spp 64 -o box.png`
@@ -36,6 +37,8 @@ pub(super) struct Arguments {
     #[arg(short = 'o', long = "image", value_name = "FILE", help_heading = "Output")]
     image: Option<PathBuf>,
     #[command(flatten)]
+    part: shard::Part,
+    #[command(flatten)]
     axes: Axes,
     /// Scale what .png, .ppm and .bmp show so that the brightest channel of the image is 1; the light itself stays as it is
     #[arg(long, help_heading = "Output")]
@@ -57,6 +60,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let setup = lab.prepare(arguments.axes.settings(lab, &arguments.scene, spp, arguments.seed)?)?;
     if arguments.adaptive {
         setup.check_adaptive()?;
+    }
+    if let Some(shard) = arguments.part.shard()? {
+        return render_part(arguments, shard, setup, talk);
     }
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.name())));
     let spec = &setup.settings().spec;
@@ -102,6 +108,22 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         print(&format!("{}: {}", path.display(), summary(&record, &outcome)))?;
     }
     arguments.strict.check(outcome.counts.invalid)
+}
+
+/// Renders a part of the image into its file.
+fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, talk: &Talk) -> Result<()> {
+    let path = arguments.image.as_deref().unwrap_or(Path::new("part"));
+    if image_io::check_format(path).is_ok() {
+        let problem = "is a picture, and a part is no picture";
+        let error = InputError::new("image", path.display().to_string(), problem);
+        return Err(error.allowed("another extension, as in part-1.film").into());
+    }
+    setup.remarks().iter().for_each(|remark| talk.note(remark));
+    let mut files = Files::default();
+    files.reads_scene(setup.files());
+    files.writes("image", path)?;
+    let invalid = shard::render(shard, setup, path, arguments.json, talk)?;
+    arguments.strict.check(invalid)
 }
 
 /// What a reader wants to know first.

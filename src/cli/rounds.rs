@@ -8,7 +8,7 @@ use clap::Args;
 use std::path::PathBuf;
 
 /// Seconds of rendering between two checkpoints. Writing one takes some tenths of a second.
-const PAUSE_S: f64 = 10.0;
+pub(super) const PAUSE_S: f64 = 10.0;
 
 /// When to stop, and what to keep in between.
 #[derive(Args)]
@@ -49,15 +49,15 @@ impl Until {
 
 /// Renders until the goal is reached.
 pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &Talk) -> Result<(Setup, Outcome)> {
+    let mut rounds = Rounds::new(setup)?;
     let (checkpoint, saved) = match &arguments.checkpoint {
         Some(path) => {
-            let (checkpoint, saved) = Checkpoint::open(path, &setup, arguments.target_error)?;
+            let (checkpoint, saved) = Checkpoint::open(path, &rounds, arguments.target_error)?;
             (Some(checkpoint), saved)
         }
         None => (None, None),
     };
     let before = saved.as_ref().map(|saved| saved.position);
-    let mut rounds = Rounds::new(setup)?;
     if let Some(saved) = saved {
         rounds.adopt(saved.film, saved.history);
     }

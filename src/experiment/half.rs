@@ -73,7 +73,8 @@ impl<'a> Half<'a> {
         let FilmKey { width, height, spp: done, .. } = self.rounds.film_key();
         for samples in subtrees().rev().filter(|samples| (done + 1..spp).contains(samples)) {
             let parts = self.cached(samples)?.map(|film| vec![(0..samples, film)]);
-            if let Some(film) = parts.and_then(|parts| GrowingFilm::from_parts(width, height, parts)) {
+            let film = parts.and_then(|parts| GrowingFilm::from_parts(width, height, parts, |_, _| true));
+            if let Some(film) = film {
                 self.rounds.adopt(film, History::default());
                 break;
             }

@@ -56,24 +56,9 @@ impl SumFile {
         path: &Path,
         shape: impl FnOnce(&H) -> (u32, u32, usize),
     ) -> Result<(H, Vec<Film>)> {
-        let file = File::open(path).map_err(|e| Error::system("reading", path, e))?;
-        let data = file.metadata().map_err(|e| Error::system("reading", path, e))?;
-        if !data.is_file() {
-            return Err(self.broken(path, "is not a regular file"));
-        }
-        let Some(length) = data.len().checked_sub(DIGEST_BYTES as u64) else {
-            return Err(self.broken(path, &format!("is too short to be a {} file", self.field)));
-        };
-        let truncated = || self.broken(path, "is truncated or damaged: its checksum does not hold");
-        let unreadable = |e: io::Error| match e.kind() {
-            ErrorKind::UnexpectedEof => truncated(),
-            _ => Error::system("reading", path, e),
-        };
-        let mut body = Body { file: BufReader::new(file).take(length), digest: Sha256::new() };
-        if body.line(self.magic.len()).map_err(unreadable)? != self.magic.as_bytes() {
-            return Err(self.broken(path, &format!("does not begin with the line \"{}\"", self.magic)));
-        }
-        let line = body.line(LONGEST_HEADER).map_err(unreadable)?;
+        let (mut body, line) = self.begin(path)?;
+        let truncated = || self.truncated(path);
+        let unreadable = |e: io::Error| self.unreadable(path, e);
         let header: std::result::Result<H, _> = serde_json::from_slice(&line);
         let films = match &header {
             // What a damaged header says is not read, let alone allocated.
@@ -91,8 +76,47 @@ impl SumFile {
         if !body.ends_whole().map_err(unreadable)? {
             return Err(truncated());
         }
-        let header = header.map_err(|e| self.broken(path, &format!("has a header that cannot be read: {e}")))?;
-        Ok((header, films))
+        Ok((header.map_err(|e| self.no_header(path, &e))?, films))
+    }
+
+    /// Reads a header alone. Whether the file is whole is not known then.
+    pub fn header<H: DeserializeOwned>(&self, path: &Path) -> Result<H> {
+        let (_, line) = self.begin(path)?;
+        serde_json::from_slice(&line).map_err(|e| self.no_header(path, &e))
+    }
+
+    /// Opens a file and reads the line of its header.
+    fn begin(&self, path: &Path) -> Result<(Body, Vec<u8>)> {
+        let file = File::open(path).map_err(|e| Error::system("reading", path, e))?;
+        let data = file.metadata().map_err(|e| Error::system("reading", path, e))?;
+        if !data.is_file() {
+            return Err(self.broken(path, "is not a regular file"));
+        }
+        let Some(length) = data.len().checked_sub(DIGEST_BYTES as u64) else {
+            return Err(self.broken(path, &format!("is too short to be a {} file", self.field)));
+        };
+        let mut body = Body { file: BufReader::new(file).take(length), digest: Sha256::new() };
+        let unreadable = |e: io::Error| self.unreadable(path, e);
+        if body.line(self.magic.len()).map_err(unreadable)? != self.magic.as_bytes() {
+            return Err(self.broken(path, &format!("does not begin with the line \"{}\"", self.magic)));
+        }
+        let line = body.line(LONGEST_HEADER).map_err(unreadable)?;
+        Ok((body, line))
+    }
+
+    fn truncated(&self, path: &Path) -> Error {
+        self.broken(path, "is truncated or damaged: its checksum does not hold")
+    }
+
+    fn no_header(&self, path: &Path, why: &serde_json::Error) -> Error {
+        self.broken(path, &format!("has a header that cannot be read: {why}"))
+    }
+
+    fn unreadable(&self, path: &Path, e: io::Error) -> Error {
+        match e.kind() {
+            ErrorKind::UnexpectedEof => self.truncated(path),
+            _ => Error::system("reading", path, e),
+        }
     }
 }
 

@@ -4,29 +4,76 @@
 //! a file that is of anything else is refused, never overwritten. It is written between rounds, in one rename, so that a reader finds
 //! one round or the next. Two renders cannot write one file: a lock file stands beside it as long as the render runs.
 
-use super::{History, Position, Rounds, Setup};
+use super::{History, Position, Rounds};
 use crate::error::{InputError, Result};
-use crate::film::{GrowingFilm, sections};
+use crate::film::{Film, GrowingFilm, Shard, sections};
 use crate::film_file::{FilmKey, SumFile};
 use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 const FILE: SumFile = SumFile { magic: "pathmark checkpoint 2", field: "checkpoint" };
 
+/// The part of an image that a checkpoint is of.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Part {
+    pub(super) shard: Shard,
+    /// Samples per pixel of the whole image.
+    pub(super) spp: u32,
+}
+
 /// What a checkpoint says of itself.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Header {
+pub(super) struct Header {
     /// What the film is of, with the samples that it has.
-    film: FilmKey,
-    kernel: String,
+    pub(super) film: FilmKey,
+    /// The part that it is, if it is not the whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) part: Option<Part>,
+    pub(super) kernel: String,
     /// Seconds of rendering so far.
     rendering_s: f64,
     /// The accuracy that it is on its way to, and the samples at which that is looked at next.
     target_error: Option<f64>,
     look: u32,
-    history: History,
+    pub(super) history: History,
+}
+
+impl Header {
+    /// The samples that there are of the pixels it is of.
+    pub(super) fn samples(&self) -> Range<u32> {
+        let FilmKey { width, height, spp, .. } = self.film;
+        let start = match self.part {
+            // Where there are more shards than there can be, nothing is read, let alone allocated.
+            Some(part) if part.shard.check(width, height, part.spp).is_ok() => part.shard.samples(part.spp).start,
+            _ => 0,
+        };
+        start..spp
+    }
+
+    /// Reads what a file says of itself, and trusts it.
+    pub(super) fn of(path: &Path) -> Result<Self> {
+        FILE.header(path)
+    }
+
+    /// Reads a file, and the subtrees of its film.
+    pub(super) fn read(path: &Path) -> Result<(Self, GrowingFilm)> {
+        let shape = |header: &Self| (header.film.width, header.film.height, sections(&header.samples()).len());
+        let (header, films): (Self, Vec<Film>) = FILE.read(path, shape)?;
+        let parts = sections(&header.samples()).into_iter().zip(films).collect();
+        let FilmKey { width, height, spp, .. } = header.film;
+        let owns = |x, y| header.part.is_none_or(|part| part.shard.owns(x, y));
+        let film = GrowingFilm::from_parts(width, height, parts, owns).filter(|film| film.spp() == spp);
+        let film = film.ok_or_else(|| refused(path, "does not have the samples that its header says"))?;
+        Ok((header, film))
+    }
+}
+
+fn refused(path: &Path, problem: &str) -> InputError {
+    InputError::new(FILE.field, path.display().to_string(), problem)
 }
 
 /// A file for one render's checkpoints.
@@ -48,36 +95,32 @@ pub struct Saved {
 
 impl Checkpoint {
     /// Locks the file and reads it, if there is one. Refuses what is damaged, of another render, or being written by one.
-    pub fn open(path: &Path, setup: &Setup, target_error: Option<f64>) -> Result<(Self, Option<Saved>)> {
-        let refuse = |problem: &str| InputError::new(FILE.field, path.display().to_string(), problem);
+    pub fn open(path: &Path, rounds: &Rounds, target_error: Option<f64>) -> Result<(Self, Option<Saved>)> {
+        let setup = rounds.setup();
         if !setup.is_deterministic() {
             let problem = format!("is of no use: {} gives other numbers in each run", setup.settings().spec.sampler);
-            return Err(refuse(&problem).into());
+            return Err(refused(path, &problem).into());
         }
         let lock = Lock::of_file(path, FILE.field)?;
         let checkpoint = Self { path: path.to_path_buf(), _lock: lock, target_error };
         if !path.exists() {
             return Ok((checkpoint, None));
         }
-        let images = |spp: u32| sections(&(0..spp)).len();
-        let (header, films) =
-            FILE.read(path, |header: &Header| (header.film.width, header.film.height, images(header.film.spp)))?;
+        let (found, film) = Header::read(path)?;
         let mine = Header {
-            film: FilmKey { spp: header.film.spp, ..setup.film_key() },
+            film: FilmKey { spp: found.film.spp, ..setup.film_key() },
+            part: part_of(rounds),
             kernel: setup.settings().spec.kernel.clone(),
-            ..header.clone()
+            ..found.clone()
         };
-        if let Some(difference) = difference(&header, &mine) {
-            return Err(refuse(&format!("is of another render: {difference}"))
+        if let Some(difference) = difference(&found, &mine) {
+            return Err(refused(path, &format!("is of another render: {difference}"))
                 .allowed("another name, or the same settings")
                 .into());
         }
-        let Header { film: FilmKey { width, height, spp, .. }, rendering_s, look, history, .. } = header;
-        let parts = sections(&(0..spp)).into_iter().zip(films).collect();
-        let film = GrowingFilm::from_parts(width, height, parts)
-            .ok_or_else(|| refuse("does not have the samples that its header says"))?;
+        let Header { rendering_s, look, history, target_error: found, .. } = found;
         // On the way to another accuracy, the next look is elsewhere.
-        let look = if header.target_error == target_error { look } else { 0 };
+        let look = if found == target_error { look } else { 0 };
         Ok((checkpoint, Some(Saved { film, position: Position { rendering_s, look }, history })))
     }
 
@@ -85,6 +128,7 @@ impl Checkpoint {
     pub fn save(&self, rounds: &Rounds, position: Position) -> Result<()> {
         let header = Header {
             film: rounds.film_key(),
+            part: part_of(rounds),
             kernel: rounds.setup().settings().spec.kernel.clone(),
             rendering_s: position.rendering_s,
             target_error: self.target_error,
@@ -96,10 +140,16 @@ impl Checkpoint {
     }
 }
 
-/// The first field in which two headers differ.
-fn difference(found: &Header, mine: &Header) -> Option<String> {
+fn part_of(rounds: &Rounds) -> Option<Part> {
+    rounds.shard().map(|shard| Part { shard, spp: rounds.setup().settings().spp })
+}
+
+/// The first field in which two headers differ, beyond how far they are.
+pub(super) fn difference(found: &Header, mine: &Header) -> Option<String> {
     let fields = |header: &Header| {
+        let part = header.part.map(|Part { shard, spp }| format!("{shard} by {} of {spp} spp", shard.cut()));
         let mut fields = vec![("kernel".to_string(), serde_json::Value::from(header.kernel.as_str()))];
+        fields.push(("shard".to_string(), part.into()));
         if let Ok(serde_json::Value::Object(film)) = serde_json::to_value(&header.film) {
             fields.extend(film);
         }

@@ -106,8 +106,7 @@ impl Goal {
             let is_first = spp == 0 || self.time_limit_s.is_none_or(|limit_s| rendering_s < limit_s);
             return is_first.then_some(look.min(spp + few));
         }
-        let spec = &rounds.setup().settings().spec;
-        let samples_s = f64::from(spec.width) * f64::from(spec.height) * last.makespan_s / last.paths as f64;
+        let samples_s = rounds.pixels() as f64 * last.makespan_s / last.paths as f64;
         // Samples of an unfinished block are rendered again.
         let block = spp / SAMPLE_BLOCK * SAMPLE_BLOCK;
         let fits = |seconds: f64| {

@@ -7,12 +7,13 @@ use super::run::{Account, RoundTimes, Watch};
 use super::settings::check_spp;
 use super::{History, Outcome, Setup};
 use crate::error::{InputError, Result};
-use crate::film::{Film, GrowingFilm};
+use crate::film::{Film, GrowingFilm, Shard};
 use crate::film_file::FilmKey;
 
 /// A render that can go on.
 pub struct Rounds {
     setup: Setup,
+    shard: Option<Shard>,
     account: Account,
     film: GrowingFilm,
 }
@@ -20,10 +21,18 @@ pub struct Rounds {
 impl Rounds {
     /// Nothing rendered yet. The samples that the settings ask for do not matter.
     pub fn new(setup: Setup) -> Result<Self> {
+        Self::of(setup, None)
+    }
+
+    /// Nothing rendered yet of one part of the image that the settings ask for, or of all of it.
+    pub fn of(setup: Setup, shard: Option<Shard>) -> Result<Self> {
         setup.check_rounds()?;
-        let spec = &setup.settings().spec;
-        let film = GrowingFilm::new(spec.width, spec.height);
-        Ok(Self { setup, account: Account::new(), film })
+        let (spec, spp) = (&setup.settings().spec, setup.settings().spp);
+        if let Some(shard) = shard {
+            shard.check(spec.width, spec.height, spp)?;
+        }
+        let film = GrowingFilm::new(spec.width, spec.height, shard.map_or(0, |shard| shard.samples(spp).start));
+        Ok(Self { setup, shard, account: Account::new(), film })
     }
 
     /// Goes on with a film of the same settings, and what happened in it as far as that is known, instead of what was rendered so far.
@@ -40,6 +49,8 @@ impl Rounds {
             return Ok(RoundTimes::default());
         }
         let plan = self.setup.plan_of(&sections)?;
+        let plan = self.shard.map_or_else(|| plan.clone(), |shard| shard.part_of(&plan));
+        self.setup.check_jobs(plan.len())?;
         let films = self.account.round(&self.setup, plan, &sections, watch)?;
         for (samples, film) in sections.into_iter().zip(films) {
             self.film.add(samples, film);
@@ -52,7 +63,19 @@ impl Rounds {
         &self.setup
     }
 
-    /// Samples per pixel so far.
+    /// Which part of the image it is, if it is not the whole.
+    pub fn shard(&self) -> Option<Shard> {
+        self.shard
+    }
+
+    /// How many pixels are rendered.
+    pub fn pixels(&self) -> u64 {
+        let spec = &self.setup.settings().spec;
+        let all = u64::from(spec.width) * u64::from(spec.height);
+        self.shard.map_or(all, |shard| shard.pixels(spec.width, spec.height))
+    }
+
+    /// Samples per pixel so far, those of earlier shards included.
     pub fn spp(&self) -> u32 {
         self.film.spp()
     }

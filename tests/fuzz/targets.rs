@@ -274,7 +274,7 @@ fn checkpoints() -> Vec<Vec<u8>> {
         let path = folder.path().join(spp.to_string());
         let mut rounds = Rounds::new(setup("serial")).unwrap();
         rounds.extend_to(spp, None).unwrap();
-        let (checkpoint, _) = Checkpoint::open(&path, rounds.setup(), None).unwrap();
+        let (checkpoint, _) = Checkpoint::open(&path, &rounds, None).unwrap();
         checkpoint.save(&rounds, Position { rendering_s: 1.5, look: spp }).unwrap();
         fs::read(path).unwrap()
     });
@@ -300,8 +300,8 @@ fn rows() -> Vec<Vec<u8>> {
 }
 
 fn checkpoint(path: &Path) -> bool {
-    thread_local! { static SETUP: Setup = setup("serial"); }
-    let Ok((_, saved)) = SETUP.with(|setup| Checkpoint::open(path, setup, None)) else { return false };
+    thread_local! { static ROUNDS: Rounds = Rounds::new(setup("serial")).unwrap(); }
+    let Ok((_, saved)) = ROUNDS.with(|rounds| Checkpoint::open(path, rounds, None)) else { return false };
     saved.is_none_or(|saved| saved.film.film().pixels().len() == 6)
 }
 

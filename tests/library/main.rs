@@ -27,6 +27,7 @@ mod scene_identity;
 #[path = "../support/scene_text.rs"]
 mod scene_text;
 mod schedule_invariance;
+mod shards;
 mod slopes;
 #[path = "../support/watchdog.rs"]
 mod watchdog;

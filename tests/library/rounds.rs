@@ -112,7 +112,7 @@ fn counts_are_of_the_whole_film() {
             alone.extend_to(*spp, None).unwrap();
             // A new process for each step.
             let mut rounds = Rounds::new(setup(&scene, 24, 16, 5, 16)).unwrap();
-            let (checkpoint, saved) = Checkpoint::open(&path, rounds.setup(), None).unwrap();
+            let (checkpoint, saved) = Checkpoint::open(&path, &rounds, None).unwrap();
             if let Some(saved) = saved {
                 rounds.adopt(saved.film, saved.history);
             }
@@ -120,7 +120,7 @@ fn counts_are_of_the_whole_film() {
             checkpoint.save(&rounds, Position { rendering_s: 1.0, look: *spp }).unwrap();
         }
         let mut last = Rounds::new(setup(&scene, 24, 16, 5, 16)).unwrap();
-        let saved = Checkpoint::open(&path, last.setup(), None).unwrap().1.unwrap();
+        let saved = Checkpoint::open(&path, &last, None).unwrap().1.unwrap();
         last.adopt(saved.film, saved.history);
         for rounds in [&alone, &last] {
             let outcome = rounds.outcome();

@@ -6,6 +6,7 @@ mod names;
 mod rounds;
 mod scenes;
 mod schedules;
+mod shards;
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{Finished, finish, pathmark};

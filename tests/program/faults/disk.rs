@@ -44,7 +44,7 @@ fn writers() -> Vec<(String, Writer)> {
     let (key, film) = (rounds.film_key(), rounds.film());
     writers.push(("half.film".into(), Box::new(move |path| write_film(path, &key, &film))));
     let save = move |path: &Path| {
-        let (checkpoint, _) = Checkpoint::open(path, rounds.setup(), None)?;
+        let (checkpoint, _) = Checkpoint::open(path, &rounds, None)?;
         checkpoint.save(&rounds, Position { rendering_s: 1.0, look: 16 })
     };
     writers.push(("render.checkpoint".into(), Box::new(save)));
@@ -271,7 +271,7 @@ fn what_was_written_can_be_read() {
     let at = |name: &str| folder.path().join(name);
     let (_, film): (_, Film) = pathmark::film_file::read_film(&at("half.film")).unwrap();
     assert_eq!(film.checksum(), setup().run(None).unwrap().film.checksum());
-    let (_, saved) = Checkpoint::open(&at("render.checkpoint"), &setup(), None).unwrap();
+    let (_, saved) = Checkpoint::open(&at("render.checkpoint"), &Rounds::new(setup()).unwrap(), None).unwrap();
     assert_eq!(saved.unwrap().film.film(), film);
     assert_eq!(TraceFile::read(&at("trace.csv")).unwrap().rows.len(), 3 * 3);
     for format in FORMATS {

@@ -60,33 +60,43 @@ impl Sections {
 pub struct GrowingFilm {
     width: u32,
     height: u32,
-    spp: u32,
-    /// Whole subtrees, from the first samples on, so the largest first, and the unfinished block if there is one.
+    samples: Range<u32>,
+    /// Whole subtrees, from the first samples on, and the unfinished block if there is one.
     parts: Vec<(Range<u32>, Film)>,
 }
 
 impl GrowingFilm {
-    /// A film without samples.
-    pub fn new(width: u32, height: u32) -> Self {
-        Self { width, height, spp: 0, parts: Vec::new() }
+    /// A film without samples, whose first will be number `start`: a multiple of [`SAMPLE_BLOCK`].
+    pub fn new(width: u32, height: u32, start: u32) -> Self {
+        debug_assert!(start.is_multiple_of(SAMPLE_BLOCK));
+        Self { width, height, samples: start..start, parts: Vec::new() }
     }
 
-    /// A film of parts as [`GrowingFilm::parts`] gives them; `None` if they are not of that kind.
-    pub fn from_parts(width: u32, height: u32, parts: Vec<(Range<u32>, Film)>) -> Option<Self> {
-        let spp = parts.last().map_or(0, |(samples, _)| samples.end);
+    /// A film of parts as [`GrowingFilm::parts`] gives them; `None` if they are not of that kind. `owns` tells which pixels they are of, by
+    /// column and row.
+    pub fn from_parts(
+        width: u32,
+        height: u32,
+        parts: Vec<(Range<u32>, Film)>,
+        owns: impl Fn(u32, u32) -> bool,
+    ) -> Option<Self> {
+        let start = parts.first().map_or(0, |(samples, _)| samples.start);
+        let samples = start..parts.last().map_or(start, |(samples, _)| samples.end);
         let fits = |(samples, film): &(Range<u32>, Film)| {
-            let count = samples.end - samples.start;
-            let counts = film.pixels().iter().all(|pixel| pixel.count == count);
+            let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            let count = |(x, y)| if owns(x, y) { samples.end - samples.start } else { 0 };
+            let counts = film.pixels().iter().map(|pixel| pixel.count).eq(places.map(count));
             counts && (film.width(), film.height()) == (width, height)
         };
         let found = parts.iter().map(|(samples, _)| samples.clone());
-        let is_ours = found.eq(sections(&(0..spp))) && parts.iter().all(fits);
-        is_ours.then_some(Self { width, height, spp, parts })
+        let is_aligned = start.is_multiple_of(SAMPLE_BLOCK);
+        let is_ours = is_aligned && found.eq(sections(&samples)) && parts.iter().all(fits);
+        is_ours.then_some(Self { width, height, samples, parts })
     }
 
-    /// Samples per pixel.
+    /// Samples per pixel, those before the film's first included.
     pub fn spp(&self) -> u32 {
-        self.spp
+        self.samples.end
     }
 
     /// The subtrees and what samples they are of.
@@ -94,27 +104,37 @@ impl GrowingFilm {
         &self.parts
     }
 
+    /// The subtrees, when the film does not grow any more.
+    pub fn into_parts(self) -> Vec<(Range<u32>, Film)> {
+        self.parts
+    }
+
     /// What has to be rendered so that there are `spp` samples: to be added in this order. Nothing if there are as many already; a film
     /// does not shrink.
     pub fn missing(&self, spp: u32) -> Vec<Range<u32>> {
-        if spp <= self.spp { Vec::new() } else { sections(&(self.spp / SAMPLE_BLOCK * SAMPLE_BLOCK..spp)) }
+        let end = self.samples.end;
+        if spp <= end { Vec::new() } else { sections(&(end / SAMPLE_BLOCK * SAMPLE_BLOCK..spp)) }
     }
 
     /// Adds the next section.
     pub fn add(&mut self, samples: Range<u32>, mut film: Film) {
         // What is left is an unfinished block, of which these samples are a longer part.
         self.parts.retain(|(found, _)| found.start < samples.start);
-        self.spp = samples.end;
+        self.samples.end = samples.end;
         let mut samples = samples;
         let length = |samples: &Range<u32>| samples.end - samples.start;
-        while let Some((before, earlier)) = self.parts.pop_if(|(before, _)| length(before) == length(&samples)) {
+        // A subtree of n samples is the left child of its parent if it starts at a multiple of 2 n.
+        let is_left = |before: &Range<u32>| before.start.is_multiple_of(length(before).saturating_mul(2));
+        while let Some((before, earlier)) =
+            self.parts.pop_if(|(before, _)| length(before) == length(&samples) && is_left(before))
+        {
             film = earlier.plus(&film);
             samples.start = before.start;
         }
         self.parts.push((samples, film));
     }
 
-    /// All samples: the bits of a film that was rendered with them at once.
+    /// All samples: the bits of a film that was rendered with them at once, if the first is number 0.
     pub fn film(&self) -> Film {
         let mut parts = self.parts.iter().rev().map(|(_, film)| film);
         let Some(last) = parts.next() else { return Film::new(self.width, self.height) };
@@ -180,29 +200,51 @@ mod tests {
         for spp in 1..=140 {
             let expected = rendered(0..spp);
             for first in 1..=spp {
-                let mut film = GrowingFilm::new(1, 1);
+                let mut film = GrowingFilm::new(1, 1, 0);
                 extend(&mut film, first);
                 assert_eq!((film.film(), film.spp()), (rendered(0..first), first));
                 extend(&mut film, first.midpoint(spp));
                 extend(&mut film, spp);
                 assert_eq!((film.film(), film.spp()), (expected.clone(), spp), "{first} of {spp}");
-                let again = GrowingFilm::from_parts(1, 1, film.parts().to_vec()).unwrap();
+                let again = GrowingFilm::from_parts(1, 1, film.parts().to_vec(), |_, _| true).unwrap();
                 assert_eq!(again, film);
+            }
+        }
+    }
+
+    /// Films of ranges that follow one another, each rendered in two rounds, put together: the bits of one film.
+    #[test]
+    fn ranges_give_the_undivided_sum() {
+        for spp in [33, 64, 100, 160, 200] {
+            for cut in (0..spp).step_by(16) {
+                for second in (cut..spp).step_by(16) {
+                    let mut whole = GrowingFilm::new(1, 1, 0);
+                    for range in [0..cut, cut..second, second..spp] {
+                        let mut film = GrowingFilm::new(1, 1, range.start);
+                        extend(&mut film, range.start.midpoint(range.end));
+                        extend(&mut film, range.end);
+                        let found: Vec<_> = film.parts().iter().map(|(samples, _)| samples.clone()).collect();
+                        assert_eq!(found, sections(&range));
+                        film.parts().iter().cloned().for_each(|(samples, part)| whole.add(samples, part));
+                    }
+                    assert_eq!(whole.film(), rendered(0..spp), "{spp} cut at {cut} and {second}");
+                }
             }
         }
     }
 
     #[test]
     fn a_film_does_not_shrink_and_parts_that_are_no_subtrees_are_refused() {
-        let mut film = GrowingFilm::new(1, 1);
+        let mut film = GrowingFilm::new(1, 1, 0);
         assert_eq!(film.film(), Film::new(1, 1));
         extend(&mut film, 100);
         assert!(film.missing(100).is_empty() && film.missing(3).is_empty());
-        let refused = |parts| assert!(GrowingFilm::from_parts(1, 1, parts).is_none());
+        let refused = |parts| assert!(GrowingFilm::from_parts(1, 1, parts, |_, _| true).is_none());
         refused(vec![(0..48, rendered(0..48))]);
-        refused(vec![(16..32, rendered(16..32))]);
+        refused(vec![(0..16, rendered(0..16)), (32..64, rendered(32..64))]);
+        refused(vec![(8..16, rendered(8..16))]);
         refused(vec![(0..16, rendered(0..32))]);
         refused(film.parts().iter().rev().cloned().collect());
-        assert!(GrowingFilm::from_parts(2, 1, film.parts().to_vec()).is_none());
+        assert!(GrowingFilm::from_parts(2, 1, film.parts().to_vec(), |_, _| true).is_none());
     }
 }

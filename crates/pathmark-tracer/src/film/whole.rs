@@ -98,6 +98,16 @@ impl Film {
         }
     }
 
+    /// Takes the pixels that `owns` tells of, by column and row, from another film of the same size.
+    pub fn take(&mut self, other: &Self, owns: impl Fn(u32, u32) -> bool) {
+        let places = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
+        for ((pixel, found), (x, y)) in self.pixels.iter_mut().zip(&other.pixels).zip(places) {
+            if owns(x, y) {
+                *pixel = *found;
+            }
+        }
+    }
+
     /// The sum of two ranges of samples of the same image; `self` is the earlier one.
     #[must_use]
     pub fn plus(mut self, later: &Self) -> Self {

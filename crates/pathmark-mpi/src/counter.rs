@@ -1,0 +1,57 @@
+//! A number in the memory of rank 0 that all ranks count up.
+#![expect(unsafe_code, reason = "calls of C functions; each block says why it is sound")]
+
+use crate::MpiError;
+use crate::abi::Handle;
+use crate::world::{World, checked};
+use std::ptr::null_mut;
+
+/// A counter that starts at 0. One-sided: rank 0 does not have to answer, as far as its library makes progress by itself.
+pub struct Counter<'a> {
+    world: &'a World,
+    window: Handle,
+}
+
+impl<'a> Counter<'a> {
+    /// Made by all ranks together.
+    pub fn new(world: &'a World) -> Result<Self, MpiError> {
+        let (functions, abi) = (&world.library.functions, &world.library.abi);
+        let bytes = if world.rank() == 0 { size_of::<u64>() as isize } else { 0 };
+        let (mut base, mut window) = (null_mut(), 0);
+        // SAFETY: base and window outlive the call.
+        checked("MPI_Win_allocate", unsafe {
+            (functions.window_allocate)(bytes, 8, abi.no_info, abi.world, &raw mut base, &raw mut window)
+        })?;
+        if world.rank() == 0 {
+            // SAFETY: MPI has allocated this word, and nobody else looks at it before the barrier.
+            unsafe { base.cast::<u64>().write(0) };
+        }
+        world.barrier()?;
+        // SAFETY: the window is there.
+        checked("MPI_Win_lock_all", unsafe { (functions.window_lock_all)(0, window) })?;
+        Ok(Self { world, window })
+    }
+
+    /// The number, which is one more for whoever comes next.
+    pub fn next(&self) -> Result<u64, MpiError> {
+        let (functions, abi) = (&self.world.library.functions, &self.world.library.abi);
+        let (one, mut found) = (1_u64, 0_u64);
+        // SAFETY: both words outlive the flush, which completes the operation.
+        checked("MPI_Fetch_and_op", unsafe {
+            let (one, found) = ((&raw const one).cast(), (&raw mut found).cast());
+            (functions.fetch_and_op)(one, found, abi.int64, 0, 0, abi.sum, self.window)
+        })?;
+        // SAFETY: the window is there, and locked.
+        checked("MPI_Win_flush", unsafe { (functions.window_flush)(0, self.window) })?;
+        Ok(found)
+    }
+
+    /// Frees it, when all ranks are here.
+    pub fn free(mut self) -> Result<(), MpiError> {
+        let functions = &self.world.library.functions;
+        // SAFETY: the window is there, and locked.
+        checked("MPI_Win_unlock_all", unsafe { (functions.window_unlock_all)(self.window) })?;
+        // SAFETY: the window is there, and nobody uses it afterwards.
+        checked("MPI_Win_free", unsafe { (functions.window_free)(&raw mut self.window) })
+    }
+}

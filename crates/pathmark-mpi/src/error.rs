@@ -1,0 +1,55 @@
+use std::path::PathBuf;
+use thiserror::Error;
+
+/// Why there is no MPI, or why a call failed.
+#[derive(Debug, Error)]
+pub enum MpiError {
+    /// No library was found under any of the usual names.
+    #[error("no MPI library was found: {tried}. Install one (Debian: mpich), or name its file")]
+    Missing {
+        /// What the system said of each name.
+        tried: String,
+    },
+    /// The file that the user named cannot be opened as a library.
+    #[error("{} is no library that can be opened: {why}", path.display())]
+    NoLibrary {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        why: String,
+    },
+    /// The library lacks a function.
+    #[error("{library} is no MPI library, or an old one: it has no {symbol}")]
+    NoSymbol {
+        /// The library's name.
+        library: String,
+        /// The function.
+        symbol: &'static str,
+    },
+    /// Another library's launcher started this process: each process would be alone in a world of its own.
+    #[error(
+        "the launcher started {launched} processes, and {library} knows of {known}: start them with the mpiexec of that library, or name the launcher's library"
+    )]
+    WrongLauncher {
+        /// Processes, by the launcher.
+        launched: usize,
+        /// Processes, by the library.
+        known: usize,
+        /// The library's name.
+        library: String,
+    },
+    /// A call failed.
+    #[error("{call} failed with MPI's error {code}")]
+    Call {
+        /// The function.
+        call: &'static str,
+        /// What it gave back.
+        code: i32,
+    },
+    /// A message is longer than MPI can count.
+    #[error("a message of {words} words is longer than MPI can count")]
+    TooLong {
+        /// Its length in 64-bit words.
+        words: usize,
+    },
+}

@@ -1,0 +1,221 @@
+//! Parts of an image that are rendered apart, on machines that know nothing of each other: `--shard 2/4`.
+//!
+//! Cut by samples, a part has a range of all pixels' samples that begins and ends with a block of the sum ([`super::SAMPLE_BLOCK`]), so
+//! that its subtrees are subtrees of the whole sum. Cut by tiles, it has all samples of every n-th tile. Either way the parts put
+//! together are the image that is rendered at once, bit for bit.
+
+use super::{Bounds, Piece, Plan, SAMPLE_BLOCK};
+use crate::error::{InputError, Result};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::Range;
+
+/// Side of the tiles that are dealt to shards, in pixels.
+const TILE: u32 = 32;
+
+/// What is divided among shards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ShardCut {
+    /// The samples of every pixel.
+    Samples,
+    /// The pixels.
+    Tiles,
+}
+
+/// As in files and on the command line.
+impl fmt::Display for ShardCut {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Samples => "samples",
+            Self::Tiles => "tiles",
+        })
+    }
+}
+
+/// One of several parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "Unchecked")]
+pub struct Shard {
+    index: u32,
+    count: u32,
+    cut: ShardCut,
+}
+
+/// A shard as a file tells it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Unchecked {
+    index: u32,
+    count: u32,
+    cut: ShardCut,
+}
+
+impl TryFrom<Unchecked> for Shard {
+    type Error = String;
+
+    fn try_from(Unchecked { index, count, cut }: Unchecked) -> std::result::Result<Self, String> {
+        Self::new(index, count, cut).ok_or_else(|| format!("there is no shard {index} of {count}"))
+    }
+}
+
+/// As on the command line.
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+impl Shard {
+    /// Number `index` of `count`, the first being 1; `None` if there is no such one.
+    pub fn new(index: u32, count: u32, cut: ShardCut) -> Option<Self> {
+        (1..=count).contains(&index).then_some(Self { index, count, cut })
+    }
+
+    /// Reads `2/4`.
+    pub fn parse(text: &str, cut: ShardCut) -> Result<Self> {
+        let numbers = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+        numbers.and_then(|(index, count)| Self::new(index, count, cut)).ok_or_else(|| {
+            InputError::new("shard", text, "is no part of a whole").allowed("I/N, I being 1 to N, as in 2/4").into()
+        })
+    }
+
+    /// Which one it is; the first is 1.
+    pub fn index(&self) -> u32 {
+        self.index
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// What is divided among them.
+    pub fn cut(&self) -> ShardCut {
+        self.cut
+    }
+
+    /// Refuses more shards than there is something to divide among.
+    pub fn check(&self, width: u32, height: u32, spp: u32) -> Result<()> {
+        let (most, problem, allowed) = match self.cut {
+            ShardCut::Samples => {
+                let most = spp.div_ceil(SAMPLE_BLOCK);
+                (most, format!("{spp} samples are {most} blocks of {SAMPLE_BLOCK}"), "tiles are another way to cut")
+            }
+            ShardCut::Tiles => {
+                let most = width.div_ceil(TILE) * height.div_ceil(TILE);
+                (most, format!("the image has {most} tiles of {TILE}x{TILE}"), "samples are another way to cut")
+            }
+        };
+        if self.count <= most {
+            return Ok(());
+        }
+        let allowed = format!("at most {most} shards; {allowed}");
+        Err(InputError::new("shard", self.to_string(), problem).allowed(allowed).into())
+    }
+
+    /// The samples of its pixels, where the whole has `spp`: lengths differ by a block at most.
+    pub fn samples(&self, spp: u32) -> Range<u32> {
+        if self.cut == ShardCut::Tiles {
+            return 0..spp;
+        }
+        let blocks = u64::from(spp.div_ceil(SAMPLE_BLOCK));
+        let edge = |index: u32| {
+            let block = blocks * u64::from(index) / u64::from(self.count);
+            u32::try_from(block * u64::from(SAMPLE_BLOCK)).map_or(spp, |sample| sample.min(spp))
+        };
+        edge(self.index - 1)..edge(self.index)
+    }
+
+    /// Whether it has samples of a pixel. Tiles are dealt along diagonals: with as many columns of tiles as shards, dealing them row by row
+    /// would give each shard a column.
+    pub fn owns(&self, x: u32, y: u32) -> bool {
+        self.cut == ShardCut::Samples || (x / TILE + y / TILE) % self.count == self.index - 1
+    }
+
+    /// How many pixels it has samples of.
+    pub fn pixels(&self, width: u32, height: u32) -> u64 {
+        let rows = (0..height).map(|y| (0..width).filter(|x| self.owns(*x, y)).count() as u64);
+        if self.cut == ShardCut::Samples { u64::from(width) * u64::from(height) } else { rows.sum() }
+    }
+
+    /// What it has of the pieces of a plan, in the same order.
+    #[must_use]
+    pub fn part_of(&self, plan: &Plan) -> Plan {
+        if self.cut == ShardCut::Samples {
+            return plan.clone();
+        }
+        let pieces = plan.pieces().iter().flat_map(|piece| {
+            let tiles = tiles_in(piece.bounds).filter(|bounds| self.owns(bounds.x0, bounds.y0));
+            tiles.map(|bounds| Piece { bounds, samples: piece.samples.clone() })
+        });
+        Plan::from_pieces(pieces.collect())
+    }
+}
+
+/// A rectangle cut along the edges of tiles.
+fn tiles_in(bounds: Bounds) -> impl Iterator<Item = Bounds> {
+    let parts = |from: u32, to: u32| {
+        (from / TILE..to.div_ceil(TILE)).map(move |tile| (from.max(tile * TILE), to.min(tile.saturating_add(1) * TILE)))
+    };
+    parts(bounds.y0, bounds.y1)
+        .flat_map(move |(y0, y1)| parts(bounds.x0, bounds.x1).map(move |(x0, x1)| Bounds { x0, y0, x1, y1 }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Decomposition, sections};
+
+    fn shards(count: u32, cut: ShardCut) -> impl Iterator<Item = Shard> {
+        (1..=count).map(move |index| Shard::new(index, count, cut).unwrap())
+    }
+
+    #[test]
+    fn samples_are_divided_in_blocks_and_each_belongs_to_one_shard() {
+        for spp in [1, 16, 20, 200, 1000, 1 << 24] {
+            for count in [1, 2, 3, 7, 20] {
+                let parts: Vec<_> = shards(count, ShardCut::Samples).map(|shard| shard.samples(spp)).collect();
+                let fits = shards(count, ShardCut::Samples).next().unwrap().check(1, 1, spp).is_ok();
+                assert_eq!(fits, parts.iter().all(|part| !part.is_empty()), "{spp} among {count}");
+                assert!(parts.windows(2).all(|pair| pair[0].end == pair[1].start));
+                assert_eq!((parts[0].start, parts[count as usize - 1].end), (0, spp));
+                assert!(parts.iter().all(|part| part.start.is_multiple_of(SAMPLE_BLOCK) || part.is_empty()));
+                assert!(parts.iter().all(|part| part.is_empty() || !sections(part).is_empty()));
+            }
+        }
+    }
+
+    #[test]
+    fn every_pixel_belongs_to_one_shard_however_the_film_is_cut() {
+        for (width, height) in [(100, 70), (32, 32), (128, 64), (33, 1)] {
+            for text in ["rows", "tiles:16x16", "tiles:48x40:hilbert", "samples:16:32x32", "grid:5"] {
+                let plan = Decomposition::parse(text).unwrap().plan(width, height, &(0..32));
+                for count in [1, 2, 3, 7] {
+                    let mut seen = vec![0; (width * height) as usize];
+                    for shard in shards(count, ShardCut::Tiles) {
+                        let mut own = 0;
+                        for piece in shard.part_of(&plan).pieces() {
+                            let Bounds { x0, y0, x1, y1 } = piece.bounds;
+                            for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
+                                assert!(shard.owns(x, y));
+                                seen[(y * width + x) as usize] += piece.samples.len();
+                                own += piece.samples.len() as u64;
+                            }
+                        }
+                        assert_eq!(own, 32 * shard.pixels(width, height), "{text}, {shard}");
+                    }
+                    assert!(seen.iter().all(|samples| *samples == 32), "{text} among {count}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_part_is_refused() {
+        assert_eq!(Shard::parse("2/4", ShardCut::Tiles).unwrap(), Shard::new(2, 4, ShardCut::Tiles).unwrap());
+        for text in ["0/4", "5/4", "4", "/4", "1/0", "-1/4", "1/4/2", "a/b", ""] {
+            assert_eq!(Shard::parse(text, ShardCut::Samples).unwrap_err().exit_code(), 2, "{text}");
+        }
+    }
+}

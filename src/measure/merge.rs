@@ -1,0 +1,129 @@
+//! Parts of an image put together: `pathmark merge PART...`.
+//!
+//! A part is a checkpoint that says which shard it is of. Parts of samples are subtrees of each pixel's sum, and parts of tiles are pixels,
+//! so the merged film has the bits of one that was rendered at once, whoever rendered the parts and in whatever order they are named.
+
+use super::checkpoint::{Header, Part, difference};
+use crate::error::{InputError, Result};
+use crate::film::{Film, GrowingFilm, Shard, ShardCut};
+use crate::film_file::FilmKey;
+use std::path::{Path, PathBuf};
+
+/// Missing parts that are named.
+const MOST_TOLD: usize = 20;
+
+/// An image made of parts.
+pub struct Merged {
+    /// What the whole image is of.
+    pub key: FilmKey,
+    /// The sums of all parts that there are.
+    pub film: Film,
+    /// How many samples of the image were NaN, infinite or negative.
+    pub invalid: u64,
+    /// How many parts the image has.
+    pub count: u32,
+    /// The parts that are missing or not finished, in words; none if the film is the whole image.
+    pub missing: Vec<String>,
+}
+
+/// A part's file.
+struct Found {
+    path: PathBuf,
+    header: Header,
+    part: Part,
+}
+
+impl Found {
+    fn of(path: &Path) -> Result<Self> {
+        let header = Header::of(path)?;
+        let part = header.part.ok_or_else(|| refused(path, "is a checkpoint of a whole image, and no part of one"))?;
+        Ok(Self { path: path.to_path_buf(), header, part })
+    }
+
+    /// What all parts of one image have in common: they may be of any kernel and as far as they are.
+    fn whole(&self) -> Header {
+        let Part { shard, spp } = self.part;
+        let shard = Shard::new(1, shard.count(), shard.cut()).unwrap_or(shard);
+        let mut header = self.header.clone();
+        (header.film.spp, header.part) = (spp, Some(Part { shard, spp }));
+        header.kernel.clear();
+        header
+    }
+
+    /// What it still lacks, if anything.
+    fn lack(&self) -> Option<String> {
+        let have = self.header.samples().len();
+        let want = self.part.shard.samples(self.part.spp).len();
+        (have < want).then(|| format!("{}: {have} of {want} samples in {}", self.part.shard, self.path.display()))
+    }
+}
+
+fn refused(path: &Path, problem: &str) -> InputError {
+    InputError::new("part", path.display().to_string(), problem)
+}
+
+/// Puts parts together. Refuses parts of different images, one part in two files, and, unless `partial`, an image of which something is
+/// missing.
+pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
+    let mut parts = paths.iter().map(|path| Found::of(path)).collect::<Result<Vec<_>>>()?;
+    parts.sort_by_key(|found| found.part.shard.index());
+    let Some(first) = parts.first() else {
+        return Err(InputError::new("part", "", "there are no parts to merge").into());
+    };
+    for found in &parts[1..] {
+        if let Some(difference) = difference(&found.whole(), &first.whole()) {
+            let problem = format!("does not belong to {}: {difference}", first.path.display());
+            return Err(refused(&found.path, &problem).allowed("parts of one image").into());
+        }
+    }
+    if let Some(pair) = parts.windows(2).find(|pair| pair[0].part.shard == pair[1].part.shard) {
+        let problem = format!("is part {}, as {} is", pair[1].part.shard, pair[0].path.display());
+        return Err(refused(&pair[1].path, &problem).allowed("each part once").into());
+    }
+    let (count, cut, spp) = (first.part.shard.count(), first.part.shard.cut(), first.part.spp);
+    let missing = missing(&parts, count);
+    if !missing.is_empty() && !partial {
+        let problem = format!("of {count} parts these are missing or not finished: {}", missing.join(", "));
+        let allowed = "all parts, or --partial for an image of what there is";
+        return Err(InputError::new("part", first.path.display().to_string(), problem).allowed(allowed).into());
+    }
+    let key = FilmKey { spp, ..first.header.film.clone() };
+    let (mut film, mut growing) = (Film::try_new(key.width, key.height)?, GrowingFilm::new(key.width, key.height, 0));
+    let mut invalid = 0;
+    for found in &parts {
+        let (header, part) = Header::read(&found.path)?;
+        if header != found.header {
+            return Err(refused(&found.path, "has changed while it was read").into());
+        }
+        invalid += header.history.counts().invalid;
+        match cut {
+            ShardCut::Tiles => film.take(&part.film(), |x, y| found.part.shard.owns(x, y)),
+            // Where samples are missing in between, there is no whole sum whose bits it could have.
+            ShardCut::Samples if !missing.is_empty() => film = film.plus(&part.film()),
+            ShardCut::Samples => {
+                part.into_parts().into_iter().for_each(|(samples, subtree)| growing.add(samples, subtree));
+            }
+        }
+    }
+    if cut == ShardCut::Samples && missing.is_empty() {
+        film = growing.film();
+    }
+    Ok(Merged { key, film, invalid, count, missing })
+}
+
+/// The parts that are not among those found, and those that are not finished.
+fn missing(parts: &[Found], count: u32) -> Vec<String> {
+    let mut missing = Vec::new();
+    let mut found = parts.iter().peekable();
+    for index in 1..=count {
+        match found.next_if(|found| found.part.shard.index() == index) {
+            Some(found) => missing.extend(found.lack()),
+            None => missing.push(format!("{index}/{count}")),
+        }
+        if missing.len() > MOST_TOLD {
+            missing.push("and more".to_string());
+            break;
+        }
+    }
+    missing
+}

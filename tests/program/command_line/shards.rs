@@ -1,0 +1,137 @@
+//! `render --shard` and `merge`: one image from several machines.
+
+use super::{json, run};
+use crate::program::{finish, pathmark};
+use std::fs;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+const SIZE: [&str; 4] = ["render", "cornell", "--size", "70x40"];
+
+fn part(folder: &Path, shard: &str, options: &[&str]) {
+    let name = format!("part-{}.film", shard.replace('/', "-of-"));
+    run(folder, &[SIZE.as_slice(), &["--shard", shard, "-o", &name], options].concat());
+}
+
+fn checksum(out: &str) -> String {
+    json(out)["checksum"].as_str().unwrap().to_string()
+}
+
+#[test]
+fn parts_are_merged_into_the_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let expected = checksum(&run(folder.path(), &[SIZE.as_slice(), &["--spp", "48", "--json"]].concat()).out);
+    for by in ["samples", "tiles"] {
+        for shard in ["3/3", "1/3", "2/3"] {
+            part(folder.path(), shard, &["--spp", "48", "--shard-by", by]);
+        }
+        let names = ["part-1-of-3.film", "part-2-of-3.film", "part-3-of-3.film"];
+        let merged = run(folder.path(), &[&["merge"], names.as_slice(), &["-o", "whole.exr", "--json"]].concat());
+        let merged = json(&merged.out);
+        assert_eq!((merged["checksum"].as_str(), &merged["of"]), (Some(expected.as_str()), &3.into()));
+        // What the image says of itself is what an image that was rendered at once says.
+        run(folder.path(), &[SIZE.as_slice(), &["--spp", "48", "-o", "at-once.exr"]].concat());
+        let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+        assert!(read("whole.exr") == read("at-once.exr"), "{by}");
+        // A film can be compared and converted.
+        run(folder.path(), &[&["merge"], names.as_slice(), &["-o", "whole.film"]].concat());
+        run(folder.path(), &["convert", "whole.film", "-o", "again.exr"]);
+        assert!(read("again.exr") == read("at-once.exr"), "{by}");
+        // One is missing.
+        let two = [&["merge"], &names[..2], &["-o", "two.png"]].concat();
+        let finished = finish(pathmark(folder.path(), &two)).with_code(2);
+        assert!(finished.err.contains("3/3") && !folder.path().join("two.png").exists(), "{}", finished.err);
+        let finished = run(folder.path(), &[two.as_slice(), &["--partial"]].concat());
+        assert!(
+            finished.err.contains("3/3") && finished.out.contains("no checksum"),
+            "{}{}",
+            finished.err,
+            finished.out
+        );
+        names.iter().chain(&["two.png"]).for_each(|name| fs::remove_file(folder.path().join(name)).unwrap());
+    }
+}
+
+#[test]
+fn what_is_no_shard_is_refused_before_any_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |options: &[&str], said: &[&str]| {
+        let finished = finish(pathmark(folder.path(), &[SIZE.as_slice(), options].concat())).with_code(2);
+        assert!(said.iter().all(|text| finished.err.contains(text)), "{said:?} is not in {}", finished.err);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{options:?}");
+    };
+    for shard in ["0/4", "5/4", "4", "a/b", "1/0", "-1/2"] {
+        refused(&["--shard", shard, "-o", "part.film"], &["shard", shard]);
+    }
+    refused(&["--shard", "1/2", "-o", "part.png"], &["image", "part.png", "no picture"]);
+    refused(&["--shard", "1/2", "-o", "part.film", "--spp", "16"], &["shard", "1 block", "at most 1"]);
+    refused(&["--shard", "1/7", "--shard-by", "tiles", "-o", "part.film"], &["shard", "6 tiles", "at most 6"]);
+    refused(&["--shard", "1/2"], &["--image"]);
+    refused(&["--shard-by", "tiles"], &["--shard"]);
+    refused(&["--shard", "1/2", "-o", "p", "--clamp", "subpixel", "--spp", "32"], &["clamp"]);
+    refused(&["--shard", "1/2", "-o", "p", "--sampler", "locked", "--spp", "32"], &["locked"]);
+    for option in [["--target-error", "0.1"], ["--time-limit", "1"], ["--checkpoint", "c"], ["--trace", "t.csv"]] {
+        refused(&[&["--shard", "1/2", "-o", "p"], option.as_slice()].concat(), &["--shard", option[0]]);
+    }
+    refused(&["--shard", "auto", "-o", "p"], &["shard", "SLURM_ARRAY_TASK_ID"]);
+}
+
+/// As SLURM sets them for `--array=3-6`, and for an array with gaps.
+#[test]
+fn a_task_of_an_array_knows_its_shard() {
+    let folder = tempfile::tempdir().unwrap();
+    let task = |id: &str, count: &str, name: &str, code: i32| {
+        let options = ["--spp", "64", "--shard", "auto", "-o", name, "--json"];
+        let mut command = pathmark(folder.path(), &[SIZE.as_slice(), &options].concat());
+        let array = [("ID", id), ("COUNT", count), ("MIN", "3"), ("MAX", "6")];
+        command.envs(array.map(|(suffix, value)| (format!("SLURM_ARRAY_TASK_{suffix}"), value)));
+        finish(command).with_code(code)
+    };
+    for (id, index) in [("3", 1), ("4", 2), ("5", 3), ("6", 4)] {
+        let said = json(&task(id, "4", &format!("{index}.film"), 0).out);
+        assert_eq!((&said["shard"], &said["shards"], &said["samples"]), (&index.into(), &4.into(), &16.into()));
+    }
+    run(folder.path(), &["merge", "1.film", "2.film", "3.film", "4.film", "-o", "whole.png"]);
+    assert!(task("5", "2", "gap.film", 2).err.contains("gaps"));
+    assert!(task("9", "4", "beyond.film", 2).err.contains("shard"));
+}
+
+const FEWEST_KILLS: u64 = 5;
+
+/// A part killed (SIGKILL) at growing delays until it gets through: the image of parts that nobody disturbed.
+#[test]
+fn a_killed_part_goes_on_to_the_same_image() {
+    for by in ["samples", "tiles"] {
+        let folder = tempfile::tempdir().unwrap();
+        let long = ["--spp", "2400", "--shard-by", by];
+        part(folder.path(), "1/2", &long);
+        part(folder.path(), "2/2", &long);
+        let merged = ["merge", "part-1-of-2.film", "part-2-of-2.film", "-o", "whole.pfm", "--json"];
+        let expected = checksum(&run(folder.path(), &merged).out);
+        let second = [SIZE.as_slice(), &long, &["--shard", "2/2", "-o", "part-2-of-2.film"]].concat();
+        let mut kills = 0;
+        fs::remove_file(folder.path().join("part-2-of-2.film")).unwrap();
+        loop {
+            let mut command = pathmark(folder.path(), &second);
+            command.stdout(Stdio::null()).stderr(Stdio::null());
+            let mut child = command.spawn().unwrap();
+            std::thread::sleep(Duration::from_millis(5 + kills * 11 % 170 + kills));
+            let ended = child.try_wait().unwrap().is_some();
+            child.kill().unwrap();
+            let status = child.wait().unwrap();
+            if ended {
+                assert!(status.success(), "after {kills} kills: {status:?}");
+                assert_eq!(checksum(&run(folder.path(), &merged).out), expected, "after {kills} kills");
+                if kills >= FEWEST_KILLS {
+                    break;
+                }
+                // The machine is fast, or was busy while this one slept: from the start.
+                fs::remove_file(folder.path().join("part-2-of-2.film")).unwrap();
+                continue;
+            }
+            kills += 1;
+        }
+        println!("{kills} kills by {by}");
+    }
+}
