@@ -63,6 +63,9 @@ pub mod atomic_file;
 pub mod check;
 #[cfg(feature = "program")]
 mod cli;
+#[cfg(feature = "program")]
+#[doc(hidden)]
+pub mod cluster;
 #[doc(hidden)]
 pub mod disk;
 pub mod experiment;

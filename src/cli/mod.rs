@@ -23,6 +23,7 @@ mod plan;
 mod price;
 mod profile;
 mod progress;
+mod ranks;
 mod reference;
 mod render;
 mod replay;

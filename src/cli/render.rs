@@ -4,7 +4,7 @@ use super::axes::Axes;
 use super::output::{counted, print, print_json};
 use super::progress::Talk;
 use super::strict::Strict;
-use super::{replay, rounds, shard};
+use super::{ranks, replay, rounds, shard};
 use crate::error::{InputError, Result};
 use crate::experiment::Progress;
 use crate::files::Files;
@@ -38,6 +38,8 @@ pub(super) struct Arguments {
     image: Option<PathBuf>,
     #[command(flatten)]
     part: shard::Part,
+    #[command(flatten)]
+    ranks: ranks::Ranks,
     #[command(flatten)]
     axes: Axes,
     /// Scale what .png, .ppm and .bmp show so that the brightest channel of the image is 1; the light itself stays as it is
@@ -77,7 +79,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         path.map_or(Ok(()), |path| files.writes(option, path))?;
     }
 
-    let (setup, outcome) = if arguments.rounds.is_multi_round() {
+    let mut clustered = None;
+    let (setup, outcome) = if let Some(rule) = arguments.ranks.rule(lab)? {
+        let Some((outcome, cluster)) = arguments.ranks.render(&rule, &setup)? else { return Ok(()) };
+        clustered = Some(cluster);
+        (setup, outcome)
+    } else if arguments.rounds.is_multi_round() {
         let goal_spp = (!arguments.rounds.has_goal()).then_some(spp);
         rounds::render(&arguments.rounds, setup, goal_spp, talk)?
     } else {
@@ -102,10 +109,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     for sample in &outcome.invalid {
         talk.note(&replay::command(&arguments.scene, setup.settings(), *sample));
     }
-    if arguments.json {
-        print_json(&record)?;
-    } else {
-        print(&format!("{}: {}", path.display(), summary(&record, &outcome)))?;
+    match (&clustered, arguments.json) {
+        (Some(cluster), true) => print_json(&ranks::with_record(cluster, &record))?,
+        (None, true) => print_json(&record)?,
+        _ => print(&format!("{}: {}", path.display(), summary(&record, &outcome)))?,
+    }
+    if let Some(cluster) = clustered.filter(|_| !arguments.json) {
+        print(&ranks::told(&cluster))?;
     }
     arguments.strict.check(outcome.counts.invalid)
 }

@@ -127,7 +127,7 @@ pub(super) struct Account {
     workers_used: u32,
     /// Fewest workers that a round should have had.
     asked: usize,
-    build_s: f64,
+    pub(super) build_s: f64,
     pilot_s: f64,
     setup_s: f64,
     pub(super) makespan_s: f64,
@@ -206,8 +206,16 @@ impl Account {
         let films = output.films();
         let merge_s = before_merge.elapsed().as_secs_f64();
 
-        let workers = ledger.workers_used();
         let asked = setup.strategy().workers.at_once(setup.settings().threads, plan.len());
+        let (spans, counts) = entries.iter().map(|entry| (entry.span, entry.counts)).unzip();
+        let workers = ledger.workers_used();
+        self.enter(setup, &*kernel, Round { plan: &plan, sections, spans, counts, workers, asked, timed, merge_s });
+        Ok(films)
+    }
+
+    /// Enters what a round did.
+    pub(super) fn enter(&mut self, setup: &Setup, kernel: &dyn Kernel, round: Round<'_>) {
+        let Round { plan, sections, spans, counts, workers, asked, timed, merge_s } = round;
         // The round that missed its workers by most speaks for all.
         if self.plan.is_empty()
             || asked.saturating_sub(workers as usize) > self.asked.saturating_sub(self.workers_used as usize)
@@ -216,8 +224,7 @@ impl Account {
         }
         let offset_s = self.makespan_s;
         self.rounds += 1;
-        self.spans.extend(entries.iter().map(|entry| entry.span.later_by(offset_s)));
-        let counts: Vec<Counts> = entries.iter().map(|entry| entry.counts).collect();
+        self.spans.extend(spans.iter().map(|span| span.later_by(offset_s)));
         self.history.begin_round();
         for (piece, counts) in plan.pieces().iter().zip(&counts) {
             let section = sections.partition_point(|section| section.end <= piece.samples.start);
@@ -225,10 +232,9 @@ impl Account {
         }
         // Only a sampler that gives the same numbers again shows where they were.
         if self.history.tells_few() && setup.is_deterministic() && counts.iter().any(|counts| counts.invalid > 0) {
-            self.history.tell(first_invalid(&*kernel, &plan, &counts));
+            self.history.tell(first_invalid(kernel, plan, &counts));
         }
-        self.job_counts.extend(counts);
-        self.plan.append(&plan);
+        self.plan.append(plan);
         self.makespan_s += timed.makespan_s;
         self.merge_s += merge_s;
         self.cpu =
@@ -237,9 +243,9 @@ impl Account {
             makespan_s: timed.makespan_s,
             merge_s,
             cpu_s: timed.cpu.map(|usage| usage.user_s + usage.system_s),
-            paths: entries.iter().map(|entry| entry.counts.paths).sum(),
+            paths: counts.iter().map(|counts| counts.paths).sum(),
         };
-        Ok(films)
+        self.job_counts.extend(counts);
     }
 
     /// What it came to, with the film that was made of the rounds' films.
@@ -322,9 +328,24 @@ struct Run {
     output: Box<dyn Output>,
 }
 
-struct Timed {
-    makespan_s: f64,
-    cpu: Option<Usage>,
+/// How long a round took, and what the system counted meanwhile.
+pub(super) struct Timed {
+    pub(super) makespan_s: f64,
+    pub(super) cpu: Option<Usage>,
+}
+
+/// What a round did.
+pub(super) struct Round<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) sections: &'a [Range<u32>],
+    /// By job.
+    pub(super) spans: Vec<JobSpan>,
+    pub(super) counts: Vec<Counts>,
+    /// Workers that had jobs, and those that should have had some.
+    pub(super) workers: u32,
+    pub(super) asked: usize,
+    pub(super) timed: Timed,
+    pub(super) merge_s: f64,
 }
 
 impl Run {

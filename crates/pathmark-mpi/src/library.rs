@@ -93,7 +93,6 @@ macro_rules! functions {
 functions! {
     init_thread = "MPI_Init_thread" (*mut c_int, *mut *mut *mut c_char, c_int, *mut c_int);
     finalize = "MPI_Finalize" ();
-    abort = "MPI_Abort" (Handle, c_int);
     rank = "MPI_Comm_rank" (Handle, *mut c_int);
     size = "MPI_Comm_size" (Handle, *mut c_int);
     version = "MPI_Get_library_version" (*mut c_char, *mut c_int);

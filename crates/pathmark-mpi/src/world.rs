@@ -163,12 +163,6 @@ impl World {
         // SAFETY: MPI has begun, and `self` is gone after this.
         checked("MPI_Finalize", unsafe { (self.library.functions.finalize)() })
     }
-
-    /// Ends all ranks at once, for what one of them cannot go on from.
-    pub fn abort(&self, code: u8) {
-        // SAFETY: MPI has begun.
-        unsafe { (self.library.functions.abort)(self.library.abi.world, c_int::from(code)) };
-    }
 }
 
 /// `MPICH Version: 4.0.2 ...` and `Open MPI v5.0.11, package: ...` without what follows.

@@ -1,0 +1,78 @@
+//! `mpiexec -n 4 pathmark render SCENE --ranks RULE`: one image by several processes.
+
+use crate::cluster::{Cluster, RankRow, RankRule};
+use crate::error::Result;
+use crate::lab::Lab;
+use crate::measure::{Outcome, Record, Setup};
+use clap::Args;
+use serde::Serialize;
+use std::env;
+use std::path::PathBuf;
+
+/// The options of a render by several processes.
+#[derive(Args)]
+pub(super) struct Ranks {
+    /// Render with all processes that mpiexec started, which share the jobs by this rule: static-blocks, static-cyclic, dynamic:C, guided,
+    /// trapezoid, factoring, master-worker:C or working-master:C. Each process spreads its jobs over --threads by --strategy
+    #[arg(long, value_name = "RULE", help_heading = "Processes",
+          conflicts_with_all = ["target_error", "time_limit", "checkpoint", "adaptive", "shard"])]
+    ranks: Option<String>,
+    /// MPI library: auto, or the path of one [default: auto, or PATHMARK_MPI]
+    #[arg(long, value_name = "auto|FILE", help_heading = "Processes", requires = "ranks")]
+    mpi: Option<PathBuf>,
+}
+
+/// What the ranks did, beside the outcome.
+#[derive(Serialize)]
+pub(super) struct Told {
+    ranks: usize,
+    rank_rule: String,
+    mpi: String,
+    gather_s: f64,
+    by_rank: Vec<RankRow>,
+}
+
+/// A record with what the ranks did.
+#[derive(Serialize)]
+pub(super) struct WithRecord<'a> {
+    #[serde(flatten)]
+    record: &'a Record,
+    #[serde(flatten)]
+    told: &'a Told,
+}
+
+pub(super) fn with_record<'a>(told: &'a Told, record: &'a Record) -> WithRecord<'a> {
+    WithRecord { record, told }
+}
+
+impl Ranks {
+    /// The rule, if there is one.
+    pub(super) fn rule(&self, lab: &Lab) -> Result<Option<RankRule>> {
+        self.ranks.as_deref().map(|text| RankRule::parse(lab, text)).transpose()
+    }
+
+    /// Renders; `None` on all ranks but the first.
+    pub(super) fn render(&self, rule: &RankRule, setup: &Setup) -> Result<Option<(Outcome, Told)>> {
+        let library = self.mpi.clone().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
+        let library = library.filter(|path| path.as_os_str() != "auto");
+        let cluster = Cluster::begin(library.as_deref())?;
+        let ranks = cluster.size();
+        let clustered = cluster.render(setup, rule)?;
+        Ok(clustered.map(|done| {
+            let rank_rule = rule.to_string();
+            let told = Told { ranks, rank_rule, mpi: done.library, gather_s: done.gather_s, by_rank: done.ranks };
+            (done.outcome, told)
+        }))
+    }
+}
+
+/// What each rank did, in lines.
+pub(super) fn told(told: &Told) -> String {
+    let Told { ranks, rank_rule, mpi, gather_s, by_rank } = told;
+    let mut text = format!("{ranks} ranks of {mpi} by {rank_rule}, gathered in {:.1} ms", 1e3 * gather_s);
+    for RankRow { rank, jobs, requests, busy_s, waiting_s } in by_rank {
+        text +=
+            &format!("\nrank {rank}: {jobs} jobs in {requests} requests, {busy_s:.3} s busy, {waiting_s:.3} s waiting");
+    }
+    text
+}

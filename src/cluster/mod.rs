@@ -1,0 +1,155 @@
+//! One render by several processes, on one machine or on many, by MPI: `mpiexec -n 4 pathmark render cornell --ranks guided`.
+//!
+//! A rule says which rank does which jobs of the plan; inside a rank a strategy spreads them over its threads. Any rule goes with any
+//! strategy, and the film has the bits that one process gives: what travels is the sum of each piece, and rank 0 puts the pieces
+//! together by their place.
+
+mod hand_out;
+mod rank_rule;
+mod wire;
+
+use crate::digest;
+use crate::error::{Error, InputError, Result};
+use crate::kernel::REVISION;
+use crate::measure::{Outcome, Setup};
+use hand_out::HandOut;
+use pathmark_mpi::{MpiError, World};
+pub use rank_rule::{RANK_RULES, RankRule};
+use serde::Serialize;
+use std::io;
+use std::path::Path;
+
+/// What one rank did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RankRow {
+    /// Its number, from 0.
+    pub rank: usize,
+    /// Jobs that it did.
+    pub jobs: u64,
+    /// Times that it asked for jobs.
+    pub requests: u64,
+    /// Seconds that its workers spent on jobs, together.
+    pub busy_s: f64,
+    /// Seconds that it waited for answers, and for the other ranks at the end.
+    pub waiting_s: f64,
+}
+
+/// A render by all ranks.
+pub struct Clustered {
+    /// What one process would have given, with the workers of all ranks.
+    pub outcome: Outcome,
+    /// What each rank did.
+    pub ranks: Vec<RankRow>,
+    /// Seconds to bring all pieces to rank 0.
+    pub gather_s: f64,
+    /// Name and version of the library.
+    pub library: String,
+}
+
+/// The processes that a launcher started together. The library is opened here, and nothing else is done yet.
+pub struct Cluster {
+    world: World,
+}
+
+fn failed(error: MpiError) -> Error {
+    match error {
+        MpiError::NoLibrary { path, why } => {
+            let problem = format!("cannot be opened as a library: {why}");
+            InputError::new("mpi", path.display().to_string(), problem).allowed("an MPI library").into()
+        }
+        MpiError::NoSymbol { library, symbol } => {
+            let problem = format!("is no MPI library, or an old one: it has no {symbol}");
+            InputError::new("mpi", library, problem).allowed("an MPI library").into()
+        }
+        other => Error::system("using", "MPI", io::Error::other(other)),
+    }
+}
+
+impl Cluster {
+    /// Opens the library that the user names, or one of those that systems have.
+    pub fn begin(library: Option<&Path>) -> Result<Self> {
+        Ok(Self { world: World::begin(library).map_err(failed)? })
+    }
+
+    /// Whether this is the rank that has the image in the end, and speaks for all.
+    pub fn is_first(&self) -> bool {
+        self.world.rank() == 0
+    }
+
+    /// How many ranks there are.
+    pub fn size(&self) -> usize {
+        self.world.size()
+    }
+
+    /// Renders; rank 0 has the outcome. After an error of one rank the others cannot go on, and are ended.
+    pub fn render(self, setup: &Setup, rule: &RankRule) -> Result<Option<Clustered>> {
+        rule.check(self.size())?;
+        if let Err(error) = self.check_same(setup, rule) {
+            self.world.end().map_err(failed)?;
+            return Err(error);
+        }
+        // A process that ends with an error and without MPI's farewell makes the launcher end the others.
+        let clustered = self.rendered(setup, rule)?;
+        self.world.end().map_err(failed)?;
+        Ok(clustered)
+    }
+
+    /// Refuses ranks that were given something else to do.
+    fn check_same(&self, setup: &Setup, rule: &RankRule) -> Result<()> {
+        let settings = setup.settings();
+        let text = format!(
+            "{} {REVISION} {:?} {} {} {rule}",
+            env!("CARGO_PKG_VERSION"),
+            setup.film_key(),
+            settings.decomposition,
+            settings.threads
+        );
+        let mine = u64::from_str_radix(&digest::of_text(&text), 16).unwrap_or_default();
+        let all = self.world.all_gather(&[mine]).map_err(failed)?;
+        match all.iter().position(|other| *other != all[0]) {
+            None => Ok(()),
+            Some(rank) => {
+                let problem = format!("rank {rank} would render something else than rank 0");
+                let error = InputError::new("ranks", rule.to_string(), problem);
+                Err(error.allowed("the same program, scene and options on all ranks").into())
+            }
+        }
+    }
+
+    fn rendered(&self, setup: &Setup, rule: &RankRule) -> Result<Option<Clustered>> {
+        let (world, threads) = (&self.world, setup.threads());
+        let mut share = setup.share()?;
+        let hand_out = HandOut::new(rule, world)?;
+        world.barrier().map_err(failed)?;
+        share.begin();
+        let mut wait = hand_out.run(&mut share)?;
+        let finished_s = share.elapsed_s();
+        world.barrier().map_err(failed)?;
+        let makespan_s = share.elapsed_s();
+        wait.seconds += makespan_s - finished_s;
+        hand_out.free()?;
+        let busy_s = share.busy_s();
+        let done = share.take_done();
+        let row = [done.len() as u64, wait.requests, busy_s.to_bits(), wait.seconds.to_bits()];
+        let rows = world.all_gather(&row).map_err(failed)?;
+        let first_worker = u32::try_from(world.rank() * threads).unwrap_or(u32::MAX);
+        let before_s = share.elapsed_s();
+        let words = world.gather(&wire::words(&done, first_worker)).map_err(failed)?;
+        let gather_s = share.elapsed_s() - before_s;
+        if !self.is_first() {
+            return Ok(None);
+        }
+        drop(done);
+        let done =
+            wire::jobs(&words, share.plan()).ok_or_else(|| Error::Check("what a rank sent are no jobs".to_string()))?;
+        let outcome = setup.assembled(done, world.size() * threads, makespan_s)?;
+        let ranks = rows.chunks_exact(row.len()).enumerate().map(|(rank, row)| RankRow {
+            rank,
+            jobs: row[0],
+            requests: row[1],
+            busy_s: f64::from_bits(row[2]),
+            waiting_s: f64::from_bits(row[3]),
+        });
+        Ok(Some(Clustered { outcome, ranks: ranks.collect(), gather_s, library: world.version().to_string() }))
+    }
+}

@@ -1,0 +1,160 @@
+//! The jobs of a run that one of several processes does, handed to it a few at a time, and the run that all of them make together.
+//!
+//! Which jobs these are is decided elsewhere: between processes as between threads, it cannot change a bit of the film.
+
+use super::ledger::Ledger;
+use super::run::{Account, Round, Timed};
+use super::{JobSpan, Outcome, Setup};
+use crate::error::{Error, Result};
+use crate::film::{Film, Plan, Sections, TileBuffer};
+use crate::kernel::{Counts, Kernel};
+use crate::strategy::Strategy;
+use crossbeam::atomic::AtomicCell;
+use std::mem;
+use std::slice::from_ref;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A job that a process has done.
+pub struct DoneJob {
+    /// Which piece of the plan it was.
+    pub index: usize,
+    /// When, in seconds since the run's start, and by which worker of all.
+    pub span: JobSpan,
+    /// What happened on its paths.
+    pub counts: Counts,
+    /// The sums of its pixels.
+    pub tile: TileBuffer,
+}
+
+/// A process's share of a run.
+pub struct Share<'a> {
+    setup: &'a Setup,
+    kernel: Arc<dyn Kernel>,
+    plan: Arc<Plan>,
+    strategy: Box<dyn Strategy>,
+    start: Instant,
+    done: Vec<DoneJob>,
+}
+
+/// What the jobs of one hand-out share.
+struct Handout {
+    kernel: Arc<dyn Kernel>,
+    plan: Arc<Plan>,
+    jobs: Vec<usize>,
+    tiles: Vec<AtomicCell<Option<Box<TileBuffer>>>>,
+    ledger: Ledger,
+}
+
+impl Setup {
+    /// A share that has done nothing yet, with the kernel and the workers that it will need.
+    pub fn share(&self) -> Result<Share<'_>> {
+        let (kernel, _) = self.kernel()?;
+        let plan = Arc::new(self.ordered(self.plan(), &*kernel));
+        let strategy = self.new_strategy()?;
+        Ok(Share { setup: self, kernel, plan, strategy, start: Instant::now(), done: Vec::new() })
+    }
+}
+
+impl Share<'_> {
+    /// The pieces of all shares, in the order in which they are handed out.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The run begins now, for all processes.
+    pub fn begin(&mut self) {
+        self.start = Instant::now();
+    }
+
+    /// Seconds since the run began.
+    pub fn elapsed_s(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    /// Does some jobs, with all workers of the strategy.
+    pub fn render(&mut self, jobs: Vec<usize>) -> Result<()> {
+        let tile = |job: &usize| {
+            let bounds = self.plan.pieces()[*job].bounds;
+            Ok(AtomicCell::new(Some(Box::new(TileBuffer::try_new(bounds)?))))
+        };
+        let tiles = jobs.iter().map(tile).collect::<Result<Vec<_>>>()?;
+        let (kernel, plan) = (Arc::clone(&self.kernel), Arc::clone(&self.plan));
+        let (count, ledger, start) = (jobs.len(), Ledger::new(jobs.len()), self.start);
+        let handout = Arc::new(Handout { kernel, plan, jobs, tiles, ledger });
+        let shared = Arc::clone(&handout);
+        let job = Arc::new(move |index: usize| {
+            let Handout { kernel, plan, jobs, tiles, ledger } = &*shared;
+            ledger.record(index, start, || {
+                let piece = &plan.pieces()[jobs[index]];
+                let mut tile = tiles[index].take().unwrap_or_else(|| Box::new(TileBuffer::new(piece.bounds)));
+                let counts = kernel.render(piece, &mut tile);
+                tiles[index].store(Some(tile));
+                counts
+            });
+        });
+        self.strategy.run(count, job).map_err(|error| self.setup.strategy_error(error))?;
+        let broken = |problem: &str| {
+            Error::Check(format!("strategy {} broke its contract: {problem}", self.setup.settings().strategy))
+        };
+        let Handout { jobs, tiles, ledger, .. } =
+            Arc::into_inner(handout).ok_or_else(|| broken("it has kept the job"))?;
+        let entries = ledger.close().map_err(|problem| broken(&problem))?;
+        for ((index, entry), tile) in jobs.into_iter().zip(entries).zip(tiles) {
+            let tile = tile.take().ok_or_else(|| broken("it has kept a tile"))?;
+            self.done.push(DoneJob { index, span: entry.span, counts: entry.counts, tile: *tile });
+        }
+        Ok(())
+    }
+
+    /// Seconds that its workers spent on jobs so far.
+    pub fn busy_s(&self) -> f64 {
+        self.done.iter().fold(0.0, |sum, job| sum + job.span.duration_s())
+    }
+
+    /// Takes what it has done.
+    pub fn take_done(&mut self) -> Vec<DoneJob> {
+        mem::take(&mut self.done)
+    }
+}
+
+impl Setup {
+    /// The run that several shares, of `workers` workers together, make: each job must have been done once.
+    pub fn assembled(&self, mut done: Vec<DoneJob>, workers: usize, makespan_s: f64) -> Result<Outcome> {
+        let (spec, samples) = (&self.settings().spec, 0..self.settings().spp);
+        let (kernel, build_s) = self.kernel()?;
+        let plan = self.ordered(self.plan(), &*kernel);
+        let before_merge = Instant::now();
+        done.sort_by_key(|job| job.index);
+        if !done.iter().map(|job| job.index).eq(0..plan.len()) {
+            let problem = format!("{} jobs came from all processes, and not each of {} once", done.len(), plan.len());
+            return Err(Error::Check(problem));
+        }
+        let mut films = Sections::new(spec.width, spec.height, from_ref(&samples))?;
+        let (mut spans, mut counts, mut used) = (Vec::new(), Vec::new(), vec![false; workers]);
+        for (piece, job) in plan.pieces().iter().zip(done) {
+            films.add(&piece.samples, job.tile);
+            if let Some(used) = used.get_mut(job.span.worker as usize) {
+                *used = true;
+            }
+            spans.push(job.span);
+            counts.push(job.counts);
+        }
+        let film = films.finish().into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
+        let used = used.iter().filter(|used| **used).count();
+        let mut account = Account::new();
+        account.build_s = build_s;
+        let round = Round {
+            plan: &plan,
+            sections: from_ref(&samples),
+            spans,
+            counts,
+            workers: u32::try_from(used).unwrap_or(u32::MAX),
+            asked: workers.min(plan.len()),
+            timed: Timed { makespan_s, cpu: None },
+            merge_s: before_merge.elapsed().as_secs_f64(),
+        };
+        account.enter(self, &*kernel, round);
+        Ok(account.outcome(self, samples.end, film))
+    }
+}
