@@ -19,12 +19,15 @@
 //! The program above is `pathmark` with one workload more: `cargo run --release -- render squares --strategy rayon`. Cells of experiments run in
 //! processes of the same program, so they have the same tables.
 
+mod processes;
+
 use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
 use crate::kernel::OwnEstimator;
 use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::scene::{Library, OwnScene, Scene};
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
+pub use processes::{MASTER_WORKER, WORKING_MASTER, of_rank_rule, rank_rule, rank_rules};
 use std::fmt;
 use std::panic::Location;
 use std::sync::{Arc, LazyLock};
@@ -161,7 +164,8 @@ impl Lab {
             Some((name, parameter)) => (name, Some(parameter.to_string())),
             None => (text, None),
         };
-        let entry = self.strategies.iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let found = self.strategies.iter().find(|entry| entry.name == name).copied();
+        let entry = found.or_else(|| processes::named(self, name)).ok_or_else(|| {
             let names: Vec<&str> = self.strategies.iter().map(|entry| entry.name).collect();
             InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
         })?;
@@ -169,7 +173,7 @@ impl Lab {
             Err(StrategyError::Parameter { allowed, .. }) => {
                 Err(InputError::new("strategy", text, "has no such parameter").allowed(allowed).into())
             }
-            _ => Ok((*entry, parameter)),
+            _ => Ok((entry, parameter)),
         }
     }
 

@@ -14,7 +14,7 @@ use crate::kernel::REVISION;
 use crate::measure::{Outcome, Setup};
 use hand_out::HandOut;
 use pathmark_mpi::{MpiError, World};
-pub use rank_rule::{RANK_RULES, RankRule};
+pub use rank_rule::RankRule;
 use serde::Serialize;
 use std::io;
 use std::path::Path;

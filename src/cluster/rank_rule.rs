@@ -4,7 +4,7 @@
 //! counts up one number in the memory of rank 0 and looks its chunk up. A master answers requests by messages instead.
 
 use crate::error::{InputError, Result};
-use crate::lab::Lab;
+use crate::lab::{Lab, MASTER_WORKER, WORKING_MASTER, of_rank_rule, rank_rules};
 use crate::strategy::{ChunkRule, Deal, Discipline};
 use std::fmt;
 use std::ops::Range;
@@ -36,16 +36,6 @@ pub struct RankRule {
     pub(super) way: Way,
 }
 
-/// Rules that no strategy has: name, master, and meaning.
-const MASTERS: [(&str, Master, &str); 2] = [
-    ("master-worker", Master::Only, "rank 0 hands out chunks of C jobs by messages, and renders nothing"),
-    ("working-master", Master::Working, "rank 0 hands out chunks of C jobs by messages between its own chunks"),
-];
-
-/// The strategies whose deal or chunk rule ranks can follow, and the two masters, for the help.
-pub const RANK_RULES: &str =
-    "static-blocks, static-cyclic, dynamic:C, guided, trapezoid, factoring, master-worker:C, working-master:C";
-
 impl fmt::Display for RankRule {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
@@ -55,24 +45,18 @@ impl fmt::Display for RankRule {
 impl RankRule {
     /// Reads a rule as it stands on the command line.
     pub fn parse(lab: &Lab, text: &str) -> Result<Self> {
-        let way = Self::way(lab, text).ok_or_else(|| {
-            InputError::new("ranks", text, "is no rule by which ranks can share jobs").allowed(RANK_RULES)
-        })?;
+        let strategy = of_rank_rule(text);
+        let refused =
+            || InputError::new("ranks", text, "is no rule by which ranks can share jobs").allowed(rank_rules());
+        let (entry, parameter) = lab.strategy_named(&strategy).map_err(|_| refused())?;
+        let way = match (entry.discipline(parameter.as_deref()), entry.name) {
+            (Ok(Discipline::Chunks(rule)), MASTER_WORKER) => Way::Asked(Master::Only, rule),
+            (Ok(Discipline::Chunks(rule)), WORKING_MASTER) => Way::Asked(Master::Working, rule),
+            (Ok(Discipline::Chunks(rule)), _) => Way::Counted(rule),
+            (Ok(Discipline::Dealt(deal)), _) => Way::Dealt(deal),
+            _ => return Err(refused().into()),
+        };
         Ok(Self { text: text.to_string(), way })
-    }
-
-    fn way(lab: &Lab, text: &str) -> Option<Way> {
-        let (name, parameter) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
-        if let Some((_, master, _)) = MASTERS.iter().find(|(known, ..)| *known == name) {
-            let parameter = parameter.map_or(Some(1), |text| text.parse().ok().filter(|size| *size > 0))?;
-            return Some(Way::Asked(*master, ChunkRule { size: |handout| handout.parameter, parameter }));
-        }
-        let entry = lab.strategies().iter().find(|entry| entry.name == name)?;
-        match entry.discipline(parameter).ok()? {
-            Discipline::Dealt(deal) => Some(Way::Dealt(deal)),
-            Discipline::Chunks(rule) => Some(Way::Counted(rule)),
-            _ => None,
-        }
     }
 
     /// Refuses rules that so many ranks cannot follow.
@@ -100,11 +84,10 @@ mod tests {
     #[test]
     fn every_rule_that_is_listed_can_be_read_and_others_cannot() {
         let lab = Lab::built_in();
-        for text in RANK_RULES.split(", ") {
-            let rule = RankRule::parse(&lab, &text.replace(":C", ":3")).unwrap();
+        for text in rank_rules().split(", ").chain(["dynamic:3", "master-worker:3", "working-master:3"]) {
+            let rule = RankRule::parse(&lab, text).unwrap();
             assert_eq!(rule.check(1).is_err(), text.starts_with("master-worker"), "{text}");
             assert!(rule.check(2).is_ok());
-            assert!(RankRule::parse(&lab, text.split(':').next().unwrap()).is_ok());
         }
         for text in ["work-stealing", "serial", "rayon", "", "dynamic:0", "master-worker:0", "master-worker:x", "x:1"] {
             assert_eq!(RankRule::parse(&lab, text).unwrap_err().exit_code(), 2, "{text}");

@@ -8,12 +8,13 @@
 use super::external::filled;
 use super::object_pixels::{object_pixels, only};
 use super::process_group;
+use super::processes::run_processes;
 use super::{External, HalfFile, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::film::SAMPLE_BLOCK;
 use crate::film_file::read_film;
 use crate::image_io::{self, Image};
-use crate::lab::Lab;
+use crate::lab::{Lab, rank_rule};
 use crate::measure::{
     Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure, missing_external, run_external,
 };
@@ -104,6 +105,9 @@ impl CellJob {
         if let Some((external, folder)) = &self.external {
             return self.other_program(lab, external, folder, references.as_ref());
         }
+        if let Some(rule) = rank_rule(&self.settings.strategy) {
+            return self.by_processes(lab, rule, references.as_ref());
+        }
         if let [point] = self.points.as_slice() {
             let setup = self.setup(lab, point.spp)?;
             let outcome = setup.run(None)?;
@@ -174,6 +178,25 @@ impl CellJob {
                 None => Measured::default(),
             };
             Ok(self.label(point, run.record(&self.settings, &scene.hash, errors)))
+        };
+        self.points.iter().map(row).collect()
+    }
+
+    /// The rows of processes, each point by processes of its own.
+    fn by_processes(&self, lab: &Lab, rule: &str, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
+        let row = |point: &PointJob| {
+            let settings = Settings { spp: point.spp, ..self.settings.clone() };
+            let hash = self.setup(lab, point.spp)?.hash();
+            let Some((record, image)) = run_processes(&settings, rule, self.trace.as_deref())? else {
+                return Ok(self.label(point, missing_external(&settings, &hash)));
+            };
+            self.scene.check(&record.scene_hash)?;
+            point.image.as_ref().map_or(Ok(()), |path| image_io::write(path, &image))?;
+            let errors = match references {
+                Some([first, second]) => Measured::against(&image, first, second)?,
+                None => Measured::default(),
+            };
+            Ok(self.label(point, record.with_errors(errors)))
         };
         self.points.iter().map(row).collect()
     }

@@ -16,6 +16,7 @@ mod object_pixels;
 mod plan;
 mod pricing;
 mod process_group;
+mod processes;
 mod profile;
 mod records_file;
 mod reference;

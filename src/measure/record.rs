@@ -263,7 +263,9 @@ pub(super) fn external_row(settings: &Settings, errors: Measured) -> Record {
 }
 
 impl Record {
-    fn with_errors(mut self, errors: Measured) -> Self {
+    /// The row with the errors of its image.
+    #[must_use]
+    pub fn with_errors(mut self, errors: Measured) -> Self {
         self.mse = errors.mse;
         self.rmse = errors.mse.and_then(metric::root);
         self.mse_display = errors.mse_display;

@@ -10,7 +10,7 @@ use crate::film::{Decomposition, Plan};
 use crate::film_file::FilmKey;
 use crate::kernel::workload::Entry as Workload;
 use crate::kernel::{self, Choice, Clamped, Counts, Kernel, OwnEstimator, Spec};
-use crate::lab::{Lab, THREAD_PER_ROW};
+use crate::lab::{Lab, THREAD_PER_ROW, rank_rule};
 use crate::scene::{SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
@@ -340,6 +340,12 @@ impl Setup {
     }
 
     pub(super) fn strategy_error(&self, error: StrategyError) -> Error {
+        if let StrategyError::Processes { strategy } = error {
+            let problem = "has processes for workers, and one process cannot run it alone";
+            let rule = rank_rule(&self.settings.strategy).unwrap_or_default();
+            let allowed = format!("mpiexec -n N pathmark render SCENE --ranks {rule}, or an experiment");
+            return InputError::new("strategy", strategy, problem).allowed(allowed).into();
+        }
         Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
     }
 

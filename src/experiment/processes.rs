@@ -1,0 +1,81 @@
+//! A cell whose workers are processes: `mpiexec` starts as many of this program, and the first prints the row.
+
+use crate::error::{Error, InputError, Result};
+use crate::image_io::{self, Image};
+use crate::lab::SERIAL;
+use crate::measure::{AXES, Record, Settings};
+use serde_json::Value;
+use std::env;
+use std::ffi::OsString;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+/// What starts processes, unless [`LAUNCHER_VARIABLE`] says otherwise: `mpiexec --oversubscribe`, say.
+const LAUNCHER: &str = "mpiexec";
+const LAUNCHER_VARIABLE: &str = "PATHMARK_MPIEXEC";
+
+/// Renders with as many processes as the settings have workers, one thread each. `Ok(None)` if there is no launcher.
+pub(super) fn run_processes(settings: &Settings, rule: &str, trace: Option<&Path>) -> Result<Option<(Record, Image)>> {
+    let folder = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
+    let image = folder.path().join("image.pfm");
+    let launcher = env::var(LAUNCHER_VARIABLE).unwrap_or_else(|_| LAUNCHER.to_string());
+    let mut words = launcher.split_whitespace();
+    let program = words.next().unwrap_or(LAUNCHER);
+    let own = env::current_exe().map_err(|e| Error::system("finding", "this program", e))?;
+    let mut command = Command::new(program);
+    command.args(words).arg("-n").arg(settings.threads.to_string()).arg(own).args(options(settings, rule));
+    command.arg("--image").arg(&image);
+    if let Some(path) = trace {
+        command.arg("--trace").arg(path);
+    }
+    let output = match command.stdin(Stdio::null()).output() {
+        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
+        other => other.map_err(|e| Error::system("running", program, e))?,
+    };
+    let told = || format!("{command:?}");
+    if !output.status.success() {
+        let said: String = String::from_utf8_lossy(&output.stderr).trim().chars().take(400).collect();
+        return Err(Error::Check(format!("{} ended with {}: {said}", told(), output.status)));
+    }
+    let record = record(&output.stdout).ok_or_else(|| Error::Check(format!("{} printed no record", told())))?;
+    let strategy = settings.strategy.clone();
+    let image = image_io::read(&image)?;
+    Ok(Some((Record { strategy, threads: settings.threads, ..record }, image)))
+}
+
+/// The options of a render with these settings, by name.
+fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
+    let mut options = vec!["render".to_string(), settings.scene.clone(), "--quiet".to_string(), "--json".to_string()];
+    let own = Settings { strategy: SERIAL.to_string(), threads: 1, ..settings.clone() };
+    let samples_and_seed = ["spp", "seed", "clamp"];
+    for axis in AXES.iter().filter(|axis| !axis.about.is_empty() || samples_and_seed.contains(&axis.name)) {
+        let value = axis.show(&own);
+        if !value.is_empty() {
+            options.extend([format!("--{}", axis.name), value]);
+        }
+    }
+    options.extend(["--ranks".to_string(), rule.to_string()]);
+    options.into_iter().map(OsString::from).collect()
+}
+
+/// The record in what the first process printed, with the time that gathering took among that of putting pieces together.
+fn record(printed: &[u8]) -> Option<Record> {
+    let mut value: Value = serde_json::from_slice(printed).ok()?;
+    let fields = value.as_object_mut()?;
+    for name in ["ranks", "rank_rule", "mpi", "by_rank"] {
+        fields.remove(name)?;
+    }
+    let gather_s = fields.remove("gather_s")?.as_f64()?;
+    let record: Record = serde_json::from_value(value).ok()?;
+    Some(Record { merge_s: record.merge_s.map(|merge_s| merge_s + gather_s), ..record })
+}
+
+/// Refuses settings under which processes cannot start.
+pub(super) fn check_processes(settings: &Settings) -> Result<()> {
+    if settings.output == Settings::default().output {
+        return Ok(());
+    }
+    let problem = "is no output of processes, which send their pieces to the first";
+    Err(InputError::new("output", &settings.output, problem).allowed(Settings::default().output).into())
+}
