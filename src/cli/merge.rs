@@ -1,29 +1,34 @@
-//! `pathmark merge PART...`: an image from the parts that `render --shard` made.
+//! `pathmark merge PART...`: an image from the parts that `render --shard` made, or a sweep from those of `run --shard`.
 
+use super::command_line;
 use super::output::{print, print_json};
 use super::picture::is_film;
 use super::progress::Talk;
 use super::strict::Strict;
 use crate::error::{InputError, Result};
-use crate::experiment::Progress as _;
+use crate::experiment::{Progress as _, merge_sweeps};
 use crate::files::Files;
 use crate::film_file::write_film;
 use crate::image_io;
+use crate::lab::Lab;
 use crate::measure::{Provenance, merge};
+use crate::report;
 use clap::Args;
 use serde_json::json;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// `pathmark merge part-*.film -o cornell.exr`, after `pathmark render cornell --shard 1/4 -o part-1.film` and so on
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// The parts, in any order
+    /// The parts, in any order: files of `render --shard`, or folders of `run --shard`
     #[arg(required = true)]
     parts: Vec<PathBuf>,
-    /// The image: .png, .ppm and .bmp for looking at, .exr, .pfm and .hdr for linear radiance, .film for sums in full precision
+    /// The image: .png, .ppm and .bmp for looking at, .exr, .pfm and .hdr for linear radiance, .film for sums in full precision. Of a
+    /// sweep, the new folder
     #[arg(short = 'o', long, value_name = "FILE")]
     output: PathBuf,
-    /// Make an image of the parts that there are. It is no other render's image: no checksum is printed
+    /// Merge the parts that there are. The image is no other render's: no checksum is printed
     #[arg(long)]
     partial: bool,
     /// Print the result as one JSON object
@@ -33,14 +38,38 @@ pub(super) struct Arguments {
     strict: Strict,
 }
 
-pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    if arguments.parts.iter().any(|part| part.is_dir()) { sweeps(arguments, lab, talk) } else { image(arguments, talk) }
+}
+
+/// Rows of one sweep, from the folders of its parts.
+fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    let merged = merge_sweeps(&arguments.parts, &arguments.output, arguments.partial, &command_line())?;
+    let mut outs: Vec<_> = merged.iter().map(|sweep| sweep.out.clone()).collect();
+    outs.dedup();
+    for sweep in &merged {
+        for part in &sweep.missing {
+            talk.note(&format!("warning: missing: part {part} of {}", sweep.name));
+        }
+        print(&format!("{} rows in {}", sweep.rows, sweep.out.join(&sweep.name).display()))?;
+    }
+    for out in outs {
+        print(&format!("report in {}", report::write(lab, &out)?.display()))?;
+    }
+    Ok(())
+}
+
+/// One image, from the files of its parts.
+fn image(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let Arguments { parts, output, partial, .. } = arguments;
     let as_film = is_film(output);
     if !as_film {
         image_io::check_format(output)?;
     }
     let mut files = Files::default();
-    parts.iter().for_each(|part| files.reads("a part", part));
+    for part in parts {
+        files.reads("a part", part);
+    }
     files.writes("output", output)?;
     let merged = merge(parts, *partial)?;
     let key = merged.key;

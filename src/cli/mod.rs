@@ -74,7 +74,7 @@ enum Verb {
     Reproduce(reproduce::Arguments),
     /// Render a scene.
     Render(render::Arguments),
-    /// Make an image of the parts that `render --shard` made on several machines.
+    /// Put together what `render --shard` or `run --shard` made on several machines.
     Merge(merge::Arguments),
     /// Run one experiment.
     Run(run::Arguments),
@@ -155,7 +155,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     match verb {
         Verb::Reproduce(arguments) => reproduce::run(&arguments, lab, talk),
         Verb::Render(arguments) => render::run(&arguments, lab, talk),
-        Verb::Merge(arguments) => merge::run(&arguments, talk),
+        Verb::Merge(arguments) => merge::run(&arguments, lab, talk),
         Verb::Run(arguments) => run::run(&arguments, lab, talk),
         Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Convert(arguments) => convert::run(&arguments),

@@ -17,7 +17,7 @@ pub(super) struct Ranks {
     #[arg(long, value_name = "RULE", help_heading = "Processes",
           conflicts_with_all = ["target_error", "time_limit", "checkpoint", "adaptive", "shard"])]
     ranks: Option<String>,
-    /// MPI library: auto, or the path of one [default: auto, or PATHMARK_MPI]
+    /// MPI library: auto, or the path of one [default: auto, or `PATHMARK_MPI`]
     #[arg(long, value_name = "auto|FILE", help_heading = "Processes", requires = "ranks")]
     mpi: Option<PathBuf>,
 }
@@ -69,10 +69,9 @@ impl Ranks {
 /// What each rank did, in lines.
 pub(super) fn told(told: &Told) -> String {
     let Told { ranks, rank_rule, mpi, gather_s, by_rank } = told;
-    let mut text = format!("{ranks} ranks of {mpi} by {rank_rule}, gathered in {:.1} ms", 1e3 * gather_s);
-    for RankRow { rank, jobs, requests, busy_s, waiting_s } in by_rank {
-        text +=
-            &format!("\nrank {rank}: {jobs} jobs in {requests} requests, {busy_s:.3} s busy, {waiting_s:.3} s waiting");
-    }
-    text
+    let head = format!("{ranks} ranks of {mpi} by {rank_rule}, gathered in {:.1} ms", 1e3 * gather_s);
+    let lines = by_rank.iter().map(|RankRow { rank, jobs, requests, busy_s, waiting_s }| {
+        format!("rank {rank}: {jobs} jobs in {requests} requests, {busy_s:.3} s busy, {waiting_s:.3} s waiting")
+    });
+    std::iter::once(head).chain(lines).collect::<Vec<_>>().join("\n")
 }

@@ -4,7 +4,7 @@ use super::output::{lock_folder, print};
 use super::progress::Talk;
 use super::{command_line, profile, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Progress, Sweep};
+use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -35,6 +35,10 @@ pub(super) struct Arguments {
     /// that a figure compares with stay in
     #[arg(long = "filter", value_name = "AXIS=VALUES")]
     filters: Vec<String>,
+    /// Run one of N parts of the cells, as in 2/4, with the serial runs that they are compared with; `pathmark merge` puts
+    /// the folders together
+    #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
+    shard: Option<String>,
     #[command(flatten)]
     size: profile::Choice,
     #[command(flatten)]
@@ -50,6 +54,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         resume: arguments.resume,
         repetitions: arguments.repetitions,
         filters: arguments.filters.clone(),
+        shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
         serial_for: figure_of_serial(&definition),
         command: command_line(),
     };

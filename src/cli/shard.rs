@@ -3,7 +3,7 @@
 use super::output::{counted, print, print_json};
 use super::progress::Talk;
 use super::rounds::PAUSE_S;
-use crate::error::{InputError, Result};
+use crate::error::{Error, InputError, Result};
 use crate::experiment::Progress as _;
 use crate::film::{Shard, ShardCut};
 use crate::measure::{Checkpoint, Goal, Rounds, Setup};
@@ -54,7 +54,7 @@ fn of_array(cut: ShardCut) -> Result<Shard> {
         let text = env::var(name).unwrap_or_default();
         text.parse::<u32>().map_err(|_| {
             let problem = format!("needs a number in {name}, which is \"{text}\"");
-            InputError::new("shard", "auto", problem).allowed("a task of a SLURM array, or I/N")
+            Error::from(InputError::new("shard", "auto", problem).allowed("a task of a SLURM array, or I/N"))
         })
     };
     let task = |suffix: &str| read(&format!("SLURM_ARRAY_TASK_{suffix}"));

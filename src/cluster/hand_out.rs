@@ -33,7 +33,11 @@ pub(super) struct HandOut<'a> {
 }
 
 impl<'a> HandOut<'a> {
-    pub(super) fn new(rule: &RankRule, world: &'a World) -> Result<Self> {
+    pub(super) fn new(rule: &RankRule, world: &'a World, share: &mut Share<'_>) -> Result<Self> {
+        if let Way::Dealt(deal) = rule.way {
+            let jobs: Vec<usize> = deal(world.rank(), world.size(), share.plan().len()).collect();
+            share.reserve(&jobs)?;
+        }
         let counter =
             if matches!(rule.way, Way::Counted(_)) { Some(Counter::new(world).map_err(failed)?) } else { None };
         Ok(Self { world, way: rule.way, counter })
@@ -85,9 +89,9 @@ fn counted(counter: &Counter<'_>, chunks: &[Range<usize>], world: &World, share:
         let Some(chunk) = usize::try_from(step).ok().and_then(|step| chunks.get(step)) else { return Ok(wait) };
         let jobs = chunk.clone().collect();
         if world.rank() == 0 && world.size() > 1 {
-            render_attentively(jobs, world, share)?
+            render_attentively(jobs, world, share)?;
         } else {
-            share.render(jobs)?
+            share.render(jobs)?;
         }
     }
 }

@@ -119,7 +119,7 @@ impl Cluster {
     fn rendered(&self, setup: &Setup, rule: &RankRule) -> Result<Option<Clustered>> {
         let (world, threads) = (&self.world, setup.threads());
         let mut share = setup.share()?;
-        let hand_out = HandOut::new(rule, world)?;
+        let hand_out = HandOut::new(rule, world, &mut share)?;
         world.barrier().map_err(failed)?;
         share.begin();
         let mut wait = hand_out.run(&mut share)?;

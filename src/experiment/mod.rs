@@ -12,6 +12,7 @@ mod external;
 mod half;
 mod keys;
 mod matrix;
+mod merge_sweeps;
 mod object_pixels;
 mod plan;
 mod pricing;
@@ -24,6 +25,7 @@ mod run_file;
 mod scene_version;
 mod shuffle;
 mod sweep;
+mod sweep_shard;
 mod table;
 mod with_values;
 
@@ -35,6 +37,7 @@ pub use definition::{Definition, EXPERIMENTS, Keep};
 pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use keys::keys;
+pub use merge_sweeps::{MergedSweep, merge_sweeps};
 pub use plan::{Plan, Prices};
 pub use pricing::{Paid, Pilot, law_of, pay};
 pub use profile::Profile;
@@ -43,6 +46,7 @@ pub use reference::{HalfFile, Reference, reference_seed, wanted_references};
 pub use run_file::{MACHINE, RunFile, read_run_file};
 pub use scene_version::SceneVersion;
 pub use sweep::{Options, Summary, Sweep};
+pub use sweep_shard::SweepShard;
 
 /// Told how far long work has come. Implemented by the command line.
 pub trait Progress: Sync {

@@ -18,6 +18,9 @@ pub struct RunFile {
     pub command: String,
     /// `quick`, `full` or `reports`.
     pub profile: String,
+    /// The part of the sweep that these rows are, as in `2/4`; none if they are all of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<String>,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
     /// Where and with what.
@@ -33,7 +36,7 @@ impl RunFile {
     /// Of something that no definition describes, on this machine.
     pub fn of_now(command: String) -> Self {
         let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
-        Self { command, profile, definition_hash, machine: Machine::look() }
+        Self { command, profile, shard: None, definition_hash, machine: Machine::look() }
     }
 
     /// Writes it.
@@ -54,7 +57,8 @@ impl RunFile {
                 .in_file(path.display().to_string(), None)
                 .into());
         }
-        let mut pairs = vec![("profile", self.profile.clone(), now.profile.clone())];
+        let part = |run: &Self| run.shard.clone().unwrap_or_else(|| "none".to_string());
+        let mut pairs = vec![("profile", self.profile.clone(), now.profile.clone()), ("shard", part(self), part(now))];
         let (then, here) = (self.machine.identity(), now.machine.identity());
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));
         match pairs.into_iter().find(|(_, old, new)| old != new) {

@@ -7,6 +7,7 @@ use super::object_pixels::check_object;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::shuffle::shuffled;
+use super::sweep_shard::SweepShard;
 use super::{
     Cell, CellJob, CellPoint, Definition, HalfFile, Keep, PointJob, Profile, Progress, Reference, render_reference,
     wanted_references,
@@ -37,6 +38,8 @@ pub struct Options {
     pub repetitions: Option<u32>,
     /// `field=value,value...`: only cells that have one of the values of each.
     pub filters: Vec<String>,
+    /// The part of the cells to run, if not all.
+    pub shard: Option<SweepShard>,
     /// The figure that compares with serial runs: filters leave them in, and there must be one.
     pub serial_for: Option<&'static str>,
     /// The command as the user gave it.
@@ -70,6 +73,7 @@ impl<'a> Sweep<'a> {
     /// Checks an experiment and enters its files into those of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
         let cells = filtered(&definition.cells(options.profile)?, options)?;
+        let cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
         if let Some(figure) = options.serial_for.filter(|_| !cells.iter().any(Cell::is_serial)) {
             let error = InputError::new("strategy", "", format!("the figure `{figure}` compares with serial runs"));
             return Err(definition.located(options.profile, error.allowed("serial beside the other strategies")));
@@ -237,6 +241,7 @@ fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(Re
     let run = RunFile {
         command: options.command.clone(),
         profile: options.profile.name().to_string(),
+        shard: options.shard.map(|shard| shard.to_string()),
         definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
     };

@@ -3,6 +3,8 @@
 //! Cells, rows, references and figures compare by these keys. A new axis is a field of one of the two; the tests compare them with the table of axes.
 
 use super::{Record, Setup};
+use crate::film_file::FilmKey;
+use crate::kernel;
 use std::fmt;
 
 /// What tells images apart: rows with equal keys have equal checksums, unless the sampler gives other numbers in each run.
@@ -153,6 +155,34 @@ impl Setup {
     pub fn schedule_key(&self) -> ScheduleKey {
         ScheduleKey { threads: self.threads(), ..Record::of(self).schedule_key() }
     }
+
+    /// What the film will be of.
+    pub fn film_key(&self) -> FilmKey {
+        let key = self.image_key();
+        FilmKey {
+            scene: key.scene,
+            scene_hash: key.scene_hash,
+            estimator: key.estimator,
+            sampler: key.sampler,
+            seed: key.seed,
+            spp: key.spp,
+            width: key.width,
+            height: key.height,
+            max_depth: key.max_depth,
+            roulette: given(key.roulette),
+            clamp: given(key.clamp),
+            filter: given(key.filter),
+            epsilon: given(key.epsilon),
+            precision: key.precision,
+            adaptive: key.adaptive,
+            revision: kernel::REVISION,
+        }
+    }
+}
+
+/// A part of a key, if there is one.
+fn given(part: String) -> Option<String> {
+    Some(part).filter(|part| !part.is_empty())
 }
 
 #[cfg(test)]

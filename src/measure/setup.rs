@@ -7,7 +7,6 @@ use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::estimator::Estimator;
 use crate::film::{Decomposition, Plan};
-use crate::film_file::FilmKey;
 use crate::kernel::workload::Entry as Workload;
 use crate::kernel::{self, Choice, Clamped, Counts, Kernel, OwnEstimator, Spec};
 use crate::lab::{Lab, THREAD_PER_ROW, rank_rule};
@@ -74,11 +73,6 @@ impl Lab {
         let choice = Box::new(kernel::choose_among(&scene, &settings.spec, self.own_estimators())?);
         Setup::new(self, Subject::Scene { scene, choice }, settings)
     }
-}
-
-/// A part of a key, if there is one.
-fn given(part: String) -> Option<String> {
-    Some(part).filter(|part| !part.is_empty())
 }
 
 impl Setup {
@@ -258,29 +252,6 @@ impl Setup {
 
     fn has_subpixels(&self) -> bool {
         self.scene().is_some_and(|(scene, choice)| choice.subpixels(scene) > 1)
-    }
-
-    /// What the film will be of.
-    pub fn film_key(&self) -> FilmKey {
-        let key = self.image_key();
-        FilmKey {
-            scene: key.scene,
-            scene_hash: key.scene_hash,
-            estimator: key.estimator,
-            sampler: key.sampler,
-            seed: key.seed,
-            spp: key.spp,
-            width: key.width,
-            height: key.height,
-            max_depth: key.max_depth,
-            roulette: given(key.roulette),
-            clamp: given(key.clamp),
-            filter: given(key.filter),
-            epsilon: given(key.epsilon),
-            precision: key.precision,
-            adaptive: key.adaptive,
-            revision: kernel::REVISION,
-        }
     }
 
     /// Whether the film's checksum says anything: whether the sampler gives the same numbers each time.

@@ -10,6 +10,7 @@ use crate::film::{Film, Plan, Sections, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use crate::strategy::Strategy;
 use crossbeam::atomic::AtomicCell;
+use std::collections::VecDeque;
 use std::mem;
 use std::slice::from_ref;
 use std::sync::Arc;
@@ -34,6 +35,8 @@ pub struct Share<'a> {
     plan: Arc<Plan>,
     strategy: Box<dyn Strategy>,
     start: Instant,
+    /// Buffers for the jobs that the process is known to get, in their order.
+    reserved: VecDeque<Box<TileBuffer>>,
     done: Vec<DoneJob>,
 }
 
@@ -52,7 +55,8 @@ impl Setup {
         let (kernel, _) = self.kernel()?;
         let plan = Arc::new(self.ordered(self.plan(), &*kernel));
         let strategy = self.new_strategy()?;
-        Ok(Share { setup: self, kernel, plan, strategy, start: Instant::now(), done: Vec::new() })
+        let (reserved, done) = (VecDeque::new(), Vec::new());
+        Ok(Share { setup: self, kernel, plan, strategy, start: Instant::now(), reserved, done })
     }
 }
 
@@ -60,6 +64,13 @@ impl Share<'_> {
     /// The pieces of all shares, in the order in which they are handed out.
     pub fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// Makes buffers for jobs that it will get, in this order, so that the run need not.
+    pub fn reserve(&mut self, jobs: &[usize]) -> Result<()> {
+        let buffer = |job: &usize| Ok(Box::new(TileBuffer::try_new(self.plan.pieces()[*job].bounds)?));
+        self.reserved = jobs.iter().map(buffer).collect::<Result<_>>()?;
+        Ok(())
     }
 
     /// The run begins now, for all processes.
@@ -74,11 +85,13 @@ impl Share<'_> {
 
     /// Does some jobs, with all workers of the strategy.
     pub fn render(&mut self, jobs: Vec<usize>) -> Result<()> {
-        let tile = |job: &usize| {
+        let mut tiles = Vec::with_capacity(jobs.len());
+        for job in &jobs {
             let bounds = self.plan.pieces()[*job].bounds;
-            Ok(AtomicCell::new(Some(Box::new(TileBuffer::try_new(bounds)?))))
-        };
-        let tiles = jobs.iter().map(tile).collect::<Result<Vec<_>>>()?;
+            let reserved = self.reserved.pop_front().filter(|tile| tile.bounds() == bounds);
+            let tile = reserved.map_or_else(|| TileBuffer::try_new(bounds).map(Box::new), Ok)?;
+            tiles.push(AtomicCell::new(Some(tile)));
+        }
         let (kernel, plan) = (Arc::clone(&self.kernel), Arc::clone(&self.plan));
         let (count, ledger, start) = (jobs.len(), Ledger::new(jobs.len()), self.start);
         let handout = Arc::new(Handout { kernel, plan, jobs, tiles, ledger });

@@ -5,6 +5,9 @@ use pathmark::kernel::Spec;
 use pathmark::measure::{Checkpoint, Position, Rounds, Settings, Setup, merge};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
+
+type Change = fn(&mut Settings);
 
 const CUTS: [ShardCut; 2] = [ShardCut::Samples, ShardCut::Tiles];
 
@@ -88,24 +91,24 @@ fn parts_that_do_not_make_an_image_are_refused() {
         let [one, two, three] = [1, 2, 3].map(|index| render(folder.path(), image(), shard(index, 3, cut), &[]));
         refused(&[], &["no parts"]);
         refused(&[one.clone(), three.clone()], &["2/3"]);
-        refused(&[two.clone()], &["1/3", "3/3"]);
+        refused(from_ref(&two), &["1/3", "3/3"]);
         let copy = folder.path().join("copy");
         fs::copy(&two, &copy).unwrap();
         refused(&[one.clone(), two.clone(), copy.clone(), three.clone()], &["2/3", "copy"]);
         // Each field in which images differ, and the cut itself.
         let other = tempfile::tempdir().unwrap();
-        let with = |change: &dyn Fn(&mut Settings)| {
+        let with = |change: Change| {
             let mut settings = image();
             change(&mut settings);
             render(other.path(), settings, shard(2, 3, cut), &[])
         };
-        let changes: [(&str, &dyn Fn(&mut Settings)); 6] = [
-            ("seed is 2", &|settings| settings.spec.seed = 2),
-            ("spp", &|settings| settings.spp = 80),
-            ("estimator", &|settings| settings.spec.estimator = "bsdf".into()),
-            ("width", &|settings| settings.spec.width = 100),
-            ("scene", &|settings| settings.scene = "cornell-mirror".into()),
-            ("precision", &|settings| settings.spec.precision = "f32".into()),
+        let changes: [(&str, Change); 6] = [
+            ("seed is 2", |settings| settings.spec.seed = 2),
+            ("spp", |settings| settings.spp = 80),
+            ("estimator", |settings| settings.spec.estimator = "bsdf".into()),
+            ("width", |settings| settings.spec.width = 100),
+            ("scene", |settings| settings.scene = "cornell-mirror".into()),
+            ("precision", |settings| settings.spec.precision = "f32".into()),
         ];
         for (said, change) in changes {
             let changed = with(change);

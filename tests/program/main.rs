@@ -9,11 +9,13 @@ mod experiment;
 mod external;
 mod faults;
 mod inspection;
+mod merged_sweeps;
 mod page;
 mod plan;
 mod price;
 #[path = "../support/program.rs"]
 mod program;
+mod ranks;
 mod resume;
 #[path = "../support/scene_text.rs"]
 mod scene_text;

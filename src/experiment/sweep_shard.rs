@@ -1,0 +1,54 @@
+//! A part of a sweep: `run EXPERIMENT --shard 2/4`.
+
+use super::Cell;
+use crate::error::{InputError, Result};
+use crate::film::{Shard, ShardCut};
+use std::fmt;
+
+/// One of `count` parts of the cells of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SweepShard {
+    /// Which one; the first is 1.
+    pub(super) index: u32,
+    /// How many there are.
+    pub(super) count: u32,
+}
+
+impl fmt::Display for SweepShard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.count)
+    }
+}
+
+impl SweepShard {
+    /// Reads `2/4`.
+    pub fn parse(text: &str) -> Result<Self> {
+        // Parts of images are numbered alike; how those are cut does not matter here.
+        let shard = Shard::parse(text, ShardCut::Tiles)?;
+        Ok(Self { index: shard.index(), count: shard.count() })
+    }
+
+    /// The cells of this part: every n-th, and the serial runs that they are compared with.
+    pub(super) fn cells(self, cells: Vec<Cell>) -> Result<Vec<Cell>> {
+        let own = |index: usize| index % self.count as usize == self.index as usize - 1;
+        let (baselines, others): (Vec<Cell>, Vec<Cell>) = cells.iter().cloned().partition(Cell::is_serial);
+        // Where all cells are serial, there is nothing that they are compared with.
+        let divided = if others.is_empty() { cells.clone() } else { others };
+        if self.count as usize > divided.len() {
+            let problem = format!("there are {} cells to divide", divided.len());
+            let error = InputError::new("shard", self.to_string(), problem);
+            return Err(error.allowed(format!("at most {} parts", divided.len())).into());
+        }
+        let mine: Vec<Cell> =
+            divided.into_iter().enumerate().filter(|(index, _)| own(*index)).map(|(_, cell)| cell).collect();
+        let is_mine = |cell: &Cell| mine.iter().any(|own| own.id == cell.id);
+        let is_baseline = |cell: &Cell| baselines.iter().any(|serial| serial.id == cell.id);
+        let is_needed = |cell: &Cell| is_baseline(cell) && mine.iter().any(|own| cell.is_baseline_of(own));
+        Ok(cells.into_iter().filter(|cell| is_mine(cell) || is_needed(cell)).collect())
+    }
+
+    /// The number that a repetition of this part has among those of all parts.
+    pub(super) fn repetition(self, own: u32) -> u32 {
+        own.saturating_mul(self.count).saturating_add(self.index - 1)
+    }
+}

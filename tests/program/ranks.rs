@@ -1,0 +1,258 @@
+//! One image by several processes: MPI as the system has it. Without `mpiexec` these tests say so and pass.
+
+use crate::program::{Finished, finish, pathmark, wait};
+use crate::watchdog::Watchdog;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+const RULES: [&str; 8] = [
+    "static-blocks",
+    "static-cyclic",
+    "dynamic:3",
+    "guided",
+    "trapezoid",
+    "factoring",
+    "master-worker:3",
+    "working-master:3",
+];
+const SCENE: [&str; 6] = ["render", "cornell", "--spp", "20", "--size", "70x40"];
+
+/// Whether processes can be started; says so if not.
+fn has_launcher() -> bool {
+    let found = Command::new("mpiexec").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
+    if !found {
+        println!("no mpiexec: nothing was tested (Debian: apt install mpich)");
+    }
+    found
+}
+
+/// Open MPI asks for words that MPICH does not know: more processes than processors, and root.
+fn launcher(folder: &Path) -> Command {
+    let mut command = Command::new("mpiexec");
+    command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.envs([
+        ("OMPI_ALLOW_RUN_AS_ROOT", "1"),
+        ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
+        ("OMPI_MCA_rmaps_base_oversubscribe", "1"),
+        ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
+    ]);
+    command
+}
+
+fn program() -> PathBuf {
+    assert_cmd::cargo::cargo_bin!("pathmark").to_path_buf()
+}
+
+fn ranks(folder: &Path, count: usize, arguments: &[&str]) -> Finished {
+    let mut command = launcher(folder);
+    command.arg("-n").arg(count.to_string()).arg(program()).args(arguments);
+    finish(command)
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
+}
+
+/// Every rule, and for one of each way more ranks than jobs, threads and precisions: the checksum of one process.
+#[test]
+fn every_rule_gives_the_image_of_one_process() {
+    if !has_launcher() {
+        return;
+    }
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let alone = |options: &[&str]| {
+        let finished = finish(pathmark(folder.path(), &[&SCENE, options, &["--json"]].concat())).with_code(0);
+        json(&finished.out)["checksum"].clone()
+    };
+    let together = |count: usize, rule: &str, options: &[&str], expected: &Value| {
+        let options = [&SCENE, options, &["--json", "--ranks", rule]].concat();
+        let found = json(&ranks(folder.path(), count, &options).with_code(0).out);
+        assert_eq!(&found["checksum"], expected, "{count} ranks by {rule}, {options:?}");
+        assert_eq!((&found["ranks"], &found["rank_rule"]), (&count.into(), &rule.into()));
+        let by_rank = found["by_rank"].as_array().unwrap();
+        let jobs: u64 = by_rank.iter().map(|rank| rank["jobs"].as_u64().unwrap()).sum();
+        assert_eq!((Some(jobs), by_rank.len()), (found["jobs"].as_u64(), count));
+        if rule.starts_with("master-worker") {
+            assert_eq!(by_rank[0]["jobs"], 0);
+        }
+    };
+    let serial = ["--threads", "1", "--strategy", "serial", "--decomposition", "tiles:16x16"];
+    let expected = alone(&serial);
+    for rule in RULES {
+        for count in [2, 3] {
+            together(count, rule, &serial, &expected);
+        }
+        if !rule.starts_with("master-worker") {
+            together(1, rule, &serial, &expected);
+        }
+    }
+    for rule in ["static-cyclic", "guided", "master-worker:3"] {
+        // More ranks than rows of tiles, and pieces of some of a pixel's samples.
+        let threads = ["--threads", "2", "--decomposition", "samples:16:32x32"];
+        together(5, rule, &threads, &expected);
+        let single = ["--threads", "2", "--precision", "f32", "--strategy", "static-blocks"];
+        together(2, rule, &single, &alone(&single));
+    }
+    together(8, "dynamic:3", &["--threads", "2", "--strategy", "thread-per-row"], &expected);
+}
+
+#[test]
+fn what_ranks_cannot_do_is_refused() {
+    if !has_launcher() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |arguments: &[&str], code: i32, said: &[&str]| {
+        let finished = finish(pathmark(folder.path(), &[&SCENE, arguments].concat())).with_code(code);
+        assert!(said.iter().all(|text| finished.err.contains(text)), "{said:?} is not in {}", finished.err);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{arguments:?}");
+    };
+    for rule in ["work-stealing", "serial", "dynamic:0", "master-worker:x", ""] {
+        refused(&["--ranks", rule], 2, &["ranks", "working-master"]);
+    }
+    refused(&["--ranks", "master-worker"], 2, &["ranks", "master-worker", "2 ranks"]);
+    refused(&["--ranks", "guided", "--mpi", "/etc/passwd"], 2, &["mpi", "/etc/passwd"]);
+    refused(&["--ranks", "guided", "--mpi", "/nowhere/libmpi.so"], 2, &["mpi", "/nowhere/libmpi.so"]);
+    refused(&["--ranks", "guided", "--mpi", "libc.so.6"], 2, &["mpi", "libc.so.6", "MPI_Init_thread"]);
+    refused(&["--mpi", "auto"], 2, &["--ranks"]);
+    refused(&["--strategy", "mpi-guided"], 2, &["strategy", "mpiexec"]);
+    for option in [["--target-error", "0.1"], ["--checkpoint", "c"], ["--shard", "1/2"]] {
+        refused(&[&["--ranks", "guided", "-o", "x"], option.as_slice()].concat(), 2, &["--ranks", option[0]]);
+    }
+    // A launcher that the library knows nothing of: each process would be alone, and render all of the image.
+    let mut command = pathmark(folder.path(), &[&SCENE, ["--ranks", "guided"].as_slice()].concat());
+    command.envs([("OMPI_COMM_WORLD_SIZE", "3"), ("OMPI_COMM_WORLD_RANK", "0")]);
+    let finished = finish(command);
+    assert!(finished.code == Some(3) && finished.err.contains("mpiexec"), "{:?} {}", finished.code, finished.err);
+}
+
+/// Ranks that were given another scene, seed or rule say so instead of making an image of two.
+#[test]
+fn ranks_that_would_render_something_else_are_refused() {
+    if !has_launcher() {
+        return;
+    }
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let base = [&SCENE, ["--ranks", "guided"].as_slice()].concat();
+    for other in [
+        [&base, ["--seed", "2"].as_slice()].concat(),
+        [&base, ["--decomposition", "rows"].as_slice()].concat(),
+        base.iter().map(|word| if *word == "guided" { "factoring" } else { word }).collect(),
+    ] {
+        let mut command = launcher(folder.path());
+        command.args(["-n", "1"]).arg(program()).args(&base).args([":", "-n", "1"]).arg(program()).args(&other);
+        let finished = finish(command);
+        assert!(finished.code != Some(0) && finished.err.contains("rank 1 would render"), "{}", finished.err);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}
+
+/// The processes that run this program, by number.
+fn processes_of(program: &Path, launcher: u32) -> Vec<u32> {
+    let is_below = |mut pid: u32| loop {
+        let Ok(stat) = fs::read_to_string(format!("/proc/{pid}/stat")) else { return false };
+        let parent = stat.rsplit_once(')').and_then(|(_, rest)| rest.split_whitespace().nth(1)?.parse().ok());
+        match parent {
+            Some(parent) if parent == launcher => return true,
+            Some(parent) if parent > 1 => pid = parent,
+            _ => return false,
+        }
+    };
+    let all = fs::read_dir("/proc").unwrap().filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
+    let runs = |pid: &u32| fs::read_link(format!("/proc/{pid}/exe")).is_ok_and(|exe| exe == program);
+    all.filter(runs).filter(|pid| is_below(*pid)).collect()
+}
+
+const KILLS: u64 = if cfg!(debug_assertions) { 3 } else { 6 };
+
+/// A rank that dies (SIGKILL) ends the whole run, with an error and without an image.
+#[test]
+fn a_rank_that_dies_ends_the_run() {
+    if !has_launcher() {
+        return;
+    }
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let program = fs::canonicalize(program()).unwrap();
+    for kill in 0..KILLS {
+        let mut command = launcher(folder.path());
+        let long = ["render", "cornell", "--spp", "20000", "--size", "64x48", "--threads", "1", "-o", "a.png"];
+        let rule = ["dynamic:1", "working-master:1", "static-cyclic"][kill as usize % 3];
+        command.args(["-n", "3"]).arg(&program).args(long).args(["--ranks", rule]);
+        let child = command.spawn().unwrap();
+        let found = loop {
+            let found = processes_of(&program, child.id());
+            if found.len() == 3 {
+                break found;
+            }
+            std::thread::sleep(Duration::from_millis(5));
+        };
+        std::thread::sleep(Duration::from_millis(100 * kill));
+        // Any of the three, rank 0 included.
+        let victim = found[kill as usize % 3];
+        let killed = Command::new("kill").args(["-9", &victim.to_string()]).status().unwrap();
+        assert!(killed.success());
+        let finished = wait(child);
+        assert_ne!(finished.code, Some(0), "{rule}");
+        assert!(!folder.path().join("a.png").exists());
+    }
+}
+
+/// Rows of processes stand among those of threads, with one checksum; without a launcher they say that nothing was measured.
+#[test]
+fn processes_are_strategies_of_an_experiment() {
+    if !has_launcher() {
+        return;
+    }
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let text = r#"
+title = "Processes"
+chapter = "scheduling"
+question = "Do they render?"
+figures = ["speedup"]
+
+[[matrix]]
+scene = ["cornell"]
+spp = [4]
+strategy = ["serial", "mpi-static-blocks", "mpi-guided", "mpi-working-master:2"]
+threads = [2]
+decomposition = ["tiles:16x16"]
+
+[quick]
+size = [64, 48]
+repetitions = 2
+"#;
+    fs::write(folder.path().join("ranks.toml"), text).unwrap();
+    let rows = |out: &str, launcher: Option<&str>| {
+        let mut command = pathmark(folder.path(), &["run", "ranks.toml", "--out", out]);
+        command.envs(launcher.map(|launcher| ("PATHMARK_MPIEXEC", launcher)));
+        finish(command).with_code(0);
+        let mut reader = csv::Reader::from_path(folder.path().join(out).join("ranks/records.csv")).unwrap();
+        let heads = reader.headers().unwrap().clone();
+        let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+        let columns = ["strategy", "threads", "workers_used", "checksum", "warnings"].map(column);
+        let rows: Vec<_> =
+            reader.records().map(|row| columns.map(|at| row.as_ref().unwrap()[at].to_string())).collect();
+        rows
+    };
+    let found = rows("out", None);
+    assert_eq!(found.len(), 8);
+    for [strategy, threads, used, checksum, _] in &found {
+        assert_eq!(checksum, &found[0][3], "{strategy}");
+        let workers = if strategy == "serial" { "1" } else { "2" };
+        assert_eq!(threads, workers, "{strategy}");
+        // A rank that comes late may find nothing left, unless jobs are dealt.
+        assert!(used == workers || (used == "1" && strategy != "mpi-static-blocks"), "{strategy}: {used}");
+    }
+    for [strategy, _, used, checksum, warnings] in rows("without", Some("/nowhere/mpiexec")) {
+        let is_serial = strategy == "serial";
+        assert_eq!((checksum.is_empty(), used.is_empty()), (!is_serial, !is_serial), "{strategy}");
+        assert_eq!(warnings.contains("no-program"), !is_serial, "{strategy}: {warnings}");
+    }
+}
