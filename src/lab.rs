@@ -88,7 +88,8 @@ impl Lab {
     #[must_use]
     #[track_caller]
     pub fn strategy(mut self, entry: Strategy) -> Self {
-        let taken = self.strategies.iter().any(|known| known.name == entry.name) || entry.name == THREAD_PER_ROW;
+        let is_ours = entry.name == THREAD_PER_ROW || processes::is_known(entry.name);
+        let taken = is_ours || self.strategies.iter().any(|known| known.name == entry.name);
         self.note("strategy", entry.name, taken, Location::caller());
         self.strategies.push(entry);
         self

@@ -15,6 +15,7 @@ pub mod mse;
 pub mod price;
 pub mod quantile;
 pub mod rank;
+pub mod rank_sum;
 pub mod scaling_law;
 pub mod slope;
 pub mod speedup;

@@ -10,6 +10,7 @@ mod claims;
 mod compare;
 mod completions;
 mod convert;
+mod diff;
 mod explain;
 mod guards;
 mod list;
@@ -54,7 +55,7 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, price, report, claims   Render: render, merge, reference, compare, convert
+Measure: reproduce, run, diff, price, report, claims   Render: render, merge, reference, compare, convert
 Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check, man, completions";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
@@ -80,6 +81,8 @@ enum Verb {
     Run(run::Arguments),
     /// Measure the error of an image against a reference image, or against two without their noise.
     Compare(compare::Arguments),
+    /// Compare two measurements of an experiment: which cells got slower?
+    Diff(diff::Arguments),
     /// Write a film or an image in another format.
     Convert(convert::Arguments),
     /// Predict what accuracies cost in samples and seconds, and check it by paying.
@@ -158,6 +161,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Merge(arguments) => merge::run(&arguments, lab, talk),
         Verb::Run(arguments) => run::run(&arguments, lab, talk),
         Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Diff(arguments) => diff::run(&arguments, talk),
         Verb::Convert(arguments) => convert::run(&arguments),
         Verb::Price(arguments) => price::run(&arguments, lab, talk),
         Verb::Reference(arguments) => reference::run(&arguments, lab, talk),

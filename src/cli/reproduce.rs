@@ -44,6 +44,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         resume: arguments.resume,
         repetitions: None,
         filters: Vec::new(),
+        against: None,
         shard: None,
         serial_for: None,
         command: command_line(),

@@ -4,7 +4,7 @@ use super::output::{lock_folder, print};
 use super::progress::Talk;
 use super::{command_line, profile, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard};
+use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard, folder_against};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -39,6 +39,10 @@ pub(super) struct Arguments {
     /// the folders together
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     shard: Option<String>,
+    /// Another build of this program, which runs every repetition of every cell in turns with this one; `pathmark diff`
+    /// compares the two
+    #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
+    against: Option<PathBuf>,
     #[command(flatten)]
     size: profile::Choice,
     #[command(flatten)]
@@ -54,6 +58,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         resume: arguments.resume,
         repetitions: arguments.repetitions,
         filters: arguments.filters.clone(),
+        against: arguments.against.clone(),
         shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
         serial_for: figure_of_serial(&definition),
         command: command_line(),
@@ -72,6 +77,10 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     arguments.strict.check(summary.invalid)?;
     talk_of(&summary.doubts, talk);
+    if arguments.against.is_some() {
+        let old = folder_against(&arguments.out, &definition.name);
+        talk.note(&format!("pathmark diff {} {} compares the two builds", old.display(), summary.folder.display()));
+    }
     print(&format!("{} rows in {}, report in {}", summary.rows, summary.folder.display(), page?.display()))
 }
 

@@ -20,6 +20,7 @@ use crate::measure::{
 };
 use crate::metric::cross_mse;
 use serde::{Deserialize, Serialize};
+use std::env;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -75,7 +76,13 @@ impl CellJob {
 
     /// Runs the cell in a child and gives a row for each point; whatever goes wrong there becomes failed rows.
     pub(super) fn run_in_child(&self) -> Vec<Record> {
-        let rows = self.child().and_then(|rows| {
+        let own = env::current_exe().map_err(|e| format!("finding this program: {e}"));
+        self.run_in_child_of(own)
+    }
+
+    /// Runs the cell in a child that is another build of the program.
+    pub(super) fn run_in_child_of(&self, program: std::result::Result<PathBuf, String>) -> Vec<Record> {
+        let rows = program.and_then(|program| self.child(&program)).and_then(|rows| {
             let wrong = || format!("the cell's process gave {} rows instead of {}", rows.len(), self.points.len());
             if rows.len() == self.points.len() { Ok(rows) } else { Err(wrong()) }
         });
@@ -88,8 +95,8 @@ impl CellJob {
         })
     }
 
-    fn child(&self) -> std::result::Result<Vec<Record>, String> {
-        let mut command = Command::new(std::env::current_exe().map_err(|e| format!("finding this program: {e}"))?);
+    fn child(&self, program: &Path) -> std::result::Result<Vec<Record>, String> {
+        let mut command = Command::new(program);
         command.arg("cell");
         let text = serde_json::to_string(self).map_err(|e| format!("describing the cell: {e}"))?;
         let output = process_group::answer(command, &text).map_err(|e| format!("running the cell's process: {e}"))?;

@@ -2,11 +2,13 @@
 //!
 //! To add one, write `experiments/NAME.toml`: the build embeds every file there, and `pathmark run path/to/NAME.toml` runs any other.
 
+mod against;
 mod calibration_file;
 mod cell;
 mod cell_process;
 mod chapter;
 mod definition;
+mod diff;
 mod drift;
 mod external;
 mod half;
@@ -29,11 +31,13 @@ mod sweep_shard;
 mod table;
 mod with_values;
 
+pub use against::folder_against;
 pub use calibration_file::read_calibration;
 pub use cell::{Cell, CellPoint, trace_file};
 pub use cell_process::{CellJob, PointJob, child_main};
 pub use chapter::Chapter;
 pub use definition::{Definition, EXPERIMENTS, Keep};
+pub use diff::{CellDiff, Change, Diff, diff};
 pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use keys::keys;

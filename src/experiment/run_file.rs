@@ -21,6 +21,9 @@ pub struct RunFile {
     /// The part of the sweep that these rows are, as in `2/4`; none if they are all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
+    /// The other program whose rows were measured in turns with these; none if there was none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub against: Option<String>,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
     /// Where and with what.
@@ -36,7 +39,7 @@ impl RunFile {
     /// Of something that no definition describes, on this machine.
     pub fn of_now(command: String) -> Self {
         let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
-        Self { command, profile, shard: None, definition_hash, machine: Machine::look() }
+        Self { command, profile, shard: None, against: None, definition_hash, machine: Machine::look() }
     }
 
     /// Writes it.

@@ -1,5 +1,6 @@
 //! Runs the cells of an experiment, a row at a time.
 
+use super::against::{Against, check_program, folder_against};
 use super::calibration_file::write_calibration;
 use super::cell::trace_file;
 use super::drift::Drift;
@@ -38,6 +39,8 @@ pub struct Options {
     pub repetitions: Option<u32>,
     /// `field=value,value...`: only cells that have one of the values of each.
     pub filters: Vec<String>,
+    /// Another build of the program, which runs each repetition of each cell besides.
+    pub against: Option<PathBuf>,
     /// The part of the cells to run, if not all.
     pub shard: Option<SweepShard>,
     /// The figure that compares with serial runs: filters leave them in, and there must be one.
@@ -91,6 +94,15 @@ impl<'a> Sweep<'a> {
                 checked.map_err(|error| definition.reference_error(options.profile, error))?;
             }
         }
+        if let Some(program) = &options.against {
+            check_program(program)?;
+            let rows = folder_against(&options.out, &definition.name).join("records.csv");
+            files.claims("out", &rows)?;
+            if rows.exists() {
+                let error = InputError::new("out", rows.display().to_string(), "is there already");
+                return Err(error.allowed("another --out").into());
+            }
+        }
         files.reads("the experiment", Path::new(&definition.file));
         for cell in &cells {
             files.reads_scene(&cell.scene.files);
@@ -107,6 +119,11 @@ impl<'a> Sweep<'a> {
         let Self { definition, options, cells, references: wanted } = self;
         let folder = options.out.join(&definition.name);
         let (mut file, done) = open(definition, options, &folder)?;
+        let other = options.against.as_deref();
+        let run = || run_file(definition, options);
+        let mut against = other
+            .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run()))
+            .transpose()?;
 
         let calibration = folder.join("calibration.csv");
         if definition.keeps(Keep::Calibration) && !calibration.is_file() {
@@ -179,8 +196,23 @@ impl<'a> Sweep<'a> {
                         external: cell.external.clone().map(|external| (external, programs.clone())),
                         trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
                     };
+                    let mut run_against = |job: &CellJob| -> Result<()> {
+                        for problem in against.as_mut().map_or(Ok(Vec::new()), |against| against.run(job))? {
+                            summary.failed += 1;
+                            progress.note(&format!("{} repetition {repetition}, the other build: {problem}", cell.id));
+                        }
+                        Ok(())
+                    };
+                    let other_first = (u64::from(repetition) + index as u64) % 2 == 1;
+                    if other_first {
+                        run_against(&job)?;
+                    }
                     // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.
-                    let rows = cell.points.iter().zip(job.run_in_child()).filter(|(point, _)| is_missing(&point.id));
+                    let rows = job.run_in_child();
+                    if !other_first {
+                        run_against(&job)?;
+                    }
+                    let rows = cell.points.iter().zip(rows).filter(|(point, _)| is_missing(&point.id));
                     for (point, record) in rows {
                         let mut record = verified(Record { order, ..record }, &point.image, &mut checksums);
                         drift.watch(&mut record);
@@ -236,15 +268,21 @@ fn verified(record: Record, image: &str, checksums: &mut HashMap<String, String>
     Record { error, ..record }
 }
 
-/// The rows' file, and the rows that are there.
-fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(RecordsFile, Vec<Record>)> {
-    let run = RunFile {
+/// What is said of the rows of a sweep on this machine.
+fn run_file(definition: &Definition, options: &Options) -> RunFile {
+    RunFile {
         command: options.command.clone(),
         profile: options.profile.name().to_string(),
         shard: options.shard.map(|shard| shard.to_string()),
+        against: options.against.as_ref().map(|program| program.display().to_string()),
         definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
-    };
+    }
+}
+
+/// The rows' file, and the rows that are there.
+fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(RecordsFile, Vec<Record>)> {
+    let run = run_file(definition, options);
     let (rows, machine) = (folder.join("records.csv"), folder.join("machine.toml"));
     let describe = || {
         run.write(&machine)?;

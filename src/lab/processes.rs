@@ -34,9 +34,15 @@ fn chunks(text: &str) -> Option<Discipline> {
     Some(Discipline::Chunks(ChunkRule { size: |handout| handout.parameter, parameter }))
 }
 
-/// The rule by which ranks share jobs, of a strategy whose workers are processes.
+/// The rule by which ranks share jobs, with its parameter, of a strategy whose workers are processes.
 pub fn rank_rule(strategy: &str) -> Option<&str> {
-    strategy.strip_prefix(PREFIX)
+    let name = strategy.split_once(':').map_or(strategy, |(name, _)| name);
+    strategy.strip_prefix(PREFIX).filter(|_| is_known(name))
+}
+
+/// Whether the workers of the strategy of that name are processes.
+pub(super) fn is_known(name: &str) -> bool {
+    NAMES.iter().any(|(known, _)| *known == name)
 }
 
 /// The name of the strategy whose workers are processes that share jobs by a rule.

@@ -128,6 +128,7 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
             resume: false,
             repetitions: None,
             filters: Vec::new(),
+            against: None,
             shard: None,
             serial_for: None,
             command: String::new(),

@@ -4,6 +4,7 @@ mod changed_inputs;
 mod claims;
 mod command_line;
 mod commands;
+mod diff;
 #[path = "../support/experiment.rs"]
 mod experiment;
 mod external;

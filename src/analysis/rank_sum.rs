@@ -1,0 +1,148 @@
+//! The ratio of two samples of times that were not measured in pairs.
+//!
+//! The estimate is the median of all ratios of a value of one sample to a value of the other, and the interval is between two of these ratios
+//! (J. L. Hodges and E. L. Lehmann, "Estimates of location based on rank tests", 1963; L. E. Moses, 1953). It assumes that both samples come from one
+//! distribution but for the factor, and nothing about that distribution. Confidence comes from the exact distribution of Mann and
+//! Whitney's U (1947).
+
+use super::interval::{Estimate, Interval, all_finite, is_level};
+use super::quantile::{quantile_of_sorted, sorted};
+
+/// Values of a sample beyond which the distribution of U is not counted exactly; nobody repeats a run so often.
+const MOST: usize = 200;
+
+/// How many times as large the values of `new` are as those of `old`, with the narrowest interval that has at least `level` confidence. Where so
+/// few values cannot reach it, the interval is of all ratios, and says what it is worth. `None` for fewer than two values in a sample, and for
+/// values that are not positive and finite.
+///
+/// ```
+/// use pathmark::analysis::rank_sum::ratio;
+/// let slower = ratio(&[1.0, 1.1, 1.2, 1.3], &[2.0, 2.2, 2.4, 2.6], 0.9).unwrap();
+/// assert!(slower.interval.contains(2.0));
+/// ```
+pub fn ratio(old: &[f64], new: &[f64], level: f64) -> Option<Estimate> {
+    let positive = |values: &[f64]| all_finite(values) && values.iter().all(|value| *value > 0.0);
+    let fits = |values: &[f64]| (2..=MOST).contains(&values.len()) && positive(values);
+    if !fits(old) || !fits(new) || !is_level(level) {
+        return None;
+    }
+    let ratios: Vec<f64> = new.iter().flat_map(|new| old.iter().map(move |old| new / old)).collect();
+    let ordered = sorted(&ratios)?;
+    let (rank, reached) = rank(old.len(), new.len(), level);
+    let (low, high) = (ordered[rank - 1], *ordered.iter().nth_back(rank - 1)?);
+    let interval = Interval::between(low, high, reached)?;
+    Some(Estimate { value: quantile_of_sorted(&ordered, 0.5)?, interval })
+}
+
+/// The rank, counted from 1, of the ratio from either end that makes the interval, and its confidence.
+fn rank(m: usize, n: usize, level: f64) -> (usize, f64) {
+    let share = distribution(m, n);
+    let (mut below, mut found) = (0.0, (1, 1.0 - 2.0 * share[0]));
+    for (u, share) in share.iter().enumerate() {
+        below += share;
+        let reached = 1.0 - 2.0 * below;
+        if reached < level {
+            break;
+        }
+        found = (u + 1, reached);
+    }
+    found
+}
+
+/// The probability of each value of U between samples of m and n values from one distribution without ties: the number of ways to draw m of
+/// m + n ranks, by the sum of those ranks.
+fn distribution(m: usize, n: usize) -> Vec<f64> {
+    // ways[k][u]: k of the ranks looked at so far drawn, with u values of the other sample below them. Shares instead of counts, which would
+    // overflow: each step draws the next rank with the chance that it has.
+    let mut shares = vec![vec![0.0; m * n + 1]; m + 1];
+    shares[0][0] = 1.0;
+    for seen in 0..m + n {
+        let mut next = vec![vec![0.0; m * n + 1]; m + 1];
+        for (drawn, row) in shares.iter().enumerate() {
+            let Some(others) = seen.checked_sub(drawn).filter(|others| *others <= n) else { continue };
+            let draw = (m - drawn) as f64 / (m + n - seen) as f64;
+            for (u, share) in row.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+                if drawn < m {
+                    next[drawn + 1][u + others] += share * draw;
+                }
+                if others < n {
+                    next[drawn][u] += share * (1.0 - draw);
+                }
+            }
+        }
+        shares = next;
+    }
+    shares.swap_remove(m)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_pcg::Pcg64Dxsm;
+
+    /// Mann and Whitney's table, two-sided 5 %: the largest U at which equality is rejected.
+    #[test]
+    fn ranks_match_the_table_of_mann_and_whitney() {
+        for (m, n, critical) in [(4, 4, 0), (5, 5, 2), (5, 8, 6), (8, 8, 13), (9, 9, 17), (10, 10, 23), (20, 20, 127)] {
+            let (rank, reached) = rank(m, n, 0.95);
+            assert_eq!(rank, critical + 1, "{m} and {n}");
+            assert!((0.95..0.98).contains(&reached), "{m} and {n}: {reached}");
+        }
+        // Three and three: all ratios, one draw in ten beyond them.
+        let (rank, reached) = rank(3, 3, 0.95);
+        assert!(rank == 1 && (reached - 0.9).abs() < 1e-12, "{rank} {reached}");
+    }
+
+    #[test]
+    fn shares_add_up_and_are_symmetric() {
+        for (m, n) in [(2, 3), (7, 4), (30, 30)] {
+            let shares = distribution(m, n);
+            assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            let mirrored = shares.iter().zip(shares.iter().rev());
+            assert!(mirrored.into_iter().all(|(a, b)| (a - b).abs() < 1e-12));
+        }
+        // Two of five ranks: ten draws, of which U = 0, 1, 2, 3, 4, 5, 6 take 1, 1, 2, 2, 2, 1, 1.
+        let expected = [1.0, 1.0, 2.0, 2.0, 2.0, 1.0, 1.0].map(|ways| ways / 10.0);
+        assert!(distribution(2, 3).iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12));
+    }
+
+    fn uniform(random: &mut Pcg64Dxsm) -> f64 {
+        (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Of 4000 pairs of samples whose times scatter heavily to one side, the interval holds the factor in the confidence that it states: within
+    /// four standard errors, so neither too seldom nor too often.
+    #[test]
+    fn coverage_is_what_is_stated() {
+        const TRIALS: u32 = 4000;
+        let mut random = Pcg64Dxsm::seed_from_u64(7);
+        let mut times = |count: usize, factor: f64| -> Vec<f64> {
+            (0..count).map(|_| factor * (1.0 + 0.1 * -libm::log(1.0 - uniform(&mut random)))).collect()
+        };
+        for (m, n) in [(5, 5), (9, 7)] {
+            let (mut held, mut stated) = (0, 0.0);
+            for _ in 0..TRIALS {
+                let (old, new) = (times(m, 1.0), times(n, 1.3));
+                let found = ratio(&old, &new, 0.9).unwrap();
+                held += u32::from(found.interval.contains(1.3));
+                stated = found.interval.level;
+            }
+            let (share, error) =
+                (f64::from(held) / f64::from(TRIALS), (stated * (1.0 - stated) / f64::from(TRIALS)).sqrt());
+            assert!((share - stated).abs() < 4.0 * error, "{share} instead of {stated}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_time_has_no_ratio() {
+        for (old, new) in
+            [(vec![1.0], vec![1.0, 2.0]), (vec![1.0, 0.0], vec![1.0, 2.0]), (vec![1.0, f64::NAN], vec![1.0; 2])]
+        {
+            assert_eq!(ratio(&old, &new, 0.95), None);
+        }
+        assert_eq!(ratio(&[1.0, 2.0], &[1.0, 2.0], 1.0), None);
+        let ties = ratio(&[2.0; 6], &[3.0; 6], 0.95).unwrap();
+        assert_eq!((ties.value, ties.interval.low, ties.interval.high), (1.5, 1.5, 1.5));
+    }
+}

@@ -1,0 +1,120 @@
+//! `pathmark diff OLD NEW`: which cells got slower?
+
+use super::output::{counted, number, print, print_json};
+use super::progress::Talk;
+use super::run::talk_of;
+use crate::error::{Error, InputError, Result};
+use crate::experiment::{CellDiff, Change, Diff, Progress as _, diff};
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// `pathmark diff before/thread-scaling after/thread-scaling --fail-above 3%`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// The old measurement: the folder of an experiment, or a file of rows
+    old: PathBuf,
+    /// The new one
+    new: PathBuf,
+    /// Exit with 1 if a cell got slower by more than this for certain; changes below it count as the same
+    #[arg(long, value_name = "SHARE", default_value = "2%", allow_hyphen_values = true)]
+    fail_above: String,
+    /// Whether cells that nobody can tell make it fail
+    #[arg(long, value_enum, default_value_t = Undecided::Pass)]
+    undecided: Undecided,
+    /// Compare measurements of two machines all the same
+    #[arg(long)]
+    across_machines: bool,
+    /// Print the comparison as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// What undecided cells count as.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Undecided {
+    /// They do not make the command fail
+    Pass,
+    /// They make it fail
+    Fail,
+}
+
+/// A share as `0.03` or `3%`.
+fn share(text: &str) -> Result<f64> {
+    let parsed = match text.strip_suffix('%') {
+        Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
+        None => text.parse(),
+    };
+    parsed.ok().filter(|share| share.is_finite() && *share >= 0.0).ok_or_else(|| {
+        let error = InputError::new("fail-above", text, "is no share by which something may get slower");
+        error.allowed("numbers from 0, as 0.03 or 3%").into()
+    })
+}
+
+pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
+    let limit = share(&arguments.fail_above)?;
+    let found = diff(&arguments.old, &arguments.new, limit, arguments.across_machines)?;
+    let count = |change: Change| found.cells.iter().filter(|cell| cell.change == change).count();
+    let (slower, undecided) = (count(Change::Slower), count(Change::Undecided));
+    if arguments.json {
+        print_json(&object(&found, limit))?;
+    } else {
+        print(&table(&found))?;
+        let counts = [Change::Slower, Change::Faster, Change::Same, Change::Undecided]
+            .map(|change| format!("{} {}", count(change), change.name()));
+        let percent = 100.0 * limit;
+        print(&format!("{}; same and slower are told at {percent} %", counts.join(", ")))?;
+    }
+    remark(&found, talk);
+    if slower > 0 {
+        let problem = format!("{} got slower by more than {} %", counted(slower, "cell"), 100.0 * limit);
+        return Err(Error::Check(problem));
+    }
+    if undecided > 0 && arguments.undecided == Undecided::Fail {
+        let problem = format!("{} cannot be decided: more repetitions would tell", counted(undecided, "cell"));
+        return Err(Error::Check(problem));
+    }
+    Ok(())
+}
+
+/// Says what a reader should know of the comparison.
+fn remark(found: &Diff, talk: &Talk) {
+    if !found.paired {
+        talk.note(
+            "warning: not measured in turns: a change of the machine looks like one of the program (run --against)",
+        );
+    }
+    let [old, new] = found.unmatched;
+    if old + new > 0 {
+        talk.note(&format!(
+            "{} of the old and {} of the new have no counterpart",
+            counted(old, "cell"),
+            counted(new, "cell")
+        ));
+    }
+    talk_of(&found.doubts, talk);
+}
+
+fn table(found: &Diff) -> String {
+    let head = format!("{:>8} {:>16} {:<9}  {:>9}  {:>9}  cell", "new/old", "interval", "change", "old", "new");
+    let line = |cell: &CellDiff| {
+        let interval = cell.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
+        let CellDiff { ratio, old_s, new_s, change, cell, .. } = cell;
+        let change = change.name();
+        format!("{ratio:>8.3} {interval:>16} {change:<9}  {:>6.1} ms  {:>6.1} ms  {cell}", 1e3 * old_s, 1e3 * new_s)
+    };
+    std::iter::once(head).chain(found.cells.iter().map(line)).collect::<Vec<_>>().join("\n")
+}
+
+fn object(found: &Diff, limit: f64) -> Value {
+    let cells = found.cells.iter().map(|cell| {
+        json!({
+            "cell": cell.cell, "change": cell.change, "ratio": number(cell.ratio), "interval": cell.interval,
+            "old_s": number(cell.old_s), "new_s": number(cell.new_s), "repetitions": cell.repetitions,
+        })
+    });
+    json!({
+        "limit": limit, "paired": found.paired, "doubted_rows": found.doubts.count(), "unmatched": found.unmatched,
+        "cells": cells.collect::<Vec<_>>(),
+    })
+}

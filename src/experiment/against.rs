@@ -1,0 +1,72 @@
+//! A sweep of two builds in turns: `run EXPERIMENT --against OLD`.
+//!
+//! Each repetition of each cell is run by both, one right after the other, and who comes first alternates. A drift of the machine's speed falls
+//! on both rows of a pair, so their ratio is free of it. The other build's rows lie in `OUT/against`, as those of a sweep of its own.
+
+use super::cell_process::CellJob;
+use super::records_file::RecordsFile;
+use super::run_file::{MACHINE, RunFile};
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use crate::measure::Record;
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+
+/// The folder below that of the sweep's results.
+const FOLDER: &str = "against";
+
+/// The other build, and where its rows go.
+pub(super) struct Against {
+    program: PathBuf,
+    folder: PathBuf,
+    run: RunFile,
+    file: RecordsFile,
+    has_rows: bool,
+}
+
+/// Where the other build's rows of an experiment lie.
+pub fn folder_against(out: &Path, name: &str) -> PathBuf {
+    out.join(FOLDER).join(name)
+}
+
+/// Refuses what cannot be run at all.
+pub(super) fn check_program(program: &Path) -> Result<()> {
+    let is_program = fs::metadata(program).is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0);
+    if is_program {
+        return Ok(());
+    }
+    let error = InputError::new("against", program.display().to_string(), "is no program");
+    Err(error.allowed("another build of pathmark, or of a program with the same command line").into())
+}
+
+impl Against {
+    pub(super) fn open(program: &Path, out: &Path, name: &str, text: &str, run: RunFile) -> Result<Self> {
+        let folder = folder_against(out, name);
+        fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
+        let file = RecordsFile::create(&folder.join("records.csv"))?;
+        atomic_file::write(&folder.join("experiment.toml"), |out| out.write_all(text.as_bytes()))?;
+        let program = fs::canonicalize(program).map_err(|e| Error::system("finding", program, e))?;
+        Ok(Self { program, folder, run, file, has_rows: false })
+    }
+
+    /// Runs a repetition of a cell; gives what went wrong, if anything did.
+    pub(super) fn run(&mut self, job: &CellJob) -> Result<Vec<String>> {
+        let mut failed = Vec::new();
+        for record in job.run_in_child_of(Ok(self.program.clone())) {
+            let record = Record { order: job.order, ..record };
+            if !self.has_rows {
+                // The rows say of which build they are.
+                self.run.machine.commit.clone_from(&record.commit);
+                self.run.machine.dirty = record.dirty;
+                self.run.write(&self.folder.join(MACHINE))?;
+                self.has_rows = true;
+            }
+            if !record.error.is_empty() {
+                failed.push(record.error.clone());
+            }
+            self.file.append(&record)?;
+        }
+        Ok(failed)
+    }
+}

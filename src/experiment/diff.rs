@@ -1,0 +1,213 @@
+//! Two measurements of the same cells: which got slower?
+//!
+//! Rows that were measured in pairs (`run --against`) give a ratio for each repetition; other rows give the ratios of all pairs of an old and
+//! a new time. All intervals of a comparison together hold with 95 % confidence (Bonferroni).
+
+use super::records_file::read_records;
+use super::run_file::{MACHINE, RunFile, read_run_file};
+use crate::analysis::quantile::{median, median_interval};
+use crate::analysis::rank_sum;
+use crate::analysis::{Estimate, Interval};
+use crate::error::{InputError, Result};
+use crate::measure::{Doubts, Record};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The chance that any interval of a comparison misses.
+const MISS: f64 = 0.05;
+
+/// What a comparison says of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// The whole interval is above the limit.
+    Slower,
+    /// The whole interval is below 1.
+    Faster,
+    /// The whole interval is within the limit of 1.
+    Same,
+    /// The interval is too wide, or there are too few repetitions for one.
+    Undecided,
+}
+
+impl Change {
+    /// As tables say it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Slower => "slower",
+            Self::Faster => "faster",
+            Self::Same => "same",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// A cell in both measurements.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CellDiff {
+    /// The cell.
+    pub cell: String,
+    /// Median seconds before and after.
+    pub old_s: f64,
+    /// See `old_s`.
+    pub new_s: f64,
+    /// Times that were compared, before and after.
+    pub repetitions: [usize; 2],
+    /// New over old.
+    pub ratio: f64,
+    /// The interval of the ratio.
+    pub interval: Option<Interval>,
+    /// What that says.
+    pub change: Change,
+}
+
+/// Two measurements, cell by cell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diff {
+    /// The cells that both have.
+    pub cells: Vec<CellDiff>,
+    /// Cells that only the old one has, and that only the new one has.
+    pub unmatched: [usize; 2],
+    /// Whether rows were compared in pairs.
+    pub paired: bool,
+    /// Doubts about all times.
+    pub doubts: Doubts,
+}
+
+/// Rows, and where they come from.
+struct Side {
+    run: Option<RunFile>,
+    rows: Vec<Record>,
+}
+
+/// Reads a folder of one experiment, or a file of rows.
+fn side(path: &Path) -> Result<Side> {
+    let (file, folder) =
+        if path.is_dir() { (path.join("records.csv"), Some(path)) } else { (path.to_path_buf(), path.parent()) };
+    let machine = folder.map(|folder| folder.join(MACHINE)).filter(|path| path.is_file());
+    let run = machine.map(|path| read_run_file(&path)).transpose()?;
+    Ok(Side { run, rows: read_records(&file)? })
+}
+
+/// Compares two measurements. `limit` is the share by which a cell may get slower, .03 say. Measurements of two machines are refused
+/// unless `across_machines`.
+pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result<Diff> {
+    if !(limit.is_finite() && limit >= 0.0) {
+        let error = InputError::new("fail-above", limit.to_string(), "is no share by which something may get slower");
+        return Err(error.allowed("numbers from 0, as 0.03 or 3%").into());
+    }
+    let sides = [side(old)?, side(new)?];
+    if let [Some(before), Some(after)] = [&sides[0].run, &sides[1].run]
+        && !across_machines
+    {
+        let [then, now] = [before, after].map(|run| run.machine.line());
+        if then != now {
+            let problem = format!("was measured on another machine: {now}, not {then}");
+            let error = InputError::new("new", new.display().to_string(), problem);
+            return Err(error.allowed("--across-machines").into());
+        }
+    }
+    let paired = sides[1].run.as_ref().is_some_and(|run| run.against.is_some())
+        && sides[0].run.as_ref().is_some_and(|run| run.against.is_some());
+    let [before, after] = sides.each_ref().map(|side| times(&side.rows));
+    let common: Vec<&String> = before.keys().filter(|cell| after.contains_key(*cell)).collect();
+    if common.is_empty() {
+        let problem = format!("has no cell in common with {}", old.display());
+        return Err(InputError::new("new", new.display().to_string(), problem)
+            .allowed("measurements of the same experiment at the same size")
+            .into());
+    }
+    let level = 1.0 - MISS / common.len() as f64;
+    let cells = common.iter().filter_map(|cell| compared(cell, &before[*cell], &after[*cell], paired, level, limit));
+    let unmatched = [before.len() - common.len(), after.len() - common.len()];
+    let warnings = sides.iter().flat_map(|side| &side.rows).map(|row| row.warnings.as_str());
+    Ok(Diff { cells: cells.collect(), unmatched, paired, doubts: Doubts::of(warnings) })
+}
+
+/// The seconds of each cell, by repetition. Rows that failed have none.
+fn times(rows: &[Record]) -> BTreeMap<String, BTreeMap<u32, f64>> {
+    let mut times: BTreeMap<String, BTreeMap<u32, f64>> = BTreeMap::new();
+    for row in rows.iter().filter(|row| row.error.is_empty()) {
+        if let Some(seconds) = row.makespan_s.filter(|seconds| *seconds > 0.0 && seconds.is_finite()) {
+            times.entry(row.cell.clone()).or_default().insert(row.repetition, seconds);
+        }
+    }
+    times
+}
+
+fn compared(
+    cell: &str,
+    old: &BTreeMap<u32, f64>,
+    new: &BTreeMap<u32, f64>,
+    paired: bool,
+    level: f64,
+    limit: f64,
+) -> Option<CellDiff> {
+    let values = |times: &BTreeMap<u32, f64>| times.values().copied().collect::<Vec<_>>();
+    let (olds, news) = (values(old), values(new));
+    let estimate: Option<Estimate> = if paired {
+        let ratios: Vec<f64> = old.iter().filter_map(|(at, old)| Some(new.get(at)? / old)).collect();
+        median(&ratios).zip(median_interval(&ratios, level)).map(|(value, interval)| Estimate { value, interval })
+    } else {
+        rank_sum::ratio(&olds, &news, level)
+    };
+    let (old_s, new_s) = (median(&olds)?, median(&news)?);
+    let interval = estimate.map(|estimate| estimate.interval).filter(|interval| interval.level >= level);
+    let change = match interval {
+        Some(interval) if interval.low > 1.0 + limit => Change::Slower,
+        Some(interval) if interval.high < 1.0 => Change::Faster,
+        Some(interval) if interval.low >= 1.0 - limit && interval.high <= 1.0 + limit => Change::Same,
+        _ => Change::Undecided,
+    };
+    let ratio = estimate.map_or(new_s / old_s, |estimate| estimate.value);
+    Some(CellDiff {
+        cell: cell.to_string(),
+        old_s,
+        new_s,
+        repetitions: [olds.len(), news.len()],
+        ratio,
+        interval,
+        change,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn numbered(values: &[f64]) -> BTreeMap<u32, f64> {
+        (0..).zip(values.iter().copied()).collect()
+    }
+
+    fn change(old: &[f64], new: &[f64], paired: bool) -> Change {
+        compared("cell", &numbered(old), &numbered(new), paired, 0.95, 0.02).unwrap().change
+    }
+
+    const TIMES: [f64; 9] = [1.0, 1.001, 1.002, 0.999, 0.998, 1.003, 0.997, 1.0015, 0.9985];
+
+    #[test]
+    fn changes_are_found_and_equal_times_are_the_same() {
+        for paired in [true, false] {
+            assert_eq!(change(&TIMES, &TIMES, paired), Change::Same);
+            assert_eq!(change(&TIMES, &TIMES.map(|time| 1.1 * time), paired), Change::Slower);
+            assert_eq!(change(&TIMES, &TIMES.map(|time| 0.9 * time), paired), Change::Faster);
+            // Slower for certain, and by less than the limit.
+            assert_eq!(change(&TIMES, &TIMES.map(|time| 1.01 * time), paired), Change::Same);
+            assert_eq!(
+                change(&TIMES[..3], &TIMES[..3].iter().map(|time| 2.0 * time).collect::<Vec<_>>(), paired),
+                Change::Undecided
+            );
+        }
+        // A machine whose speed drifts by as much as it likes: pairs do not mind, and other comparisons cannot tell.
+        let drift = [1.0, 1.5, 2.0, 0.7, 1.2, 3.0, 0.5, 1.1, 2.2];
+        assert_eq!(change(&drift, &drift.map(|time| 1.05 * time), true), Change::Slower);
+        assert_eq!(change(&drift, &drift.map(|time| 1.05 * time), false), Change::Undecided);
+    }
+
+    #[test]
+    fn a_single_time_decides_nothing() {
+        assert_eq!(change(&[1.0], &[9.0], true), Change::Undecided);
+        assert_eq!(change(&[1.0], &[9.0], false), Change::Undecided);
+    }
+}

@@ -1,0 +1,157 @@
+//! `diff` and `run --against`: which cells got slower?
+
+use crate::experiment::{TINY, write_tiny};
+use crate::program::{Finished, finish, pathmark};
+use serde_json::Value;
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+
+fn run(folder: &Path, arguments: &[&str], code: i32) -> Finished {
+    finish(pathmark(folder, arguments)).with_code(code)
+}
+
+/// Rows as a sweep of another commit on the same machine would have left them: times of its cells by repetition.
+fn measured(folder: &Path, name: &str, times: impl Fn(&str, u32) -> f64) {
+    let from = folder.join("base/tiny");
+    let to = folder.join(name);
+    fs::create_dir_all(&to).unwrap();
+    fs::copy(from.join("machine.toml"), to.join("machine.toml")).unwrap();
+    let mut reader = csv::Reader::from_path(from.join("records.csv")).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let (cell, repetition, makespan) = (column("cell"), column("repetition"), column("makespan_s"));
+    let mut writer = csv::Writer::from_path(to.join("records.csv")).unwrap();
+    writer.write_record(&heads).unwrap();
+    for row in reader.records() {
+        let row = row.unwrap();
+        let seconds = times(&row[cell], row[repetition].parse().unwrap()).to_string();
+        writer
+            .write_record(row.iter().enumerate().map(|(at, value)| if at == makespan { &seconds } else { value }))
+            .unwrap();
+    }
+}
+
+/// Times around a second, none alike.
+fn steady(cell: &str, repetition: u32) -> f64 {
+    1.0 + 1e-3 * f64::from(repetition * 7 % 10) + 1e-6 * cell.len() as f64
+}
+
+fn base(folder: &Path) {
+    write_tiny(folder, TINY);
+    run(folder, &["run", "tiny.toml", "--repetitions", "10", "--out", "base"], 0);
+    measured(folder, "old", steady);
+}
+
+fn json(finished: &Finished) -> Value {
+    serde_json::from_str(&finished.out).unwrap_or_else(|error| panic!("{error} in {}", finished.out))
+}
+
+#[test]
+fn what_got_slower_fails_and_what_did_not_passes() {
+    let folder = tempfile::tempdir().unwrap();
+    base(folder.path());
+    let verdicts = |name: &str, factor: f64, only: &'static str, options: &[&str], code: i32| {
+        measured(folder.path(), name, move |cell, repetition| {
+            let slowed = if cell.contains(only) { factor } else { 1.0 };
+            slowed * steady(cell, repetition + 3)
+        });
+        let found = json(&run(folder.path(), &[&["diff", "old", name, "--json"], options].concat(), code));
+        let cells = found["cells"].as_array().unwrap().clone();
+        assert_eq!(cells.len(), 5);
+        cells
+            .into_iter()
+            .filter(|cell| cell["cell"].as_str().unwrap().contains(only))
+            .map(|cell| cell["change"].clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(verdicts("same", 1.0, "serial", &[], 0), ["same"]);
+    assert_eq!(verdicts("slow", 1.05, "serial", &[], 1), ["slower"]);
+    assert_eq!(verdicts("slow", 1.05, "serial", &["--fail-above", "3%"], 1), ["slower"]);
+    assert_eq!(verdicts("slow", 1.05, "serial", &["--fail-above", "0.1"], 0), ["same"]);
+    assert_eq!(verdicts("fast", 0.9, "work-stealing", &[], 0), ["faster", "faster"]);
+    // The table says the same as the object.
+    let text = run(folder.path(), &["diff", "old", "slow"], 1);
+    assert!(text.out.contains("slower") && text.err.contains("1 cell got slower"), "{}{}", text.out, text.err);
+    assert!(text.err.contains("not measured in turns"), "{}", text.err);
+}
+
+#[test]
+fn what_cannot_be_told_is_undecided() {
+    let folder = tempfile::tempdir().unwrap();
+    base(folder.path());
+    // Times that scatter by half decide nothing about a change of a tenth.
+    measured(folder.path(), "wild", |cell, repetition| {
+        1.1 * steady(cell, repetition) * (0.7 + 0.1 * f64::from(repetition * 3 % 10))
+    });
+    let found = json(&run(folder.path(), &["diff", "old", "wild", "--json"], 0));
+    assert!(found["cells"].as_array().unwrap().iter().all(|cell| cell["change"] == "undecided"), "{found}");
+    run(folder.path(), &["diff", "old", "wild", "--undecided", "fail"], 1);
+}
+
+#[test]
+fn what_does_not_compare_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    base(folder.path());
+    let refused = |arguments: &[&str], said: &[&str]| {
+        let finished = run(folder.path(), &[&["diff"], arguments].concat(), 2);
+        assert!(said.iter().all(|text| finished.err.contains(text)), "{said:?} is not in {}", finished.err);
+    };
+    for limit in ["-1%", "x", "NaN", "inf", "%", ""] {
+        refused(&["old", "base/tiny", "--fail-above", limit], &["fail-above"]);
+    }
+    refused(&["old", "nowhere"], &["nowhere"]);
+    refused(&["old", "."], &["records.csv"]);
+    // Rows of another size have no cell in common.
+    run(folder.path(), &["run", "tiny.toml", "--full", "--repetitions", "1", "--out", "full"], 0);
+    refused(&["old", "full/tiny"], &["new", "no cell in common"]);
+    // Another machine, and another version of the columns.
+    let text = fs::read_to_string(folder.path().join("old/machine.toml")).unwrap();
+    let line = text.lines().find(|line| line.starts_with("cpu = ")).unwrap();
+    measured(folder.path(), "moved", steady);
+    fs::write(folder.path().join("moved/machine.toml"), text.replace(line, "cpu = \"Another\"")).unwrap();
+    refused(&["old", "moved"], &["another machine", "--across-machines"]);
+    run(folder.path(), &["diff", "old", "moved", "--across-machines"], 0);
+    let rows = fs::read_to_string(folder.path().join("old/records.csv")).unwrap();
+    fs::create_dir(folder.path().join("ancient")).unwrap();
+    fs::write(folder.path().join("ancient/records.csv"), rows.replace("\n6,", "\n5,")).unwrap();
+    refused(&["old", "ancient"], &["schema", "5"]);
+}
+
+/// Two builds in turns; the other one is the same program behind a script.
+#[test]
+fn two_builds_are_measured_in_turns() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    let own = assert_cmd::cargo::cargo_bin!("pathmark");
+    let script = folder.path().join("other");
+    fs::write(&script, format!("#!/bin/sh\nexec {} \"$@\"\n", own.display())).unwrap();
+    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+    let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 0);
+    assert!(finished.err.contains("pathmark diff"), "{}", finished.err);
+    let rows = |name: &str| {
+        let mut reader = csv::Reader::from_path(folder.path().join(name).join("records.csv")).unwrap();
+        let heads = reader.headers().unwrap().clone();
+        let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+        let columns = ["cell", "repetition", "order", "checksum"].map(column);
+        let mut rows: Vec<_> =
+            reader.records().map(|row| columns.map(|at| row.as_ref().unwrap()[at].to_string())).collect();
+        rows.sort();
+        rows
+    };
+    assert_eq!(rows("out/against/tiny"), rows("out/tiny"));
+    let found = run(folder.path(), &["diff", "out/against/tiny", "out/tiny", "--json", "--fail-above", "1000%"], 0);
+    assert_eq!((&json(&found)["paired"], json(&found)["cells"].as_array().unwrap().len()), (&true.into(), 5));
+    assert!(!found.err.contains("not measured in turns"));
+    // The same folder again, and programs that are none.
+    run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 2);
+    for other in ["./nowhere", "tiny.toml", "."] {
+        let finished = run(folder.path(), &["run", "tiny.toml", "--against", other, "--out", "new"], 2);
+        assert!(finished.err.contains("against") && !folder.path().join("new").exists(), "{}", finished.err);
+    }
+    // A program that says something else gives failed rows, and the sweep goes on.
+    fs::write(&script, "#!/bin/sh\necho hello\n").unwrap();
+    let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "new"], 1);
+    assert!(finished.err.contains("15 of"), "{}", finished.err);
+    assert_eq!(rows("new/tiny").len(), 15);
+}
