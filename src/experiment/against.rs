@@ -3,7 +3,7 @@
 //! Each repetition of each cell is run by both, one right after the other, and who comes first alternates. A drift of the machine's speed falls
 //! on both rows of a pair, so their ratio is free of it. The other build's rows lie in `OUT/against`, as those of a sweep of its own.
 
-use super::cell_process::CellJob;
+use super::cell_process::{CellJob, PointJob};
 use super::records_file::RecordsFile;
 use super::run_file::{MACHINE, RunFile};
 use crate::atomic_file;
@@ -52,6 +52,9 @@ impl Against {
 
     /// Runs a repetition of a cell; gives what went wrong, if anything did.
     pub(super) fn run(&mut self, job: &CellJob) -> Result<Vec<String>> {
+        // Images and traces are kept of one build.
+        let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
+        let job = CellJob { points, trace: None, ..job.clone() };
         let mut failed = Vec::new();
         for record in job.run_in_child_of(Ok(self.program.clone())) {
             let record = Record { order: job.order, ..record };

@@ -173,29 +173,7 @@ impl<'a> Sweep<'a> {
                 let cell = &cells[index];
                 let is_missing = |id: &str| !finished.contains(&(id, repetition));
                 if cell.points.iter().any(|point| is_missing(&point.id)) {
-                    // Curves have many images: those of one seed show what there is to see.
-                    let shown = cell.points.len() == 1 || Some(cell.settings.spec.seed) == lowest_seed;
-                    let is_kept = definition.keeps(Keep::Images) && repetition == 0 && shown;
-                    let point_job = |point: &CellPoint| PointJob {
-                        cell: point.id.clone(),
-                        spp: point.spp,
-                        image: is_kept.then(|| images.join(point.image_file())),
-                    };
-                    let job = CellJob {
-                        experiment: definition.name.clone(),
-                        points: cell.points.iter().map(point_job).collect(),
-                        repetition,
-                        order,
-                        settings: cell.settings.clone(),
-                        scene: cell.scene.clone(),
-                        references: references
-                            .iter()
-                            .find(|(of, _)| of.is_for(&cell.settings))
-                            .map(|(_, halves)| halves.clone()),
-                        object: definition.object().map(str::to_string),
-                        external: cell.external.clone().map(|external| (external, programs.clone())),
-                        trace: definition.keeps(Keep::Traces).then(|| traces.join(trace_file(&cell.id, repetition))),
-                    };
+                    let job = self.job(cell, (repetition, order), &folder, &references, lowest_seed);
                     let mut run_against = |job: &CellJob| -> Result<()> {
                         for problem in against.as_mut().map_or(Ok(Vec::new()), |against| against.run(job))? {
                             summary.failed += 1;
@@ -234,6 +212,39 @@ impl<'a> Sweep<'a> {
         progress.end();
         file.check_own()?;
         Ok(summary)
+    }
+    /// What a cell's process is asked to do in a repetition, which is number `order` of the sweep.
+    fn job(
+        &self,
+        cell: &Cell,
+        (repetition, order): (u32, u64),
+        folder: &Path,
+        references: &[(&Reference, [HalfFile; 2])],
+        lowest_seed: Option<u64>,
+    ) -> CellJob {
+        let definition = self.definition;
+        // Curves have many images: those of one seed show what there is to see.
+        let shown = cell.points.len() == 1 || Some(cell.settings.spec.seed) == lowest_seed;
+        let is_kept = definition.keeps(Keep::Images) && repetition == 0 && shown;
+        let point_job = |point: &CellPoint| PointJob {
+            cell: point.id.clone(),
+            spp: point.spp,
+            image: is_kept.then(|| folder.join("images").join(point.image_file())),
+        };
+        let trace = || folder.join("traces").join(trace_file(&cell.id, repetition));
+        let halves = references.iter().find(|(of, _)| of.is_for(&cell.settings)).map(|(_, halves)| halves.clone());
+        CellJob {
+            experiment: definition.name.clone(),
+            points: cell.points.iter().map(point_job).collect(),
+            repetition,
+            order,
+            settings: cell.settings.clone(),
+            scene: cell.scene.clone(),
+            references: halves,
+            object: definition.object().map(str::to_string),
+            external: cell.external.clone().map(|external| (external, folder.join("external"))),
+            trace: definition.keeps(Keep::Traces).then(trace),
+        }
     }
 }
 

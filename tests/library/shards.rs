@@ -160,6 +160,26 @@ fn a_partial_image_is_of_the_parts_that_there_are() {
 }
 
 #[test]
+fn a_part_that_is_not_finished_is_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    for cut in CUTS {
+        let first = render(folder.path(), settings(128, "f64"), shard(1, 2, cut), &[]);
+        let path = folder.path().join("begun");
+        let second = shard(2, 2, cut);
+        let start = second.samples(128).start;
+        let mut rounds = Rounds::of(Setup::prepare(settings(128, "f64")).unwrap(), Some(second)).unwrap();
+        let (checkpoint, _) = Checkpoint::open(&path, &rounds, None).unwrap();
+        rounds.extend_to(start + 32, None).unwrap();
+        checkpoint.save(&rounds, Position { rendering_s: 1.0, look: 128 }).unwrap();
+        let want = format!("2/2: 32 of {} samples", 128 - start);
+        refused(&[first.clone(), path.clone()], &[&want, "begun"]);
+        assert_eq!(merge(&[first, path.clone()], true).unwrap().missing.len(), 1);
+        drop(checkpoint);
+        fs::remove_file(path).unwrap();
+    }
+}
+
+#[test]
 fn a_part_goes_on_as_itself_alone() {
     let folder = tempfile::tempdir().unwrap();
     for cut in CUTS {
