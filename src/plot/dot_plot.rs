@@ -134,9 +134,11 @@ impl DotPlot {
     ) -> usize {
         let x = |place: f64| left + place * (right - left);
         let mut lost = 0;
-        for (group, dot) in self.dots(row) {
+        let last = self.dots(row).count().saturating_sub(1) as f64;
+        // Dots stand around the row's own line whichever groups have one, or those of two rows would mix.
+        for (index, (group, dot)) in self.dots(row).enumerate() {
             let look = self.groups[group].look;
-            let y = middle + GROUP * (group as f64 - 0.5 * (self.groups.len() as f64 - 1.0));
+            let y = middle + GROUP * (index as f64 - 0.5 * last);
             let Some(place) = range.place(dot.value) else {
                 lost += 1;
                 continue;
@@ -173,9 +175,11 @@ impl Figure for DotPlot {
         let legend = legend::size(&entries);
         let left = MARGIN + widest + GAP;
         let right = WIDTH - MARGIN - if legend.0 > 0.0 { legend.0 + 20.0 } else { 0.0 };
-        let groups = ROW + GROUP * self.groups.len().saturating_sub(1) as f64;
-        let heights: Vec<f64> =
-            names.iter().map(|name| groups.max(name.len() as f64 * SMALL_SIZE * LEADING + 6.0)).collect();
+        let height = |(row, name): (&Row, &Vec<String>)| {
+            let dots = ROW + GROUP * self.dots(row).count().saturating_sub(1) as f64;
+            dots.max(name.len() as f64 * SMALL_SIZE * LEADING + 6.0)
+        };
+        let heights: Vec<f64> = self.rows.iter().zip(&names).map(height).collect();
         let bottom = top + heights.iter().sum::<f64>().max(legend.1).max(2.0 * ROW);
         let area = [left, top, right, bottom];
 

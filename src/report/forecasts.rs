@@ -4,6 +4,7 @@ use super::block::Block;
 use super::results::Results;
 use super::rows::Row;
 use super::table::Digits::Decimals;
+use super::words::counted;
 use crate::analysis::speedup::serial_fraction;
 use crate::error::Result;
 use crate::plot::style::Look;
@@ -57,9 +58,9 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
             "No run was undisturbed, so there is no telling how well the simulator predicts this machine.".to_string()
         }
         Some(found) => format!(
-            "{} schedules of this machine predicted from serial runs: median absolute error {}, worst {}, bias {:+.1} %. That is over the {quiet} of {runs} runs whose CPU time was within {:.0} % of that of the serial run \
+            "{} of this machine predicted from serial runs: median absolute error {}, worst {}, bias {:+.1} %. That is over the {quiet} of {runs} runs whose CPU time was within {:.0} % of that of the serial run \
              beside them, so that it was the schedule that made their time; over all runs the median is {}, the worst {}. Told besides what CPU time each run took, which is no prediction: median {}, worst {}.",
-            predictions.iter().filter(|prediction| prediction.undisturbed > 0).count(),
+            counted(predictions.iter().filter(|prediction| prediction.undisturbed > 0).count(), "schedule"),
             percent(found.median_absolute),
             percent(found.worst_absolute),
             100.0 * found.bias,

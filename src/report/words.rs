@@ -10,6 +10,11 @@ use std::collections::BTreeSet;
 /// Confidence of every interval in the report.
 pub(super) const LEVEL: f64 = 0.95;
 
+/// A number of things: `1 thread`, `2 threads`.
+pub(super) fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
 /// A value and its interval, if there were enough of them for one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Told {

@@ -72,3 +72,21 @@ fn the_map_has_every_page() {
         assert!(map.contains(&format!("(docs/{name})")), "METHODOLOGY.md leaves out {name}");
     }
 }
+
+/// The figures below a folder, but for those of earlier versions.
+fn figures(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) = entries.partition(|path| path.is_dir());
+    let is_figure = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "svg");
+    let below = folders.into_iter().filter(|folder| !folder.ends_with("earlier")).flat_map(|folder| figures(&folder));
+    files.into_iter().filter(is_figure).chain(below).collect()
+}
+
+#[test]
+fn no_committed_figure_is_empty() {
+    let figures = figures(&root().join("results"));
+    assert!(figures.len() > 80, "{}", figures.len());
+    for figure in figures {
+        assert!(!fs::read_to_string(&figure).unwrap().contains("\nno data\n"), "{}", figure.display());
+    }
+}

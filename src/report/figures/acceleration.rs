@@ -14,7 +14,10 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let names = results.by(|row| row.accelerator.as_str()).into_keys();
     let accelerators = in_table_order(names, ACCELERATORS.iter().map(|entry| entry.name));
     let (generated, others): (Vec<&Row>, Vec<&Row>) = results.rows().partition(|row| primitives(row).is_some());
-    let sizes = places(generated, |row| primitives(row).unwrap_or_default());
+    // Scenes of another generator are spread otherwise: their times do not belong on the same line.
+    let generators = group(generated, |row| row.scene.split(':').next().unwrap_or_default());
+    let sizes = generators.into_values().map(|rows| places(rows, |row| primitives(row).unwrap_or_default()));
+    let sizes = sizes.max_by_key(BTreeMap::len).unwrap_or_default();
     let samples = places(others.clone(), |row| u64::from(row.spp));
     let mut blocks = Vec::new();
     blocks.extend(against_primitives(results, &sizes, &accelerators));

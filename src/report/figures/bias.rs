@@ -70,12 +70,18 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let values = in_order(costs.iter().map(|cost| cost.value.clone()), &usual);
     let place = |cost: &Cost| values.iter().position(|value| *value == cost.value);
     costs.sort_by(|a, b| (&a.scene, place(a), a.spp).cmp(&(&b.scene, place(b), b.spp)));
-    // The most samples show the bias with the least noise.
-    let most = |cost: &&Cost| costs.iter().filter(|other| other.scene == cost.scene).all(|other| other.spp <= cost.spp);
+    // The most samples show the bias with the least noise. The usual value may have been rendered with more, for its noise.
+    let mut most: BTreeMap<&str, u32> = BTreeMap::new();
+    for cost in costs.iter().filter(|cost| cost.value != usual) {
+        let spp = most.entry(&cost.scene).or_default();
+        *spp = cost.spp.max(*spp);
+    }
     let scenes: BTreeSet<&str> = costs.iter().map(|cost| cost.scene.as_str()).collect();
     let row = |value: &String| {
         let dot = |scene: &&str| {
-            let own = costs.iter().filter(most).find(|cost| cost.value == *value && cost.scene == *scene)?;
+            let is_shown =
+                |cost: &&Cost| cost.value == *value && cost.scene == *scene && Some(&cost.spp) == most.get(scene);
+            let own = costs.iter().find(is_shown)?;
             Some(own.light.times(100.0).dot())
         };
         PlotRow::new(value, scenes.iter().map(dot).collect())
@@ -88,7 +94,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     .grouped(scenes.iter().copied());
     plot.subtitle = results.workload();
     plot.caption =
-        "Bars: 95 % interval over seeds, of ratios within a seed. Each scene at its most samples.".to_string();
+        "Bars: 95 % interval over seeds, of ratios within a seed. Each scene at the most samples that were compared."
+            .to_string();
     plot.guides = vec![(100.0, usual.clone())];
     let worst = costs.iter().filter(|cost| cost.value != usual).max_by(|a, b| {
         let off = |cost: &Cost| (cost.light.value - 1.0).abs();

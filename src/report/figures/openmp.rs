@@ -30,8 +30,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let best = ratios.iter().find(|(schedule, _)| !schedule.name.starts_with("openmp"));
     let finding = best.map(|(best, ratio)| {
         Block::finding(format!(
-            "With {} threads the fastest of this program's strategies is {}: {:.3} times the time of {yardstick}, {}.",
-            best.key.threads,
+            "With {} the fastest of this program's strategies is {}: {:.3} times the time of {yardstick}, {}.",
+            counted(best.key.threads, "thread"),
             best.name,
             ratio.value,
             with_level(&ratio.interval, 3),

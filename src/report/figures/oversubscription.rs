@@ -56,10 +56,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         chart
     };
     let (sections, threads) = (Axis::linear("sections"), Axis::log("threads"));
-    let grid = chart("Time against sections of the image (report D)", sections, gathered(by_grid));
-    let threads = chart("Time against threads, the pieces being the same", threads, gathered(by_threads));
+    let figure = |stem: &'static str, title: &str, axis: Axis, lines: Lines| {
+        (!lines.is_empty()).then(|| Block::figure(stem, chart(title, axis, lines)))
+    };
+    let grid = figure("sections", "Time against sections of the image (report D)", sections, gathered(by_grid));
+    let by_threads = gathered(by_threads);
+    let threads = figure("threads", "Time against threads, the pieces being the same", threads, by_threads);
     let finding = claim.map_or(Ok(None), |claim| finding(results, &claim))?;
-    Ok([Block::figure("sections", grid), Block::figure("threads", threads)].into_iter().chain(finding).collect())
+    Ok([grid, threads, finding].into_iter().flatten().collect())
 }
 
 /// Report D's "around 16 to 49 is a good number", against few sections, and against the same pieces with a thread for each processor.

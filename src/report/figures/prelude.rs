@@ -16,7 +16,7 @@ pub(super) use crate::report::rows::{Row, gathered, group, ratios, time_ratio, u
 pub(super) use crate::report::schedule::Schedule;
 pub(super) use crate::report::table::Digits::{Decimals, Significant};
 pub(super) use crate::report::words::{
-    LEVEL, Told, confidence, in_table_order, number, told, typical, values, with_level,
+    LEVEL, Told, confidence, counted, in_table_order, number, told, typical, values, with_level,
 };
 pub(super) use serde::Deserialize;
 pub(super) use std::collections::{BTreeMap, BTreeSet};

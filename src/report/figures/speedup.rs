@@ -170,7 +170,9 @@ impl Speedups<'_> {
     fn speedup_chart(&self) -> LineChart {
         let processors = self.processors as f64;
         let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
-        let caption = "Median of ratios within a repetition. Bars: distribution-free interval. Level: a thread for each job, whatever is asked for.";
+        let has_level = self.all.iter().any(|(schedule, _)| self.has_a_thread_per_job(schedule));
+        let level = if has_level { " Level: a thread for each job, whatever is asked for." } else { "" };
+        let caption = &format!("Median of ratios within a repetition. Bars: distribution-free interval.{level}");
         let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
         let ticks: BTreeSet<usize> =
             chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
