@@ -103,12 +103,13 @@ impl Results {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }
 
-    /// Scene, size and machine in a line, for below a figure's title. A scene or a size that not all rows have is left out.
+    /// Scene, size and machine in a line, for below a figure's title. A scene that not all rows have is left out, and so are more than three sizes.
     pub(super) fn workload(&self) -> String {
         let scenes: BTreeSet<&str> = self.rows().map(|row| row.scene.as_str()).collect();
         let sizes: BTreeSet<(u32, u32)> = self.rows().map(|row| (row.width, row.height)).collect();
         let scene = scenes.first().filter(|_| scenes.len() == 1).map(|scene| format!("{scene}, "));
-        let size = sizes.first().filter(|_| sizes.len() == 1).map(|(width, height)| format!("{width}x{height}, "));
+        let sizes: Vec<String> = sizes.into_iter().map(|(width, height)| format!("{width}x{height}")).collect();
+        let size = (1..=3).contains(&sizes.len()).then(|| format!("{}, ", sizes.join(" and ")));
         format!("{}{}{}", scene.unwrap_or_default(), size.unwrap_or_default(), self.machine_line())
     }
 
@@ -224,8 +225,8 @@ fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
         |image| image.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
         |image| image.roulette.clone(),
         |image| image.clamp.clone(),
-        |image| prefixed("filter ", &image.filter),
-        |image| prefixed("epsilon ", &image.epsilon),
+        |image| if image.filter.is_empty() { "own filter".to_string() } else { prefixed("filter ", &image.filter) },
+        |image| if image.epsilon.is_empty() { "no epsilon".to_string() } else { prefixed("epsilon ", &image.epsilon) },
         |image| image.precision.clone(),
     ];
     let images: Vec<&ImageKey> = rows.iter().map(|row| &row.image).collect();

@@ -1,5 +1,7 @@
 //! A schedule as figures name it.
 
+use super::words::counted;
+use crate::lab::rank_rule;
 use crate::measure::{Record, SERIAL, ScheduleKey, THREAD_PER_ROW, schedule_name};
 
 /// A schedule with its name. Schedules are listed by name, then by pieces, then by threads.
@@ -25,12 +27,15 @@ impl Schedule {
     }
 }
 
-/// Who renders, with how many threads.
+/// Who renders, with how many threads or, if they are processes, ranks.
 pub(super) fn crew(strategy: &str, threads: usize) -> String {
-    match threads {
-        1 => format!("{strategy}, 1 thread"),
-        threads => format!("{strategy}, {threads} threads"),
-    }
+    let workers = if is_of_ranks(strategy) { "rank" } else { "thread" };
+    format!("{strategy}, {}", counted(threads, workers))
+}
+
+/// Whether the workers of what has that name are processes.
+pub(super) fn is_of_ranks(name: &str) -> bool {
+    rank_rule(name.split_once(',').map_or(name, |(strategy, _)| strategy)).is_some()
 }
 
 /// The strategy of a row as report A names it.

@@ -102,10 +102,13 @@ pub(super) fn confidence(intervals: impl IntoIterator<Item = Interval>) -> Strin
     let least = intervals.into_iter().map(|interval| interval.level).reduce(f64::min);
     least.map_or_else(
         || "no interval, for want of repetitions".to_string(),
-        |least| {
-            format!("distribution-free interval of the median, {:.1} % confidence", (least * 1000.0).floor() / 10.0)
-        },
+        |least| format!("distribution-free interval of the median, {:.1} % confidence", at_least_percent(least)),
     )
+}
+
+/// A confidence in percent with one decimal, never more than it is. A level that binomial sums give as .4999999 is a half.
+fn at_least_percent(level: f64) -> f64 {
+    (level * 1000.0 + 1e-6).floor() / 10.0
 }
 
 /// Names with their places: those of a table in its order and at their places in it, then those that it does not know, by name. So a name of
@@ -124,6 +127,11 @@ pub(super) fn in_table_order<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_confidence_is_not_told_larger_than_it_is() {
+        assert_eq!([0.5 - 1e-12, 0.5, 0.9299, 0.96].map(at_least_percent), [50.0, 50.0, 92.9, 96.0]);
+    }
 
     #[test]
     fn names_that_a_table_does_not_know_come_behind_it() {

@@ -18,7 +18,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let generators = group(generated, |row| row.scene.split(':').next().unwrap_or_default());
     let sizes = generators.into_values().map(|rows| places(rows, |row| primitives(row).unwrap_or_default()));
     let sizes = sizes.max_by_key(BTreeMap::len).unwrap_or_default();
-    let samples = places(others.clone(), |row| u64::from(row.spp));
+    // One line, one image: of several sizes the one with the most numbers of samples.
+    let images = group(others.iter().copied(), |row| (&row.scene, row.width, row.height)).into_values();
+    let spp_of = |rows: &Vec<&Row>| rows.iter().map(|row| row.spp).collect::<BTreeSet<_>>().len();
+    let of_one_image = images.rev().max_by_key(spp_of).unwrap_or_default();
+    let samples = places(of_one_image, |row| u64::from(row.spp));
     let mut blocks = Vec::new();
     blocks.extend(against_primitives(results, &sizes, &accelerators));
     let hierarchies = || accelerators.iter().copied().filter(|(_, name)| *name != yardstick);
@@ -118,10 +122,9 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
         Axis::linear("time without / time with").including([1.0]),
         series.collect(),
     );
-    let scenes: BTreeSet<&str> =
-        samples.values().flat_map(BTreeMap::values).flatten().map(|row| row.scene.as_str()).collect();
-    let scenes: Vec<&str> = scenes.into_iter().collect();
-    chart.subtitle = format!("{}, {}", scenes.join(", "), results.machine_line());
+    let first = samples.values().flat_map(BTreeMap::values).flatten().next();
+    let image = first.map_or_else(String::new, |row| format!("{}, {}x{}, ", row.scene, row.width, row.height));
+    chart.subtitle = format!("{image}{}", results.machine_line());
     let intervals = gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| gain.interval);
     chart.caption = format!("Median of ratios within a repetition. Bars: {}.", confidence(intervals));
     chart.dodge = 4.0;

@@ -97,13 +97,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         "Bars: 95 % interval over seeds, of ratios within a seed. Each scene at the most samples that were compared."
             .to_string();
     plot.guides = vec![(100.0, usual.clone())];
-    let worst = costs.iter().filter(|cost| cost.value != usual).max_by(|a, b| {
+    let is_shown = |cost: &&Cost| cost.value != usual && Some(&cost.spp) == most.get(cost.scene.as_str());
+    let worst = costs.iter().filter(is_shown).max_by(|a, b| {
         let off = |cost: &Cost| (cost.light.value - 1.0).abs();
         off(a).total_cmp(&off(b))
     });
     let finding = worst.map(|cost| {
         Block::finding(format!(
-            "The light changes most with {} {} on {}: to {:.2} % of what it is with {usual}{}.",
+            "At {} samples per pixel the light changes most with {} {} on {}: to {:.2} % of what it is with {usual}{}.",
+            cost.spp,
             axis.name(),
             cost.value,
             cost.scene,

@@ -26,7 +26,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             "There is no light by bounce: it takes rows with bounce limits and rows without.",
         )]);
     }
-    let lines = |y: fn(&Step) -> Point| Series::by_name(gathered(steps.iter().map(|step| (&step.name, y(step)))));
+    // A share of nothing has no place on a logarithmic axis.
+    let lines = |y: fn(&Step) -> Point| {
+        let points = steps.iter().map(|step| (&step.name, y(step))).filter(|(_, point)| point.y > 0.0);
+        Series::by_name(gathered(points))
+    };
     let mut light = LineChart::new(
         "Light by the number of its bounces",
         Axis::linear("bounces"),

@@ -28,9 +28,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     pictures.push(Some(Cell::of(&reference, vec!["reference".to_string(), "mean of two halves".to_string()])?));
     errors.push(None);
     flips.push(None);
-    let estimator = images.first().map_or("", |(record, _)| record.estimator.as_str());
+    let (estimator, schedule) = (&images[0].0.estimator, images[0].0.schedule.label());
     let sheet = ContactSheet {
-        title: format!("Renders at growing samples per pixel ({estimator})"),
+        title: format!("Renders at growing samples per pixel ({estimator}; seconds by {schedule})"),
         subtitle: results.workload(),
         rows: vec![pictures, errors, flips],
         bars: vec![
@@ -46,11 +46,16 @@ fn map(map: &Heatmap, caption: &[String; 2]) -> Cell {
     Cell { caption: caption.to_vec(), width: map.width, height: map.height, rgb: map.pixels.concat() }
 }
 
-/// The kept image of each spp, of the first estimator and the lowest seed, with its record.
+/// The kept image of each spp, of the first estimator and the lowest seed, with its record: all by one schedule, the one that rendered most of them,
+/// because the seconds under them are compared.
 fn renders(results: &Results) -> Result<Vec<(&Row, Image)>> {
     let first = results.definition.first_estimator();
+    let of_first = results.rows().filter(|row| row.estimator == first && row.repetition == 0);
+    let spp_of = |rows: &[&Row]| rows.iter().map(|row| row.spp).collect::<BTreeSet<_>>().len();
+    let schedules = group(of_first, |row| &row.schedule).into_iter().rev();
+    let Some((schedule, _)) = schedules.max_by_key(|(_, rows)| spp_of(rows)) else { return Ok(Vec::new()) };
     let mut by_spp: BTreeMap<u32, (&Row, Image)> = BTreeMap::new();
-    for (record, image) in results.kept_images(|record| record.estimator == first)? {
+    for (record, image) in results.kept_images(|row| row.estimator == first && row.schedule == *schedule)? {
         if by_spp.get(&record.spp).is_none_or(|(known, _)| record.seed < known.seed) {
             by_spp.insert(record.spp, (record, image));
         }

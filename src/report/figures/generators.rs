@@ -34,6 +34,7 @@ fn switches_per_second(row: &Row) -> Option<f64> {
 /// The rows of a generator under a crew.
 struct Line<'a> {
     sampler: &'a str,
+    spp: u32,
     crew: &'a str,
     rows: Vec<&'a Row>,
     seconds: Told,
@@ -49,17 +50,24 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { compare } = options(results, "generators")?;
     let crews: BTreeSet<(usize, String)> =
         results.by_schedule().into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
+    // Times of different images are not to be thrown together.
+    let by_sampler = results.by(|row| (row.sampler.as_str(), row.spp));
+    let several = by_sampler.keys().map(|(_, spp)| spp).collect::<BTreeSet<_>>().len() > 1;
+    let name = |row: &Row| {
+        if several { format!("{}, {} spp", row.sampler, row.spp) } else { row.sampler.clone() }
+    };
     let (mut dots, mut lines) = (Vec::new(), Vec::new());
-    for (sampler, rows) in results.by(|row| row.sampler.as_str()) {
+    for ((sampler, _), rows) in by_sampler {
+        let label = name(rows[0]);
         let mut by_crew = group(rows, |row| crew(&row.schedule));
         let mut own = Vec::new();
         for (_, crew) in &crews {
             let rows = by_crew.remove(crew).unwrap_or_default();
             let seconds = Told::median(&values(rows.iter().copied(), |row| row.makespan_s));
             own.push(seconds.map(|seconds| seconds.times(1e3).dot()));
-            lines.extend(seconds.map(|seconds| Line { sampler, crew, rows, seconds }));
+            lines.extend(seconds.map(|seconds| Line { sampler, spp: rows[0].spp, crew, rows, seconds }));
         }
-        dots.push(PlotRow::new(sampler, own));
+        dots.push(PlotRow::new(label, own));
     }
     let plot = DotPlot::new("Time by random number generator", Axis::log("milliseconds"), dots);
     let mut plot = plot.grouped(crews.iter().map(|(_, crew)| crew));
@@ -69,6 +77,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let finding = compare.map_or(Ok(None), |compare| finding(results, &compare))?;
     let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
+        .column("samples per pixel", |line| line.spp.to_string())
         .column("threads", |line| line.crew.to_string())
         .told("median seconds", Decimals(4), |line| line.seconds)
         .number("switches per second", Decimals(0), |line| line.typical(switches_per_second))

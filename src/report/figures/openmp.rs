@@ -8,7 +8,10 @@ const OPENMP: &str = "openmp-dynamic";
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let yardstick = yardstick(results, "openmp", OPENMP)?;
     let schedules = results.by_schedule();
-    let Some((own, own_rows)) = schedules.iter().find(|(schedule, _)| schedule.key.strategy == yardstick) else {
+    // With as many threads as there are processors for, where it was run with several numbers of them.
+    let own = schedules.iter().filter(|(schedule, _)| schedule.key.strategy == yardstick);
+    let place = |schedule: &Schedule| (schedule.key.threads <= results.processors(), schedule.key.threads);
+    let Some((own, own_rows)) = own.max_by_key(|(schedule, _)| place(schedule)) else {
         return Ok(vec![Block::finding(format!("{yardstick} was not run, so there is nothing to compare with."))]);
     };
     let mut ratios = Vec::new();
@@ -26,7 +29,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.guides = vec![(1.0, yardstick.clone())];
     plot.subtitle = results.workload();
     let intervals = ratios.iter().map(|(_, ratio)| ratio.interval);
-    plot.caption = format!("Median of ratios within a repetition. Bars: {}.", confidence(intervals));
+    plot.caption = format!(
+        "{} each. Median of ratios within a repetition. Bars: {}.",
+        counted(own.key.threads, "thread"),
+        confidence(intervals)
+    );
     let best = ratios.iter().find(|(schedule, _)| !schedule.name.starts_with("openmp"));
     let finding = best.map(|(best, ratio)| {
         Block::finding(format!(

@@ -33,10 +33,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let rows = all.iter().map(|contender| PlotRow::new(name(contender), dots(contender))).collect();
     let plot = DotPlot::new("What each accuracy costs", Axis::log("seconds of rendering"), rows);
     let mut plot = plot.grouped(goals.iter().map(|goal| format!("RMSE {}", goal.0)));
-    plot.subtitle = format!("{}, {}", results.size(), results.machine_line());
-    plot.caption =
-        "Bars: 95 % interval of error and time together. Prices beyond the largest number of samples are extrapolated."
-            .to_string();
+    plot.subtitle = results.workload();
+    plot.caption = format!("Bars: 95 % interval of error and time together. {}", extrapolated(&all, &goals));
     let checks: Vec<(&Contender, Option<Check>)> =
         all.iter().map(|contender| (*contender, contender.check())).collect();
     let mut blocks = vec![Block::figure("price-list", plot)];
@@ -48,6 +46,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("variance of a sample", Significant(3), |(contender, _)| variance(contender))
         .told("s per sample and pixel", Significant(3), |(own, _)| Told::from(own.renderer.seconds_per_spp))
         .told("efficiency, 1 / (variance x s)", Significant(3), |(own, _)| own.renderer.efficiency().map(Told::from));
+    table = table.number("least RMSE that was measured", Significant(3), |(contender, _)| least_error(contender));
     for goal in &goals {
         let head = format!("seconds to an RMSE of {}", goal.0);
         table = table.told(head, Significant(3), |(contender, _)| seconds(contender, *goal).map(Told::from));
@@ -58,6 +57,24 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("seconds, measured / predicted", Decimals(3), |(_, found)| found.as_ref().map(|check| check.seconds));
     blocks.push(table.end());
     Ok(blocks)
+}
+
+/// The RMSE at the most samples that were measured.
+fn least_error(contender: &Contender) -> Option<f64> {
+    contender.points.last().map(|point| point.rmse)
+}
+
+/// How many of the prices lie beyond what was measured, in words.
+fn extrapolated(all: &[&Contender], goals: &[Positive]) -> String {
+    let prices = || all.iter().flat_map(|contender| goals.iter().map(move |goal| (contender, goal.0)));
+    let beyond = prices().filter(|(contender, goal)| least_error(contender).is_some_and(|least| *goal < least)).count();
+    let count = prices().count();
+    match beyond {
+        0 => "Every price lies within the measured samples.".to_string(),
+        _ => format!(
+            "Extrapolated beyond the measured samples: {beyond} of {count} prices, those below the least measured RMSE (table)."
+        ),
+    }
 }
 
 fn variance(contender: &Contender) -> Option<f64> {

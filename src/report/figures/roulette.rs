@@ -11,10 +11,14 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         contenders.iter().filter_map(|contender| {
             let image = ImageKey { roulette: yardstick.clone(), ..contender.image.clone() };
             let same = |other: &&Contender| other.image == image && other.schedule == contender.schedule;
-            Some((contender, gain(contender, contenders.iter().find(same)?)?))
+            let other = contenders.iter().find(same)?;
+            // Against itself it is 1, and nothing is uncertain about that.
+            let gain =
+                if std::ptr::eq(contender, other) { Told::of(1.0, None) } else { Told::from(gain(contender, other)?) };
+            Some((contender, gain))
         })
     });
-    let mut compared: Vec<(&Contender, Estimate)> = compared.collect();
+    let mut compared: Vec<(&Contender, Told)> = compared.collect();
     compared.sort_by(|(a, _), (b, _)| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
     let Some((best, most)) = first_largest(&compared) else {
         let text = format!("There is no comparison of rules: it takes rows with {yardstick}.");
@@ -24,22 +28,27 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         // A constant chance begins at the first vertex: its number is no vertex.
         let (rule, start) = contender.image.roulette.split_once(':').filter(|(rule, _)| *rule != "constant")?;
         let name = format!("{}, {}, by {rule}", contender.image.scene, contender.image.estimator);
-        Some((name, Told::from(*gain).above(start.parse().ok()?)))
+        Some((name, gain.above(start.parse().ok()?)))
     }));
+    let starts: Vec<f64> = lines.values().flatten().map(|point: &Point| point.x).collect();
     let mut chart = LineChart::new(
         "Efficiency by the start of Russian roulette",
-        Axis::linear("vertices before roulette begins"),
+        Axis::linear("vertices before roulette begins").ticks_at(starts),
         Axis::linear(format!("efficiency / that of {yardstick}")).including([1.0]),
         Series::by_name(lines),
     );
     chart.subtitle = results.workload();
     chart.caption = "Efficiency: 1 / (variance of a sample x its seconds). Bars: 95 % interval over seeds.".to_string();
     chart.dodge = 6.0;
-    let Interval { low, high, .. } = most.interval;
-    let finding = format!(
-        "Of the rules that were tried, {} is the most efficient: {:.2} ({low:.2} to {high:.2}) times {yardstick}.",
-        best.name, most.value
-    );
+    let finding = match most.interval {
+        Some(interval) => format!(
+            "Of the rules that were tried, {} is the most efficient: {:.2} times {yardstick}, {}.",
+            best.name,
+            most.value,
+            with_level(&interval, 2)
+        ),
+        None => format!("Of the rules that were tried, none was more efficient than {yardstick}."),
+    };
     // Over all schedules of the image.
     let totals = results.by(|row| (&row.scene, &row.estimator, &row.roulette));
     let rays = |contender: &Contender| {
@@ -58,7 +67,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .number("variance of a sample", Decimals(4), |(contender, _)| variance(contender))
         .number("s per sample and pixel", Decimals(6), |(contender, _)| contender.renderer.seconds_per_spp.value)
         .number("rays per sample", Decimals(2), |(contender, _)| rays(contender))
-        .told("efficiency", Decimals(3), |(_, gain)| Told::from(*gain))
+        .told("efficiency", Decimals(3), |(_, gain)| *gain)
         .end();
     Ok(vec![Block::figure("roulette", chart), Block::finding(finding), table])
 }
@@ -71,7 +80,7 @@ fn place(contender: &Contender) -> (&str, &str, &str, f64) {
 }
 
 /// The first of the largest gains.
-fn first_largest<'a>(compared: &[(&'a Contender, Estimate)]) -> Option<(&'a Contender, Estimate)> {
+fn first_largest<'a>(compared: &[(&'a Contender, Told)]) -> Option<(&'a Contender, Told)> {
     compared.iter().rev().max_by(|a, b| a.1.value.total_cmp(&b.1.value)).copied()
 }
 

@@ -6,6 +6,7 @@ use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_estimate};
 use crate::analysis::superlinear::{Evidence, cause};
 use crate::measure::Doubts;
+use crate::report::schedule::is_of_ranks;
 use crate::report::serial::Serial;
 
 /// More lines than this cannot be told apart in one chart: strategies become named rows instead.
@@ -22,13 +23,17 @@ struct Speedups<'a> {
     /// Numbers of threads that were asked for. A strategy with a thread for each job has its own, which is no place on an axis.
     asked: BTreeSet<usize>,
     processors: usize,
+    /// Columns and rows of most images.
+    usual_size: Option<(u32, u32)>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let serial = results.serial()?;
     let asked = results.rows().filter(|row| row.threads != row.jobs).map(|row| row.threads).collect();
     let all = serial.speedups();
-    let found = Speedups { results, serial, all, asked, processors: results.processors() };
+    let sizes = results.by(|row| (row.width, row.height)).into_iter();
+    let usual_size = sizes.max_by_key(|(_, rows)| rows.len()).map(|(size, _)| size);
+    let found = Speedups { results, serial, all, asked, processors: results.processors(), usual_size };
     let mut blocks = found.figures();
     blocks.extend(found.best()?);
     blocks.extend(found.thread_per_row());
@@ -107,8 +112,22 @@ impl Speedups<'_> {
         }
     }
 
-    /// The strategy; with its pieces where there are several.
+    /// The confidence of the intervals that are drawn.
+    fn confidence(&self) -> String {
+        confidence(self.all.iter().map(|(_, speedup)| speedup.interval))
+    }
+
+    /// The strategy; with its pieces where there are several, and with the image's size where it is not that of most rows.
     fn line(&self, schedule: &Schedule) -> String {
+        let name = self.with_pieces(schedule);
+        let own: BTreeSet<(u32, u32)> = self.serial.rows(schedule).iter().map(|row| (row.width, row.height)).collect();
+        match own.first().filter(|size| own.len() == 1 && Some(**size) != self.usual_size) {
+            Some((width, height)) => format!("{name}, {width}x{height}"),
+            None => name,
+        }
+    }
+
+    fn with_pieces(&self, schedule: &Schedule) -> String {
         let pieces = self.all.iter().map(|(schedule, _)| &schedule.key.decomposition).collect::<BTreeSet<_>>();
         // One decomposition, and the rows of report A beside it, need no name.
         if pieces.len() > 2 {
@@ -132,7 +151,12 @@ impl Speedups<'_> {
         // By the most threads, which is what a reader looks for.
         let at_most = |row: &PlotRow| row.dots.iter().flatten().next_back().map_or(0.0, |dot| dot.value);
         rows.sort_by(|a, b| at_most(b).total_cmp(&at_most(a)));
-        let name = |threads: &usize| if *threads == 1 { "1 thread".into() } else { format!("{threads} threads") };
+        let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
+            ["thread or rank", "threads or ranks"]
+        } else {
+            ["thread", "threads"]
+        };
+        let name = |threads: &usize| format!("{threads} {}", workers[usize::from(*threads != 1)]);
         let mut names: Vec<String> = threads.iter().map(name).collect();
         if rows.iter().any(|row| row.dots[threads.len()].is_some()) {
             names.push("a thread per job".to_string());
@@ -140,7 +164,7 @@ impl Speedups<'_> {
         let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
         plot.guides = vec![(1.0, guide.to_string())];
         plot.subtitle = self.results.workload();
-        plot.caption = "Median of ratios within a repetition. Bars: distribution-free interval.".to_string();
+        plot.caption = format!("Median of ratios within a repetition. Bars: {}.", self.confidence());
         plot
     }
 
@@ -172,7 +196,7 @@ impl Speedups<'_> {
         let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
         let has_level = self.all.iter().any(|(schedule, _)| self.has_a_thread_per_job(schedule));
         let level = if has_level { " Level: a thread for each job, whatever is asked for." } else { "" };
-        let caption = &format!("Median of ratios within a repetition. Bars: distribution-free interval.{level}");
+        let caption = &format!("Median of ratios within a repetition. Bars: {}.{level}", self.confidence());
         let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
         let ticks: BTreeSet<usize> =
             chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
@@ -207,7 +231,7 @@ impl Speedups<'_> {
     fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
         let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
         let caption =
-            "Processors in use: the smaller of threads and processors. Bars: distribution-free interval of the median.";
+            &format!("Processors in use: the smaller of threads and processors. Bars: {}.", self.confidence());
         let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
         chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
         chart

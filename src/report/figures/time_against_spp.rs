@@ -22,6 +22,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             continue;
         }
         let pairs: Vec<(f64, f64)> = points.iter().map(|point| (point.x, point.y)).collect();
+        // A line through two points fits whatever they are.
+        if pairs.len() < 3 {
+            series.push(Series::new(name, Look::nth(series.len()), points).scattered());
+            continue;
+        }
         if let (Some(fit), Some(power)) = (line(&pairs, LEVEL), log_log(&pairs, LEVEL)) {
             let (slope, interval) = (fit.slope.value, fit.slope.interval);
             let curve = Curve::Line { intercept: fit.intercept.value, slope };

@@ -26,7 +26,7 @@ struct Lit<V: Float> {
 /// its length.
 pub(super) struct ArrivedAtLight<'a, V: Float> {
     pub(super) kernel: &'a Lanes,
-    pub(super) packet: &'a Packet<V>,
+    pub(super) packet: &'a Packet<'a, V>,
     pub(super) at: &'a Arrival<V>,
     pub(super) lit: V::Mask,
 }
@@ -43,7 +43,7 @@ impl<V: Float> Apart for ArrivedAtLight<'_, V> {
 impl Lanes {
     /// The share of emission that counts where rays arrived whose start aimed at light, too.
     #[inline(always)]
-    fn share_of_arrival<V: Float>(&self, packet: &Packet<V>, at: &Arrival<V>, lit: V::Mask) -> V {
+    fn share_of_arrival<V: Float>(&self, packet: &Packet<'_, V>, at: &Arrival<V>, lit: V::Mask) -> V {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let lanes = lit & zero.le(packet.density);
         if !lanes.any() {
@@ -69,7 +69,7 @@ impl Lanes {
     #[inline(always)]
     pub(super) fn aim<V: Float>(
         &self,
-        packet: &mut Packet<V>,
+        packet: &mut Packet<'_, V>,
         at: &Arrival<V>,
         vertex: &Vertex<V>,
         ended: u32,
@@ -108,7 +108,7 @@ impl Lanes {
     #[inline(always)]
     fn scattered<V: Float>(
         &self,
-        packet: &Packet<V>,
+        packet: &Packet<'_, V>,
         at: &Arrival<V>,
         vertex: &Vertex<V>,
         wi: Vec3<V>,

@@ -23,9 +23,9 @@ use crate::kernel::in_lanes::InLanes;
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
-use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level};
+use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level, widths_of};
 use filter::Filter;
-use packet::{LanesOf, NextPart, Packet};
+use packet::{EMPTY_STACK, LanesOf, NextPart, Packet, Stack};
 use singles::Singles;
 use std::sync::Arc;
 use supply::Supply;
@@ -92,7 +92,7 @@ impl Lanes {
 
     /// Gives back the samples whose paths have ended; paths that have another part go on with that.
     #[inline(always)]
-    fn retire<V: Float, const MATT: bool>(&self, packet: &mut Packet<V>, ended: u32, window: &mut Window<'_>) {
+    fn retire<V: Float, const MATT: bool>(&self, packet: &mut Packet<'_, V>, ended: u32, window: &mut Window<'_>) {
         let [mut r, mut g, mut b] = [[V::One::default(); MOST_LANES]; 3];
         packet.collected.r.store(&mut r);
         packet.collected.g.store(&mut g);
@@ -107,10 +107,15 @@ impl Lanes {
     }
 
     #[inline(always)]
-    fn follow<V: Float, const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+    fn follow<V: Float, const AIMS: bool, const MATT: bool>(
+        &self,
+        piece: &Piece,
+        waiting: &mut [Stack],
+        out: &mut TileBuffer,
+    ) -> Counts {
         let mut counts = Counts::default();
         let mut window = Window::over(piece, out);
-        let mut packet = Packet::<V>::new(self.course.splits > 0);
+        let mut packet = Packet::<V>::new(waiting);
         let mut supply = Supply::<V>::new();
         // Lanes whose part of a path has ended, and that still hold it.
         let mut ended = 0_u32;
@@ -141,6 +146,7 @@ const fn held<V: Float>() -> u32 {
 struct Render<'a, const AIMS: bool, const MATT: bool> {
     kernel: &'a Lanes,
     piece: &'a Piece,
+    waiting: &'a mut [Stack],
     out: &'a mut TileBuffer,
 }
 
@@ -149,13 +155,15 @@ impl<const AIMS: bool, const MATT: bool> Work for Render<'_, AIMS, MATT> {
 
     #[inline(always)]
     fn run<V: Float>(self) -> Counts {
-        self.kernel.follow::<V, AIMS, MATT>(self.piece, self.out)
+        self.kernel.follow::<V, AIMS, MATT>(self.piece, self.waiting, self.out)
     }
 }
 
 impl Lanes {
     fn render_by<const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        let work = Render::<AIMS, MATT> { kernel: self, piece, out };
+        let splitting = if self.course.splits > 0 { widths_of(self.level, self.precision)[0] } else { 0 };
+        let mut waiting = vec![EMPTY_STACK; splitting];
+        let work = Render::<AIMS, MATT> { kernel: self, piece, waiting: &mut waiting, out };
         on_level(self.level, self.precision, work)
     }
 }

@@ -35,7 +35,7 @@ impl Lanes {
         let Ray { origin, direction } = rays.ray;
         let mut all = AllRays { numbers: [[V::One::default(); MOST_LANES]; 8] };
         let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from, rays.own_root];
-        for (numbers, vector) in all.numbers.iter_mut().zip(vectors) {
+        for (numbers, vector) in all.numbers.iter_mut().zip(&vectors) {
             vector.store(numbers);
         }
         let [mut nearest, mut primitive] = [[V::One::default(); MOST_LANES]; 2];

@@ -39,8 +39,14 @@ const NO_PART: Part = Part {
     branch: 0,
 };
 
+/// The parts of a path that wait.
+pub(super) type Stack = [Part; LARGEST_STACK];
+
+/// None of them.
+pub(super) const EMPTY_STACK: Stack = [NO_PART; LARGEST_STACK];
+
 /// The paths.
-pub(super) struct Packet<V: Float> {
+pub(super) struct Packet<'a, V: Float> {
     /// The lanes in which there is one.
     pub(super) alive: u32,
     pub(super) rays: Rays<V>,
@@ -53,14 +59,15 @@ pub(super) struct Packet<V: Float> {
     pub(super) density: V,
     /// By what the sample is given back.
     pub(super) slots: [u64; MOST_LANES],
-    /// None where no path splits: they take more room than everything else here.
-    waiting: Vec<[Part; LARGEST_STACK]>,
+    /// None where no path splits: they take more room than everything else here. Borrowed, because every call in the scope of what has to be dropped
+    /// ends a block for the compiler.
+    waiting: &'a mut [Stack],
     depth: [u8; MOST_LANES],
 }
 
-impl<V: Float> Packet<V> {
+impl<'a, V: Float> Packet<'a, V> {
     #[inline(always)]
-    pub(super) fn new(splits: bool) -> Self {
+    pub(super) fn new(waiting: &'a mut [Stack]) -> Self {
         let zero = V::splat(0.0);
         let (vector, colour) = (Vec3::new(zero, zero, zero), Rgb { r: zero, g: zero, b: zero });
         let none = V::Bits::splat(0);
@@ -78,7 +85,7 @@ impl<V: Float> Packet<V> {
             words: PathWords { path: none, sample: none, joined: [none; 2] },
             density: V::splat(-1.0),
             slots: [0; MOST_LANES],
-            waiting: if splits { vec![[NO_PART; LARGEST_STACK]; V::LANES] } else { Vec::new() },
+            waiting,
             depth: [0; MOST_LANES],
         }
     }
@@ -112,12 +119,12 @@ impl<V: Float> Packet<V> {
 }
 
 /// A lane whose part of a path has ended, in a packet of paths that split. A function of its own for the sake of compilation, see [`super::supply`].
-pub(super) struct NextPart<'a, V: Float> {
-    pub(super) packet: &'a mut Packet<V>,
+pub(super) struct NextPart<'a, 'w, V: Float> {
+    pub(super) packet: &'a mut Packet<'w, V>,
     pub(super) lane: usize,
 }
 
-impl<V: Float> Apart for NextPart<'_, V> {
+impl<V: Float> Apart for NextPart<'_, '_, V> {
     type Output = bool;
 
     #[inline(always)]

@@ -63,7 +63,7 @@ impl Lanes {
     #[inline(always)]
     pub(super) fn refill<V: Float>(
         &self,
-        packet: &mut Packet<V>,
+        packet: &mut Packet<'_, V>,
         supply: &mut Supply<V>,
         window: &mut Window<'_>,
         counts: &mut Counts,
@@ -92,8 +92,8 @@ impl Lanes {
                 let (at, sample) = (supply.count + k, first.sample + k as u32);
                 let places = self.sampler.joined(SampleKey { seed: self.seed, pixel, sample });
                 let all = [first.x.into(), first.y.into(), pixel.into(), sample.into(), places[0], places[1]];
-                for (words, word) in supply.keys.iter_mut().zip(all) {
-                    words[at] = word;
+                for (words, word) in supply.keys.iter_mut().zip(&all) {
+                    words[at] = *word;
                 }
             }
             supply.count += count;
@@ -121,7 +121,7 @@ impl Lanes {
 
     /// Puts rays that wait into free lanes, the first into the lowest. The lanes that got one.
     #[inline(always)]
-    fn take<V: Float>(&self, packet: &mut Packet<V>, supply: &mut Supply<V>, free: u32) -> u32 {
+    fn take<V: Float>(&self, packet: &mut Packet<'_, V>, supply: &mut Supply<V>, free: u32) -> u32 {
         let mut taken = free;
         while taken.count_ones() as usize > supply.count {
             taken &= !(1 << (u32::BITS - 1 - taken.leading_zeros()));

@@ -65,7 +65,7 @@ impl Lanes {
     #[inline(always)]
     pub(super) fn advance<V: Float, const AIMS: bool, const MATT: bool>(
         &self,
-        packet: &mut Packet<V>,
+        packet: &mut Packet<'_, V>,
         counts: &mut Counts,
     ) -> u32 {
         let number = packet.vertices.plus(V::Bits::splat(1));
@@ -118,7 +118,7 @@ impl Lanes {
 
     /// Rays that meet nothing find the background.
     #[inline(always)]
-    fn escape<V: Float>(&self, packet: &mut Packet<V>, escaped: u32, counts: &mut Counts) {
+    fn escape<V: Float>(&self, packet: &mut Packet<'_, V>, escaped: u32, counts: &mut Counts) {
         counts.escaped += u64::from(escaped.count_ones());
         if let Some(background) = self.scene.background {
             let found = packet.collected + packet.throughput * Rgb::splat(background);
@@ -127,7 +127,7 @@ impl Lanes {
     }
 
     #[inline(always)]
-    fn arrive<V: Float>(&self, packet: &Packet<V>, lanes: V::Mask, t: V, primitive: V) -> Arrival<V> {
+    fn arrive<V: Float>(&self, packet: &Packet<'_, V>, lanes: V::Mask, t: V, primitive: V) -> Arrival<V> {
         let point = packet.rays.ray.at(t);
         let [x, y, z, round] = V::rows(&self.tables.surfaces, primitive);
         let anchor = Vec3::new(x, y, z);
@@ -148,7 +148,7 @@ impl Lanes {
 
     /// The lanes that chance ends.
     #[inline(always)]
-    fn roulette<V: Float>(&self, packet: &mut Packet<V>, lanes: V::Mask, vertex: &Vertex<V>) -> u32 {
+    fn roulette<V: Float>(&self, packet: &mut Packet<'_, V>, lanes: V::Mask, vertex: &Vertex<V>) -> u32 {
         let begun = lanes & V::Bits::splat(u64::from(self.course.roulette.after())).less(vertex.number);
         if !begun.any() {
             return 0;
@@ -164,7 +164,7 @@ impl Lanes {
     #[inline(always)]
     fn scatter<V: Float, const AIMS: bool, const MATT: bool>(
         &self,
-        packet: &Packet<V>,
+        packet: &Packet<'_, V>,
         at: &Arrival<V>,
         vertex: &Vertex<V>,
         numbers: [V; 2],
@@ -325,7 +325,7 @@ impl<T: Number> AllScattered<T> {
 /// Sets out in the new directions.
 #[inline(always)]
 fn leave<V: Float, const MATT: bool>(
-    packet: &mut Packet<V>,
+    packet: &mut Packet<'_, V>,
     at: &Arrival<V>,
     vertices: V::Bits,
     scattered: &Scattered<V>,
@@ -355,15 +355,15 @@ fn leave<V: Float, const MATT: bool>(
 }
 
 /// The refracted parts of paths that split, which are put aside.
-struct PutAside<'a, V: Float> {
-    packet: &'a mut Packet<V>,
+struct PutAside<'a, 'w, V: Float> {
+    packet: &'a mut Packet<'w, V>,
     at: &'a Arrival<V>,
     vertices: V::Bits,
     split: &'a Split<V>,
     lanes: u32,
 }
 
-impl<V: Float> Apart for PutAside<'_, V> {
+impl<V: Float> Apart for PutAside<'_, '_, V> {
     type Output = ();
 
     #[inline(always)]

@@ -71,7 +71,7 @@ impl AllCoarse {
         let padding = V::splat(padding(f32::MANTISSA_DIGITS)) * x.abs().larger(y.abs()).larger(z.abs());
         let mut all = Self { rows: [[0.0; MOST_LANES]; ROWS] };
         let axes = [(x, ray.direction.x), (y, ray.direction.y), (z, ray.direction.z)];
-        for (axis, (origin, direction)) in axes.into_iter().enumerate() {
+        for (axis, &(origin, direction)) in axes.iter().enumerate() {
             let outwards = V::select(direction.lt(V::splat(0.0)), -padding, padding);
             // Adding zero turns minus zero into zero, or the near and far faces would change places.
             let inverse = V::splat(1.0) / (direction + V::splat(0.0));
@@ -89,8 +89,8 @@ impl AllCoarse {
     fn put<V: Float>(&mut self, row: usize, values: V) {
         let mut numbers = [V::One::default(); MOST_LANES];
         values.store(&mut numbers);
-        for (to, number) in self.rows[row].iter_mut().zip(numbers).take(V::LANES) {
-            let number: f64 = number.into();
+        for (to, number) in self.rows[row].iter_mut().zip(&numbers).take(V::LANES) {
+            let number: f64 = (*number).into();
             *to = number as f32;
         }
     }

@@ -107,9 +107,11 @@ impl Wide {
         let all = AllCoarse::of(&rays.ray, self.blocks.scale);
         let mut rows = [[V::One::default(); MOST_LANES]; 9];
         let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
-        for (row, vector) in rows.iter_mut().zip(vectors.into_iter().chain([found.nearest, found.primitive])) {
+        for (row, vector) in rows.iter_mut().zip(&vectors) {
             vector.store(row);
         }
+        found.nearest.store(&mut rows[7]);
+        found.primitive.store(&mut rows[8]);
         let mut tests = Tests::default();
         let mut waiting = Waiting::new();
         for lane in LanesOf(wanted) {
