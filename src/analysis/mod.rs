@@ -6,6 +6,7 @@
 pub mod aa_test;
 pub mod balance;
 pub mod bootstrap;
+pub mod confidence_sequence;
 pub mod fit;
 pub mod interval;
 pub mod jackknife;

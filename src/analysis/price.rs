@@ -2,7 +2,11 @@
 //! one.
 //!
 //! Independent samples have a squared error of v / n after n samples, so a goal e takes n = v / e^2 samples and t v / e^2 seconds, and half
-//! of it four times that. Other samplers are better than that from some number on; their exponent is taken from the last octaves of the curve.
+//! of it four times that. Other samplers are better than that as long as what they integrate is smooth (A. B. Owen, "Scrambled
+//! net variance for integrals of smooth functions", 1997); edges and many dimensions bring the exponent back to about 1 (Z. He and X. Wang, "On the
+//! convergence rate of randomized quasi-Monte Carlo for discontinuous functions", 2015). A curve does not tell when. So a price beyond its last point is
+//! computed with the exponent of the last octaves, with that of independent samples and with their mean; the last one is the price, and the interval
+//! holds all three.
 
 use serde::Serialize;
 
@@ -16,8 +20,29 @@ use super::jackknife::{Curve, SeedCurves};
 pub enum Law {
     /// As 1/n: samples that are independent of each other.
     Independent,
-    /// By the exponent of the last octaves; inside the curve by the points to either side.
+    /// By the mean of the exponent of the last octaves and that of independent samples; inside the curve by the points to either side.
     Fitted,
+}
+
+/// What becomes of the exponent of the last octaves beyond them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Beyond {
+    Kept,
+    Between,
+    Lost,
+}
+
+impl Beyond {
+    const ALL: [Self; 3] = [Self::Kept, Self::Between, Self::Lost];
+
+    /// The slope of ln MSE over ln spp.
+    fn slope(self, fitted: f64) -> f64 {
+        match self {
+            Self::Kept => fitted,
+            Self::Between => 0.5 * (fitted - 1.0),
+            Self::Lost => -1.0,
+        }
+    }
 }
 
 /// Octaves at the end of a curve that say how it goes on.
@@ -26,33 +51,44 @@ const LAST_OCTAVES: f64 = 16.0;
 impl Law {
     /// Samples per pixel at which the curve has that RMSE.
     pub fn spp(self, curve: &Curve, rmse: f64) -> Option<f64> {
+        self.spp_if(curve, rmse, Beyond::Between)
+    }
+
+    fn spp_if(self, curve: &Curve, rmse: f64, beyond: Beyond) -> Option<f64> {
         let (points, goal) = (logarithms(curve)?, libm::log(rmse * rmse));
-        // A curve that does not fall never gets there.
-        let line = self.line(&points, |&(_, mse)| mse <= goal).filter(|line| line.slope < 0.0)?;
+        let line = self.line(&points, |&(_, mse)| mse <= goal, beyond)?;
         Some(libm::exp(line.x + (goal - line.y) / line.slope)).filter(|spp| spp.is_finite())
     }
 
     /// The RMSE that the curve has after so many samples per pixel.
     pub fn rmse(self, curve: &Curve, spp: f64) -> Option<f64> {
+        self.rmse_if(curve, spp, Beyond::Between)
+    }
+
+    fn rmse_if(self, curve: &Curve, spp: f64, beyond: Beyond) -> Option<f64> {
         let (points, place) = (logarithms(curve)?, libm::log(spp));
-        let line = self.line(&points, |&(x, _)| x >= place)?;
+        let line = self.line(&points, |&(x, _)| x >= place, beyond)?;
         Some(libm::exp(0.5 * (line.y + (place - line.x) * line.slope))).filter(|rmse| rmse.is_finite())
     }
 
-    /// The straight line that stands for the curve around the first point that is `beyond`, or behind the last one.
-    fn line(self, points: &[(f64, f64)], beyond: impl Fn(&(f64, f64)) -> bool) -> Option<Tangent> {
+    /// The straight line that stands for the curve around the first point that is `behind`, or beyond the last one. `None` for a curve that does not
+    /// fall there: it never gets anywhere.
+    fn line(self, points: &[(f64, f64)], behind: impl Fn(&(f64, f64)) -> bool, beyond: Beyond) -> Option<Tangent> {
         let &(x, y) = points.last()?;
         if self == Self::Independent {
             return Some(Tangent { x, y, slope: -1.0 });
         }
-        if let Some(at) = points.iter().position(beyond) {
+        if let Some(at) = points.iter().position(behind) {
             let [before, after] = [points.get(at.max(1) - 1)?, points.get(at.max(1))?];
-            return Some(Tangent { x: after.0, y: after.1, slope: (after.1 - before.1) / (after.0 - before.0) });
+            let slope = (after.1 - before.1) / (after.0 - before.0);
+            return Some(Tangent { x: after.0, y: after.1, slope }).filter(|line| line.slope < 0.0);
         }
         let from = x - libm::log(LAST_OCTAVES);
         let last: Vec<(f64, f64)> = points.iter().copied().filter(|point| point.0 >= from - 1e-9).collect();
         let sums = Sums::of(&last)?;
-        Some(Tangent { x: 0.0, y: sums.intercept(), slope: sums.slope() })
+        let fitted = sums.slope();
+        let end = sums.intercept() + fitted * x;
+        (fitted < 0.0).then(|| Tangent { x, y: end, slope: beyond.slope(fitted) })
     }
 }
 
@@ -90,8 +126,18 @@ impl Renderer {
     /// is fitted, or for curves that do not fall.
     pub fn price(&self, rmse: f64) -> Option<Price> {
         let level = self.seconds_per_spp.interval.level;
-        let spp = self.curves.positive_estimate(level, |curve| self.law.spp(curve, rmse))?;
+        let spp = self.widened(level, |curve, beyond| self.law.spp_if(curve, rmse, beyond))?;
         Some(Price { rmse, spp, seconds: spp.times(&self.seconds_per_spp)? })
+    }
+
+    /// A number of the curve, and an interval that holds those of every exponent there may be beyond its end.
+    fn widened(&self, level: f64, of: impl Fn(&Curve, Beyond) -> Option<f64>) -> Option<Estimate> {
+        let each = Beyond::ALL.map(|beyond| self.curves.positive_estimate(level, |curve| of(curve, beyond)));
+        let [Some(kept), Some(between), Some(lost)] = each else { return None };
+        let intervals = [kept.interval, between.interval, lost.interval];
+        let low = intervals.iter().map(|interval| interval.low).fold(f64::INFINITY, f64::min);
+        let high = intervals.iter().map(|interval| interval.high).fold(0.0, f64::max);
+        Some(Estimate { value: between.value, interval: Interval::between(low, high, level)? })
     }
 
     /// The RMSE that so many seconds buy.
@@ -99,7 +145,7 @@ impl Renderer {
         let time = &self.seconds_per_spp;
         let at = |per_spp: f64| self.law.rmse(self.curves.whole(), seconds / per_spp);
         let error =
-            self.curves.positive_estimate(time.interval.level, |curve| self.law.rmse(curve, seconds / time.value))?;
+            self.widened(time.interval.level, |curve, beyond| self.law.rmse_if(curve, seconds / time.value, beyond))?;
         // What the time of a sample is not known by moves the place on the curve.
         let middle = at(time.value)?;
         let shift =
@@ -145,8 +191,16 @@ mod tests {
             assert!((law.spp(&independent, 0.8).unwrap() - 6.25).abs() < 1e-9, "{law:?}, inside");
             assert!((law.rmse(&independent, 0.25).unwrap() - 4.0).abs() < 1e-9, "{law:?}, before the first");
         }
+        // Beyond 16 samples, where MSE = 4 n^-1.6 is 4 / 16^1.6: by that exponent, by -1 and by their mean, -1.3.
         let better = power(4.0, -1.6);
-        assert!((Law::Fitted.spp(&better, 0.1).unwrap() - libm::pow(400.0, 1.0 / 1.6)).abs() < 1e-8);
+        let missing = 400.0 / libm::pow(16.0, 1.6);
+        let expected = [(Beyond::Kept, 1.6), (Beyond::Between, 1.3), (Beyond::Lost, 1.0)];
+        for (beyond, exponent) in expected {
+            let spp = Law::Fitted.spp_if(&better, 0.1, beyond).unwrap();
+            assert!((spp / (16.0 * libm::pow(missing, 1.0 / exponent)) - 1.0).abs() < 1e-9, "{beyond:?}: {spp}");
+            assert!((Law::Fitted.rmse_if(&better, spp, beyond).unwrap() - 0.1).abs() < 1e-12, "{beyond:?}");
+        }
+        assert!((Law::Fitted.spp_if(&better, 0.1, Beyond::Kept).unwrap() - libm::pow(400.0, 1.0 / 1.6)).abs() < 1e-8);
         // Only the last octaves count: a first point that lies elsewhere changes nothing.
         let mut bent = better.clone();
         bent.insert(0, (0.5, 100.0));
@@ -167,6 +221,24 @@ mod tests {
         let after = renderer.rmse_after(8.0).unwrap();
         assert!((after.value - 0.1).abs() < 1e-3 && after.interval.contains(0.1), "{after:?}");
         assert!((renderer.efficiency().unwrap().value - 1.0 / (4.0 * 0.02)).abs() < 0.01);
+    }
+
+    /// The error goes on by the exponent of the curve, or by 1/n from its end on: the interval holds both, and inside the curve no more than the seeds ask
+    /// for.
+    #[test]
+    fn an_exponent_that_may_end_widens_the_price() {
+        let of_scales = |scales: [f64; 3]| SeedCurves::of_errors(&scales.map(|scale| power(scale, -1.6))).unwrap();
+        let curves = of_scales([3.999, 4.0, 4.001]);
+        let renderer = Renderer { curves, law: Law::Fitted, seconds_per_spp: seconds(0.02, 0.0001) };
+        let spp = renderer.price(0.1).unwrap().spp;
+        let missing = 400.0 / libm::pow(16.0, 1.6);
+        let ends = [16.0 * libm::pow(missing, 1.0 / 1.6), 16.0 * missing];
+        assert!(spp.interval.contains(ends[0]) && spp.interval.contains(ends[1]), "{spp:?} {ends:?}");
+        assert!((spp.interval.low / ends[0] - 1.0).abs() < 0.01 && (spp.interval.high / ends[1] - 1.0).abs() < 0.01);
+        let inside = renderer.price(0.5).unwrap().spp.interval;
+        assert!(inside.high / inside.low < 1.01, "{inside:?}");
+        let after = renderer.rmse_after(spp.value * 0.02).unwrap();
+        assert!((after.value - 0.1).abs() < 1e-3 && after.interval.high / after.interval.low > 1.3, "{after:?}");
     }
 
     /// 2000 pilots of 8 seeds of 64 pixels of normal samples: the intervals hold the samples that it really takes as often as they say, and

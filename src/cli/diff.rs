@@ -3,8 +3,8 @@
 use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
-use crate::error::{Error, InputError, Result};
-use crate::experiment::{CellDiff, Change, Diff, Progress as _, diff};
+use crate::error::{Error, Result};
+use crate::experiment::{CellDiff, Change, Diff, Progress as _, diff, parse_share};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -39,20 +39,8 @@ enum Undecided {
     Fail,
 }
 
-/// A share as `0.03` or `3%`.
-fn share(text: &str) -> Result<f64> {
-    let parsed = match text.strip_suffix('%') {
-        Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
-        None => text.parse(),
-    };
-    parsed.ok().filter(|share| share.is_finite() && *share >= 0.0).ok_or_else(|| {
-        let error = InputError::new("fail-above", text, "is no share by which something may get slower");
-        error.allowed("numbers from 0, as 0.03 or 3%").into()
-    })
-}
-
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
-    let limit = share(&arguments.fail_above)?;
+    let limit = parse_share("fail-above", &arguments.fail_above)?;
     let found = diff(&arguments.old, &arguments.new, limit, arguments.across_machines)?;
     let count = |change: Change| found.cells.iter().filter(|cell| cell.change == change).count();
     let (slower, undecided) = (count(Change::Slower), count(Change::Undecided));
@@ -114,7 +102,7 @@ fn object(found: &Diff, limit: f64) -> Value {
         })
     });
     json!({
-        "limit": limit, "paired": found.paired, "doubted_rows": found.doubts.count(), "unmatched": found.unmatched,
+        "limit": limit, "paired": found.paired, "sequential": found.sequential, "doubted_rows": found.doubts.count(), "unmatched": found.unmatched,
         "cells": cells.collect::<Vec<_>>(),
     })
 }

@@ -1,24 +1,32 @@
 //! `pathmark price SCENE --rmse E,E`: what accuracies cost, and with `--pay` whether that was right.
 //!
+//! Samplers that spread the samples of a pixel are priced at powers of two times the fewest samples: between them nets are incomplete, and worse.
+//!
 //! `--estimator all` prices every unbiased estimator. For one estimator, small pilots of the others tell whether one of them would be sooner.
 
 use super::axes::Axes;
 use super::output::{counted, print, print_json};
 use super::progress::Talk;
-use crate::analysis::price::{Price, Renderer};
+use super::run::talk_of;
+use crate::analysis::price::{Law, Price, Renderer};
 use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{Error, InputError, Result};
-use crate::experiment::{Paid, Pilot, pay};
+use crate::experiment::{Paid, Pilot, Piloted, law_of, pay};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{LARGEST_SEED, LARGEST_SPP, Settings};
+use crate::measure::{Doubts, LARGEST_SEED, LARGEST_SPP, Settings};
 use clap::Args;
 use serde::Serialize;
 use std::sync::Arc;
 
 /// Confidence of the intervals.
 const LEVEL: f64 = 0.95;
+
+/// A larger share of the variance in one value of one pixel makes a price doubtful.
+const LARGEST_SHARE: f64 = 0.05;
+/// And so does a larger kurtosis: the relative error of a variance from n values is about the root of kurtosis / n.
+const LARGEST_KURTOSIS: f64 = 200.0;
 
 /// The word for all estimators.
 const ALL: &str = "all";
@@ -75,9 +83,37 @@ struct Row {
     /// Of the pilot's values.
     #[serde(flatten)]
     tail: Tail,
-    /// Fewest samples that make a whole image.
+    /// Seeds of the pilot whose times are in doubt.
+    doubted_seeds: usize,
     #[serde(skip)]
+    counts: Counts,
+}
+
+/// The numbers of samples that are rendered.
+#[derive(Clone, Copy, Default)]
+struct Counts {
+    /// Fewest samples that make a whole image.
     fewest: u32,
+    /// Only powers of two times that.
+    doubled: bool,
+}
+
+impl Counts {
+    fn of(settings: &Settings, fewest: u32) -> Self {
+        Self { fewest, doubled: law_of(&settings.spec.sampler) == Law::Fitted }
+    }
+
+    /// So many samples, rounded up.
+    fn whole(self, spp: f64) -> f64 {
+        let fewest = f64::from(self.fewest);
+        let times = (spp / fewest).ceil().max(1.0);
+        fewest * if self.doubled { libm::exp2(libm::ceil(libm::log2(times) - 1e-9)) } else { times }
+    }
+
+    /// By how much more than these samples are rendered, where they are doubled.
+    fn surplus(self, spp: f64) -> f64 {
+        if self.doubled { self.whole(spp) / spp } else { 1.0 }
+    }
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
@@ -94,12 +130,14 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let asked = arguments.axes.settings(lab, &arguments.scene, arguments.pilot_spp, arguments.seed)?;
     let is_comparison = asked.spec.estimator == ALL;
     let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
-    let (mut priced, mut texts) = (Vec::new(), Vec::new());
+    let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), Doubts::default());
     for settings in &each {
-        let (renderer, rows) = price(lab, arguments, settings, talk)?;
-        texts.push(table(settings, arguments, &renderer, &rows));
+        let (piloted, rows) = price(lab, arguments, settings, talk)?;
+        texts.push(table(settings, arguments, &piloted, &rows));
+        doubts.merge(&piloted.doubts);
         priced.extend(rows);
     }
+    talk_of(&doubts, talk);
     if arguments.json {
         return print_json(&priced);
     }
@@ -118,15 +156,17 @@ fn unbiased<'a>(lab: &'a Lab, settings: &'a Settings) -> impl Iterator<Item = Se
 }
 
 /// The pilot of an estimator, and the price of each goal.
-fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, talk: &Talk) -> Result<(Renderer, Vec<Row>)> {
-    let fewest = lab.prepare(settings.clone())?.fewest_spp();
+fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, talk: &Talk) -> Result<(Piloted, Vec<Row>)> {
+    let counts = Counts::of(settings, lab.prepare(settings.clone())?.fewest_spp());
     let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
-    let (renderer, tail) = pilot.run(lab, settings, LEVEL, talk)?;
+    let piloted = pilot.run(lab, settings, LEVEL, talk)?;
+    let (tail, doubted_seeds) = (piloted.tail, piloted.doubts.count());
     let mut rows = Vec::new();
     for &goal in &arguments.rmse {
-        rows.push(Row { tail, ..row(lab, arguments, settings, &renderer, goal, fewest, talk)? });
+        let row = row(lab, arguments, settings, &piloted.renderer, goal, counts, talk)?;
+        rows.push(Row { tail, doubted_seeds, ..row });
     }
-    Ok((renderer, rows))
+    Ok((piloted, rows))
 }
 
 /// The estimators by their seconds to each goal.
@@ -148,8 +188,8 @@ fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], talk: 
         let fewest = lab.prepare(Settings { spp: arguments.pilot_spp, ..other.clone() })?.fewest_spp();
         let spp = (arguments.pilot_spp / SHORTER).next_multiple_of(fewest).max(fewest);
         // A scene may leave too few samples for a law; then nothing is claimed.
-        let Ok((renderer, _)) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, talk) else { continue };
-        others.extend(renderer.price(first.rmse).map(|price| (other.spec.estimator, price.seconds)));
+        let Ok(found) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, talk) else { continue };
+        others.extend(found.renderer.price(first.rmse).map(|price| (other.spec.estimator, price.seconds)));
     }
     Ok(soonest(first, others))
 }
@@ -172,34 +212,24 @@ fn row(
     settings: &Settings,
     renderer: &Renderer,
     goal: f64,
-    fewest: u32,
+    counts: Counts,
     talk: &Talk,
 ) -> Result<Row> {
     let price = renderer.price(goal).ok_or_else(|| {
         Error::Check(format!("{goal} has no price: the error of {} does not fall with its samples", arguments.scene))
     })?;
-    let wanted = whole(price.spp.value, fewest);
+    let wanted = counts.whole(price.spp.value);
     if wanted > f64::from(LARGEST_SPP) {
         let problem = format!("takes {wanted:.0} samples per pixel, more than the {LARGEST_SPP} that there can be");
         return Err(InputError::new("rmse", goal.to_string(), problem).into());
     }
     let spp = wanted as u32;
     let paid = if arguments.pay { Some(pay(lab, settings, spp, talk)?) } else { None };
-    Ok(Row { estimator: settings.spec.estimator.clone(), ..Row::new(&price, (spp, fewest), renderer, paid) })
-}
-
-/// So many samples, rounded up to whole images.
-fn whole(spp: f64, fewest: u32) -> f64 {
-    (spp / f64::from(fewest)).ceil().max(1.0) * f64::from(fewest)
+    Ok(Row { estimator: settings.spec.estimator.clone(), ..Row::new(&price, (spp, counts), renderer, paid) })
 }
 
 impl Row {
-    /// The next whole image's samples.
-    fn whole(&self, spp: f64) -> f64 {
-        whole(spp, self.fewest)
-    }
-
-    fn new(price: &Price, (spp, fewest): (u32, u32), renderer: &Renderer, paid: Option<Paid>) -> Self {
+    fn new(price: &Price, (spp, counts): (u32, Counts), renderer: &Renderer, paid: Option<Paid>) -> Self {
         let Price { rmse, spp: Estimate { interval: samples, .. }, seconds } = *price;
         // What is rendered is rounded up, and so must be what it is compared with.
         let expected_s = f64::from(spp) * renderer.seconds_per_spp.value;
@@ -210,22 +240,24 @@ impl Row {
             spp,
             spp_low: samples.low,
             spp_high: samples.high,
-            seconds: seconds.value,
-            seconds_low: seconds.interval.low,
-            seconds_high: seconds.interval.high,
-            half_rmse_seconds: renderer.price(0.5 * rmse).map(|half| half.seconds.value),
+            seconds: seconds.value * counts.surplus(price.spp.value),
+            seconds_low: seconds.interval.low * counts.surplus(samples.low),
+            seconds_high: seconds.interval.high * counts.surplus(samples.high),
+            half_rmse_seconds: renderer
+                .price(0.5 * rmse)
+                .map(|half| half.seconds.value * counts.surplus(half.spp.value)),
             paid_rmse: paid.map(|paid| paid.rmse),
             paid_seconds: paid.map(|paid| paid.seconds),
             rmse_ratio: paid.zip(expected).map(|(paid, expected)| paid.rmse / expected),
             seconds_ratio: paid.map(|paid| paid.seconds / expected_s),
-            tail: Tail::default(),
-            fewest,
+            counts,
+            ..Self::default()
         }
     }
 }
 
-fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: &[Row]) -> String {
-    let spec = &settings.spec;
+fn table(settings: &Settings, arguments: &Arguments, piloted: &Piloted, rows: &[Row]) -> String {
+    let (spec, Piloted { renderer, tail, .. }) = (&settings.spec, piloted);
     let Interval { low, high, .. } = renderer.seconds_per_spp.interval;
     let mut lines = vec![
         format!(
@@ -245,17 +277,21 @@ fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: 
         ),
         format!(
             "one value of one pixel makes up at most {:.2} % of the variance, kurtosis {:.0}",
-            100.0 * rows.first().map_or(0.0, |row| row.tail.largest_share),
-            rows.first().map_or(0.0, |row| row.tail.kurtosis)
+            100.0 * tail.largest_share,
+            tail.kurtosis
         ),
         format!("{:>9}  {:>8}  {:>21}  {:>9}  {:>19}  {:>10}", "RMSE", "spp", "", "seconds", "", "half of it"),
     ];
+    if tail.largest_share > LARGEST_SHARE || tail.kurtosis > LARGEST_KURTOSIS {
+        let text = "doubtful: the variance rests on few values, and a pilot that met others would give another price; try a larger --pilot-spp";
+        lines.insert(lines.len() - 1, text.to_string());
+    }
     for row in rows {
         lines.push(format!(
             "{:>9}  {:>8}  {:>21}  {:>9.3}  {:>19}  {:>8}",
             row.rmse,
             row.spp,
-            format!("({} to {})", row.whole(row.spp_low), row.whole(row.spp_high)),
+            format!("({} to {})", row.counts.whole(row.spp_low), row.counts.whole(row.spp_high)),
             row.seconds,
             format!("({:.3} to {:.3})", row.seconds_low, row.seconds_high),
             row.half_rmse_seconds.map_or_else(|| "-".to_string(), |seconds| format!("{seconds:.2} s")),
@@ -276,6 +312,14 @@ fn table(settings: &Settings, arguments: &Arguments, renderer: &Renderer, rows: 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn samples_are_rounded_up_to_what_is_rendered() {
+        let [plain, doubled] = [false, true].map(|doubled| Counts { fewest: 4, doubled });
+        assert_eq!([0.1, 4.0, 5.0, 64.0, 65.0].map(|spp| plain.whole(spp)), [4.0, 4.0, 8.0, 64.0, 68.0]);
+        assert_eq!([0.1, 4.0, 5.0, 64.0, 65.0].map(|spp| doubled.whole(spp)), [4.0, 4.0, 8.0, 64.0, 128.0]);
+        assert_eq!((plain.surplus(65.0), doubled.surplus(80.0)), (1.0, 1.6));
+    }
 
     fn seconds(value: f64, low: f64, high: f64) -> Estimate {
         Estimate { value, interval: Interval { low, high, level: LEVEL } }

@@ -47,6 +47,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         against: None,
         shard: None,
         serial_for: None,
+        until: None,
+        rerun_doubtful: false,
         command: command_line(),
     };
     let mut definitions =

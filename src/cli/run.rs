@@ -4,7 +4,7 @@ use super::output::{lock_folder, print};
 use super::progress::Talk;
 use super::{command_line, profile, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard, folder_against};
+use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard, Until, folder_against};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -25,6 +25,9 @@ pub(super) struct Arguments {
     /// Go on with a sweep that was stopped
     #[arg(long)]
     resume: bool,
+    /// After all repetitions run those cells again of which rows are doubtful, once for each; keep both
+    #[arg(long)]
+    rerun_doubtful: bool,
     /// How often each cell is run [default: what the experiment says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repetitions: Option<u32>,
@@ -43,6 +46,13 @@ pub(super) struct Arguments {
     /// compares the two
     #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
     against: Option<PathBuf>,
+    /// With --against: go on until each cell is known to be slower by more than this, faster, or within it, and leave out
+    /// the cells that are; `pathmark diff` judges the rows by intervals that allow that
+    #[arg(long, value_name = "SHARE", requires = "against", allow_hyphen_values = true)]
+    until: Option<String>,
+    /// With --until: begin no repetition later than that, as 60s
+    #[arg(long, value_name = "TIME", requires = "until")]
+    within: Option<String>,
     #[command(flatten)]
     size: profile::Choice,
     #[command(flatten)]
@@ -61,6 +71,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         against: arguments.against.clone(),
         shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
         serial_for: figure_of_serial(&definition),
+        until: arguments.until.as_deref().map(|limit| Until::parse(limit, arguments.within.as_deref())).transpose()?,
+        rerun_doubtful: arguments.rerun_doubtful,
         command: command_line(),
     };
     let mut files = Files::default();

@@ -50,12 +50,12 @@ impl Against {
         Ok(Self { program, folder, run, file, has_rows: false })
     }
 
-    /// Runs a repetition of a cell; gives what went wrong, if anything did.
-    pub(super) fn run(&mut self, job: &CellJob) -> Result<Vec<String>> {
+    /// Runs a repetition of a cell; gives its rows.
+    pub(super) fn run(&mut self, job: &CellJob) -> Result<Vec<Record>> {
         // Images and traces are kept of one build.
         let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
         let job = CellJob { points, trace: None, ..job.clone() };
-        let mut failed = Vec::new();
+        let mut rows = Vec::new();
         for record in job.run_in_child_of(Ok(self.program.clone())) {
             let record = Record { order: job.order, ..record };
             if !self.has_rows {
@@ -65,11 +65,9 @@ impl Against {
                 self.run.write(&self.folder.join(MACHINE))?;
                 self.has_rows = true;
             }
-            if !record.error.is_empty() {
-                failed.push(record.error.clone());
-            }
             self.file.append(&record)?;
+            rows.push(record);
         }
-        Ok(failed)
+        Ok(rows)
     }
 }

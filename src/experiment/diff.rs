@@ -1,10 +1,12 @@
 //! Two measurements of the same cells: which got slower?
 //!
 //! Rows that were measured in pairs (`run --against`) give a ratio for each repetition; other rows give the ratios of all pairs of an old and
-//! a new time. All intervals of a comparison together hold with 95 % confidence (Bonferroni).
+//! a new time. All intervals of a comparison together hold with 95 % confidence (Bonferroni). Where repetitions went on until the answer was
+//! known (`run --until`), intervals are those that hold at every look.
 
 use super::records_file::read_records;
 use super::run_file::{MACHINE, RunFile, read_run_file};
+use crate::analysis::confidence_sequence::median_sequence;
 use crate::analysis::quantile::{median, median_interval};
 use crate::analysis::rank_sum;
 use crate::analysis::{Estimate, Interval};
@@ -71,8 +73,38 @@ pub struct Diff {
     pub unmatched: [usize; 2],
     /// Whether rows were compared in pairs.
     pub paired: bool,
+    /// Whether repetitions went on until the answer was known.
+    pub sequential: bool,
     /// Doubts about all times.
     pub doubts: Doubts,
+}
+
+/// How times of a cell are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pairing {
+    /// Each old time with each new one.
+    None,
+    /// Within a repetition.
+    Paired,
+    /// Likewise, and after each repetition it was asked whether that is enough.
+    Sequential,
+}
+
+/// The confidence of each of so many intervals of a comparison.
+pub(super) fn level_of(cells: usize) -> f64 {
+    1.0 - MISS / cells as f64
+}
+
+/// A share by which something may get slower, as `0.03` or `3%`.
+pub fn parse_share(field: &str, text: &str) -> Result<f64> {
+    let parsed = match text.strip_suffix('%') {
+        Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
+        None => text.parse(),
+    };
+    parsed.ok().filter(|share| share.is_finite() && *share >= 0.0).ok_or_else(|| {
+        let error = InputError::new(field, text, "is no share by which something may get slower");
+        error.allowed("numbers from 0, as 0.03 or 3%").into()
+    })
 }
 
 /// Rows, and where they come from.
@@ -108,8 +140,12 @@ pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result
             return Err(error.allowed("--across-machines").into());
         }
     }
-    let paired = sides[1].run.as_ref().is_some_and(|run| run.against.is_some())
-        && sides[0].run.as_ref().is_some_and(|run| run.against.is_some());
+    let both = |of: fn(&RunFile) -> bool| sides.iter().all(|side| side.run.as_ref().is_some_and(of));
+    let pairing = match (both(|run| run.against.is_some()), both(|run| run.until.is_some())) {
+        (false, _) => Pairing::None,
+        (true, false) => Pairing::Paired,
+        (true, true) => Pairing::Sequential,
+    };
     let [before, after] = sides.each_ref().map(|side| times(&side.rows));
     let common: Vec<&String> = before.keys().filter(|cell| after.contains_key(*cell)).collect();
     if common.is_empty() {
@@ -118,11 +154,17 @@ pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result
             .allowed("measurements of the same experiment at the same size")
             .into());
     }
-    let level = 1.0 - MISS / common.len() as f64;
-    let cells = common.iter().filter_map(|cell| compared(cell, &before[*cell], &after[*cell], paired, level, limit));
+    let level = level_of(common.len());
+    let cells = common.iter().filter_map(|cell| compared(cell, &before[*cell], &after[*cell], pairing, level, limit));
     let unmatched = [before.len() - common.len(), after.len() - common.len()];
     let warnings = sides.iter().flat_map(|side| &side.rows).map(|row| row.warnings.as_str());
-    Ok(Diff { cells: cells.collect(), unmatched, paired, doubts: Doubts::of(warnings) })
+    Ok(Diff {
+        cells: cells.collect(),
+        unmatched,
+        paired: pairing != Pairing::None,
+        sequential: pairing == Pairing::Sequential,
+        doubts: Doubts::of(warnings),
+    })
 }
 
 /// The seconds of each cell, by repetition. Rows that failed have none.
@@ -136,21 +178,25 @@ fn times(rows: &[Record]) -> BTreeMap<String, BTreeMap<u32, f64>> {
     times
 }
 
-fn compared(
+/// A cell's old and new seconds, by repetition; `None` if there are none.
+pub(super) fn compared(
     cell: &str,
     old: &BTreeMap<u32, f64>,
     new: &BTreeMap<u32, f64>,
-    paired: bool,
+    pairing: Pairing,
     level: f64,
     limit: f64,
 ) -> Option<CellDiff> {
     let values = |times: &BTreeMap<u32, f64>| times.values().copied().collect::<Vec<_>>();
     let (olds, news) = (values(old), values(new));
-    let estimate: Option<Estimate> = if paired {
+    let in_pairs = |interval: fn(&[f64], f64) -> Option<Interval>| {
         let ratios: Vec<f64> = old.iter().filter_map(|(at, old)| Some(new.get(at)? / old)).collect();
-        median(&ratios).zip(median_interval(&ratios, level)).map(|(value, interval)| Estimate { value, interval })
-    } else {
-        rank_sum::ratio(&olds, &news, level)
+        median(&ratios).zip(interval(&ratios, level)).map(|(value, interval)| Estimate { value, interval })
+    };
+    let estimate: Option<Estimate> = match pairing {
+        Pairing::None => rank_sum::ratio(&olds, &news, level),
+        Pairing::Paired => in_pairs(median_interval),
+        Pairing::Sequential => in_pairs(median_sequence),
     };
     let (old_s, new_s) = (median(&olds)?, median(&news)?);
     let interval = estimate.map(|estimate| estimate.interval).filter(|interval| interval.level >= level);
@@ -175,13 +221,16 @@ fn compared(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::Rng;
+    use rand_pcg::Pcg64Dxsm;
 
     fn numbered(values: &[f64]) -> BTreeMap<u32, f64> {
         (0..).zip(values.iter().copied()).collect()
     }
 
     fn change(old: &[f64], new: &[f64], paired: bool) -> Change {
-        compared("cell", &numbered(old), &numbered(new), paired, 0.95, 0.02).unwrap().change
+        let pairing = if paired { Pairing::Paired } else { Pairing::None };
+        compared("cell", &numbered(old), &numbered(new), pairing, 0.95, 0.02).unwrap().change
     }
 
     const TIMES: [f64; 9] = [1.0, 1.001, 1.002, 0.999, 0.998, 1.003, 0.997, 1.0015, 0.9985];
@@ -209,5 +258,48 @@ mod tests {
     fn a_single_time_decides_nothing() {
         assert_eq!(change(&[1.0], &[9.0], true), Change::Undecided);
         assert_eq!(change(&[1.0], &[9.0], false), Change::Undecided);
+    }
+
+    /// What sweeps of six cells come to that go on until each cell is decided, 200 repetitions at most: the number of sweeps with a slower cell, and how
+    /// many repetitions a cell took in the mean. The new build's times are `factor` times the old ones, and both have a noise of about 7 % with a
+    /// heavy tail; both rows of a pair share a drift.
+    fn sweeps(count: u32, factor: f64, seed: u128) -> (u32, f64) {
+        let mut generator = Pcg64Dxsm::new(seed, 3);
+        let mut uniform = || ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0;
+        let mut noise = || {
+            let u = uniform();
+            let disturbed = if uniform() < 0.05 { 1.5 } else { 1.0 };
+            libm::exp(0.04 * libm::log(u / (1.0 - u))) * disturbed
+        };
+        let (mut slower, mut repetitions) = (0, 0);
+        for _ in 0..count {
+            let mut is_slower = false;
+            for _ in 0..6 {
+                let [mut old, mut new] = [BTreeMap::new(), BTreeMap::new()];
+                let change = (0..200).find_map(|at| {
+                    let drift = 1.0 + 0.5 * libm::sin(0.1 * f64::from(at));
+                    old.insert(at, drift * noise());
+                    new.insert(at, drift * noise() * factor);
+                    let found = compared("cell", &old, &new, Pairing::Sequential, level_of(6), 0.02)?.change;
+                    (found != Change::Undecided).then_some(found)
+                });
+                is_slower |= change == Some(Change::Slower);
+                repetitions += old.len();
+            }
+            slower += u32::from(is_slower);
+        }
+        (slower, repetitions as f64 / f64::from(6 * count))
+    }
+
+    /// Two equal builds: at most 5 % of the sweeps find a slower cell, 10 of 200, and three standard deviations of that count are 9. A build that is 10 %
+    /// slower is found in nearly all.
+    #[test]
+    fn sweeps_that_go_on_until_they_know_are_seldom_wrong() {
+        let ((equal, _), (slower, repetitions)) = (sweeps(200, 1.0, 1), sweeps(40, 1.1, 2));
+        println!(
+            "equal builds: {equal} of 200 fail; 10 % slower: {slower} of 40, after {repetitions:.0} repetitions a cell"
+        );
+        assert!(equal <= 19, "{equal}");
+        assert!(slower >= 38, "{slower}");
     }
 }

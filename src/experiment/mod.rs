@@ -24,11 +24,13 @@ mod profile;
 mod records_file;
 mod reference;
 mod run_file;
+mod running;
 mod scene_version;
 mod shuffle;
 mod sweep;
 mod sweep_shard;
 mod table;
+mod until;
 mod with_values;
 
 pub use against::folder_against;
@@ -37,13 +39,13 @@ pub use cell::{Cell, CellPoint, trace_file};
 pub use cell_process::{CellJob, PointJob, child_main};
 pub use chapter::Chapter;
 pub use definition::{Definition, EXPERIMENTS, Keep};
-pub use diff::{CellDiff, Change, Diff, diff};
+pub use diff::{CellDiff, Change, Diff, diff, parse_share};
 pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use keys::keys;
 pub use merge_sweeps::{MergedSweep, merge_sweeps};
 pub use plan::{Plan, Prices};
-pub use pricing::{Paid, Pilot, law_of, pay};
+pub use pricing::{Paid, Pilot, Piloted, law_of, pay};
 pub use profile::Profile;
 pub use records_file::{RecordsFile, read_records};
 pub use reference::{HalfFile, Reference, reference_seed, wanted_references};
@@ -51,6 +53,7 @@ pub use run_file::{MACHINE, RunFile, read_run_file};
 pub use scene_version::SceneVersion;
 pub use sweep::{Options, Summary, Sweep};
 pub use sweep_shard::SweepShard;
+pub use until::{MOST_REPETITIONS, Until};
 
 /// Told how far long work has come. Implemented by the command line.
 pub trait Progress: Sync {

@@ -135,7 +135,7 @@ impl Sweep<'_> {
     /// What it takes. Other programs have no price, so their seconds are not in it.
     pub fn plan(&self, prices: &mut Prices<'_>) -> Result<Plan> {
         let (definition, options) = (self.definition, self.options);
-        let repetitions = options.repetitions.map_or_else(|| definition.repetitions(options.profile), Ok)?;
+        let repetitions = self.repetitions()?;
         let mut plan = Plan { name: definition.name.clone(), cells: self.cells.len(), ..Plan::default() };
         let folder = options.out.join("references");
         for reference in &self.references {

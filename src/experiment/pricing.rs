@@ -10,7 +10,7 @@ use crate::analysis::tail::{Tail, tail};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{Rounds, Settings};
+use crate::measure::{Doubts, Rounds, Settings};
 use crate::sampling::{REFERENCE_SEEDS, is_spread};
 
 /// Seeds from here on are for pilots.
@@ -25,6 +25,16 @@ pub struct Pilot {
     pub spp: u32,
     /// How many seeds.
     pub seeds: u32,
+}
+
+/// What a pilot found out.
+pub struct Piloted {
+    /// Error and time.
+    pub renderer: Renderer,
+    /// That of the pixels' values over seeds: where one value of one pixel makes up much of the variance, the price rests on whether the pilot met it.
+    pub tail: Tail,
+    /// Doubts about the times of its seeds.
+    pub doubts: Doubts,
 }
 
 /// What was paid.
@@ -46,9 +56,8 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
 }
 
 impl Pilot {
-    /// Renders the pilot; intervals have this level. The tail is that of the pixels' values over seeds: where one value of one pixel makes up much of the
-    /// variance, the price rests on whether the pilot met it.
-    pub fn run(&self, lab: &Lab, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<(Renderer, Tail)> {
+    /// Renders the pilot; intervals have this level.
+    pub fn run(&self, lab: &Lab, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<Piloted> {
         let law = law_of(&settings.spec.sampler);
         let fewest = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
         if !self.spp.is_multiple_of(fewest) {
@@ -61,7 +70,7 @@ impl Pilot {
         points.reverse();
 
         let mut images: Vec<Vec<Vec<f64>>> = vec![Vec::new(); points.len()];
-        let mut per_spp = Vec::new();
+        let (mut per_spp, mut doubts) = (Vec::new(), Doubts::default());
         progress.begin("pilot", u64::from(self.seeds));
         // The first run of a process is slower than the rest.
         lab.prepare(with_seed(settings, fewest, PILOT_SEEDS))?.run(None)?;
@@ -77,6 +86,8 @@ impl Pilot {
             }
             let pixels = u64::from(settings.spec.width) * u64::from(settings.spec.height);
             per_spp.push(seconds * pixels as f64 / samples as f64);
+            let warnings: Vec<String> = rounds.outcome().warnings.iter().map(ToString::to_string).collect();
+            doubts.add(&warnings.join(";"));
             progress.advance(u64::from(seed) + 1);
         }
         progress.end();
@@ -85,7 +96,9 @@ impl Pilot {
         let curves = SeedCurves::of_images(&at, &seen);
         let seconds: Option<Estimate> = geometric_interval(&per_spp, level);
         match curves.zip(seconds).zip(images.last().and_then(|of| tail_over_seeds(of))) {
-            Some(((curves, seconds_per_spp), tail)) => Ok((Renderer { curves, law, seconds_per_spp }, tail)),
+            Some(((curves, seconds_per_spp), tail)) => {
+                Ok(Piloted { renderer: Renderer { curves, law, seconds_per_spp }, tail, doubts })
+            }
             None => Err(Error::Check("the pilot's seeds say nothing about error and time".to_string())),
         }
     }

@@ -24,6 +24,9 @@ pub struct RunFile {
     /// The other program whose rows were measured in turns with these; none if there was none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
+    /// The limit on whose both sides every cell had to be, where repetitions went on until that was decided; none if their number was fixed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub until: Option<String>,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
     /// Where and with what.
@@ -39,7 +42,7 @@ impl RunFile {
     /// Of something that no definition describes, on this machine.
     pub fn of_now(command: String) -> Self {
         let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
-        Self { command, profile, shard: None, against: None, definition_hash, machine: Machine::look() }
+        Self { command, profile, shard: None, against: None, until: None, definition_hash, machine: Machine::look() }
     }
 
     /// Writes it.

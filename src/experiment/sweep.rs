@@ -3,12 +3,13 @@
 use super::against::{Against, check_program, folder_against};
 use super::calibration_file::write_calibration;
 use super::cell::trace_file;
-use super::drift::Drift;
 use super::object_pixels::check_object;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
+use super::running::Running;
 use super::shuffle::shuffled;
 use super::sweep_shard::SweepShard;
+use super::until::{MOST_REPETITIONS, Until};
 use super::{
     Cell, CellJob, CellPoint, Definition, HalfFile, Keep, PointJob, Profile, Progress, Reference, render_reference,
     wanted_references,
@@ -20,8 +21,9 @@ use crate::files::Files;
 use crate::film::Film;
 use crate::measure::{Doubts, Machine, Record};
 use crate::temporary;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 /// What a sweep writes into its folder, beside images and traces.
 const OWN_FILES: [&str; 4] = ["records.csv", "machine.toml", "experiment.toml", "calibration.csv"];
@@ -45,6 +47,10 @@ pub struct Options {
     pub shard: Option<SweepShard>,
     /// The figure that compares with serial runs: filters leave them in, and there must be one.
     pub serial_for: Option<&'static str>,
+    /// With another build: until it is known which cells got slower.
+    pub until: Option<Until>,
+    /// Cells with doubtful rows are run again.
+    pub rerun_doubtful: bool,
     /// The command as the user gave it.
     pub command: String,
 }
@@ -118,10 +124,10 @@ impl<'a> Sweep<'a> {
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
         let Self { definition, options, cells, references: wanted } = self;
         let folder = options.out.join(&definition.name);
-        let (mut file, done) = open(definition, options, &folder)?;
+        let (file, done) = open(definition, options, &folder)?;
         let other = options.against.as_deref();
         let run = || run_file(definition, options);
-        let mut against = other
+        let against = other
             .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run()))
             .transpose()?;
 
@@ -147,74 +153,75 @@ impl<'a> Sweep<'a> {
             }
         }
 
-        let mut checksums: HashMap<String, String> = HashMap::new();
-        let points = cells.iter().flat_map(|cell| &cell.points);
-        let known: HashMap<&str, &str> = points.map(|point| (point.id.as_str(), point.image.as_str())).collect();
-        for record in &done {
-            if let Some(image) = known.get(record.cell.as_str()) {
-                checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
-            }
-        }
-        let finished: HashSet<(&str, u32)> =
-            done.iter().map(|record| (record.cell.as_str(), record.repetition)).collect();
-        let repetitions = options.repetitions.map_or_else(|| definition.repetitions(options.profile), Ok)?;
+        let repetitions = self.repetitions()?;
+        let rows = (file, done);
+        let mut running = Running::new(self, folder, references, against, rows, progress);
         let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
-        let lowest_seed = cells.iter().map(|cell| cell.settings.spec.seed).min();
-        let invalid = done.iter().filter_map(|record| record.invalid_samples).sum();
-        let doubts = Doubts::of(done.iter().map(|record| record.warnings.as_str()));
-        let mut summary = Summary { folder: folder.clone(), rows: done.len(), failed: 0, invalid, doubts };
-        let mut drift = Drift::of(&done);
-        let mut units = 0;
-        // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
-        let mut order = done.iter().map(|record| record.order + 1).max().unwrap_or(0);
+        let (mut units, begun, mut open) = (0, Instant::now(), cells.len());
         progress.begin(&definition.name, total);
         for repetition in 0..repetitions {
+            let undecided = match &options.until {
+                Some(until) if repetition > 0 && until.is_over(begun.elapsed()) => break,
+                Some(until) => running.undecided(until.limit),
+                None => (0..cells.len()).collect(),
+            };
+            if undecided.len() < open {
+                open = undecided.len();
+                progress.note(&format!("{} of {} cells decided", cells.len() - open, cells.len()));
+            }
             for index in shuffled(cells.len(), &definition.name, repetition) {
-                let cell = &cells[index];
-                let is_missing = |id: &str| !finished.contains(&(id, repetition));
-                if cell.points.iter().any(|point| is_missing(&point.id)) {
-                    let job = self.job(cell, (repetition, order), &folder, &references, lowest_seed);
-                    let mut run_against = |job: &CellJob| -> Result<()> {
-                        for problem in against.as_mut().map_or(Ok(Vec::new()), |against| against.run(job))? {
-                            summary.failed += 1;
-                            progress.note(&format!("{} repetition {repetition}, the other build: {problem}", cell.id));
-                        }
-                        Ok(())
-                    };
-                    let other_first = (u64::from(repetition) + index as u64) % 2 == 1;
-                    if other_first {
-                        run_against(&job)?;
-                    }
-                    // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.
-                    let rows = job.run_in_child();
-                    if !other_first {
-                        run_against(&job)?;
-                    }
-                    let rows = cell.points.iter().zip(rows).filter(|(point, _)| is_missing(&point.id));
-                    for (point, record) in rows {
-                        let mut record = verified(Record { order, ..record }, &point.image, &mut checksums);
-                        drift.watch(&mut record);
-                        if !record.error.is_empty() {
-                            summary.failed += 1;
-                            progress.note(&format!("{} repetition {repetition}: {}", point.id, record.error));
-                        }
-                        file.append(&record)?;
-                        summary.invalid += record.invalid_samples.unwrap_or(0);
-                        summary.doubts.add(&record.warnings);
-                        summary.rows += 1;
-                        order += 1;
-                    }
+                if undecided.contains(&index) {
+                    running.cell(index, repetition)?;
                 }
-                units += cell.weight;
+                units += cells[index].weight;
                 progress.advance(units);
+            }
+            if undecided.is_empty() {
+                break;
             }
         }
         progress.end();
-        file.check_own()?;
-        Ok(summary)
+        if options.rerun_doubtful {
+            self.rerun(&mut running, repetitions, progress)?;
+        }
+        running.finish()
     }
+
+    /// How often each cell is run; at most, where it is until something is known.
+    pub(super) fn repetitions(&self) -> Result<u32> {
+        let usual = || match &self.options.until {
+            Some(_) => Ok(MOST_REPETITIONS),
+            None => self.definition.repetitions(self.options.profile),
+        };
+        self.options.repetitions.map_or_else(usual, Ok)
+    }
+
+    /// Runs cells with doubtful rows again, each as often as it lacks a row without a doubt, in repetitions of their own. What is doubtful stays, and
+    /// what is doubtful again is not run a third time.
+    fn rerun(&self, running: &mut Running<'_>, wanted: u32, progress: &dyn Progress) -> Result<()> {
+        let doubtful = running.doubtful(wanted);
+        let first = running.next_repetition();
+        let blocks = doubtful.iter().map(|(_, lack)| *lack).max().unwrap_or(0);
+        let total = doubtful.iter().map(|(index, lack)| self.cells[*index].weight * u64::from(*lack)).sum();
+        let mut units = 0;
+        progress.begin(&format!("{}, what is doubtful again", self.definition.name), total);
+        for block in 0..blocks {
+            let open: HashSet<usize> =
+                doubtful.iter().filter(|(_, lack)| *lack > block).map(|(index, _)| *index).collect();
+            for index in shuffled(self.cells.len(), &self.definition.name, first + block) {
+                if open.contains(&index) {
+                    running.cell(index, first + block)?;
+                    units += self.cells[index].weight;
+                    progress.advance(units);
+                }
+            }
+        }
+        progress.end();
+        Ok(())
+    }
+
     /// What a cell's process is asked to do in a repetition, which is number `order` of the sweep.
-    fn job(
+    pub(super) fn job(
         &self,
         cell: &Cell,
         (repetition, order): (u32, u64),
@@ -266,19 +273,6 @@ fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
     Ok(cells.iter().filter(|cell| is_wanted(cell)).cloned().collect())
 }
 
-/// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.
-fn verified(record: Record, image: &str, checksums: &mut HashMap<String, String>) -> Record {
-    if !record.error.is_empty() || record.checksum.is_empty() {
-        return record;
-    }
-    let expected = checksums.entry(image.to_string()).or_insert_with(|| record.checksum.clone());
-    if *expected == record.checksum {
-        return record;
-    }
-    let error = format!("checksum {} instead of {expected}", record.checksum);
-    Record { error, ..record }
-}
-
 /// What is said of the rows of a sweep on this machine.
 fn run_file(definition: &Definition, options: &Options) -> RunFile {
     RunFile {
@@ -286,6 +280,7 @@ fn run_file(definition: &Definition, options: &Options) -> RunFile {
         profile: options.profile.name().to_string(),
         shard: options.shard.map(|shard| shard.to_string()),
         against: options.against.as_ref().map(|program| program.display().to_string()),
+        until: options.until.as_ref().map(|until| until.text.clone()),
         definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
     }

@@ -3,7 +3,9 @@
 use std::fmt;
 
 /// The warnings that concern the time of a run; others concern its image.
-const REASONS: [&str; 4] = ["foreign-load", "slowed", "drift", "too-short"];
+const REASONS: [&str; 4] = ["foreign-load", "slowed", "drift", TOO_SHORT];
+/// The one that another run would have as well.
+const TOO_SHORT: &str = "too-short";
 
 /// Rows, and those of them whose times are in doubt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -25,6 +27,11 @@ impl Doubts {
     /// Whether the time of a row with these warnings is in doubt.
     pub fn concern(warnings: &str) -> bool {
         REASONS.iter().any(|reason| warnings.contains(reason))
+    }
+
+    /// Whether another run might be without what makes the time of a row with these warnings doubtful.
+    pub fn may_pass(warnings: &str) -> bool {
+        REASONS.iter().any(|reason| *reason != TOO_SHORT && warnings.contains(reason))
     }
 
     /// Counts a row.
@@ -86,6 +93,7 @@ mod tests {
         assert_eq!((doubts.is_any(), doubts.is_high()), (true, false));
         doubts.add("too-short");
         assert_eq!(doubts.to_string(), "2 of 12 rows have times in doubt (1 slowed, 1 drift, 1 too-short)");
+        assert!(Doubts::may_pass("too-short;drift(+30 %)") && !Doubts::may_pass("too-short") && !Doubts::may_pass(""));
         assert!(doubts.is_high() && !Doubts::of(["biased"]).is_any() && !Doubts::default().is_high());
     }
 

@@ -240,6 +240,11 @@ fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
                 }
             }
             @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark explain" } " says what each means." } }
+            @if let Some(limit) = &section.run.until {
+                p.doubts.high {
+                    "Repetitions went on until each cell was decided at " (limit) ". " code { "pathmark diff" } " has intervals that allow that; those on this page take the number of repetitions for fixed, and are too narrow."
+                }
+            }
             @for part in &parts { (part) }
             @for paragraph in section.analysis.split("\n\n") { p { (prose(paragraph)) } }
             (provenance(section))

@@ -131,6 +131,8 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
             against: None,
             shard: None,
             serial_for: None,
+            until: None,
+            rerun_doubtful: false,
             command: String::new(),
         };
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();

@@ -5,7 +5,7 @@ use crate::program::{Finished, finish, pathmark};
 use serde_json::Value;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 fn run(folder: &Path, arguments: &[&str], code: i32) -> Finished {
     finish(pathmark(folder, arguments)).with_code(code)
@@ -118,27 +118,72 @@ fn what_does_not_compare_is_refused() {
     refused(&["old", "ancient"], &["schema", "5"]);
 }
 
+/// The same program behind a script, as another build of it.
+fn other_build(folder: &Path) -> PathBuf {
+    let (own, script) = (assert_cmd::cargo::cargo_bin!("pathmark"), folder.join("other"));
+    fs::write(&script, format!("#!/bin/sh\nexec {} \"$@\"\n", own.display())).unwrap();
+    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+    script
+}
+
+/// Cell, repetition, order and checksum of each row.
+fn rows(folder: &Path) -> Vec<[String; 4]> {
+    let mut reader = csv::Reader::from_path(folder.join("records.csv")).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let columns = ["cell", "repetition", "order", "checksum"].map(column);
+    let mut rows: Vec<_> =
+        reader.records().map(|row| columns.map(|at| row.as_ref().unwrap()[at].to_string())).collect();
+    rows.sort();
+    rows
+}
+
+/// Times differ by less than a limit that is large enough as soon as there are two ends to an interval: five intervals that hold together at every
+/// look need 11 repetitions for that, because 2 * 2^n / (n + 1) reaches 2 / (.05 / 5) there.
+#[test]
+fn repetitions_go_on_until_it_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    other_build(folder.path());
+    let until = |out: &str, options: &[&str], code: i32| {
+        let all = ["run", "tiny.toml", "--against", "./other", "--out", out];
+        run(folder.path(), &[&all, options].concat(), code)
+    };
+    let huge = "1000000000%";
+    let finished = until("out", &["--until", huge], 0);
+    assert!(finished.err.contains("5 of 5 cells decided"), "{}", finished.err);
+    assert_eq!(rows(&folder.path().join("out/tiny")).len(), 5 * 11);
+    let compared = ["diff", "out/against/tiny", "out/tiny", "--json", "--fail-above", huge];
+    let found = json(&run(folder.path(), &compared, 0));
+    assert_eq!(found["sequential"], true);
+    assert!(found["cells"].as_array().unwrap().iter().all(|cell| cell["change"] == "same"), "{found}");
+    // Fewer are no answer, and neither is no time.
+    until("few", &["--until", huge, "--repetitions", "10"], 0);
+    assert_eq!(rows(&folder.path().join("few/tiny")).len(), 5 * 10);
+    until("short", &["--until", huge, "--within", "0s"], 0);
+    assert_eq!(rows(&folder.path().join("short/tiny")).len(), 5);
+    for (options, field) in [
+        (["--until", "-1%"].as_slice(), "until"),
+        (&["--until", "0"], "until"),
+        (&["--until", "x"], "until"),
+        (&["--until", "3%", "--within", "soon"], "within"),
+    ] {
+        let finished = until("new", options, 2);
+        assert!(finished.err.contains(field) && !folder.path().join("new").exists(), "{}", finished.err);
+    }
+    let alone = run(folder.path(), &["run", "tiny.toml", "--until", "3%"], 2);
+    assert!(alone.err.contains("--against"), "{}", alone.err);
+}
+
 /// Two builds in turns; the other one is the same program behind a script.
 #[test]
 fn two_builds_are_measured_in_turns() {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
-    let own = assert_cmd::cargo::cargo_bin!("pathmark");
-    let script = folder.path().join("other");
-    fs::write(&script, format!("#!/bin/sh\nexec {} \"$@\"\n", own.display())).unwrap();
-    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+    let script = other_build(folder.path());
     let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 0);
     assert!(finished.err.contains("pathmark diff"), "{}", finished.err);
-    let rows = |name: &str| {
-        let mut reader = csv::Reader::from_path(folder.path().join(name).join("records.csv")).unwrap();
-        let heads = reader.headers().unwrap().clone();
-        let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
-        let columns = ["cell", "repetition", "order", "checksum"].map(column);
-        let mut rows: Vec<_> =
-            reader.records().map(|row| columns.map(|at| row.as_ref().unwrap()[at].to_string())).collect();
-        rows.sort();
-        rows
-    };
+    let rows = |name: &str| rows(&folder.path().join(name));
     assert_eq!(rows("out/against/tiny"), rows("out/tiny"));
     let found = run(folder.path(), &["diff", "out/against/tiny", "out/tiny", "--json", "--fail-above", "1000%"], 0);
     assert_eq!((&json(&found)["paired"], json(&found)["cells"].as_array().unwrap().len()), (&true.into(), 5));

@@ -51,7 +51,12 @@ fn paying_gives_what_was_predicted() {
         ]);
         let ratio = rows[0]["rmse_ratio"].as_f64().unwrap();
         assert!((ratio - 1.0).abs() < 0.12, "{estimator} with {sampler}: {}", rows[0]);
-        assert!((rows[0]["paid_rmse"].as_f64().unwrap() / 0.15 - 1.0).abs() < 0.14, "{}", rows[0]);
+        // Sobol's samples are rounded up to a power of two, and so the error may be smaller.
+        let reached = rows[0]["paid_rmse"].as_f64().unwrap() / 0.15;
+        let least = if sampler == "sobol" { 0.5 } else { 0.86 };
+        assert!((least..1.14).contains(&reached), "{}", rows[0]);
+        let spp = rows[0]["spp"].as_u64().unwrap();
+        assert!(sampler != "sobol" || spp.is_power_of_two(), "{}", rows[0]);
         assert!(rows[0]["paid_seconds"].as_f64().unwrap() > 0.0 && rows[0]["seconds_ratio"].as_f64().unwrap() > 0.0);
     }
 }

@@ -35,6 +35,19 @@ fn results(records: &Path) -> BTreeMap<(String, String), [String; 3]> {
     results
 }
 
+/// Puts another text into fields of the rows, given the number of a row, the name of a column and what is there.
+fn rewrite(records: &Path, field: impl for<'a> Fn(usize, &str, &'a str) -> &'a str) {
+    let mut reader = csv::Reader::from_path(records).unwrap();
+    let headers = reader.headers().unwrap().clone();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(&headers).unwrap();
+    for (index, row) in reader.records().enumerate() {
+        let row = row.unwrap();
+        writer.write_record(headers.iter().zip(&row).map(|(column, own)| field(index, column, own))).unwrap();
+    }
+    fs::write(records, writer.into_inner().unwrap()).unwrap();
+}
+
 /// Resuming drops what the crash tore, whatever is left of it, and repeats that row alone.
 #[test]
 fn a_torn_row_is_written_again() {
@@ -85,24 +98,39 @@ fn a_failed_row_is_run_again() {
     let (folder, records) = prepared(TINY);
     finish(pathmark(folder.path(), &RUN)).with_code(0);
     let expected = results(&records);
-    let mut reader = csv::Reader::from_path(&records).unwrap();
-    let headers = reader.headers().unwrap().clone();
-    let error = headers.iter().position(|name| name == "error").unwrap();
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(&headers).unwrap();
-    for (index, row) in reader.records().enumerate() {
-        let fails = |column: usize| index == 4 && column == error;
-        let row = row.unwrap();
-        let fields = row.iter().enumerate().map(|(column, field)| if fails(column) { "killed" } else { field });
-        writer.write_record(fields).unwrap();
-    }
-    fs::write(&records, writer.into_inner().unwrap()).unwrap();
+    rewrite(&records, |index, column, field| if (index, column) == (4, "error") { "killed" } else { field });
 
     finish(pathmark(folder.path(), &RESUME)).with_code(0);
     assert_eq!(results(&records), expected);
     let rows = rows(&records);
     let orders: HashSet<&str> = rows.iter().map(|row| row["order"].as_str()).collect();
     assert_eq!(orders.len(), rows.len(), "two rows claim the same position in the sweep");
+}
+
+/// A cell with a doubtful row runs once more, in a repetition of its own with the serial run that it is compared with. All rows stay; those that
+/// would always be doubtful are left alone.
+#[test]
+fn what_is_doubtful_runs_again() {
+    let (folder, records) = prepared(TINY);
+    finish(pathmark(folder.path(), &RUN)).with_code(0);
+    let doubtful = rows(&records).iter().position(|row| row["strategy"] == "static-blocks").unwrap();
+    // Whatever the machine did meanwhile.
+    rewrite(&records, |index, column, field| match (column, index == doubtful) {
+        ("warnings", true) => "foreign-load(60 %)",
+        ("warnings", false) => "too-short",
+        _ => field,
+    });
+    let before = fs::read_to_string(&records).unwrap();
+    let cell = rows(&records)[doubtful]["cell"].clone();
+    finish(pathmark(folder.path(), &RESUME)).with_code(0);
+    assert_eq!(fs::read_to_string(&records).unwrap(), before, "nobody asked for it");
+    finish(pathmark(folder.path(), &[RESUME.as_slice(), &["--rerun-doubtful"]].concat())).with_code(0);
+    assert!(fs::read_to_string(&records).unwrap().starts_with(&before));
+    let all = rows(&records);
+    let new: Vec<_> = all[15..].iter().map(|row| (row["strategy"].as_str(), row["repetition"].as_str())).collect();
+    assert_eq!(new.len(), 2, "{new:?}");
+    assert!(new.contains(&("serial", "3")) && new.contains(&("static-blocks", "3")), "{new:?}");
+    assert!(all[15..].iter().any(|row| row["cell"] == cell));
 }
 
 #[test]

@@ -1,0 +1,134 @@
+//! Intervals for a median that hold at all times at once: one may look after every value and stop when one likes.
+//!
+//! If m is the median, each value is above m with probability 1/2 at most, whatever came before. Betting on "above" with shares drawn evenly from
+//! (1/2, 1] turns one unit into
+//!
+//! M = 2 (n + 1)^-1 P(B' <= s) / P(B = s),
+//!
+//! where s of n values are above m, B is binomial (n, 1/2) and B' is binomial (n + 1, 1/2). That is a supermartingale, so it ever reaches 2 / miss
+//! with a probability of miss / 2 (J. Ville, 1939). The values m at which neither the bet on "above" nor that on "below" has reached it lie between
+//! two order statistics. It is the mixture of H. Robbins ("Statistical methods related to the law of the iterated logarithm", 1970) for the sign
+//! test; S. R. Howard and A. Ramdas ("Sequential estimation of quantiles with applications to A/B testing and best-arm identification", 2022) have
+//! it as the beta-binomial boundary, beside a closed form that takes about three times as many values for an interval of the same ranks.
+
+use super::interval::{Interval, is_level};
+use super::quantile::sorted;
+
+/// The interval of the median after these values. With probability `level` the true median is in the intervals after every number of values. `None`
+/// while there are too few values for two ends, seven or less at 95 %, and for one that is not finite.
+///
+/// It assumes that no value says anything about whether the next one is above the median.
+///
+/// ```
+/// use pathmark::analysis::confidence_sequence::median_sequence;
+/// let values: Vec<f64> = (1..=20).map(f64::from).collect();
+/// let interval = median_sequence(&values, 0.95).unwrap();
+/// assert_eq!((interval.low, interval.high), (4.0, 17.0));
+/// assert_eq!(median_sequence(&values[..7], 0.95), None);
+/// ```
+pub fn median_sequence(values: &[f64], level: f64) -> Option<Interval> {
+    let ordered = sorted(values).filter(|_| is_level(level))?;
+    let rank = rank(ordered.len(), level)?;
+    Interval::between(ordered[ordered.len() - rank], ordered[rank - 1], level)
+}
+
+/// The least number of values on one side of a point that shows that it is not the median; `None` if not even all of them do.
+fn rank(n: usize, level: f64) -> Option<usize> {
+    let enough = 2.0 / (1.0 - level);
+    let count = n as f64;
+    // ln P(B = s) and P(B' > s), from s = n downwards.
+    let mut share = -count * std::f64::consts::LN_2;
+    let mut tail = libm::exp(share - std::f64::consts::LN_2);
+    let mut found = None;
+    for s in (n / 2 + 1..=n).rev() {
+        let stake = 2.0 * (1.0 - tail) / (count + 1.0) * libm::exp(-share);
+        if stake < enough {
+            break;
+        }
+        found = Some(s);
+        // P(B' = s) is P(B = s) (n + 1) / (2 (n + 1 - s)).
+        let left = count + 1.0 - s as f64;
+        tail += libm::exp(share) * (count + 1.0) / (2.0 * left);
+        share += libm::log(s as f64 / left);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::quantile::median_interval;
+    use rand::Rng;
+    use rand_pcg::Pcg64Dxsm;
+
+    const LEVEL: f64 = 0.95;
+
+    /// From an integral of the bets over their shares, by the midpoint rule in another program.
+    #[test]
+    fn ranks_are_those_of_the_integral() {
+        let expected = [(6, None), (7, None), (8, Some(8)), (10, Some(10)), (12, Some(11)), (16, Some(14))];
+        let larger = [(20, Some(17)), (30, Some(24)), (50, Some(36)), (100, Some(66)), (200, Some(124))];
+        for (n, rank_of) in expected.into_iter().chain(larger) {
+            assert_eq!(rank(n, LEVEL), rank_of, "{n}");
+        }
+        // Where 2^-n is no number any more.
+        let many = rank(5000, LEVEL).unwrap() as f64;
+        assert!((2500.0 + 2.0 * 35.4..2500.0 + 4.0 * 35.4).contains(&many), "{many}");
+        assert!(median_sequence(&[1.0; 9], 1.0).is_none() && median_sequence(&[f64::NAN; 9], LEVEL).is_none());
+        assert!(median_sequence(&[], LEVEL).is_none());
+        let ties = median_sequence(&[3.0; 9], LEVEL).unwrap();
+        assert_eq!((ties.low, ties.high), (3.0, 3.0));
+    }
+
+    fn uniform(generator: &mut Pcg64Dxsm) -> f64 {
+        ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
+    }
+
+    /// Sequences of 120 values with median 0, and in how many of 1000 an interval misses it at any look.
+    fn misses(next: impl Fn(&mut Pcg64Dxsm, f64) -> f64, interval: fn(&[f64], f64) -> Option<Interval>) -> u32 {
+        let mut generator = Pcg64Dxsm::new(5, 9);
+        let mut missed = 0;
+        for _ in 0..1000 {
+            let (mut values, mut last) = (Vec::new(), 0.0);
+            missed += u32::from((0..120).any(|_| {
+                last = next(&mut generator, last);
+                values.push(last);
+                interval(&values, LEVEL).is_some_and(|interval| !interval.contains(0.0))
+            }));
+        }
+        missed
+    }
+
+    fn logistic(generator: &mut Pcg64Dxsm) -> f64 {
+        let u = uniform(generator);
+        libm::log(u / (1.0 - u))
+    }
+
+    /// At most 5 % of the sequences ever miss, 50 of 1000; four standard deviations of that count are 28. Not one in 200 is too few to believe.
+    #[test]
+    fn the_median_is_held_at_every_look() {
+        let cauchy = |g: &mut Pcg64Dxsm, _| {
+            let u = uniform(g);
+            (u - 0.5) / (u * (1.0 - u))
+        };
+        let two_heaps = |g: &mut Pcg64Dxsm, _| logistic(g) * 0.1 + if uniform(g) < 0.5 { -1.0 } else { 1.0 };
+        let found = [
+            misses(|g, _| logistic(g), median_sequence),
+            misses(cauchy, median_sequence),
+            misses(two_heaps, median_sequence),
+        ];
+        println!("missed by any of 120 looks: {found:?} of 1000");
+        assert!(found.iter().all(|count| (5..78).contains(count)), "{found:?}");
+        // An interval for one look misses several times as often when one looks each time.
+        let fixed = misses(|g, _| logistic(g), median_interval);
+        assert!(fixed > 200, "{fixed}");
+    }
+
+    /// Values that follow each other are outside the promise: with half of each value carried over (autocorrelation 1/2), a third of the sequences miss.
+    #[test]
+    fn values_that_hang_together_are_held_less_often() {
+        let found = misses(|g, last| 0.5 * last + logistic(g), median_sequence);
+        println!("autocorrelation 1/2: missed {found} of 1000");
+        assert!(found > 78, "{found}");
+    }
+}

@@ -1,0 +1,189 @@
+//! A sweep that runs: cells in, rows out.
+
+use super::against::Against;
+use super::drift::Drift;
+use super::records_file::RecordsFile;
+use super::sweep::{Summary, Sweep};
+use super::until::Decisions;
+use super::{Cell, HalfFile, Progress, Reference};
+use crate::error::Result;
+use crate::measure::{Doubts, Record};
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+
+/// What a sweep knows of the rows so far, and where it puts the next ones.
+pub(super) struct Running<'a> {
+    sweep: &'a Sweep<'a>,
+    folder: PathBuf,
+    references: Vec<(&'a Reference, [HalfFile; 2])>,
+    against: Option<Against>,
+    file: RecordsFile,
+    progress: &'a dyn Progress,
+    /// Cells and repetitions of which there is a row.
+    finished: HashSet<(String, u32)>,
+    /// How many rows each cell has that are not doubtful, or always will be, and how many that are.
+    by_doubt: HashMap<String, [u32; 2]>,
+    /// The times of both builds, where there are two.
+    decisions: Decisions,
+    /// The first row's checksum of each image.
+    checksums: HashMap<String, String>,
+    drift: Drift,
+    lowest_seed: Option<u64>,
+    /// The next row's number, and the next repetition's.
+    order: u64,
+    repetition: u32,
+    summary: Summary,
+}
+
+impl<'a> Running<'a> {
+    pub(super) fn new(
+        sweep: &'a Sweep<'a>,
+        folder: PathBuf,
+        references: Vec<(&'a Reference, [HalfFile; 2])>,
+        against: Option<Against>,
+        (file, done): (RecordsFile, Vec<Record>),
+        progress: &'a dyn Progress,
+    ) -> Self {
+        let summary = Summary {
+            folder: folder.clone(),
+            rows: done.len(),
+            failed: 0,
+            invalid: done.iter().filter_map(|record| record.invalid_samples).sum(),
+            doubts: Doubts::of(done.iter().map(|record| record.warnings.as_str())),
+        };
+        let mut running = Self {
+            sweep,
+            folder,
+            references,
+            against,
+            file,
+            progress,
+            finished: HashSet::new(),
+            by_doubt: HashMap::new(),
+            decisions: Decisions::default(),
+            checksums: HashMap::new(),
+            drift: Drift::of(&done),
+            lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
+            // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
+            order: done.iter().map(|record| record.order + 1).max().unwrap_or(0),
+            repetition: done.iter().map(|record| record.repetition + 1).max().unwrap_or(0),
+            summary,
+        };
+        let points = sweep.cells.iter().flat_map(|cell| &cell.points);
+        let images: HashMap<&str, &str> = points.map(|point| (point.id.as_str(), point.image.as_str())).collect();
+        for record in &done {
+            if let Some(image) = images.get(record.cell.as_str()) {
+                running.checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
+            }
+            running.note(record);
+        }
+        running
+    }
+
+    fn note(&mut self, record: &Record) {
+        self.finished.insert((record.cell.clone(), record.repetition));
+        if record.error.is_empty() {
+            let is_doubtful = Doubts::may_pass(&record.warnings);
+            self.by_doubt.entry(record.cell.clone()).or_default()[usize::from(is_doubtful)] += 1;
+        }
+        self.repetition = self.repetition.max(record.repetition + 1);
+    }
+
+    /// Runs a repetition of a cell, or what of it has no rows yet.
+    pub(super) fn cell(&mut self, index: usize, repetition: u32) -> Result<()> {
+        let cell = &self.sweep.cells[index];
+        let is_missing = |id: &str| !self.finished.contains(&(id.to_string(), repetition));
+        let missing: Vec<bool> = cell.points.iter().map(|point| is_missing(&point.id)).collect();
+        if !missing.contains(&true) {
+            return Ok(());
+        }
+        let job = self.sweep.job(cell, (repetition, self.order), &self.folder, &self.references, self.lowest_seed);
+        let (mut others, other_first) = (Vec::new(), (u64::from(repetition) + index as u64) % 2 == 1);
+        let mut run_against =
+            || self.against.as_mut().map_or(Ok(()), |against| against.run(&job).map(|rows| others.extend(rows)));
+        if other_first {
+            run_against()?;
+        }
+        // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.
+        let rows = job.run_in_child();
+        if !other_first {
+            run_against()?;
+        }
+        for other in others {
+            if !other.error.is_empty() {
+                self.summary.failed += 1;
+                self.progress.note(&format!("{} repetition {repetition}, the other build: {}", cell.id, other.error));
+            }
+            self.decisions.note(&other, false);
+        }
+        for ((point, record), _) in cell.points.iter().zip(rows).zip(missing).filter(|(_, is_missing)| *is_missing) {
+            self.add(Record { order: self.order, ..record }, &point.image)?;
+        }
+        Ok(())
+    }
+
+    fn add(&mut self, record: Record, image: &str) -> Result<()> {
+        let mut record = verified(record, image, &mut self.checksums);
+        self.drift.watch(&mut record);
+        if !record.error.is_empty() {
+            self.summary.failed += 1;
+            self.progress.note(&format!("{} repetition {}: {}", record.cell, record.repetition, record.error));
+        }
+        self.file.append(&record)?;
+        self.summary.invalid += record.invalid_samples.unwrap_or(0);
+        self.summary.doubts.add(&record.warnings);
+        self.summary.rows += 1;
+        self.order += 1;
+        self.note(&record);
+        self.decisions.note(&record, true);
+        Ok(())
+    }
+
+    /// The cells of which it is not yet known on which side of the limit the ratio of both builds is.
+    pub(super) fn undecided(&self, limit: f64) -> Vec<usize> {
+        let cells = &self.sweep.cells;
+        let count = cells.iter().map(|cell| cell.points.len()).sum();
+        let is_open = |cell: &Cell| cell.points.iter().any(|p| !self.decisions.is_decided(&p.id, count, limit));
+        (0..cells.len()).filter(|index| is_open(&cells[*index])).collect()
+    }
+
+    /// The cells that have fewer rows without a doubt than `wanted` because others are doubtful, each with how many it lacks, and the serial runs that
+    /// they are compared with: times are compared within a repetition.
+    pub(super) fn doubtful(&self, wanted: u32) -> Vec<(usize, u32)> {
+        let cells = &self.sweep.cells;
+        let lacks = |cell: &Cell| {
+            let rows = cell.points.iter().filter_map(|point| self.by_doubt.get(&point.id));
+            rows.map(|[sound, doubtful]| wanted.saturating_sub(*sound).min(*doubtful)).max().unwrap_or(0)
+        };
+        let own: Vec<u32> = cells.iter().map(lacks).collect();
+        let of_group = |index: usize| {
+            let compared = cells.iter().zip(&own).filter(|(other, _)| cells[index].is_baseline_of(other));
+            compared.map(|(_, lack)| *lack).chain([own[index]]).max().unwrap_or(0)
+        };
+        (0..cells.len()).map(|index| (index, of_group(index))).filter(|(_, lack)| *lack > 0).collect()
+    }
+
+    /// The number of a repetition that no row has yet.
+    pub(super) fn next_repetition(&self) -> u32 {
+        self.repetition
+    }
+
+    /// What was done, once all of it is in the rows' own file.
+    pub(super) fn finish(self) -> Result<Summary> {
+        self.file.check_own()?;
+        Ok(self.summary)
+    }
+}
+
+/// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.
+fn verified(record: Record, image: &str, checksums: &mut HashMap<String, String>) -> Record {
+    if !record.error.is_empty() || record.checksum.is_empty() {
+        return record;
+    }
+    let expected = checksums.entry(image.to_string()).or_insert_with(|| record.checksum.clone());
+    if *expected == record.checksum {
+        return record;
+    }
+    let error = format!("checksum {} instead of {expected}", record.checksum);
+    Record { error, ..record }
+}
