@@ -41,7 +41,7 @@ fn primitives(criterion: &mut Criterion) {
     let bounds = Bounds { low: [-0.6; 3], high: [0.6; 3] };
     let mut group = criterion.benchmark_group("primitive");
     group.throughput(Throughput::Elements(RAYS as u64));
-    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_millis(700));
     group.bench_function("sphere", |bencher| bencher.iter(|| meet(black_box(&sphere), &rays)));
     group.bench_function("triangle", |bencher| bencher.iter(|| meet(black_box(&triangle), &rays)));
     group.bench_function("plane", |bencher| bencher.iter(|| meet(black_box(&plane), &rays)));
@@ -103,7 +103,7 @@ fn lanes(criterion: &mut Criterion) {
     let rays = rays();
     let mut group = criterion.benchmark_group("lanes");
     group.throughput(Throughput::Elements(RAYS as u64 * u64::from(SPHERES)));
-    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_millis(700));
     for level in levels() {
         for precision in Precision::ALL {
             for (form, is_curved) in [("centre", false), ("curvature", true)] {
@@ -124,7 +124,7 @@ fn scenes(criterion: &mut Criterion) {
     let rays = rays();
     let mut group = criterion.benchmark_group("scene");
     group.sample_size(20).sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(RAYS as u64));
-    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_millis(700));
     for count in [10, 100, 1000, 10_000] {
         let scene = load(&format!("spheres:{count}")).expect("a shipped scene");
         for accelerator in ACCELERATORS {

@@ -36,7 +36,7 @@ fn kernel(criterion: &mut Criterion, scene: &str, estimators: &[&str]) {
     let mut group = criterion.benchmark_group(format!("kernel/{scene}"));
     group.sample_size(20).sampling_mode(SamplingMode::Flat);
     group.throughput(Throughput::Elements(piece.bounds.area() as u64 * u64::from(SPP)));
-    group.warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_millis(1500));
+    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
     for estimator in estimators {
         for (name, spec) in kernels() {
             let spec = Spec { estimator: (*estimator).to_string(), ..spec };

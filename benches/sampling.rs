@@ -52,7 +52,7 @@ fn main() {
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
     let mut group = criterion.benchmark_group("sampling");
     group.throughput(Throughput::Elements(PAIRS));
-    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
+    group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_millis(700));
     for entry in SAMPLERS {
         let Some(sampler) = keyed_sampler(entry.name) else { continue };
         group.bench_function(BenchmarkId::new("one", entry.name), |bencher| {

@@ -124,7 +124,8 @@ mod tests {
         assert!(fixed > 200, "{fixed}");
     }
 
-    /// Values that follow each other are outside the promise: with half of each value carried over (autocorrelation 1/2), a third of the sequences miss.
+    /// Values that follow each other are outside the promise: with half of each value carried over (autocorrelation 1/2), a quarter of the
+    /// sequences miss.
     #[test]
     fn values_that_hang_together_are_held_less_often() {
         let found = misses(|g, last| 0.5 * last + logistic(g), median_sequence);

@@ -5,8 +5,8 @@
 //! of it four times that. Other samplers are better than that as long as what they integrate is smooth (A. B. Owen, "Scrambled
 //! net variance for integrals of smooth functions", 1997); edges and many dimensions bring the exponent back to about 1 (Z. He and X. Wang, "On the
 //! convergence rate of randomized quasi-Monte Carlo for discontinuous functions", 2015). A curve does not tell when. So a price beyond its last point is
-//! computed with the exponent of the last octaves, with that of independent samples and with their mean; the last one is the price, and the interval
-//! holds all three.
+//! computed with the mean of the exponent of the last octaves and that of independent samples, and the interval reaches from a somewhat larger exponent to
+//! that of independent samples.
 
 use serde::Serialize;
 
@@ -27,18 +27,23 @@ pub enum Law {
 /// What becomes of the exponent of the last octaves beyond them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Beyond {
-    Kept,
+    /// It is larger by [`STEEPER`].
+    Steeper,
+    /// It is the mean with that of independent samples.
     Between,
+    /// It is that of independent samples.
     Lost,
 }
 
-impl Beyond {
-    const ALL: [Self; 3] = [Self::Kept, Self::Between, Self::Lost];
+/// Some curves fall faster behind the pilot than in it. With this factor intervals of pilots of 8 seeds and 16 samples held the samples that it took at 33
+/// of 35 goals in 14 scenes, up to 20 times as many; without it at 30.
+const STEEPER: f64 = 1.3;
 
-    /// The slope of ln MSE over ln spp.
+impl Beyond {
+    /// The slope of ln MSE over ln spp, given that of the last octaves.
     fn slope(self, fitted: f64) -> f64 {
         match self {
-            Self::Kept => fitted,
+            Self::Steeper => STEEPER * fitted,
             Self::Between => 0.5 * (fitted - 1.0),
             Self::Lost => -1.0,
         }
@@ -132,9 +137,10 @@ impl Renderer {
 
     /// A number of the curve, and an interval that holds those of every exponent there may be beyond its end.
     fn widened(&self, level: f64, of: impl Fn(&Curve, Beyond) -> Option<f64>) -> Option<Estimate> {
-        let each = Beyond::ALL.map(|beyond| self.curves.positive_estimate(level, |curve| of(curve, beyond)));
-        let [Some(kept), Some(between), Some(lost)] = each else { return None };
-        let intervals = [kept.interval, between.interval, lost.interval];
+        let estimate = |beyond| self.curves.positive_estimate(level, |curve| of(curve, beyond));
+        let between = estimate(Beyond::Between)?;
+        let [Some(steeper), Some(lost)] = [Beyond::Steeper, Beyond::Lost].map(estimate) else { return None };
+        let intervals = [steeper.interval, between.interval, lost.interval];
         let low = intervals.iter().map(|interval| interval.low).fold(f64::INFINITY, f64::min);
         let high = intervals.iter().map(|interval| interval.high).fold(0.0, f64::max);
         Some(Estimate { value: between.value, interval: Interval::between(low, high, level)? })
@@ -191,16 +197,15 @@ mod tests {
             assert!((law.spp(&independent, 0.8).unwrap() - 6.25).abs() < 1e-9, "{law:?}, inside");
             assert!((law.rmse(&independent, 0.25).unwrap() - 4.0).abs() < 1e-9, "{law:?}, before the first");
         }
-        // Beyond 16 samples, where MSE = 4 n^-1.6 is 4 / 16^1.6: by that exponent, by -1 and by their mean, -1.3.
+        // Beyond 16 samples, where MSE = 4 n^-1.6 is 4 / 16^1.6: by 1.3 times that exponent, by -1 and by the mean of it and -1.
         let better = power(4.0, -1.6);
         let missing = 400.0 / libm::pow(16.0, 1.6);
-        let expected = [(Beyond::Kept, 1.6), (Beyond::Between, 1.3), (Beyond::Lost, 1.0)];
+        let expected = [(Beyond::Steeper, 2.08), (Beyond::Between, 1.3), (Beyond::Lost, 1.0)];
         for (beyond, exponent) in expected {
             let spp = Law::Fitted.spp_if(&better, 0.1, beyond).unwrap();
             assert!((spp / (16.0 * libm::pow(missing, 1.0 / exponent)) - 1.0).abs() < 1e-9, "{beyond:?}: {spp}");
             assert!((Law::Fitted.rmse_if(&better, spp, beyond).unwrap() - 0.1).abs() < 1e-12, "{beyond:?}");
         }
-        assert!((Law::Fitted.spp_if(&better, 0.1, Beyond::Kept).unwrap() - libm::pow(400.0, 1.0 / 1.6)).abs() < 1e-8);
         // Only the last octaves count: a first point that lies elsewhere changes nothing.
         let mut bent = better.clone();
         bent.insert(0, (0.5, 100.0));
@@ -232,7 +237,7 @@ mod tests {
         let renderer = Renderer { curves, law: Law::Fitted, seconds_per_spp: seconds(0.02, 0.0001) };
         let spp = renderer.price(0.1).unwrap().spp;
         let missing = 400.0 / libm::pow(16.0, 1.6);
-        let ends = [16.0 * libm::pow(missing, 1.0 / 1.6), 16.0 * missing];
+        let ends = [16.0 * libm::pow(missing, 1.0 / 2.08), 16.0 * missing];
         assert!(spp.interval.contains(ends[0]) && spp.interval.contains(ends[1]), "{spp:?} {ends:?}");
         assert!((spp.interval.low / ends[0] - 1.0).abs() < 0.01 && (spp.interval.high / ends[1] - 1.0).abs() < 0.01);
         let inside = renderer.price(0.5).unwrap().spp.interval;
