@@ -1,6 +1,8 @@
 //! `cargo bench --bench intersection`: rays per second against one primitive or box, against spheres in SIMD lanes by both of their forms, and
 //! against whole scenes by accelerator.
 
+mod bench;
+
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::math::{Curved, Ray, Vec3, curved_quadratic, dot, first_root, first_root_curved};
 use pathmark::scene::{ACCELERATORS, AllEffects, Bounds, Plane, Primitive, Sphere, Tests, Triangle, load};
@@ -142,9 +144,10 @@ fn scenes(criterion: &mut Criterion) {
 }
 
 fn main() {
-    let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
-    primitives(&mut criterion);
-    lanes(&mut criterion);
-    scenes(&mut criterion);
-    criterion.final_summary();
+    let units = [("primitive", "ray"), ("lanes", "ray and sphere"), ("scene", "ray")];
+    bench::run("intersection", &units, |criterion| {
+        primitives(criterion);
+        lanes(criterion);
+        scenes(criterion);
+    });
 }

@@ -1,6 +1,8 @@
 //! `cargo bench --bench kernel`: samples per second of one thread, by estimator, kernel, precision and instruction set, on cornell and, for one
 //! estimator, on other scenes.
 
+mod bench;
+
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Decomposition, TileBuffer};
@@ -55,11 +57,11 @@ fn kernel(criterion: &mut Criterion, scene: &str, estimators: &[&str]) {
 }
 
 fn main() {
-    let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
     let all: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).collect();
-    kernel(&mut criterion, "cornell", &all);
-    for scene in ["sky", "wada", "imbalance", "cornell-mesh"] {
-        kernel(&mut criterion, scene, &["bsdf"]);
-    }
-    criterion.final_summary();
+    bench::run("kernel", &[("kernel/", "sample")], |criterion| {
+        kernel(criterion, "cornell", &all);
+        for scene in ["sky", "wada", "imbalance", "cornell-mesh"] {
+            kernel(criterion, scene, &["bsdf"]);
+        }
+    });
 }

@@ -1,5 +1,7 @@
 //! `cargo bench --bench sampling`: pairs of random numbers per second by sampler, one at a time and in SIMD lanes.
 
+mod bench;
+
 use criterion::{BenchmarkId, Criterion, Throughput};
 use pathmark::math::Bits;
 use pathmark::sampling::{Address, InLanes, PathWords, Purpose, SAMPLERS, SampleKey, Sampler, keyed_sampler};
@@ -48,8 +50,8 @@ fn one_by_one(sampler: &dyn Sampler) -> f64 {
     sum
 }
 
-fn main() {
-    let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
+/// Every sampler, one pair after the other and in lanes.
+fn pairs(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sampling");
     group.throughput(Throughput::Elements(PAIRS));
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_millis(700));
@@ -69,5 +71,8 @@ fn main() {
         }
     }
     group.finish();
-    criterion.final_summary();
+}
+
+fn main() {
+    bench::run("sampling", &[("sampling", "pair")], pairs);
 }

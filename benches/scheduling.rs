@@ -8,7 +8,7 @@
 //! thread-scaling` interleaves them and is what conclusions should rest on.
 
 mod bare;
-mod speedup_table;
+mod bench;
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput};
 use pathmark::film::{Decomposition, TileBuffer};
@@ -18,7 +18,7 @@ use pathmark::strategy::{Config, Entry, Job, STRATEGIES, Strategy, Workers, find
 use std::hint::black_box;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 const THREADS: [usize; 3] = [1, 2, 4];
 const SPP: u32 = 4;
@@ -156,12 +156,11 @@ fn trace(criterion: &mut Criterion) {
 }
 
 fn main() {
-    let start = SystemTime::now();
-    let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
-    scheduling(&mut criterion);
-    empty_jobs(&mut criterion);
-    seam(&mut criterion);
-    trace(&mut criterion);
-    criterion.final_summary();
-    speedup_table::print("scheduling", start);
+    let units = [("scheduling", "sample"), ("empty-jobs", "job"), ("seam", "job"), ("trace", "job")];
+    bench::run("scheduling", &units, |criterion| {
+        scheduling(criterion);
+        empty_jobs(criterion);
+        seam(criterion);
+        trace(criterion);
+    });
 }

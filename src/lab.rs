@@ -19,7 +19,7 @@
 //! The program above is `pathmark` with one workload more: `cargo run --release -- render squares --strategy rayon`. Cells of experiments run in
 //! processes of the same program, so they have the same tables.
 
-mod processes;
+mod rank_rules;
 
 use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
@@ -27,7 +27,7 @@ use crate::kernel::OwnEstimator;
 use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::scene::{Library, OwnScene, Scene};
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
-pub use processes::{MASTER_WORKER, WORKING_MASTER, of_rank_rule, rank_rule, rank_rules};
+pub use rank_rules::{MASTER_WORKER, WORKING_MASTER, rank_rules};
 use std::fmt;
 use std::panic::Location;
 use std::sync::{Arc, LazyLock};
@@ -88,8 +88,7 @@ impl Lab {
     #[must_use]
     #[track_caller]
     pub fn strategy(mut self, entry: Strategy) -> Self {
-        let is_ours = entry.name == THREAD_PER_ROW || processes::is_known(entry.name);
-        let taken = is_ours || self.strategies.iter().any(|known| known.name == entry.name);
+        let taken = entry.name == THREAD_PER_ROW || self.strategies.iter().any(|known| known.name == entry.name);
         self.note("strategy", entry.name, taken, Location::caller());
         self.strategies.push(entry);
         self
@@ -165,8 +164,7 @@ impl Lab {
             Some((name, parameter)) => (name, Some(parameter.to_string())),
             None => (text, None),
         };
-        let found = self.strategies.iter().find(|entry| entry.name == name).copied();
-        let entry = found.or_else(|| processes::named(self, name)).ok_or_else(|| {
+        let entry = self.strategies.iter().find(|entry| entry.name == name).copied().ok_or_else(|| {
             let names: Vec<&str> = self.strategies.iter().map(|entry| entry.name).collect();
             InputError::new("strategy", name, "there is no strategy of that name").allowed(names.join(", "))
         })?;

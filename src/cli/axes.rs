@@ -31,7 +31,7 @@ pub(super) struct Axes {
 /// What clap refuses before the program looks at a value.
 fn parser(axis: &Axis) -> ValueParser {
     match (axis.field)(&mut Settings::default()) {
-        Field::Depth(_) => value_parser!(u16).into(),
+        Field::Count(_) => value_parser!(u16).into(),
         Field::Samples(_) => value_parser!(u32).into(),
         Field::Seed(_) => value_parser!(u64).into(),
         Field::Workers(_) => value_parser!(usize).into(),

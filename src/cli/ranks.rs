@@ -25,8 +25,11 @@ pub(super) struct Ranks {
 /// What the ranks did, beside the outcome.
 #[derive(Serialize)]
 pub(super) struct Told {
+    #[serde(skip)]
     ranks: usize,
+    #[serde(skip)]
     rank_rule: String,
+    #[serde(skip)]
     mpi: String,
     gather_s: f64,
     by_rank: Vec<RankRow>,
@@ -45,10 +48,17 @@ pub(super) fn with_record<'a>(told: &'a Told, record: &'a Record) -> WithRecord<
     WithRecord { record, told }
 }
 
+/// Says in a record who rendered.
+pub(super) fn label(told: &Told, record: &mut Record) {
+    record.ranks = u16::try_from(told.ranks).ok();
+    record.rank_rule.clone_from(&told.rank_rule);
+    record.mpi.clone_from(&told.mpi);
+}
+
 impl Ranks {
     /// The rule, if there is one.
     pub(super) fn rule(&self, lab: &Lab) -> Result<Option<RankRule>> {
-        self.ranks.as_deref().map(|text| RankRule::parse(lab, text)).transpose()
+        self.ranks.as_deref().map(|text| RankRule::parse(lab, "ranks", text)).transpose()
     }
 
     /// Renders; `None` on all ranks but the first.

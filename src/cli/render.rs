@@ -103,6 +103,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 
     let mut record = Record::new(&setup, &outcome, Measured::default());
     arguments.rounds.label(&mut record);
+    if let Some(cluster) = &clustered {
+        ranks::label(cluster, &mut record);
+    }
     for warning in &outcome.warnings {
         talk.note(&format!("warning: {warning}"));
     }

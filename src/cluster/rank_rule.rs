@@ -4,7 +4,7 @@
 //! counts up one number in the memory of rank 0 and looks its chunk up. A master answers requests by messages instead.
 
 use crate::error::{InputError, Result};
-use crate::lab::{Lab, MASTER_WORKER, WORKING_MASTER, of_rank_rule, rank_rules};
+use crate::lab::{Lab, MASTER_WORKER, WORKING_MASTER};
 use crate::strategy::{ChunkRule, Deal, Discipline};
 use std::fmt;
 use std::ops::Range;
@@ -43,24 +43,23 @@ impl fmt::Display for RankRule {
 }
 
 impl RankRule {
-    /// Reads a rule as it stands on the command line.
-    pub fn parse(lab: &Lab, text: &str) -> Result<Self> {
-        let strategy = of_rank_rule(text);
-        let refused =
-            || InputError::new("ranks", text, "is no rule by which ranks can share jobs").allowed(rank_rules());
-        let (entry, parameter) = lab.strategy_named(&strategy).map_err(|_| refused())?;
-        let way = match (entry.discipline(parameter.as_deref()), entry.name) {
-            (Ok(Discipline::Chunks(rule)), MASTER_WORKER) => Way::Asked(Master::Only, rule),
-            (Ok(Discipline::Chunks(rule)), WORKING_MASTER) => Way::Asked(Master::Working, rule),
-            (Ok(Discipline::Chunks(rule)), _) => Way::Counted(rule),
-            (Ok(Discipline::Dealt(deal)), _) => Way::Dealt(deal),
-            _ => return Err(refused().into()),
+    /// Reads a rule as it stands in an option or an axis of that name.
+    pub fn parse(lab: &Lab, field: &'static str, text: &str) -> Result<Self> {
+        let way = match lab.rank_rule(field, text)? {
+            (MASTER_WORKER, Discipline::Chunks(rule)) => Way::Asked(Master::Only, rule),
+            (WORKING_MASTER, Discipline::Chunks(rule)) => Way::Asked(Master::Working, rule),
+            (_, Discipline::Chunks(rule)) => Way::Counted(rule),
+            (_, Discipline::Dealt(deal)) => Way::Dealt(deal),
+            (name, _) => {
+                let problem = "neither deals jobs nor hands out chunks";
+                return Err(InputError::new(field, name, problem).into());
+            }
         };
         Ok(Self { text: text.to_string(), way })
     }
 
     /// Refuses rules that so many ranks cannot follow.
-    pub(super) fn check(&self, ranks: usize) -> Result<()> {
+    pub fn check(&self, ranks: usize) -> Result<()> {
         match self.way {
             Way::Asked(Master::Only, _) if ranks < 2 => {
                 let problem = format!("needs a rank besides the master, and there is {ranks}");
@@ -80,17 +79,18 @@ impl RankRule {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lab::rank_rules;
 
     #[test]
     fn every_rule_that_is_listed_can_be_read_and_others_cannot() {
         let lab = Lab::built_in();
         for text in rank_rules().split(", ").chain(["dynamic:3", "master-worker:3", "working-master:3"]) {
-            let rule = RankRule::parse(&lab, text).unwrap();
+            let rule = RankRule::parse(&lab, "ranks", text).unwrap();
             assert_eq!(rule.check(1).is_err(), text.starts_with("master-worker"), "{text}");
             assert!(rule.check(2).is_ok());
         }
         for text in ["work-stealing", "serial", "rayon", "", "dynamic:0", "master-worker:0", "master-worker:x", "x:1"] {
-            assert_eq!(RankRule::parse(&lab, text).unwrap_err().exit_code(), 2, "{text}");
+            assert_eq!(RankRule::parse(&lab, "ranks", text).unwrap_err().exit_code(), 2, "{text}");
         }
     }
 }

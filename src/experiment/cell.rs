@@ -2,7 +2,7 @@
 
 use super::{External, SceneVersion};
 use crate::error::{InputError, Result};
-use crate::measure::{AXES, Axis, ImageKey, SERIAL, Settings, Setup, available_threads, schedule_name};
+use crate::measure::{AXES, Axis, ImageKey, Settings, Setup, available_threads, schedule_name};
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl CellPoint {
 impl Cell {
     /// Whether it is one after the other on one thread.
     pub(super) fn is_serial(&self) -> bool {
-        self.settings.strategy == SERIAL
+        self.settings.is_serial()
     }
 
     /// Whether it is a serial run of the other's image, in whatever pieces.
@@ -50,6 +50,8 @@ impl Cell {
         let image = |cell: &Self| Settings {
             strategy: String::new(),
             threads: 0,
+            rank_rule: None,
+            ranks: None,
             decomposition: String::new(),
             ..cell.settings.clone()
         };
@@ -74,6 +76,9 @@ impl Cell {
         settings.threads = setup.threads();
         let spec = &settings.spec;
         let mut schedule = format!("{}/{}/{}t", settings.decomposition, settings.strategy, settings.threads);
+        if let Some((ranks, rule)) = settings.ranks.zip(settings.rank_rule.as_ref()) {
+            schedule = format!("{schedule}/{ranks}ranks/{rule}");
+        }
         if settings.output != Settings::default().output {
             schedule = format!("{schedule}/{}", settings.output);
         }
@@ -91,7 +96,7 @@ impl Cell {
         let id = point(settings.spp).id;
         let points = points.iter().map(|spp| point(*spp)).collect();
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
-        let weight = samples / settings.threads.min(available_threads()) as u64;
+        let weight = samples / settings.workers(settings.threads).min(available_threads()) as u64;
         let scene = SceneVersion::of(setup);
         Self { id, points, weight: weight.max(1), external: None, scene, settings }
     }

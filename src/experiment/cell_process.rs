@@ -14,7 +14,7 @@ use crate::error::{Error, InputError, Result};
 use crate::film::SAMPLE_BLOCK;
 use crate::film_file::read_film;
 use crate::image_io::{self, Image};
-use crate::lab::{Lab, rank_rule};
+use crate::lab::Lab;
 use crate::measure::{
     Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure, missing_external, run_external,
 };
@@ -112,8 +112,8 @@ impl CellJob {
         if let Some((external, folder)) = &self.external {
             return self.other_program(lab, external, folder, references.as_ref());
         }
-        if let Some(rule) = rank_rule(&self.settings.strategy) {
-            return self.by_processes(lab, rule, references.as_ref());
+        if let Some((ranks, rule)) = self.settings.ranks.zip(self.settings.rank_rule.as_deref()) {
+            return self.by_processes(lab, ranks, rule, references.as_ref());
         }
         if let [point] = self.points.as_slice() {
             let setup = self.setup(lab, point.spp)?;
@@ -190,11 +190,11 @@ impl CellJob {
     }
 
     /// The rows of processes, each point by processes of its own.
-    fn by_processes(&self, lab: &Lab, rule: &str, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
+    fn by_processes(&self, lab: &Lab, ranks: u16, rule: &str, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
         let row = |point: &PointJob| {
             let settings = Settings { spp: point.spp, ..self.settings.clone() };
             let hash = self.setup(lab, point.spp)?.hash();
-            let Some((record, image)) = run_processes(&settings, rule, self.trace.as_deref())? else {
+            let Some((record, image)) = run_processes(&settings, ranks, rule, self.trace.as_deref())? else {
                 return Ok(self.label(point, missing_external(&settings, &hash)));
             };
             self.scene.check(&record.scene_hash)?;

@@ -5,7 +5,6 @@ use super::processes::check_processes;
 use super::table::{Matrix, Scale};
 use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
-use crate::lab::rank_rule;
 use crate::measure::{AXES, Axis, Field, ImageKey, LARGEST_SEED, ScheduleKey, Settings, Setup};
 use crate::sampling::{SAMPLERS, is_deterministic};
 use std::collections::HashSet;
@@ -148,12 +147,11 @@ impl<'a> Product<'a> {
             return Err(self.at_field(error.allowed(format!("0 to {LARGEST_SEED}")).into()));
         }
         if self.matrix.weak {
-            settings.spp = settings.spp.saturating_mul(u32::try_from(settings.threads).unwrap_or(u32::MAX));
+            settings.spp =
+                settings.spp.saturating_mul(u32::try_from(settings.workers(settings.threads)).unwrap_or(u32::MAX));
         }
         let setup = self.definition.lab.prepare(settings).map_err(|error| self.at_field(error))?;
-        if rank_rule(&setup.settings().strategy).is_some() {
-            check_processes(setup.settings()).map_err(|error| self.at_field(error))?;
-        }
+        check_processes(&self.definition.lab, setup.settings()).map_err(|error| self.at_field(error))?;
         if self.matrix.curve {
             setup.check_rounds().map_err(|error| self.at_field(error))?;
         }

@@ -1,8 +1,9 @@
 //! A cell whose workers are processes: `mpiexec` starts as many of this program, and the first prints the row.
 
+use crate::cluster::RankRule;
 use crate::error::{Error, InputError, Result};
 use crate::image_io::{self, Image};
-use crate::lab::SERIAL;
+use crate::lab::Lab;
 use crate::measure::{AXES, Record, Settings};
 use serde_json::Value;
 use std::env;
@@ -15,8 +16,13 @@ use std::process::{Command, Stdio};
 const LAUNCHER: &str = "mpiexec";
 const LAUNCHER_VARIABLE: &str = "PATHMARK_MPIEXEC";
 
-/// Renders with as many processes as the settings have workers, one thread each. `Ok(None)` if there is no launcher.
-pub(super) fn run_processes(settings: &Settings, rule: &str, trace: Option<&Path>) -> Result<Option<(Record, Image)>> {
+/// Renders with so many processes. `Ok(None)` if there is no launcher.
+pub(super) fn run_processes(
+    settings: &Settings,
+    ranks: u16,
+    rule: &str,
+    trace: Option<&Path>,
+) -> Result<Option<(Record, Image)>> {
     let folder = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
     let image = folder.path().join("image.pfm");
     let launcher = env::var(LAUNCHER_VARIABLE).unwrap_or_else(|_| LAUNCHER.to_string());
@@ -24,7 +30,7 @@ pub(super) fn run_processes(settings: &Settings, rule: &str, trace: Option<&Path
     let program = words.next().unwrap_or(LAUNCHER);
     let own = env::current_exe().map_err(|e| Error::system("finding", "this program", e))?;
     let mut command = Command::new(program);
-    command.args(words).arg("-n").arg(settings.threads.to_string()).arg(own).args(options(settings, rule));
+    command.args(words).arg("-n").arg(ranks.to_string()).arg(own).args(options(settings, rule));
     command.arg("--image").arg(&image);
     if let Some(path) = trace {
         command.arg("--trace").arg(path);
@@ -39,18 +45,15 @@ pub(super) fn run_processes(settings: &Settings, rule: &str, trace: Option<&Path
         return Err(Error::Check(format!("{} ended with {}: {said}", told(), output.status)));
     }
     let record = record(&output.stdout).ok_or_else(|| Error::Check(format!("{} printed no record", told())))?;
-    let strategy = settings.strategy.clone();
-    let image = image_io::read(&image)?;
-    Ok(Some((Record { strategy, threads: settings.threads, ..record }, image)))
+    Ok(Some((record, image_io::read(&image)?)))
 }
 
 /// The options of a render with these settings, by name.
 fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
     let mut options = vec!["render".to_string(), settings.scene.clone(), "--quiet".to_string(), "--json".to_string()];
-    let own = Settings { strategy: SERIAL.to_string(), threads: 1, ..settings.clone() };
     let samples_and_seed = ["spp", "seed", "clamp"];
     for axis in AXES.iter().filter(|axis| !axis.about.is_empty() || samples_and_seed.contains(&axis.name)) {
-        let value = axis.show(&own);
+        let value = axis.show(settings);
         if !value.is_empty() {
             options.extend([format!("--{}", axis.name), value]);
         }
@@ -63,16 +66,30 @@ fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
 fn record(printed: &[u8]) -> Option<Record> {
     let mut value: Value = serde_json::from_slice(printed).ok()?;
     let fields = value.as_object_mut()?;
-    for name in ["ranks", "rank_rule", "mpi", "by_rank"] {
-        fields.remove(name)?;
-    }
+    fields.remove("by_rank")?;
     let gather_s = fields.remove("gather_s")?.as_f64()?;
     let record: Record = serde_json::from_value(value).ok()?;
     Some(Record { merge_s: record.merge_s.map(|merge_s| merge_s + gather_s), ..record })
 }
 
-/// Refuses settings under which processes cannot start.
-pub(super) fn check_processes(settings: &Settings) -> Result<()> {
+/// Refuses settings under which processes cannot start, or would not know what to do.
+pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
+    let (ranks, rule) = match (settings.ranks, &settings.rank_rule) {
+        (None, None) => return Ok(()),
+        (Some(ranks), Some(rule)) => (ranks, rule),
+        (Some(ranks), None) => {
+            let error = InputError::new("ranks", ranks.to_string(), "processes need a rule by which they share jobs");
+            return Err(error.allowed("rank-rule beside it").into());
+        }
+        (None, Some(rule)) => {
+            let error = InputError::new("rank-rule", rule, "shares jobs among processes, and there are none");
+            return Err(error.allowed("ranks beside it").into());
+        }
+    };
+    if ranks == 0 {
+        return Err(InputError::new("ranks", "0", "is out of range").allowed("1 or more").into());
+    }
+    RankRule::parse(lab, "rank-rule", rule)?.check(ranks.into())?;
     if settings.output == Settings::default().output {
         return Ok(());
     }

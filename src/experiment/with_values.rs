@@ -89,7 +89,7 @@ fn value_of(axis: &Axis, values: &str) -> Result<Value> {
             let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };
             Value::Array(each.map(workers).collect::<Result<_>>()?)
         }
-        Field::Depth(_) | Field::Samples(_) | Field::Seed(_) => {
+        Field::Count(_) | Field::Samples(_) | Field::Seed(_) => {
             Value::Array(each.map(|value| number(axis.name, value)).collect::<Result<_>>()?)
         }
     })

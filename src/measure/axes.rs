@@ -17,8 +17,8 @@ pub enum Field<'a> {
     Name(&'a mut String),
     /// A name, or a choice that fits the scene.
     Fitting(&'a mut Option<String>),
-    /// A bounce limit, or the limit of the estimator.
-    Depth(&'a mut Option<u16>),
+    /// A number, or none.
+    Count(&'a mut Option<u16>),
     /// Samples per pixel.
     Samples(&'a mut u32),
     /// A seed.
@@ -110,7 +110,7 @@ impl Field<'_> {
         match self {
             Self::Name(name) => *name = text.to_string(),
             Self::Fitting(name) => *name = Some(text.to_string()),
-            Self::Depth(depth) => *depth = Some(text.parse().ok()?),
+            Self::Count(count) => *count = Some(text.parse().ok()?),
             Self::Samples(spp) => *spp = text.parse().ok()?,
             Self::Seed(seed) => *seed = text.parse().ok()?,
             Self::Workers(threads) => *threads = text.parse().ok()?,
@@ -123,7 +123,7 @@ impl Field<'_> {
         match self {
             Self::Name(name) => name.clone(),
             Self::Fitting(name) => name.clone().unwrap_or_default(),
-            Self::Depth(depth) => depth.map(|depth| depth.to_string()).unwrap_or_default(),
+            Self::Count(count) => count.map(|count| count.to_string()).unwrap_or_default(),
             Self::Samples(spp) => spp.to_string(),
             Self::Seed(seed) => seed.to_string(),
             Self::Workers(threads) => threads.to_string(),
@@ -149,12 +149,12 @@ fn all_strategies(lab: &Lab) -> Vec<String> {
 }
 
 /// Every axis, in the order in which an experiment nests them: the first varies slowest. Results on disk depend on the order.
-pub static AXES: [Axis; 20] = [
+pub static AXES: [Axis; 22] = [
     Axis::new("scene", |s| Name(&mut s.scene)).image().all(all_scenes),
     Axis::new("size", |s| Field::Size(&mut s.spec)).image().option("WxH", "Columns and rows").default("512x384"),
     Axis::new("estimator", |s| Name(&mut s.spec.estimator)).image().light().option("NAME", "Estimator [default: the scene's own]"),
     Axis::new("sampler", |s| Name(&mut s.spec.sampler)).image().light().option("NAME", "Sampler").default("independent"),
-    Axis::new("max-depth", |s| Field::Depth(&mut s.spec.max_depth)).image().light().option("N", "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]"),
+    Axis::new("max-depth", |s| Field::Count(&mut s.spec.max_depth)).image().light().option("N", "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]"),
     Axis::new("spp", |s| Field::Samples(&mut s.spp)).image(),
     Axis::new("seed", |s| Field::Seed(&mut s.spec.seed)).image(),
     Axis::new("clamp", |s| Fitting(&mut s.spec.clamp)).image().light(),
@@ -170,4 +170,6 @@ pub static AXES: [Axis; 20] = [
     Axis::new("threads", |s| Field::Workers(&mut s.threads)).option("N", "Workers [default: one for each processor]"),
     Axis::new("decomposition", |s| Name(&mut s.decomposition)).option("CUT", "Pieces: rows, bands:N, grid:N, tiles:WxH[:hilbert|:spiral|:cost], `samples:B[:WxH]` [default: tiles:32x32]"),
     Axis::new("output", |s| Name(&mut s.output)).option("NAME", "How pieces get into the film: an output of `pathmark list outputs`").default("slots"),
+    Axis::new("rank-rule", |s| Fitting(&mut s.rank_rule)),
+    Axis::new("ranks", |s| Field::Count(&mut s.ranks)),
 ];

@@ -18,6 +18,7 @@ const SINCE: &[(u32, &[&str])] = &[
     (4, &["adaptive", "target_error", "time_limit_s", "rounds", "estimated_rmse", "variance", "roulette", "clamp"]),
     (5, &["kernel_fallback", "simd"]),
     (6, &["filter", "epsilon", "object_mse", "within_tolerance", "fireflies", "black_pixels", "image_write_s"]),
+    (7, &["ranks", "rank_rule", "mpi"]),
 ];
 
 impl Column {

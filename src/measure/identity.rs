@@ -71,8 +71,12 @@ pub struct ScheduleKey {
     pub strategy: String,
     /// How the film is cut.
     pub decomposition: String,
-    /// Workers.
+    /// Workers; of processes, in each.
     pub threads: usize,
+    /// Processes; `None` if there is one.
+    pub ranks: Option<u16>,
+    /// Rule by which they share the jobs; empty if there is one.
+    pub rank_rule: String,
     /// How pieces get into the film.
     pub output: String,
     /// Kernel that renders.
@@ -88,6 +92,13 @@ pub struct ScheduleKey {
 }
 
 impl ScheduleKey {
+    /// Clears who renders, but not in which pieces.
+    pub fn forget_workers(&mut self) {
+        self.strategy.clear();
+        self.rank_rule.clear();
+        (self.threads, self.ranks) = (0, None);
+    }
+
     /// Clears the kernel and what is chosen to fit it.
     pub fn forget_kernel(&mut self) {
         let parts =
@@ -101,6 +112,12 @@ impl fmt::Display for ScheduleKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}/{}t/{}", self.decomposition, self.strategy, self.threads, self.output)?;
         let fallback = if self.kernel_fallback.is_empty() { "" } else { "fallback" };
+        if let Some(ranks) = self.ranks {
+            write!(f, "/{ranks}ranks")?;
+        }
+        if !self.rank_rule.is_empty() {
+            write!(f, "/by-{}", self.rank_rule)?;
+        }
         let parts = [&self.kernel, fallback, &self.simd, &self.effects, &self.accelerator];
         parts.iter().filter(|part| !part.is_empty()).try_for_each(|part| write!(f, "/{part}"))
     }
@@ -134,6 +151,8 @@ impl Record {
             strategy: self.strategy.clone(),
             decomposition: self.decomposition.clone(),
             threads: self.threads,
+            ranks: self.ranks,
+            rank_rule: self.rank_rule.clone(),
             output: self.output.clone(),
             kernel: self.kernel.clone(),
             kernel_fallback: self.kernel_fallback.clone(),

@@ -60,4 +60,5 @@ pub use setup::Setup;
 pub use share::{DoneJob, Share};
 pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};
+pub use usage::foreign_cpu_s;
 pub use warning::{WARNINGS, Warning, WarningEntry};

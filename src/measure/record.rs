@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 6;
+pub const SCHEMA: u32 = 7;
 
 columns! {
     /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
@@ -76,12 +76,18 @@ columns! {
         pub biased: bool,
         /// Decomposition: how the film was cut into pieces.
         pub decomposition: String,
-        /// Name of the scheduling strategy.
+        /// Name of the scheduling strategy; of processes, that within each.
         pub strategy: String,
         /// Output: how pieces got into the film.
         pub output: String,
-        /// Threads that were asked for.
+        /// Threads that were asked for; of processes, in each.
         pub threads: usize,
+        /// Processes that MPI connected; empty if one process did everything.
+        pub ranks: Option<u16>,
+        /// Rule by which the processes shared the jobs; empty if there was one.
+        pub rank_rule: String,
+        /// MPI library, with its version; empty if there was one process.
+        pub mpi: String,
         /// Number of the repetition, from 0.
         pub repetition: u32,
         /// Position in the order in which the sweep ran.
@@ -240,6 +246,8 @@ fn described(settings: &Settings) -> Record {
         strategy: settings.strategy.clone(),
         output: settings.output.clone(),
         threads: settings.threads,
+        ranks: settings.ranks,
+        rank_rule: settings.rank_rule.clone().unwrap_or_default(),
         commit: env!("PATHMARK_COMMIT").to_string(),
         dirty: env!("PATHMARK_DIRTY") == "true",
         started_utc: utc_now(),

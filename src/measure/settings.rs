@@ -3,7 +3,7 @@
 use crate::error::{InputError, Result};
 use crate::film::check_size;
 use crate::kernel::Spec;
-use crate::lab::THREAD_PER_ROW;
+use crate::lab::{SERIAL, THREAD_PER_ROW};
 use crate::sampling::REFERENCE_SEEDS;
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
@@ -32,8 +32,14 @@ pub struct Settings {
     pub output: String,
     /// Who renders them.
     pub strategy: String,
-    /// How many workers.
+    /// How many workers; of processes, in each.
     pub threads: usize,
+    /// The rule by which processes that MPI connects share the jobs, if there are any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rank_rule: Option<String>,
+    /// How many processes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ranks: Option<u16>,
 }
 
 impl Default for Settings {
@@ -46,6 +52,8 @@ impl Default for Settings {
             output: "slots".to_string(),
             strategy: "work-stealing".to_string(),
             threads: available_threads(),
+            rank_rule: None,
+            ranks: None,
         }
     }
 }
@@ -85,6 +93,16 @@ impl Settings {
             self.decomposition = "rows".to_string();
         }
         self
+    }
+
+    /// Workers over all processes, where each has so many threads.
+    pub fn workers(&self, threads: usize) -> usize {
+        threads * usize::from(self.ranks.unwrap_or(1))
+    }
+
+    /// Whether it is one worker that does one job after the other.
+    pub fn is_serial(&self) -> bool {
+        self.strategy == SERIAL && self.ranks.is_none()
     }
 
     /// Refuses numbers out of range, before anything is allocated or started. Seeds of references are allowed; whoever takes a seed

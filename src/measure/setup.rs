@@ -9,7 +9,7 @@ use crate::estimator::Estimator;
 use crate::film::{Decomposition, Plan};
 use crate::kernel::workload::Entry as Workload;
 use crate::kernel::{self, Choice, Clamped, Counts, Kernel, OwnEstimator, Spec};
-use crate::lab::{Lab, THREAD_PER_ROW, rank_rule};
+use crate::lab::{Lab, THREAD_PER_ROW};
 use crate::scene::{SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
@@ -90,6 +90,9 @@ impl Setup {
         let settings = settings.resolved();
         settings.check()?;
         check_spp(settings.spp, &settings.spec.estimator, subject.spp_multiple())?;
+        if let Some(rule) = &settings.rank_rule {
+            lab.rank_rule("rank-rule", rule)?;
+        }
         let decomposition = Decomposition::parse(&settings.decomposition)?;
         let (strategy, parameter) = lab.strategy_named(&settings.strategy).map_err(|error| match error {
             // Where a strategy is named together with its pieces, report A's name for both is allowed too.
@@ -305,18 +308,16 @@ impl Setup {
     }
 
     pub(super) fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
+        if let Some(rule) = &self.settings.rank_rule {
+            let problem = "shares jobs among processes, and this is one";
+            return Err(InputError::new("rank-rule", rule, problem).allowed("an experiment, or render --ranks").into());
+        }
         let threads = NonZeroUsize::new(self.settings.threads).unwrap_or(NonZeroUsize::MIN);
         let config = Config { parameter: self.parameter.clone(), ..Config::new(threads) };
         self.strategy.build(config).map_err(|error| self.strategy_error(error))
     }
 
     pub(super) fn strategy_error(&self, error: StrategyError) -> Error {
-        if let StrategyError::Processes { strategy } = error {
-            let problem = "has processes for workers, and one process cannot run it alone";
-            let rule = rank_rule(&self.settings.strategy).unwrap_or_default();
-            let allowed = format!("mpiexec -n N pathmark render SCENE --ranks {rule}, or an experiment");
-            return InputError::new("strategy", strategy, problem).allowed(allowed).into();
-        }
         Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
     }
 

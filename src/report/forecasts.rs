@@ -113,8 +113,9 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
         Series::by_name(shown.iter().map(|name| (name, points(name))))
     };
     let most = rows.iter().map(|row| row.workers).max().unwrap_or(1);
+    // Every number of cores would leave no room for some powers of two.
     let doubled = std::iter::successors(Some(1), |cores| Some(2 * cores)).take_while(|cores| *cores <= most);
-    let ticks: Vec<f64> = rows.iter().map(|row| row.workers).chain(doubled).map(|cores| cores as f64).collect();
+    let ticks: Vec<f64> = doubled.chain([most]).map(|cores| cores as f64).collect();
     let axis = || Axis::log("cores").ticks_at(ticks.clone());
     let mut speedup = LineChart::new("Forecast: speedup", axis(), Axis::log("speedup"), series(|row| row.speedup));
     speedup.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];

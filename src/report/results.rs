@@ -2,7 +2,7 @@
 
 use super::naming::{Part, joined, needed};
 use super::rows::{Row, group};
-use super::schedule::{Schedule, strategy};
+use super::schedule::{Schedule, over_ranks, strategy};
 use super::serial::Serial;
 use crate::error::{InputError, Result};
 use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file, trace_file};
@@ -42,7 +42,7 @@ impl Results {
         let records = read_records(&path)?;
         check_identities(&records, &path)?;
         let (done, failed): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|row| row.error.is_empty());
-        let rows = named(done);
+        let rows = named(done.into_iter().map(over_ranks).collect());
         let image_parts = image_parts(&rows);
         Ok(Self { definition, run, failed, folder: folder.to_path_buf(), out: out.to_path_buf(), rows, image_parts })
     }

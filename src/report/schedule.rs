@@ -1,7 +1,6 @@
 //! A schedule as figures name it.
 
 use super::words::counted;
-use crate::lab::rank_rule;
 use crate::measure::{Record, SERIAL, ScheduleKey, THREAD_PER_ROW, schedule_name};
 
 /// A schedule with its name. Schedules are listed by name, then by pieces, then by threads.
@@ -33,9 +32,23 @@ pub(super) fn crew(strategy: &str, threads: usize) -> String {
     format!("{strategy}, {}", counted(threads, workers))
 }
 
+/// What the names of strategies over processes begin with.
+const OF_RANKS: &str = "mpi-";
+
 /// Whether the workers of what has that name are processes.
 pub(super) fn is_of_ranks(name: &str) -> bool {
-    rank_rule(name.split_once(',').map_or(name, |(strategy, _)| strategy)).is_some()
+    name.starts_with(OF_RANKS)
+}
+
+/// The row with the rule among processes in the place of the strategy, and with all workers over all of them: figures compare processes with
+/// threads. Threads within processes are part of the name.
+pub(super) fn over_ranks(mut record: Record) -> Record {
+    if let Some(ranks) = record.ranks.take() {
+        let within = if record.threads > 1 { format!(" of {} threads", record.threads) } else { String::new() };
+        record.strategy = format!("{OF_RANKS}{}{within}", std::mem::take(&mut record.rank_rule));
+        record.threads *= usize::from(ranks);
+    }
+    record
 }
 
 /// The strategy of a row as report A names it.

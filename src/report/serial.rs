@@ -23,10 +23,7 @@ pub(super) struct Serial<'a> {
 
 /// What a row shares with the serial run on the same pieces.
 fn with_pieces(row: &Row) -> Key {
-    row.key(|_, schedule| {
-        schedule.strategy.clear();
-        schedule.threads = 0;
-    })
+    row.key(|_, schedule| schedule.forget_workers())
 }
 
 /// What it shares with every serial run of its image.

@@ -119,7 +119,6 @@ fn what_ranks_cannot_do_is_refused() {
     refused(&["--ranks", "guided", "--mpi", "/nowhere/libmpi.so"], 2, &["mpi", "/nowhere/libmpi.so"]);
     refused(&["--ranks", "guided", "--mpi", "libc.so.6"], 2, &["mpi", "libc.so.6", "MPI_Init_thread"]);
     refused(&["--mpi", "auto"], 2, &["--ranks"]);
-    refused(&["--strategy", "mpi-guided"], 2, &["strategy", "mpiexec"]);
     for option in [["--target-error", "0.1"], ["--checkpoint", "c"], ["--shard", "1/2"]] {
         refused(&[&["--ranks", "guided", "-o", "x"], option.as_slice()].concat(), 2, &["--ranks", option[0]]);
     }
@@ -205,7 +204,7 @@ fn a_rank_that_dies_ends_the_run() {
 
 /// Rows of processes stand among those of threads, with one checksum; without a launcher they say that nothing was measured.
 #[test]
-fn processes_are_strategies_of_an_experiment() {
+fn processes_have_rows_in_an_experiment() {
     if !has_launcher() {
         return;
     }
@@ -220,7 +219,16 @@ figures = ["speedup"]
 [[matrix]]
 scene = ["cornell"]
 spp = [4]
-strategy = ["serial", "mpi-static-blocks", "mpi-guided", "mpi-working-master:2"]
+strategy = ["serial"]
+threads = [1]
+decomposition = ["tiles:16x16"]
+
+[[matrix]]
+scene = ["cornell"]
+spp = [4]
+rank-rule = ["static-blocks", "guided", "working-master:2"]
+ranks = [2]
+strategy = ["serial", "rayon"]
 threads = [2]
 decomposition = ["tiles:16x16"]
 
@@ -236,23 +244,27 @@ repetitions = 2
         let mut reader = csv::Reader::from_path(folder.path().join(out).join("ranks/records.csv")).unwrap();
         let heads = reader.headers().unwrap().clone();
         let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
-        let columns = ["strategy", "threads", "workers_used", "checksum", "warnings"].map(column);
+        let columns = ["strategy", "threads", "workers_used", "checksum", "warnings", "ranks", "rank_rule"].map(column);
         let rows: Vec<_> =
             reader.records().map(|row| columns.map(|at| row.as_ref().unwrap()[at].to_string())).collect();
         rows
     };
     let found = rows("out", None);
-    assert_eq!(found.len(), 8);
-    for [strategy, threads, used, checksum, _] in &found {
-        assert_eq!(checksum, &found[0][3], "{strategy}");
-        let workers = if strategy == "serial" { "1" } else { "2" };
-        assert_eq!(threads, workers, "{strategy}");
-        // A rank that comes late may find nothing left, unless jobs are dealt.
-        assert!(used == workers || (used == "1" && strategy != "mpi-static-blocks"), "{strategy}: {used}");
+    assert_eq!(found.len(), 14);
+    for [strategy, threads, used, checksum, _, ranks, rule] in &found {
+        assert_eq!(checksum, &found[0][3], "{strategy} by {rule}");
+        assert_eq!(ranks, if rule.is_empty() { "" } else { "2" }, "{strategy} by {rule}");
+        let each = if strategy == "serial" { "1" } else { "2" };
+        assert_eq!(threads, each, "{strategy} by {rule}");
+        let workers = each.parse::<usize>().unwrap() * ranks.parse().unwrap_or(1);
+        // A rank or a thread that comes late may find nothing left, unless jobs are dealt.
+        let used: usize = used.parse().unwrap();
+        let is_dealt = strategy == "serial" && (rule.is_empty() || rule == "static-blocks");
+        assert!(used == workers || (!is_dealt && (1..workers).contains(&used)), "{strategy} by {rule}: {used}");
     }
-    for [strategy, _, used, checksum, warnings] in rows("without", Some("/nowhere/mpiexec")) {
-        let is_serial = strategy == "serial";
-        assert_eq!((checksum.is_empty(), used.is_empty()), (!is_serial, !is_serial), "{strategy}");
-        assert_eq!(warnings.contains("no-program"), !is_serial, "{strategy}: {warnings}");
+    for [strategy, _, used, checksum, warnings, _, rule] in rows("without", Some("/nowhere/mpiexec")) {
+        let is_alone = rule.is_empty();
+        assert_eq!((checksum.is_empty(), used.is_empty()), (!is_alone, !is_alone), "{strategy} by {rule}");
+        assert_eq!(warnings.contains("no-program"), !is_alone, "{strategy} by {rule}: {warnings}");
     }
 }

@@ -25,12 +25,6 @@ pub enum StrategyError {
         /// What would be right.
         allowed: &'static str,
     },
-    /// The strategy's workers are processes, which somebody else has to start.
-    #[error("strategy {strategy}: its workers are processes, and this is one")]
-    Processes {
-        /// The strategy's name.
-        strategy: &'static str,
-    },
     /// The strategy has no numbers for so many.
     #[error("strategy {strategy}: {jobs} jobs are too many (allowed: 0 to {most})")]
     TooManyJobs {

@@ -24,11 +24,23 @@ const IMAGE: [&str; 15] = [
 ];
 
 /// Columns that say how the same image is made.
-const SCHEDULE: [&str; 9] =
-    ["strategy", "decomposition", "threads", "output", "kernel", "kernel_fallback", "simd", "effects", "accelerator"];
+const SCHEDULE: [&str; 11] = [
+    "strategy",
+    "decomposition",
+    "threads",
+    "ranks",
+    "rank_rule",
+    "output",
+    "kernel",
+    "kernel_fallback",
+    "simd",
+    "effects",
+    "accelerator",
+];
 
 /// Columns that say which row it is, what follows from the others, and what was measured.
-const OTHER: [&str; 55] = [
+const OTHER: [&str; 56] = [
+    "mpi",
     "object_mse",
     "within_tolerance",
     "fireflies",
@@ -143,7 +155,7 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
 }
 
 /// Another value on each axis than the setups above have.
-const OTHER_VALUES: [(&str, &str); 19] = [
+const OTHER_VALUES: [(&str, &str); 21] = [
     ("scene", "sky"),
     ("size", "9x6"),
     ("estimator", "mis"),
@@ -163,6 +175,8 @@ const OTHER_VALUES: [(&str, &str); 19] = [
     ("threads", "2"),
     ("decomposition", "rows"),
     ("output", "channel-piece"),
+    ("rank-rule", "guided"),
+    ("ranks", "3"),
 ];
 
 #[test]

@@ -1,0 +1,111 @@
+//! A bench program: criterion measures, its lines go into a file, and tables of what it stored end the run.
+//!
+//! With a flag of criterion's (`--verbose`, `--list`, `--test` and so on) it prints as it always does. With `PATHMARK_BENCH_OUT=DIR` the cases of
+//! `scheduling` are also written into that folder of results, where `pathmark report DIR` finds them.
+
+mod stored;
+mod table;
+
+use criterion::Criterion;
+use nix::unistd::{dup, dup2_stderr, dup2_stdout};
+use pathmark::measure::{Machine, foreign_cpu_s};
+use pathmark::report::{BenchRow, write_benches};
+use std::fs::{File, create_dir_all};
+use std::io::{IsTerminal, stderr, stdout};
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime};
+
+/// The program that a folder of results has, and its group whose table is one of speedups.
+const OF_SPEEDUPS: &str = "scheduling";
+
+/// A bench program of that name. `units` are groups, or what the names of groups begin with, and what their elements are.
+pub(crate) fn run(name: &str, units: &[(&str, &str)], cases: impl FnOnce(&mut Criterion)) {
+    let (start, begun, foreign) = (SystemTime::now(), Instant::now(), foreign_cpu_s());
+    let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
+    let is_quiet = std::env::args().skip(1).all(|argument| argument == "--bench" || !argument.starts_with('-'));
+    let aside = if is_quiet { Aside::begin(name) } else { None };
+    cases(&mut criterion);
+    criterion.final_summary();
+    drop(aside);
+    let rows = stored::since(start);
+    if rows.is_empty() {
+        return;
+    }
+    if name == OF_SPEEDUPS {
+        write(name, &rows);
+    }
+    for (group, unit) in units {
+        let mut own: Vec<&BenchRow> = rows.iter().filter(|row| row.group.starts_with(group)).collect();
+        while let Some(name) = own.first().map(|row| row.group.as_str()) {
+            let (first, others): (Vec<_>, Vec<_>) = own.iter().copied().partition(|row| row.group == name);
+            match first.iter().find(|row| row.case == "serial") {
+                Some(serial) if name == OF_SPEEDUPS => table::print_speedups(name, serial, &first),
+                _ => table::print_cases(name, unit, &first),
+            }
+            own = others;
+        }
+    }
+    println!("\n{}. {}", Machine::look().line(), disturbed(begun.elapsed().as_secs_f64(), foreign));
+    println!(
+        "Cases ran one after the other, so a drift of the machine is in the tables; `pathmark run thread-scaling`"
+    );
+    println!("interleaves them and tells which runs were disturbed.");
+}
+
+/// How much of the machine other programs took.
+fn disturbed(seconds: f64, before: Option<f64>) -> String {
+    let Some((before, after)) = before.zip(foreign_cpu_s()) else { return String::new() };
+    let percent = 100.0 * (after - before).max(0.0) / (seconds * Machine::look().processors as f64);
+    format!("Other programs took {percent:.1} % of the processors in these {seconds:.0} s.")
+}
+
+fn write(name: &str, rows: &[BenchRow]) {
+    let Some(out) = std::env::var_os("PATHMARK_BENCH_OUT") else { return };
+    let filter: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let filter = if filter.is_empty() { String::new() } else { format!(" -- {}", filter.join(" ")) };
+    if let Err(error) = write_benches(Path::new(&out), format!("cargo bench --bench {name}{filter}"), rows) {
+        eprintln!("{error}");
+    }
+}
+
+/// While it lives, what is printed goes into a file. On a terminal criterion's line of progress stays, which it writes to standard error.
+struct Aside {
+    file: PathBuf,
+    stdout: OwnedFd,
+    stderr: Option<OwnedFd>,
+}
+
+impl Aside {
+    /// `None` if there is nowhere to write; then criterion prints.
+    fn begin(name: &str) -> Option<Self> {
+        let folder = stored::folder();
+        create_dir_all(&folder).ok()?;
+        let path = folder.join(format!("{name}.txt"));
+        let file = File::create(&path).ok()?;
+        println!("{name}: criterion's own lines go to {}", path.display());
+        let shows_progress = stdout().is_terminal();
+        let kept = Self {
+            file: path,
+            stdout: dup(stdout()).ok()?,
+            stderr: if shows_progress { None } else { Some(dup(stderr()).ok()?) },
+        };
+        dup2_stdout(&file).ok()?;
+        if kept.stderr.is_some() {
+            dup2_stderr(&file).ok()?;
+        }
+        Some(kept)
+    }
+}
+
+impl Drop for Aside {
+    fn drop(&mut self) {
+        dup2_stdout(&self.stdout).unwrap_or_default();
+        if let Some(kept) = &self.stderr {
+            dup2_stderr(kept).unwrap_or_default();
+        }
+        if std::thread::panicking() {
+            eprintln!("a bench failed; {} says how", self.file.display());
+        }
+    }
+}
