@@ -4,6 +4,7 @@ use super::experiment::{TINY, write_tiny};
 use super::program::{finish, pathmark};
 use super::refused;
 use pathmark::experiment::EXPERIMENTS;
+use pathmark::measure::SCHEMA;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -118,7 +119,8 @@ fn rows_of_another_version_are_told_as_such() {
     let whole = fs::read_to_string(&records).unwrap();
     let (header, rows) = whole.split_once('\n').unwrap();
     let rows: Vec<&str> = rows.lines().map(|row| row.split_once(',').unwrap().1).collect();
-    for (columns, version) in [("a_column_that_was", "4"), ("two,columns", "7"), ("mse", "")] {
+    let (older, newer) = ((SCHEMA - 1).to_string(), (SCHEMA + 1).to_string());
+    for (columns, version) in [("a_column_that_was", older.as_str()), ("two,columns", &newer), ("mse", "")] {
         // Columns that there are no longer, instead of those behind the first.
         let header = header.replacen("experiment", columns, 1);
         let value = if columns.contains(',') { "1,2" } else { "1" };

@@ -2,6 +2,7 @@
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{Finished, finish, pathmark};
+use pathmark::measure::SCHEMA;
 use serde_json::Value;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -114,8 +115,12 @@ fn what_does_not_compare_is_refused() {
     run(folder.path(), &["diff", "old", "moved", "--across-machines"], 0);
     let rows = fs::read_to_string(folder.path().join("old/records.csv")).unwrap();
     fs::create_dir(folder.path().join("ancient")).unwrap();
-    fs::write(folder.path().join("ancient/records.csv"), rows.replace("\n6,", "\n5,")).unwrap();
-    refused(&["old", "ancient"], &["schema", "5"]);
+    fs::write(
+        folder.path().join("ancient/records.csv"),
+        rows.replace(&format!("\n{SCHEMA},"), &format!("\n{},", SCHEMA - 1)),
+    )
+    .unwrap();
+    refused(&["old", "ancient"], &["schema", &(SCHEMA - 1).to_string()]);
 }
 
 /// The same program behind a script, as another build of it.
