@@ -26,9 +26,9 @@ impl Schedule {
     }
 }
 
-/// Who renders, with how many threads or, if they are processes, ranks.
+/// Who renders, with how many threads or, over processes, workers.
 pub(super) fn crew(strategy: &str, threads: usize) -> String {
-    let workers = if is_of_ranks(strategy) { "rank" } else { "thread" };
+    let workers = if is_of_ranks(strategy) { "worker" } else { "thread" };
     format!("{strategy}, {}", counted(threads, workers))
 }
 
@@ -44,7 +44,7 @@ pub(super) fn is_of_ranks(name: &str) -> bool {
 /// threads. Threads within processes are part of the name.
 pub(super) fn over_ranks(mut record: Record) -> Record {
     if let Some(ranks) = record.ranks.take() {
-        let within = if record.threads > 1 { format!(" of {} threads", record.threads) } else { String::new() };
+        let within = if record.threads > 1 { format!(", {} threads each", record.threads) } else { String::new() };
         record.strategy = format!("{OF_RANKS}{}{within}", std::mem::take(&mut record.rank_rule));
         record.threads *= usize::from(ranks);
     }

@@ -152,7 +152,7 @@ impl Speedups<'_> {
         let at_most = |row: &PlotRow| row.dots.iter().flatten().next_back().map_or(0.0, |dot| dot.value);
         rows.sort_by(|a, b| at_most(b).total_cmp(&at_most(a)));
         let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
-            ["thread or rank", "threads or ranks"]
+            ["worker", "workers"]
         } else {
             ["thread", "threads"]
         };
