@@ -8,20 +8,20 @@ mod table;
 
 use criterion::Criterion;
 use nix::unistd::{dup, dup2_stderr, dup2_stdout};
-use pathmark::measure::{Machine, foreign_cpu_s};
+use pathmark::measure::{ForeignLoad, Machine};
 use pathmark::report::{BenchRow, write_benches};
 use std::fs::{File, create_dir_all};
 use std::io::{IsTerminal, stderr, stdout};
 use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
-use std::time::{Instant, SystemTime};
+use std::time::SystemTime;
 
 /// The program that a folder of results has, and its group whose table is one of speedups.
 const OF_SPEEDUPS: &str = "scheduling";
 
 /// A bench program of that name. `units` are groups, or what the names of groups begin with, and what their elements are.
 pub(crate) fn run(name: &str, units: &[(&str, &str)], cases: impl FnOnce(&mut Criterion)) {
-    let (start, begun, foreign) = (SystemTime::now(), Instant::now(), foreign_cpu_s());
+    let (start, load) = (SystemTime::now(), ForeignLoad::begin());
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
     let is_quiet = std::env::args().skip(1).all(|argument| argument == "--bench" || !argument.starts_with('-'));
     let aside = if is_quiet { Aside::begin(name) } else { None };
@@ -46,18 +46,14 @@ pub(crate) fn run(name: &str, units: &[(&str, &str)], cases: impl FnOnce(&mut Cr
             own = others;
         }
     }
-    println!("\n{}. {}", Machine::look().line(), disturbed(begun.elapsed().as_secs_f64(), foreign));
+    let foreign = load.share().map(|(share, seconds)| {
+        format!(" Other programs took {:.1} % of the processors in these {seconds:.0} s.", 100.0 * share)
+    });
+    println!("\n{}.{}", Machine::look().line(), foreign.unwrap_or_default());
     println!(
         "Cases ran one after the other, so a drift of the machine is in the tables; `pathmark run thread-scaling`"
     );
     println!("interleaves them and tells which runs were disturbed.");
-}
-
-/// How much of the machine other programs took.
-fn disturbed(seconds: f64, before: Option<f64>) -> String {
-    let Some((before, after)) = before.zip(foreign_cpu_s()) else { return String::new() };
-    let percent = 100.0 * (after - before).max(0.0) / (seconds * Machine::look().processors as f64);
-    format!("Other programs took {percent:.1} % of the processors in these {seconds:.0} s.")
 }
 
 fn write(name: &str, rows: &[BenchRow]) {

@@ -32,7 +32,7 @@ pub(super) fn print_cases(group: &str, unit: &str, rows: &[&BenchRow]) {
 }
 
 fn cells_of<T: std::fmt::Display>(cells: &[T]) -> String {
-    cells.iter().map(|cell| format!(" {cell:>15}")).collect()
+    cells.iter().fold(String::new(), |line, cell| format!("{line} {cell:>15}"))
 }
 
 fn told(row: &BenchRow) -> String {

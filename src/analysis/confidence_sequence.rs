@@ -12,7 +12,27 @@
 //! it as the beta-binomial boundary, beside a closed form that takes about three times as many values for an interval of the same ranks.
 
 use super::interval::{Interval, is_level};
-use super::quantile::sorted;
+use super::quantile::{median_interval, sorted};
+
+/// How it was decided how many values there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stopping {
+    /// Before there were any.
+    #[default]
+    Fixed,
+    /// By what the values said.
+    Sequential,
+}
+
+impl Stopping {
+    /// The interval of the median that such a number of values allows: of order statistics, or one that holds at every look.
+    pub fn median_interval(self, values: &[f64], level: f64) -> Option<Interval> {
+        match self {
+            Self::Fixed => median_interval(values, level),
+            Self::Sequential => median_sequence(values, level),
+        }
+    }
+}
 
 /// The interval of the median after these values. With probability `level` the true median is in the intervals after every number of values. `None`
 /// while there are too few values for two ends, seven or less at 95 %, and for one that is not finite.
@@ -57,7 +77,6 @@ fn rank(n: usize, level: f64) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::quantile::median_interval;
     use rand::Rng;
     use rand_pcg::Pcg64Dxsm;
 

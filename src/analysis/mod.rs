@@ -17,6 +17,7 @@ pub mod price;
 pub mod quantile;
 pub mod rank;
 pub mod rank_sum;
+pub mod ranking;
 pub mod scaling_law;
 pub mod slope;
 pub mod speedup;

@@ -39,10 +39,14 @@ pub fn serial_fraction_estimate(speedups: &[f64], workers: usize, level: f64) ->
     if speedups.iter().any(|&speedup| !(speedup > 0.0 && speedup.is_finite())) {
         return None;
     }
+    serial_fraction_within(&Estimate { value: median(speedups)?, interval: median_interval(speedups, level)? }, workers)
+}
+
+/// The serial fraction of a speedup that is known within an interval; `None` where an end has no fraction.
+pub fn serial_fraction_within(speedup: &Estimate, workers: usize) -> Option<Estimate> {
     let of = |speedup: f64| serial_fraction(speedup, workers);
-    let enclosing = median_interval(speedups, level)?;
-    let interval = Interval::between(of(enclosing.high)?, of(enclosing.low)?, enclosing.level)?;
-    Some(Estimate { value: of(median(speedups)?)?, interval })
+    let Estimate { value, interval: Interval { low, high, level } } = *speedup;
+    Some(Estimate { value: of(value)?, interval: Interval::between(of(high)?, of(low)?, level)? })
 }
 
 /// Whether S > p, which needs a cause: a cache that now fits, a higher clock, or a baseline that was built differently.

@@ -4,7 +4,7 @@ use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
 use crate::error::{Error, Result};
-use crate::experiment::{CellDiff, Change, Diff, Progress as _, diff, parse_share};
+use crate::experiment::{CellDiff, Change, CountDiff, Diff, Progress as _, count_diff, diff, parse_share};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -22,6 +22,9 @@ pub(super) struct Arguments {
     /// Whether cells that nobody can tell make it fail
     #[arg(long, value_enum, default_value_t = Undecided::Pass)]
     undecided: Undecided,
+    /// Compare what was counted instead of times: jobs, paths, rays, tests of boxes and primitives. Counts have no noise
+    #[arg(long)]
+    counts: bool,
     /// Compare measurements of two machines all the same
     #[arg(long)]
     across_machines: bool,
@@ -41,6 +44,9 @@ enum Undecided {
 
 pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let limit = parse_share("fail-above", &arguments.fail_above)?;
+    if arguments.counts {
+        return counts(arguments, limit);
+    }
     let found = diff(&arguments.old, &arguments.new, limit, arguments.across_machines)?;
     let count = |change: Change| found.cells.iter().filter(|cell| cell.change == change).count();
     let (slower, undecided) = (count(Change::Slower), count(Change::Undecided));
@@ -65,12 +71,35 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     Ok(())
 }
 
+/// Compares what was counted.
+fn counts(arguments: &Arguments, limit: f64) -> Result<()> {
+    let (changed, compared) = count_diff(&arguments.old, &arguments.new)?;
+    if arguments.json {
+        print_json(&json!({ "limit": limit, "compared": compared, "changed": changed }))?;
+    } else {
+        for count in &changed {
+            let CountDiff { cell, column, old, new } = count;
+            print(&format!("{:>8.4} {column:<16} {old:>12} {new:>12}  {cell}", count.ratio()))?;
+        }
+        print(&format!("{} of {} changed", changed.len(), counted(compared, "count")))?;
+    }
+    let above = changed.iter().filter(|count| count.ratio() > 1.0 + limit).count();
+    if above > 0 {
+        let problem = format!("{} grew by more than {} %", counted(above, "count"), 100.0 * limit);
+        return Err(Error::Check(problem));
+    }
+    Ok(())
+}
+
 /// Says what a reader should know of the comparison.
 fn remark(found: &Diff, talk: &Talk) {
     if !found.paired {
         talk.note(
             "warning: not measured in turns: a change of the machine looks like one of the program (run --against)",
         );
+    }
+    if found.stopped_by_times {
+        talk.note("warning: how often cells were repeated depended on their times (run --until), so the intervals are too narrow");
     }
     let [old, new] = found.unmatched;
     if old + new > 0 {

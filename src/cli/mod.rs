@@ -24,6 +24,7 @@ mod plan;
 mod price;
 mod profile;
 mod progress;
+mod rank;
 mod ranks;
 mod reference;
 mod render;
@@ -55,7 +56,7 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, diff, price, report, claims   Render: render, merge, reference, compare, convert
+Measure: reproduce, run, rank, diff, price, report, claims   Render: render, merge, reference, compare, convert
 Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check, man, completions";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
@@ -81,6 +82,8 @@ enum Verb {
     Run(run::Arguments),
     /// Measure the error of an image against a reference image, or against two without their noise.
     Compare(compare::Arguments),
+    /// Rank the schedules of an experiment: which can be told apart?
+    Rank(rank::Arguments),
     /// Compare two measurements of an experiment: which cells got slower?
     Diff(diff::Arguments),
     /// Write a film or an image in another format.
@@ -161,6 +164,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Merge(arguments) => merge::run(&arguments, lab, talk),
         Verb::Run(arguments) => run::run(&arguments, lab, talk),
         Verb::Compare(arguments) => compare::run(&arguments),
+        Verb::Rank(arguments) => rank::run(&arguments, lab, talk),
         Verb::Diff(arguments) => diff::run(&arguments, talk),
         Verb::Convert(arguments) => convert::run(&arguments),
         Verb::Price(arguments) => price::run(&arguments, lab, talk),
@@ -168,7 +172,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Claims(arguments) => claims::run(&arguments, lab),
         Verb::Report(arguments) => report::run(&arguments, lab),
         Verb::Simulate(arguments) => simulate::run(&arguments, lab, talk),
-        Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Trace(arguments) => trace::run(&arguments, talk),
         Verb::Replay(arguments) => replay::run(&arguments, lab),
         Verb::Bounces(arguments) => bounces::run(&arguments, lab, talk),
         Verb::Check(arguments) => check::run(&arguments, lab, talk),

@@ -46,9 +46,10 @@ pub(super) struct Arguments {
     /// compares the two
     #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
     against: Option<PathBuf>,
-    /// With --against: go on until each cell is known to be slower by more than this, faster, or within it, and leave out
-    /// the cells that are; `pathmark diff` judges the rows by intervals that allow that
-    #[arg(long, value_name = "SHARE", requires = "against", allow_hyphen_values = true)]
+    /// Go on until each speedup (without serial runs, each time) is known to within this, as 3%, and leave out the cells
+    /// whose is. With --against: until each cell is known to be slower by more than this, faster, or within it. At most 200
+    /// repetitions, or those of --repetitions; intervals allow for it
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
     until: Option<String>,
     /// With --until: begin no repetition later than that, as 60s
     #[arg(long, value_name = "TIME", requires = "until")]

@@ -2,11 +2,12 @@
 
 use super::output::print;
 use super::progress::Talk;
+use super::run::talk_of;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Progress, read_calibration};
 use crate::files::Files;
 use crate::lab::Lab;
-use crate::measure::{Settings, Setup, TraceFile, available_threads, calibrate};
+use crate::measure::{Doubts, ForeignLoad, Settings, Setup, TraceFile, available_threads, calibrate};
 use crate::report::{Block, Results, forecasts, save};
 use crate::simulate::{Contender, Hardware, Noise, Observed, Prediction, Speeds, contenders, forecast, predict};
 use clap::Args;
@@ -53,6 +54,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         })?,
         None => TraceFile::read(&arguments.trace)?,
     };
+    if let Some(doubt) = trace.doubt() {
+        talk.note(&doubt);
+    }
     let costs = trace.costs_s();
     check_noise(arguments, &hardware, costs.iter().sum())?;
     let names = match &arguments.strategies[..] {
@@ -74,15 +78,21 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         read_calibration(&calibrated)?
     } else {
         talk.note("calibrating: every strategy hands out empty jobs");
-        calibrate(lab, &names)?
+        let load = ForeignLoad::begin();
+        let rows = calibrate(lab, &names)?;
+        if let Some(warning) = load.warning() {
+            talk.note(&warning);
+        }
+        rows
     };
     let mut contenders = contenders(lab, &rows);
 
     if !arguments.no_check {
-        let predictions = match &measured {
-            Some(results) => forecasts::predictions(results, &contenders)?,
+        let (predictions, doubts) = match &measured {
+            Some(results) => (forecasts::predictions(results, &contenders)?, results.doubts()),
             None => predict_live(lab, &trace, &contenders, talk)?,
         };
+        talk_of(&doubts, talk);
         show(&forecasts::prediction_blocks(&predictions))?;
     }
     contenders.push(Contender::longest_first());
@@ -207,7 +217,13 @@ const CHECK_S: f64 = 30.0;
 const MOST_CHECK_S: f64 = 120.0;
 
 /// Runs the trace's own workload on 1, 2, 4 and so on to all processors of this machine, each round beginning with a serial run for the costs.
-fn predict_live(lab: &Lab, trace: &TraceFile, contenders: &[Contender], talk: &Talk) -> Result<Vec<Prediction>> {
+/// Doubts are about the times of all these runs.
+fn predict_live(
+    lab: &Lab,
+    trace: &TraceFile,
+    contenders: &[Contender],
+    talk: &Talk,
+) -> Result<(Vec<Prediction>, Doubts)> {
     let processors = available_threads();
     let base = &trace.header.settings;
     let work_s: f64 = trace.costs_s().iter().sum();
@@ -231,18 +247,20 @@ fn predict_live(lab: &Lab, trace: &TraceFile, contenders: &[Contender], talk: &T
         talk.note(&format!(
             "this machine is not predicted: trying all strategies on the jobs of the trace would take {round_s:.0} s"
         ));
-        return Ok(Vec::new());
+        return Ok((Vec::new(), Doubts::default()));
     }
     let rounds = (CHECK_S / round_s).clamp(1.0, 5.0) as u64;
-    let mut runs = Vec::new();
+    let (mut runs, mut doubts) = (Vec::new(), Doubts::default());
     talk.begin("predicting this machine", rounds * schedules.len() as u64);
     for round in 0..rounds {
         let serial = lab.prepare(Settings { strategy: "serial".to_string(), threads: 1, ..base.clone() })?;
         let alone = serial.run(None)?;
+        doubts.add(&alone.warned());
         let costs = TraceFile::new(&serial, &alone).costs_s();
         for (index, setup) in schedules.iter().enumerate() {
             let settings = setup.settings();
             let outcome = setup.run(None)?;
+            doubts.add(&outcome.warned());
             let inflation = forecasts::inflation(outcome.cpu_s(), alone.cpu_s());
             let observed = Observed {
                 inflation,
@@ -256,7 +274,8 @@ fn predict_live(lab: &Lab, trace: &TraceFile, contenders: &[Contender], talk: &T
         }
     }
     talk.end();
-    Ok(predict(runs.iter().map(|(observed, costs)| (observed.clone(), costs.as_slice())), contenders, processors))
+    let observed = runs.iter().map(|(observed, costs)| (observed.clone(), costs.as_slice()));
+    Ok((predict(observed, contenders, processors), doubts))
 }
 
 /// Prints findings and tables.

@@ -1,8 +1,10 @@
 //! `pathmark trace FILE`: one run, job by job.
 
 use super::output::{counted, print};
+use super::progress::Talk;
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::experiment::Progress as _;
 use crate::files::Files;
 use crate::measure::{TraceFile, chrome_trace};
 use crate::plot::Figure;
@@ -20,12 +22,15 @@ pub(super) struct Arguments {
     output: Option<PathBuf>,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let write = arguments.output.as_deref().map(|path| Ok::<_, Error>((path, writer(path)?))).transpose()?;
     let mut files = Files::default();
     files.reads("the trace", &arguments.file);
     arguments.output.as_ref().map_or(Ok(()), |path| files.writes("output", path))?;
     let trace = TraceFile::read(&arguments.file)?;
+    if let Some(doubt) = trace.doubt() {
+        talk.note(&doubt);
+    }
     let Some(balance) = timeline::balance(&trace) else {
         let problem = "contains invalid worker numbers or times";
         return Err(InputError::new("trace", arguments.file.display().to_string(), problem).into());

@@ -31,7 +31,7 @@
 //!
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
-//! repetitions = 6
+//! repetitions = 6                # or { until = "3 %", at-most = 200, within = "60 s" }
 //! reference-spp = 2000           # optional: ten times the largest spp
 //!
 //! [full]                         # `--full`; without any of [quick], [full] and [reports] there is a [quick] of 320x240, 6 repetitions
@@ -46,6 +46,7 @@
 //! ```
 
 use super::table::{Matrix, Scale, one_or_many};
+use super::until::Until;
 use super::{Chapter, External, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
@@ -226,9 +227,14 @@ impl Definition {
         self.keep.contains(&what)
     }
 
-    /// How often each cell is run.
+    /// How often each cell is run; at most, where it is until enough is known.
     pub fn repetitions(&self, profile: Profile) -> Result<u32> {
         Ok(self.scale(profile)?.repetitions)
+    }
+
+    /// Until when cells are run, if not a number of times.
+    pub(super) fn until(&self, profile: Profile) -> Result<Option<&Until>> {
+        Ok(self.scale(profile)?.until.as_ref())
     }
 
     /// The matrices of a profile.

@@ -73,8 +73,10 @@ pub struct Diff {
     pub unmatched: [usize; 2],
     /// Whether rows were compared in pairs.
     pub paired: bool,
-    /// Whether repetitions went on until the answer was known.
+    /// Whether repetitions went on until the answer was known, and the intervals allow that.
     pub sequential: bool,
+    /// Whether repetitions went on until something was known, and the intervals do not allow that.
+    pub stopped_by_times: bool,
     /// Doubts about all times.
     pub doubts: Doubts,
 }
@@ -108,9 +110,9 @@ pub fn parse_share(field: &str, text: &str) -> Result<f64> {
 }
 
 /// Rows, and where they come from.
-struct Side {
+pub(super) struct Side {
     run: Option<RunFile>,
-    rows: Vec<Record>,
+    pub(super) rows: Vec<Record>,
 }
 
 /// Reads a folder of one experiment, or a file of rows.
@@ -122,15 +124,10 @@ fn side(path: &Path) -> Result<Side> {
     Ok(Side { run, rows: read_records(&file)? })
 }
 
-/// Compares two measurements. `limit` is the share by which a cell may get slower, .03 say. Measurements of two machines are refused
-/// unless `across_machines`.
-pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result<Diff> {
-    if !(limit.is_finite() && limit >= 0.0) {
-        let error = InputError::new("fail-above", limit.to_string(), "is no share by which something may get slower");
-        return Err(error.allowed("numbers from 0, as 0.03 or 3%").into());
-    }
-    let sides = [side(old)?, side(new)?];
-    if let [Some(before), Some(after)] = [&sides[0].run, &sides[1].run]
+/// Both measurements. Those of two machines are refused unless `across_machines`.
+pub(super) fn sides(old: &Path, new: &Path, across_machines: bool) -> Result<[Side; 2]> {
+    let both = [side(old)?, side(new)?];
+    if let [Some(before), Some(after)] = [&both[0].run, &both[1].run]
         && !across_machines
     {
         let [then, now] = [before, after].map(|run| run.machine.line());
@@ -140,6 +137,17 @@ pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result
             return Err(error.allowed("--across-machines").into());
         }
     }
+    Ok(both)
+}
+
+/// Compares two measurements. `limit` is the share by which a cell may get slower, .03 say. Measurements of two machines are refused
+/// unless `across_machines`.
+pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result<Diff> {
+    if !(limit.is_finite() && limit >= 0.0) {
+        let error = InputError::new("fail-above", limit.to_string(), "is no share by which something may get slower");
+        return Err(error.allowed("numbers from 0, as 0.03 or 3%").into());
+    }
+    let sides = sides(old, new, across_machines)?;
     let both = |of: fn(&RunFile) -> bool| sides.iter().all(|side| side.run.as_ref().is_some_and(of));
     let pairing = match (both(|run| run.against.is_some()), both(|run| run.until.is_some())) {
         (false, _) => Pairing::None,
@@ -163,6 +171,8 @@ pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result
         unmatched,
         paired: pairing != Pairing::None,
         sequential: pairing == Pairing::Sequential,
+        stopped_by_times: pairing == Pairing::None
+            && sides.iter().any(|side| side.run.as_ref().is_some_and(|run| run.until.is_some())),
         doubts: Doubts::of(warnings),
     })
 }

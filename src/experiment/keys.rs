@@ -24,7 +24,10 @@ const KEYS: &[(&str, &str)] = &[
     ("reference.estimator", "estimator of the references"),
     ("reference.object", "measures errors on the pixels of this object, too"),
     ("external", "another program beside the cells, under [[external]]"),
-    ("quick", "the profile --quick: any axis, size, repetitions, reference-spp [default: 320x240, 6 repetitions]"),
+    (
+        "quick",
+        "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, within = \"60 s\" }), reference-spp [default: 320x240, 6 repetitions]",
+    ),
     ("full", "the profile --full, likewise"),
     ("reports", "the profile --reports, likewise"),
 ];

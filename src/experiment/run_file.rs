@@ -24,7 +24,7 @@ pub struct RunFile {
     /// The other program whose rows were measured in turns with these; none if there was none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
-    /// The limit on whose both sides every cell had to be, where repetitions went on until that was decided; none if their number was fixed.
+    /// The limit to which cells were to be decided, where repetitions went on until they were; none if their number was fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
@@ -64,7 +64,12 @@ impl RunFile {
                 .into());
         }
         let part = |run: &Self| run.shard.clone().unwrap_or_else(|| "none".to_string());
-        let mut pairs = vec![("profile", self.profile.clone(), now.profile.clone()), ("shard", part(self), part(now))];
+        let until = |run: &Self| if run.until.is_some() { "a limit" } else { "none" }.to_string();
+        let mut pairs = vec![
+            ("profile", self.profile.clone(), now.profile.clone()),
+            ("shard", part(self), part(now)),
+            ("until", until(self), until(now)),
+        ];
         let (then, here) = (self.machine.identity(), now.machine.identity());
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));
         match pairs.into_iter().find(|(_, old, new)| old != new) {

@@ -5,7 +5,7 @@ use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::sweep::{Summary, Sweep};
 use super::until::Decisions;
-use super::{Cell, HalfFile, Progress, Reference};
+use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
 use crate::measure::{Doubts, Record};
 use std::collections::{HashMap, HashSet};
@@ -23,8 +23,10 @@ pub(super) struct Running<'a> {
     finished: HashSet<(String, u32)>,
     /// How many rows each cell has that are not doubtful, or always will be, and how many that are.
     by_doubt: HashMap<String, [u32; 2]>,
-    /// The times of both builds, where there are two.
+    /// The times of this build, and of another one if there are two.
     decisions: Decisions,
+    /// The serial run of each cell's image, on the same pieces if there is one on them.
+    serial: Vec<Option<usize>>,
     /// The first row's checksum of each image.
     checksums: HashMap<String, String>,
     drift: Drift,
@@ -61,6 +63,7 @@ impl<'a> Running<'a> {
             finished: HashSet::new(),
             by_doubt: HashMap::new(),
             decisions: Decisions::default(),
+            serial: (0..sweep.cells.len()).map(|index| serial_of(&sweep.cells, index)).collect(),
             checksums: HashMap::new(),
             drift: Drift::of(&done),
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
@@ -76,6 +79,7 @@ impl<'a> Running<'a> {
                 running.checksums.entry((*image).to_string()).or_insert_with(|| record.checksum.clone());
             }
             running.note(record);
+            running.decisions.note(record, true);
         }
         running
     }
@@ -139,12 +143,24 @@ impl<'a> Running<'a> {
         Ok(())
     }
 
-    /// The cells of which it is not yet known on which side of the limit the ratio of both builds is.
+    /// The cells of which not enough is known yet: on which side of the limit the ratio of both builds is, or, of one build, what they are compared
+    /// by; and the serial runs beside them.
     pub(super) fn undecided(&self, limit: f64) -> Vec<usize> {
         let cells = &self.sweep.cells;
         let count = cells.iter().map(|cell| cell.points.len()).sum();
-        let is_open = |cell: &Cell| cell.points.iter().any(|p| !self.decisions.is_decided(&p.id, count, limit));
-        (0..cells.len()).filter(|index| is_open(&cells[*index])).collect()
+        let is_decided = |index: usize, point: &CellPoint| {
+            if self.against.is_some() {
+                return self.decisions.is_decided(&point.id, count, limit);
+            }
+            let serial = self.serial[index].map(|serial| &cells[serial].points);
+            let beside = serial.and_then(|points| points.iter().find(|other| other.spp == point.spp));
+            self.decisions.is_known(&point.id, beside.map(|other| other.id.as_str()), limit)
+        };
+        let is_open = |index: usize| cells[index].points.iter().any(|point| !is_decided(index, point));
+        let serves_only = |index: usize| self.against.is_none() && self.serial.contains(&Some(index));
+        let open: HashSet<usize> = (0..cells.len()).filter(|index| !serves_only(*index) && is_open(*index)).collect();
+        let is_beside = |index: usize| serves_only(index) && open.iter().any(|own| self.serial[*own] == Some(index));
+        (0..cells.len()).filter(|index| open.contains(index) || is_beside(*index)).collect()
     }
 
     /// The cells that have fewer rows without a doubt than `wanted` because others are doubtful, each with how many it lacks, and the serial runs that
@@ -173,6 +189,17 @@ impl<'a> Running<'a> {
         self.file.check_own()?;
         Ok(self.summary)
     }
+}
+
+/// The serial run of a cell's image, on the same pieces if there is one on them.
+fn serial_of(cells: &[Cell], index: usize) -> Option<usize> {
+    let own = &cells[index];
+    if own.is_serial() {
+        return None;
+    }
+    let serial = || (0..cells.len()).filter(|other| cells[*other].is_baseline_of(own));
+    let is_on_its_pieces = |other: &usize| cells[*other].settings.decomposition == own.settings.decomposition;
+    serial().find(is_on_its_pieces).or_else(|| serial().next())
 }
 
 /// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.

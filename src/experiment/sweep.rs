@@ -47,7 +47,7 @@ pub struct Options {
     pub shard: Option<SweepShard>,
     /// The figure that compares with serial runs: filters leave them in, and there must be one.
     pub serial_for: Option<&'static str>,
-    /// With another build: until it is known which cells got slower.
+    /// Until enough is known, if not as the definition says.
     pub until: Option<Until>,
     /// Cells with doubtful rows are run again.
     pub rerun_doubtful: bool,
@@ -76,6 +76,7 @@ pub struct Sweep<'a> {
     pub(super) options: &'a Options,
     pub(super) cells: Vec<Cell>,
     pub(super) references: Vec<Reference>,
+    until: Option<Until>,
 }
 
 impl<'a> Sweep<'a> {
@@ -117,16 +118,17 @@ impl<'a> Sweep<'a> {
         for name in OWN_FILES {
             files.claims("out", &folder.join(name))?;
         }
-        Ok(Self { definition, options, cells, references })
+        let until = options.until.clone().or(definition.until(options.profile)?.cloned());
+        Ok(Self { definition, options, cells, references, until })
     }
 
     /// Runs what is not yet in the folder. Each repetition visits all cells once, in an order of its own.
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
-        let Self { definition, options, cells, references: wanted } = self;
+        let Self { definition, options, cells, references: wanted, until } = self;
         let folder = options.out.join(&definition.name);
-        let (file, done) = open(definition, options, &folder)?;
+        let run = || run_file(definition, options, until.as_ref());
+        let (file, done) = open(definition, options, &run(), &folder)?;
         let other = options.against.as_deref();
-        let run = || run_file(definition, options);
         let against = other
             .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run()))
             .transpose()?;
@@ -160,7 +162,7 @@ impl<'a> Sweep<'a> {
         let (mut units, begun, mut open) = (0, Instant::now(), cells.len());
         progress.begin(&definition.name, total);
         for repetition in 0..repetitions {
-            let undecided = match &options.until {
+            let undecided = match until {
                 Some(until) if repetition > 0 && until.is_over(begun.elapsed()) => break,
                 Some(until) => running.undecided(until.limit),
                 None => (0..cells.len()).collect(),
@@ -191,6 +193,7 @@ impl<'a> Sweep<'a> {
     pub(super) fn repetitions(&self) -> Result<u32> {
         let usual = || match &self.options.until {
             Some(_) => Ok(MOST_REPETITIONS),
+            // At most so many, where the definition says until when.
             None => self.definition.repetitions(self.options.profile),
         };
         self.options.repetitions.map_or_else(usual, Ok)
@@ -274,21 +277,25 @@ fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
 }
 
 /// What is said of the rows of a sweep on this machine.
-fn run_file(definition: &Definition, options: &Options) -> RunFile {
+fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -> RunFile {
     RunFile {
         command: options.command.clone(),
         profile: options.profile.name().to_string(),
         shard: options.shard.map(|shard| shard.to_string()),
         against: options.against.as_ref().map(|program| program.display().to_string()),
-        until: options.until.as_ref().map(|until| until.text.clone()),
+        until: until.map(|until| until.text.clone()),
         definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
     }
 }
 
 /// The rows' file, and the rows that are there.
-fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(RecordsFile, Vec<Record>)> {
-    let run = run_file(definition, options);
+fn open(
+    definition: &Definition,
+    options: &Options,
+    run: &RunFile,
+    folder: &Path,
+) -> Result<(RecordsFile, Vec<Record>)> {
     let (rows, machine) = (folder.join("records.csv"), folder.join("machine.toml"));
     let describe = || {
         run.write(&machine)?;
@@ -297,7 +304,7 @@ fn open(definition: &Definition, options: &Options, folder: &Path) -> Result<(Re
     if options.resume && rows.is_file() {
         // Killed before its first row, a sweep may have left no machine.toml, and has nothing that must not be mixed.
         if RecordsFile::has_rows(&rows)? {
-            read_run_file(&machine)?.check_same(&run, &machine)?;
+            read_run_file(&machine)?.check_same(run, &machine)?;
         }
         let (file, done) = RecordsFile::resume(&rows)?;
         if done.is_empty() {

@@ -2,6 +2,7 @@
 
 use super::Profile;
 use super::definition::REFERENCE_SPP;
+use super::until::{MOST_REPETITIONS, Until};
 use crate::measure::{AXES, Axis, Field, Settings, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
@@ -21,7 +22,9 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) curve: bool,
     /// The profiles that the matrix is for; all, if `None`.
     pub(super) profiles: Option<Vec<Profile>>,
+    /// How often each cell is run; at most, where it is `until` something.
     pub(super) repetitions: u32,
+    pub(super) until: Option<Until>,
     pub(super) reference_spp: Option<u32>,
 }
 
@@ -62,6 +65,23 @@ impl<const PROFILE: bool> Table<PROFILE> {
     pub(super) fn numbers<T: FromStr>(&self, axis: &str) -> Option<Vec<T>> {
         Some(self.values(axis)?.iter().filter_map(|value| value.parse().ok()).collect())
     }
+}
+
+/// How often: a number, or until enough is known.
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    deny_unknown_fields,
+    expecting = "neither a number nor { until = \"3 %\", at-most = 200, within = \"60 s\" }"
+)]
+enum Repetitions {
+    Count(u32),
+    #[serde(rename_all = "kebab-case")]
+    Until {
+        until: String,
+        at_most: Option<u32>,
+        within: Option<String>,
+    },
 }
 
 /// The name of an axis or of another field.
@@ -148,7 +168,13 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                 (None, "weak") => table.weak = map.next_value()?,
                 (None, "curve") => table.curve = map.next_value()?,
                 (None, "profiles") => table.profiles = Some(map.next_value()?),
-                (None, "repetitions") => table.repetitions = map.next_value()?,
+                (None, "repetitions") => match map.next_value()? {
+                    Repetitions::Count(count) => (table.repetitions, table.until) = (count, None),
+                    Repetitions::Until { until, at_most, within } => {
+                        table.repetitions = at_most.unwrap_or(MOST_REPETITIONS);
+                        table.until = Some(Until::parse(&until, within.as_deref()).map_err(M::Error::custom)?);
+                    }
+                },
                 (None, _) => table.reference_spp = Some(map.next_value()?),
             }
         }

@@ -377,7 +377,7 @@ impl Record {
         record.mean_radiance = Some(image.mean().iter().sum::<f64>() / 3.0);
         record.black_pixels = Some(image.pixels.iter().filter(|pixel| **pixel == [0.0; 3]).count() as u64);
         record.checksum = outcome.checksum.clone().unwrap_or_default();
-        record.warnings = outcome.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";");
+        record.warnings = outcome.warned();
         record
     }
 }

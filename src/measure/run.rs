@@ -1,5 +1,6 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
+use super::foreign_load::FOREIGN_SHARE;
 use super::history::History;
 use super::invalid::{InvalidSample, first_invalid};
 use super::ledger::Ledger;
@@ -22,8 +23,6 @@ use std::time::{Duration, Instant};
 
 /// In shorter runs the start of threads and a single interruption weigh more than the schedule.
 const SHORTEST_S: f64 = 5e-3;
-/// Other programs' share of the processors from which they are mentioned.
-const FOREIGN_SHARE: f64 = 0.05;
 /// The system counts in hundredths of a second, once for each processor: less than this may be rounding.
 const FOREIGN_LEAST_S: f64 = 0.03;
 
@@ -77,6 +76,11 @@ impl Outcome {
     pub fn provenance(&self, setup: &Setup) -> Provenance {
         let key = FilmKey { spp: self.spp, adaptive: self.adaptive, ..setup.film_key() };
         Provenance { key, checksum: self.checksum.clone() }
+    }
+
+    /// The warnings, as a row has them.
+    pub fn warned(&self) -> String {
+        self.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";")
     }
 
     /// What happened on the paths that this process rendered during the makespan.

@@ -6,7 +6,7 @@
 //! 0,1,0.000041,0.00193,4096,30211,0,0,16,16,0,16
 //! ```
 
-use super::{JobSpan, Outcome, Settings, Setup, Trace};
+use super::{Doubts, JobSpan, Outcome, Settings, Setup, Trace};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::film::{Bounds, Piece};
@@ -29,6 +29,9 @@ pub struct TraceHeader {
     pub makespan_s: f64,
     /// Threads that ran at least one job.
     pub workers: u32,
+    /// Doubts about the run, as a row has them.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub warnings: String,
 }
 
 /// One job.
@@ -82,8 +85,15 @@ impl TraceFile {
             TraceRow { job, worker, start_s, stop_s, paths, rays, x0, y0, x1, y1, first_sample, samples }
         });
         let settings = Settings { spp: outcome.spp, ..setup.settings().clone() };
-        let header = TraceHeader { settings, makespan_s: outcome.makespan_s, workers: outcome.workers_used };
+        let (makespan_s, workers, warnings) = (outcome.makespan_s, outcome.workers_used, outcome.warned());
+        let header = TraceHeader { settings, makespan_s, workers, warnings };
         Self { header, rows: rows.collect() }
+    }
+
+    /// What was doubtful about the times when they were measured; `None` if nothing was.
+    pub fn doubt(&self) -> Option<String> {
+        let warnings = &self.header.warnings;
+        Doubts::concern(warnings).then(|| format!("warning: the times of this trace are in doubt: {warnings}"))
     }
 
     /// Seconds of each job, in index order.

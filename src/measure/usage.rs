@@ -25,12 +25,6 @@ fn machine_busy_s() -> Option<f64> {
     Some((user + nice + system + irq + softirq + steal) * 1e-2)
 }
 
-/// CPU seconds of everything else on the machine since it started; `None` where the system does not tell. Two readings say how much other
-/// programs disturbed what was measured between them.
-pub fn foreign_cpu_s() -> Option<f64> {
-    Usage::now()?.foreign_s
-}
-
 /// The most memory that this program had. Not getrusage's figure, which survives exec and so remembers the parent.
 fn peak_rss_bytes() -> Option<i64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;

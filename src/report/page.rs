@@ -67,7 +67,7 @@ impl Section {
     /// An experiment's.
     pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
-        let doubts = Doubts::of(results.warnings());
+        let doubts = results.doubts();
         let axes = Some(axes(&results));
         let Definition { name, title, question, analysis, chapter, place, in_short, .. } = results.definition;
         let findings = || blocks.iter().filter_map(Block::as_finding);
@@ -241,8 +241,8 @@ fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
             }
             @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark explain" } " says what each means." } }
             @if let Some(limit) = &section.run.until {
-                p.doubts.high {
-                    "Repetitions went on until each cell was decided at " (limit) ". " code { "pathmark diff" } " has intervals that allow that; those on this page take the number of repetitions for fixed, and are too narrow."
+                p.doubts {
+                    "Repetitions went on until each cell was decided at " (limit) ". Intervals of medians hold all the same; those of fitted lines take the number of repetitions for fixed."
                 }
             }
             @for part in &parts { (part) }

@@ -4,12 +4,14 @@ use super::naming::{Part, joined, needed};
 use super::rows::{Row, group};
 use super::schedule::{Schedule, over_ranks, strategy};
 use super::serial::Serial;
+use super::words::Told;
+use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
 use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file, trace_file};
 use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{ImageKey, Record, TraceFile};
+use crate::measure::{Doubts, ImageKey, Record, TraceFile};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -42,7 +44,7 @@ impl Results {
         let records = read_records(&path)?;
         check_identities(&records, &path)?;
         let (done, failed): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|row| row.error.is_empty());
-        let rows = named(done.into_iter().map(over_ranks).collect());
+        let rows = named(done);
         let image_parts = image_parts(&rows);
         Ok(Self { definition, run, failed, folder: folder.to_path_buf(), out: out.to_path_buf(), rows, image_parts })
     }
@@ -78,6 +80,21 @@ impl Results {
     /// The warnings of each row that did not fail.
     pub(super) fn warnings(&self) -> impl Iterator<Item = &str> {
         self.rows.iter().map(|row| row.warnings.as_str())
+    }
+
+    /// How it was decided how many repetitions there are.
+    pub(super) fn stopping(&self) -> Stopping {
+        if self.run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed }
+    }
+
+    /// The median of some values with the interval that the number of repetitions allows.
+    pub(super) fn median(&self, values: &[f64]) -> Option<Told> {
+        Told::median(values, self.stopping())
+    }
+
+    /// Doubts about the times of the rows that did not fail.
+    pub fn doubts(&self) -> Doubts {
+        Doubts::of(self.warnings())
     }
 
     /// How many rows did not fail.
@@ -199,16 +216,20 @@ fn named(records: Vec<Record>) -> Vec<Row> {
             record.repetition,
             strategy(record).to_string(),
             record.decomposition.clone(),
-            record.threads,
+            (record.threads, record.ranks, record.rank_rule.clone()),
         )
     };
     let parts = needed(&records.iter().collect::<Vec<_>>(), told, &parts);
-    let row = |record: Record| {
+    let row = |record: Record, as_written: Option<Record>| {
         let words = std::iter::once(strategy(&record).to_string()).chain(parts.iter().map(|part| part(&record)));
         let schedule = Schedule { name: joined(words), key: record.schedule_key() };
-        Row::new(record, schedule)
+        Row::new(record, as_written.map(Box::new), schedule)
     };
-    records.into_iter().map(row).collect()
+    let rows = records.into_iter().map(|record| match over_ranks(&record) {
+        Some(told) => row(told, Some(record)),
+        None => row(record, None),
+    });
+    rows.collect()
 }
 
 /// A value with its name; nothing if it is empty.

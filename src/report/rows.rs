@@ -3,6 +3,7 @@
 use super::schedule::Schedule;
 use super::words::Told;
 use crate::analysis::Estimate;
+use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
 use crate::measure::{ImageKey, Record, ScheduleKey};
 use std::collections::BTreeMap;
@@ -12,13 +13,20 @@ use std::ops::Deref;
 /// A row that did not fail, with what tells it from others.
 pub(super) struct Row {
     record: Record,
+    /// As it stands in the file, where that says it in another way.
+    as_written: Option<Box<Record>>,
     pub(super) image: ImageKey,
     pub(super) schedule: Schedule,
 }
 
 impl Row {
-    pub(super) fn new(record: Record, schedule: Schedule) -> Self {
-        Self { image: record.image_key(), record, schedule }
+    pub(super) fn new(record: Record, as_written: Option<Box<Record>>, schedule: Schedule) -> Self {
+        Self { image: record.image_key(), record, as_written, schedule }
+    }
+
+    /// Its columns as they stand in the file.
+    pub(super) fn as_written(&self) -> &Record {
+        self.as_written.as_deref().unwrap_or(&self.record)
     }
 
     /// What it is paired by: image, schedule and repetition, but for the axes that `forget` clears.
@@ -91,7 +99,8 @@ pub(super) fn time_ratio<'a, K: Ord>(
     above: impl IntoIterator<Item = &'a Row>,
     below: impl IntoIterator<Item = &'a Row>,
     key: impl Fn(&'a Row) -> K,
+    stopping: Stopping,
 ) -> Result<Option<Estimate>> {
-    let found = Told::median(&ratios(above, below, key, |row| row.makespan_s)?);
+    let found = Told::median(&ratios(above, below, key, |row| row.makespan_s)?, stopping);
     Ok(found.and_then(|told| told.estimate()))
 }

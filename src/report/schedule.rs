@@ -40,15 +40,17 @@ pub(super) fn is_of_ranks(name: &str) -> bool {
     name.starts_with(OF_RANKS)
 }
 
-/// The row with the rule among processes in the place of the strategy, and with all workers over all of them: figures compare processes with
-/// threads. Threads within processes are part of the name.
-pub(super) fn over_ranks(mut record: Record) -> Record {
-    if let Some(ranks) = record.ranks.take() {
-        let within = if record.threads > 1 { format!(", {} threads each", record.threads) } else { String::new() };
-        record.strategy = format!("{OF_RANKS}{}{within}", std::mem::take(&mut record.rank_rule));
-        record.threads *= usize::from(ranks);
-    }
-    record
+/// The row of processes with their rule in the place of the strategy, and with all workers over all of them, because figures compare them with
+/// threads; `None` for a row of one process. Threads within processes are part of the name.
+pub(super) fn over_ranks(record: &Record) -> Option<Record> {
+    let ranks = record.ranks?;
+    let within = match (record.threads, record.strategy.as_str()) {
+        (1, _) => String::new(),
+        (threads, strategy) => format!(", {threads} threads each by {strategy}"),
+    };
+    let strategy = format!("{OF_RANKS}{}{within}", record.rank_rule);
+    let threads = record.threads * usize::from(ranks);
+    Some(Record { strategy, threads, ranks: None, rank_rule: String::new(), ..record.clone() })
 }
 
 /// The strategy of a row as report A names it.

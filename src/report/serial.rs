@@ -5,6 +5,7 @@ use super::rows::{Row, unique};
 use super::schedule::Schedule;
 use super::words::Told;
 use crate::analysis::Estimate;
+use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::measure::{ImageKey, ScheduleKey};
@@ -19,6 +20,7 @@ pub(super) struct Serial<'a> {
     on_pieces: BTreeMap<Key, &'a Row>,
     /// The fastest over all pieces, by image and repetition.
     fastest: BTreeMap<Key, f64>,
+    stopping: Stopping,
 }
 
 /// What a row shares with the serial run on the same pieces.
@@ -47,7 +49,7 @@ impl<'a> Serial<'a> {
                     .or_insert(time);
             }
         }
-        Ok(Self { on_pieces: unique(serial, with_pieces)?, fastest, schedules })
+        Ok(Self { on_pieces: unique(serial, with_pieces)?, fastest, schedules, stopping: results.stopping() })
     }
 
     /// The schedules that are not serial.
@@ -90,7 +92,7 @@ impl<'a> Serial<'a> {
                 let to_fastest = |row: &&Row| Some(self.fastest.get(&without_pieces(row))? / row.makespan_s?);
                 ratios = self.rows(schedule).iter().filter_map(to_fastest).collect();
             }
-            Some((schedule, Told::median(&ratios)?.estimate()?))
+            Some((schedule, Told::median(&ratios, self.stopping)?.estimate()?))
         };
         self.others().filter_map(speedup).collect()
     }

@@ -1,8 +1,9 @@
 //! Numbers and intervals as tables and sentences say them.
 
 use super::rows::Row;
+use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::mean::{Moments, t_interval};
-use crate::analysis::quantile::{median, median_interval};
+use crate::analysis::quantile::median;
 use crate::analysis::{Estimate, Interval};
 use crate::plot::{Dot, Point};
 use std::collections::BTreeSet;
@@ -36,8 +37,9 @@ impl Told {
     }
 
     /// The median of some values with its distribution-free interval.
-    pub(super) fn median(values: &[f64]) -> Option<Self> {
-        Some(Self { value: median(values)?, interval: median_interval(values, LEVEL), count: Some(values.len()) })
+    pub(super) fn median(values: &[f64], stopping: Stopping) -> Option<Self> {
+        let interval = stopping.median_interval(values, LEVEL);
+        Some(Self { value: median(values)?, interval, count: Some(values.len()) })
     }
 
     /// The mean of values that scatter alike, with Student's interval.

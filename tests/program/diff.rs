@@ -8,12 +8,12 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
-fn run(folder: &Path, arguments: &[&str], code: i32) -> Finished {
+pub(crate) fn run(folder: &Path, arguments: &[&str], code: i32) -> Finished {
     finish(pathmark(folder, arguments)).with_code(code)
 }
 
 /// Rows as a sweep of another commit on the same machine would have left them: times of its cells by repetition.
-fn measured(folder: &Path, name: &str, times: impl Fn(&str, u32) -> f64) {
+pub(crate) fn measured(folder: &Path, name: &str, times: impl Fn(&str, u32) -> f64) {
     let from = folder.join("base/tiny");
     let to = folder.join(name);
     fs::create_dir_all(&to).unwrap();
@@ -34,17 +34,17 @@ fn measured(folder: &Path, name: &str, times: impl Fn(&str, u32) -> f64) {
 }
 
 /// Times around a second, none alike.
-fn steady(cell: &str, repetition: u32) -> f64 {
+pub(crate) fn steady(cell: &str, repetition: u32) -> f64 {
     1.0 + 1e-3 * f64::from(repetition * 7 % 10) + 1e-6 * cell.len() as f64
 }
 
-fn base(folder: &Path) {
+pub(crate) fn base(folder: &Path) {
     write_tiny(folder, TINY);
     run(folder, &["run", "tiny.toml", "--repetitions", "10", "--out", "base"], 0);
     measured(folder, "old", steady);
 }
 
-fn json(finished: &Finished) -> Value {
+pub(crate) fn json(finished: &Finished) -> Value {
     serde_json::from_str(&finished.out).unwrap_or_else(|error| panic!("{error} in {}", finished.out))
 }
 
@@ -176,8 +176,8 @@ fn repetitions_go_on_until_it_is_known() {
         let finished = until("new", options, 2);
         assert!(finished.err.contains(field) && !folder.path().join("new").exists(), "{}", finished.err);
     }
-    let alone = run(folder.path(), &["run", "tiny.toml", "--until", "3%"], 2);
-    assert!(alone.err.contains("--against"), "{}", alone.err);
+    let alone = run(folder.path(), &["run", "tiny.toml", "--within", "60s"], 2);
+    assert!(alone.err.contains("--until"), "{}", alone.err);
 }
 
 /// Two builds in turns; the other one is the same program behind a script.
@@ -204,4 +204,36 @@ fn two_builds_are_measured_in_turns() {
     let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "new"], 1);
     assert!(finished.err.contains("15 of"), "{}", finished.err);
     assert_eq!(rows("new/tiny").len(), 15);
+}
+
+/// Counts are compared exactly: a build that traces more rays for the same cells fails, and one that traces fewer does not.
+#[test]
+fn counts_that_grow_fail() {
+    let folder = tempfile::tempdir().unwrap();
+    base(folder.path());
+    let rows = fs::read_to_string(folder.path().join("base/tiny/records.csv")).unwrap();
+    let at = |name: &str| rows.lines().next().unwrap().split(',').position(|head| head == name).unwrap();
+    let (rays, cell) = (at("rays"), at("cell"));
+    let twice = || {
+        let changed = rows.lines().enumerate().map(|(line, row)| {
+            let mut values: Vec<String> = row.split(',').map(str::to_string).collect();
+            if line > 0 && values[cell].ends_with("work-stealing/2t") {
+                values[rays] = (2 * values[rays].parse::<u64>().unwrap()).to_string();
+            }
+            values.join(",") + "\n"
+        });
+        fs::write(folder.path().join("twice.csv"), changed.collect::<String>()).unwrap();
+    };
+    let compare = |old: &str, new: &str, options: &[&str], code: i32| {
+        run(folder.path(), &[&["diff", old, new, "--counts"], options].concat(), code)
+    };
+    let same = json(&compare("base/tiny", "base/tiny", &["--json"], 0));
+    // Five cells, five counts each.
+    assert_eq!((&same["compared"], same["changed"].as_array().unwrap().len()), (&25.into(), 0));
+    twice();
+    let more = compare("base/tiny", "twice.csv", &[], 1);
+    assert!(more.out.contains("2.0000 rays") && more.out.contains("1 of 25 counts changed"), "{}", more.out);
+    assert!(more.err.contains("1 count grew by more than 2 %"), "{}", more.err);
+    compare("base/tiny", "twice.csv", &["--fail-above", "100%"], 0);
+    assert!(compare("twice.csv", "base/tiny", &[], 0).out.contains("0.5000 rays"));
 }

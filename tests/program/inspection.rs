@@ -11,6 +11,7 @@ use pathmark::kernel::{self, Event, LightByBounce, PathLog, Spec};
 use pathmark::measure::{Settings, Setup};
 use pathmark::scene::{Scene, load};
 use serde_json::Value;
+use std::fs;
 use std::sync::Arc;
 
 fn spec(estimator: &str, (width, height): (u32, u32), seed: u64) -> Spec {
@@ -336,4 +337,23 @@ fn infinity_is_told_from_nothing_in_json() {
     let compared = finish(pathmark(folder.path(), &["compare", "a.pfm", "a.pfm", "--json"])).with_code(0).out;
     let compared: Value = serde_json::from_str(&compared).unwrap();
     assert_eq!((&compared["psnr"], &compared["mse"]), (&"inf".into(), &0.0.into()), "{compared}");
+}
+
+/// Doubts about a run go with its trace, to whoever looks at it on another day.
+#[test]
+fn a_trace_tells_doubts_about_its_times() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "cornell", "--size", "24x16", "--spp", "4", "--strategy", "serial", "--trace", "run.csv"];
+    finish(pathmark(folder.path(), &render)).with_code(0);
+    let path = folder.path().join("run.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let with = |warnings: &str| {
+        let mut header: Value = serde_json::from_str(header.trim_start_matches('#')).unwrap();
+        header["warnings"] = warnings.into();
+        fs::write(&path, format!("# {header}\n{rows}")).unwrap();
+        finish(pathmark(folder.path(), &["trace", "run.csv"])).with_code(0).err
+    };
+    assert!(with("biased;foreign-load(20 %)").contains("foreign-load(20 %)"));
+    assert_eq!(with("biased"), "");
 }

@@ -16,6 +16,7 @@ mod plan;
 mod price;
 #[path = "../support/program.rs"]
 mod program;
+mod rank;
 mod ranks;
 mod resume;
 #[path = "../support/scene_text.rs"]
@@ -23,6 +24,7 @@ mod scene_text;
 mod shared_seeds;
 #[path = "../support/snapshot.rs"]
 mod snapshot;
+mod until;
 #[path = "../support/watchdog.rs"]
 mod watchdog;
 mod with_values;

@@ -2,10 +2,11 @@
 
 use super::condition::{Columns, Conditions, columns, number, text};
 use super::statistic::{ForecastColumn, Kind};
+use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::fit::log_log;
 use crate::analysis::jackknife::SeedCurves;
 use crate::analysis::mean::{Moments, geometric_interval, t_interval};
-use crate::analysis::quantile::{median, median_interval};
+use crate::analysis::quantile::median;
 use crate::analysis::rank::spearman;
 use crate::analysis::slope::power_law;
 use crate::analysis::speedup::serial_fraction;
@@ -39,8 +40,13 @@ impl Found {
     }
 
     /// The median of some values. Too few of them for the level have the t interval of `of_few` instead, and one has none.
-    fn typical(values: &[f64], level: f64, of_few: fn(&[f64], f64) -> Option<Estimate>) -> Option<Self> {
-        let enough = median_interval(values, level).filter(|interval| interval.level >= level);
+    fn typical(
+        values: &[f64],
+        stopping: Stopping,
+        level: f64,
+        of_few: fn(&[f64], f64) -> Option<Estimate>,
+    ) -> Option<Self> {
+        let enough = stopping.median_interval(values, level).filter(|interval| interval.level >= level);
         let interval = enough.or_else(|| Some(of_few(values, level)?.interval));
         Some(Self { value: median(values)?, interval, rows: values.len() })
     }
@@ -64,7 +70,7 @@ const FOLLOWERS: [(&str, &[&str]); 5] = [
 ];
 
 /// The columns that tell rows apart.
-const IDENTITY: [&str; 22] = [
+const IDENTITY: [&str; 24] = [
     "scene",
     "scene_hash",
     "estimator",
@@ -81,6 +87,8 @@ const IDENTITY: [&str; 22] = [
     "strategy",
     "decomposition",
     "threads",
+    "ranks",
+    "rank_rule",
     "output",
     "kernel",
     "kernel_fallback",
@@ -91,7 +99,7 @@ const IDENTITY: [&str; 22] = [
 
 impl Evidence {
     pub(super) fn of(results: Results) -> Self {
-        let columns = results.rows().map(|row| columns(row)).collect();
+        let columns = results.rows().map(|row| columns(row.as_written())).collect();
         Self { results, columns }
     }
 
@@ -102,7 +110,7 @@ impl Evidence {
 
     /// The statistic of the rows that meet the conditions; `None` if there are no such rows, or too few for any number.
     pub(super) fn measure(&self, conditions: &Conditions, kind: &Kind, level: f64) -> Result<Option<Found>> {
-        let rows = self.rows(conditions);
+        let (rows, stopping) = (self.rows(conditions), self.results.stopping());
         let of = |column: &str| -> Vec<f64> { rows.iter().filter_map(|(_, row)| number(row, column)).collect() };
         let per = |above: &str, below: &str| -> Vec<f64> {
             let ratio =
@@ -110,17 +118,19 @@ impl Evidence {
             rows.iter().filter_map(|(_, row)| ratio(row)).collect()
         };
         Ok(match kind {
-            Kind::Value { column, per: None } => Found::typical(&of(column), level, t_interval),
-            Kind::Value { column, per: Some(below) } => Found::typical(&per(column, below), level, t_interval),
+            Kind::Value { column, per: None } => Found::typical(&of(column), stopping, level, t_interval),
+            Kind::Value { column, per: Some(below) } => {
+                Found::typical(&per(column, below), stopping, level, t_interval)
+            }
             Kind::Share { column, of } => share(&per(column, of), level),
             Kind::Count { column } => Found::exact(of(column).iter().sum(), of(column).len()),
             Kind::PairedRatio { column, over } => {
-                Found::typical(&self.ratios(&rows, conditions, over, column)?, level, geometric_interval)
+                Found::typical(&self.ratios(&rows, conditions, over, column)?, stopping, level, geometric_interval)
             }
             Kind::Speedup { over } => {
                 let ratios = self.ratios(&rows, conditions, over, "makespan_s")?;
                 let speedups: Vec<f64> = ratios.iter().map(|ratio| 1.0 / ratio).collect();
-                Found::typical(&speedups, level, geometric_interval)
+                Found::typical(&speedups, stopping, level, geometric_interval)
             }
             Kind::Exponent { x, y } => {
                 let points = rows.iter().filter_map(|(_, row)| Some((number(row, x)?, number(row, y)?)));
@@ -189,7 +199,7 @@ impl Evidence {
                 });
             }
         }
-        Ok(Found::typical(&values, level, t_interval))
+        Ok(Found::typical(&values, self.results.stopping(), level, t_interval))
     }
 }
 

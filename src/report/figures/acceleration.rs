@@ -27,11 +27,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     blocks.extend(against_primitives(results, &sizes, &accelerators));
     let hierarchies = || accelerators.iter().copied().filter(|(_, name)| *name != yardstick);
     for (_, name) in hierarchies() {
-        blocks.extend(crossover(name, &gains(&sizes, &yardstick, name)?));
+        blocks.extend(crossover(name, &gains(&sizes, &yardstick, name, results.stopping())?));
     }
-    let gains = hierarchies().map(|(place, name)| Ok((place, name, gains(&samples, &yardstick, name)?)));
+    let gains =
+        hierarchies().map(|(place, name)| Ok((place, name, gains(&samples, &yardstick, name, results.stopping())?)));
     blocks.extend(against_spp(results, &samples, &gains.collect::<Result<Vec<_>>>()?));
-    blocks.extend(hierarchies().flat_map(|(_, name)| marginal(&others, &yardstick, name)));
+    blocks.extend(hierarchies().flat_map(|(_, name)| marginal(&others, &yardstick, name, results.stopping())));
     blocks.push(table(results, &accelerators));
     Ok(blocks)
 }
@@ -55,7 +56,7 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
     let (mut series, mut intervals) = (Vec::new(), Vec::new());
     for (place, name) in accelerators {
         let points = sizes.iter().filter_map(|(count, rows)| {
-            let time = Told::median(&values(rows.get(name)?.iter().copied(), ns_per_ray))?;
+            let time = results.median(&values(rows.get(name)?.iter().copied(), ns_per_ray))?;
             intervals.extend(time.interval);
             Some(time.above(*count as f64))
         });
@@ -69,7 +70,7 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
     Some(Block::figure("acceleration", chart))
 }
 
-fn gains(places: &Places<'_>, yardstick: &str, name: &str) -> Result<Gains> {
+fn gains(places: &Places<'_>, yardstick: &str, name: &str, stopping: Stopping) -> Result<Gains> {
     let mut gains = Vec::new();
     for (place, rows) in places {
         let of = |name: &str| rows.get(name).into_iter().flatten().copied();
@@ -79,7 +80,7 @@ fn gains(places: &Places<'_>, yardstick: &str, name: &str) -> Result<Gains> {
                 schedule.effects.clear();
             })
         };
-        gains.extend(time_ratio(of(yardstick), of(name), key)?.map(|gain| (*place, gain)));
+        gains.extend(time_ratio(of(yardstick), of(name), key, stopping)?.map(|gain| (*place, gain)));
     }
     Ok(gains)
 }
@@ -148,7 +149,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
 
 /// How many times as long the yardstick takes for each further sample: what every render takes once is in no difference of two times, so it
 /// cannot bend this factor as it bends the gain at few samples.
-fn marginal(rows: &[&Row], yardstick: &str, name: &str) -> Vec<Block> {
+fn marginal(rows: &[&Row], yardstick: &str, name: &str, stopping: Stopping) -> Vec<Block> {
     let by_size = group(rows.iter().copied(), |row| (row.width, row.height));
     let finding = |((width, height), rows): ((u32, u32), Vec<&Row>)| {
         let spp: BTreeSet<u32> = rows.iter().map(|row| row.spp).collect();
@@ -161,7 +162,7 @@ fn marginal(rows: &[&Row], yardstick: &str, name: &str) -> Vec<Block> {
             |name, repetition| Some(times.get(&(name, repetition, most))? - times.get(&(name, repetition, least))?);
         let repetitions: BTreeSet<u32> = rows.iter().map(|row| row.repetition).collect();
         let ratios = repetitions.into_iter().filter_map(|n| Some(further(yardstick, n)? / further(name, n)?));
-        let ratio = Told::median(&ratios.collect::<Vec<f64>>()).filter(|_| least < most)?;
+        let ratio = Told::median(&ratios.collect::<Vec<f64>>(), stopping).filter(|_| least < most)?;
         let interval = ratio.interval.map_or_else(String::new, |interval| format!(", {}", with_level(&interval, 2)));
         Some(Block::finding(format!(
             "For each sample from {least} to {most} at {width}x{height}, {yardstick} takes {:.2} times as long as {name}{interval}: \

@@ -1,7 +1,7 @@
 //! Speedups of one schedule against several baselines of the same image, and those that exceed the number of workers.
 
 use super::prelude::*;
-use crate::analysis::speedup::{Oddity, oddity, serial_fraction_estimate};
+use crate::analysis::speedup::{Oddity, oddity, serial_fraction_within};
 
 /// What tells the builds and schedules of an experiment apart: schedule and compiled-in effects.
 type Kind<'a> = (&'a Schedule, &'a str);
@@ -10,7 +10,6 @@ type Kind<'a> = (&'a Schedule, &'a str);
 struct Against<'a> {
     own: Kind<'a>,
     baseline: Kind<'a>,
-    speedups: Vec<f64>,
     speedup: Estimate,
 }
 
@@ -46,8 +45,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
                 .iter()
                 .filter_map(|row| Some(row.makespan_s? / own_times.get(&pair(row))?.makespan_s?))
                 .collect();
-            if let Some(speedup) = Told::median(&speedups).and_then(|told| told.estimate()) {
-                all.push(Against { own: *own, baseline: **baseline, speedups, speedup });
+            if let Some(speedup) = results.median(&speedups).and_then(|told| told.estimate()) {
+                all.push(Against { own: *own, baseline: **baseline, speedup });
             }
         }
     }
@@ -86,8 +85,7 @@ fn finding(all: &[Against<'_>]) -> Option<Block> {
 }
 
 fn table(all: &[Against<'_>]) -> Block {
-    let fraction =
-        |against: &&Against<'_>| serial_fraction_estimate(&against.speedups, against.workers(), LEVEL).map(Told::from);
+    let fraction = |against: &&Against<'_>| serial_fraction_within(&against.speedup, against.workers()).map(Told::from);
     Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
         .column("schedule", |against| told_kind(against.own))
         .column("baseline", |against| told_kind(against.baseline))

@@ -63,10 +63,10 @@ impl Times {
     }
 
     /// The median of the ratios within a repetition.
-    fn over(&self, below: &Self) -> Option<Estimate> {
+    fn over(&self, below: &Self, stopping: Stopping) -> Option<Estimate> {
         let pairs = below.by_repetition.iter();
         let ratios = pairs.filter_map(|(repetition, below)| Some(self.by_repetition.get(repetition)? / below));
-        Told::median(&ratios.collect::<Vec<f64>>())?.estimate()
+        Told::median(&ratios.collect::<Vec<f64>>(), stopping)?.estimate()
     }
 
     fn nanoseconds(&self) -> Option<f64> {
@@ -98,7 +98,8 @@ struct Found<'a> {
 fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) -> Vec<Block> {
     let found = prices.iter().filter_map(|price| {
         let absent = times.get(&price.absent)?;
-        let over = |kind: &Kind| times.get(kind).and_then(|times| Some((times, times.over(absent)?)));
+        let over =
+            |kind: &Kind| times.get(kind).and_then(|times| Some((times, times.over(absent, results.stopping())?)));
         Some(Found { price, absent, unused: over(&price.unused)?, used: over(&price.used)? })
     });
     let found: Vec<Found<'_>> = found.collect();
@@ -169,7 +170,7 @@ fn fits<'a>(results: &'a Results, largest: &str) -> Vec<Fit<'a>> {
         let names = in_table_order(by_profile.keys().copied(), PROFILES.iter().map(|entry| entry.name));
         let (_, profile) = *names.first()?;
         let fitting = Times::of(by_profile.get(profile)?);
-        let ratio = all.over(&fitting)?;
+        let ratio = all.over(&fitting, results.stopping())?;
         Some(Fit { scene, profile, fitting, largest: all, ratio })
     };
     let mut fits: Vec<Fit<'_>> = groups.into_iter().filter_map(of_scene).collect();

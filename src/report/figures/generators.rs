@@ -63,7 +63,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let mut own = Vec::new();
         for (_, crew) in &crews {
             let rows = by_crew.remove(crew).unwrap_or_default();
-            let seconds = Told::median(&values(rows.iter().copied(), |row| row.makespan_s));
+            let seconds = results.median(&values(rows.iter().copied(), |row| row.makespan_s));
             own.push(seconds.map(|seconds| seconds.times(1e3).dot()));
             lines.extend(seconds.map(|seconds| Line { sampler, spp: rows[0].spp, crew, rows, seconds }));
         }
@@ -95,7 +95,7 @@ fn finding(results: &Results, Compare { shared, own }: &Compare) -> Result<Optio
     };
     let ratio = |sampler: &str| {
         let key = |row: &Row| row.key(|_, schedule| schedule.threads = 0);
-        time_ratio(of(sampler, 2), of(sampler, 1), key)
+        time_ratio(of(sampler, 2), of(sampler, 1), key, results.stopping())
     };
     let (Some(slowed), Some(free)) = (ratio(shared)?, ratio(own)?) else { return Ok(None) };
     let Some(switches) = typical(of(shared, 2), switches_per_second) else { return Ok(None) };

@@ -62,7 +62,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let mut grains: Vec<&Grain> = grains.iter().collect();
         grains.sort_by(|a, b| a.0.total_cmp(&b.0));
         let points = grains.iter().filter_map(|(job_s, values)| {
-            let efficiency = Told::median(values)?;
+            let efficiency = results.median(values)?;
             intervals.extend(efficiency.interval);
             Some(efficiency.above(job_s * 1e6))
         });
@@ -97,7 +97,7 @@ fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> 
     let mut lines: Vec<(&Row, Estimate)> = Vec::new();
     for rows in groups.into_values() {
         let of = |name: &str| rows.iter().copied().filter(|row| row.strategy == name).collect::<Vec<&Row>>();
-        if let Some(ratio) = time_ratio(of(first), of(second), |row| row.repetition)? {
+        if let Some(ratio) = time_ratio(of(first), of(second), |row| row.repetition, results.stopping())? {
             lines.push((rows[0], ratio));
         }
     }
@@ -158,7 +158,7 @@ fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
     let extra = results.by(|row| name(results, row)).into_iter().filter_map(|(strategy, rows)| {
         let most = rows.iter().map(|row| row.jobs).max()?;
         let smallest = rows.into_iter().filter(|row| row.jobs == most);
-        Some((format!("{strategy} ({most} jobs)"), Told::median(&values(smallest, |row| baseline.extra_ns(row)))?))
+        Some((format!("{strategy} ({most} jobs)"), results.median(&values(smallest, |row| baseline.extra_ns(row)))?))
     });
     let mut extra: Vec<(String, Told)> = extra.collect();
     extra.sort_by(|a, b| a.1.value.total_cmp(&b.1.value));

@@ -45,7 +45,7 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
                     schedule.forget_kernel();
                 })
             };
-            let ratio = time_ratio(base.iter().copied(), rows.iter().copied(), key)?;
+            let ratio = time_ratio(base.iter().copied(), rows.iter().copied(), key, results.stopping())?;
             let name = format!("{scene}: {estimator} + {sampler}");
             lines.push(Line { name, threads, kernel: kernel.clone(), rows: rows.clone(), ratio });
         }

@@ -14,9 +14,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some((own, own_rows)) = own.max_by_key(|(schedule, _)| place(schedule)) else {
         return Ok(vec![Block::finding(format!("{yardstick} was not run, so there is nothing to compare with."))]);
     };
-    let mut ratios = Vec::new();
+    let (mut ratios, stopping) = (Vec::new(), results.stopping());
     for (schedule, rows) in schedules.iter().filter(|(s, _)| *s != own && s.key.threads == own.key.threads) {
-        if let Some(ratio) = time_ratio(rows.iter().copied(), own_rows.iter().copied(), |r| (&r.image, r.repetition))? {
+        if let Some(ratio) =
+            time_ratio(rows.iter().copied(), own_rows.iter().copied(), |r| (&r.image, r.repetition), stopping)?
+        {
             ratios.push((*schedule, ratio));
         }
     }

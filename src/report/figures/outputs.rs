@@ -29,8 +29,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             let of = |output| groups.get(&(output, decomposition, threads)).map_or(&[][..], Vec::as_slice);
             let (rows, base) = (of(output), of(&yardstick));
             let key = |row: &Row| row.key(|_, schedule| schedule.output.clear());
-            let ratio =
-                if *output == yardstick { None } else { time_ratio(rows.iter().copied(), base.iter().copied(), key)? };
+            let ratio = if *output == yardstick {
+                None
+            } else {
+                time_ratio(rows.iter().copied(), base.iter().copied(), key, results.stopping())?
+            };
             lines.push(Line { output, decomposition, threads, rows, ratio });
         }
     }

@@ -32,7 +32,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { claim } = options(results, "oversubscription")?;
     let (mut by_grid, mut by_threads, mut intervals) = (Vec::new(), Vec::new(), Vec::new());
     for (schedule, rows) in results.by_schedule() {
-        let Some(time) = Told::median(&values(rows.iter().copied(), |row| row.makespan_s)) else { continue };
+        let Some(time) = results.median(&values(rows.iter().copied(), |row| row.makespan_s)) else { continue };
         intervals.extend(time.interval);
         let time = time.times(1e3);
         let (jobs, threads) = (rows[0].jobs, schedule.key.threads);
@@ -95,7 +95,7 @@ fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
         against_few.extend(ratio(few, &row.decomposition));
     }
     let in_words = |ratios: &[f64]| {
-        let Told { value, interval, .. } = Told::median(ratios)?;
+        let Told { value, interval, .. } = results.median(ratios)?;
         let interval = interval?;
         let verdict = match (interval.low > 1.0, interval.high < 1.0) {
             (true, _) => "longer",

@@ -36,7 +36,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
                 schedule.forget_kernel();
             })
         };
-        let Some(time) = time_ratio(double.iter().copied(), single.iter().copied(), key)? else { continue };
+        let Some(time) = time_ratio(double.iter().copied(), single.iter().copied(), key, results.stopping())? else {
+            continue;
+        };
         let name = format!("{scene}: {estimator}");
         pairs.push(Pair { name, double, single, time, light: lighter(light) });
     }

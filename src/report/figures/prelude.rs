@@ -1,6 +1,7 @@
 //! The words that figures are written in: what they ask of rows, how they say numbers, and what they draw.
 
 pub(super) use super::options::{Positive, options, yardstick};
+pub(super) use crate::analysis::confidence_sequence::Stopping;
 pub(super) use crate::analysis::quantile::median;
 pub(super) use crate::analysis::{Estimate, Interval};
 pub(super) use crate::error::Result;

@@ -46,7 +46,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
                     schedule.effects.clear();
                 })
             };
-            ratios(facets.iter().copied(), cosine.iter().copied(), key, value).map(|ratios| Told::median(&ratios))
+            ratios(facets.iter().copied(), cosine.iter().copied(), key, value).map(|ratios| results.median(&ratios))
         };
         let (variance, time) = (ratio(&variance)?, ratio(&|row| row.makespan_s)?);
         pairs.push(Pair { scene, cosine, facets, variance, time });

@@ -24,7 +24,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let first = *rows.first()?;
         let image = if series.is_empty() { first.scene.clone() } else { series };
         let times = values(rows.iter().copied(), |row| row.makespan_s);
-        Some(Line { image, first, seconds: Told::median(&times)?, times, rows })
+        Some(Line { image, first, seconds: results.median(&times)?, times, rows })
     });
     // A job's seconds include waiting for a processor: with more workers than processors they say nothing about balance.
     let alone = |row: &Row| (row.workers_used? as usize <= processors).then_some(());

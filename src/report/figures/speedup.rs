@@ -3,7 +3,7 @@
 use super::prelude::*;
 use super::scaling_laws;
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
-use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_estimate};
+use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_within};
 use crate::analysis::superlinear::{Evidence, cause};
 use crate::measure::Doubts;
 use crate::report::schedule::is_of_ranks;
@@ -68,7 +68,8 @@ impl Speedups<'_> {
 
     fn table(&self) -> Block {
         let fraction = |schedule: &Schedule, workers: usize| {
-            serial_fraction_estimate(&self.serial.paired_speedups(schedule), workers, LEVEL).map(Told::from)
+            let speedup = self.results.median(&self.serial.paired_speedups(schedule))?.estimate()?;
+            serial_fraction_within(&speedup, workers).map(Told::from)
         };
         let used = |schedule: &Schedule| self.in_use(schedule.key.threads);
         let title = "Speedup against serial, efficiency and Karp-Flatt serial fraction";
@@ -100,7 +101,7 @@ impl Speedups<'_> {
     fn evidence(&self, schedule: &Schedule) -> Evidence {
         let mut alone = schedule.clone();
         alone.key.threads = 1;
-        let at_one_worker = || Told::median(&self.serial.paired_speedups(&alone))?.interval;
+        let at_one_worker = || self.results.median(&self.serial.paired_speedups(&alone))?.interval;
         // The baseline's doubts count as well: a serial run that was held up makes all others look fast.
         let concerned = self.serial.rows(schedule).iter().copied().chain(self.serial.on_pieces_of(schedule));
         let machine = &self.results.run.machine;
@@ -247,7 +248,9 @@ impl Speedups<'_> {
         let (mut slower, mut open) = (Vec::new(), Vec::new());
         for (other, _) in candidates().filter(|(other, _)| other != best) {
             let rows = |schedule: &Schedule| self.serial.rows(schedule).iter().copied();
-            if let Some(ratio) = time_ratio(rows(other), rows(best), |row| (&row.image, row.repetition))? {
+            if let Some(ratio) =
+                time_ratio(rows(other), rows(best), |row| (&row.image, row.repetition), self.results.stopping())?
+            {
                 let text = format!("{} ({})", other.name, told(&ratio, 3));
                 if ratio.interval.low > 1.0 { slower.push(text) } else { open.push(text) }
             }

@@ -13,7 +13,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let (mut overlays, mut findings, mut series, mut intervals) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (name, rows) in lines {
         let times = group(rows, |row| row.spp).into_iter().filter_map(|(spp, rows)| {
-            let seconds = Told::median(&values(rows, |row| row.makespan_s))?;
+            let seconds = results.median(&values(rows, |row| row.makespan_s))?;
             intervals.extend(seconds.interval);
             Some(seconds.above(f64::from(spp)))
         });

@@ -10,6 +10,7 @@
 //!
 //! To add one: write its file with a type that implements [`Generate`] and `Deserialize`, and give it a line in `generators!` below.
 
+mod bumpy_ball;
 mod clusters;
 mod furnace;
 mod imbalance;
@@ -83,5 +84,6 @@ generators! {
     spheres::Spheres, "spheres", "so many diffuse balls, evenly at random in a cube, filling the same share of it";
     clusters::Clusters, "clusters", "so many diffuse balls in dense clusters in a cube that is empty elsewhere";
     imbalance::Imbalance, "imbalance", "a sixteenth of the image where a path costs so many rays, one elsewhere";
+    bumpy_ball::BumpyBall, "bumpy-ball", "a ball with bumps, a mesh of so many triangles or a few more";
     furnace::Furnace, "furnace", "a closed box of that albedo in thermal equilibrium, with a mirror and a glass ball in it";
 }

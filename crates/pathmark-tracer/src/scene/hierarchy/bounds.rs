@@ -59,7 +59,7 @@ impl Bounds {
         self.low.iter().chain(&self.high).fold(0.0, |largest, x| largest.max(x.abs()))
     }
 
-    pub(super) fn faces(&self) -> Faces {
+    pub(super) const fn faces(&self) -> Faces {
         [self.low, self.high]
     }
 

@@ -3,6 +3,7 @@
 use super::{Bounds, Split};
 
 /// The rule; it remembers nothing.
+#[derive(Clone)]
 pub(super) struct Median;
 
 impl Split for Median {
@@ -13,5 +14,18 @@ impl Split for Median {
         };
         let axis = (1..3).fold(0, |widest, axis| if spread(axis) > spread(widest) { axis } else { widest });
         Some((axis, sorted[axis].len() / 2))
+    }
+
+    fn divide(&self, bounds: &[Bounds], own: &mut [u32]) -> Option<usize> {
+        let middles = own.iter().fold(Bounds::EMPTY, |middles, k| {
+            let middle = [0, 1, 2].map(|axis| bounds[*k as usize].middle(axis));
+            middles.and(&Bounds { low: middle, high: middle })
+        });
+        let spread = |axis: usize| middles.high[axis] - middles.low[axis];
+        let axis = (1..3).fold(0, |widest, axis| if spread(axis) > spread(widest) { axis } else { widest });
+        let place = |k: &u32| bounds[*k as usize].middle(axis);
+        let half = own.len() / 2;
+        own.select_nth_unstable_by(half, |a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
+        Some(half)
     }
 }

@@ -3,7 +3,8 @@
 //!
 //! It finds what testing every primitive finds, to the bit: boxes have a padding that covers the rounding of box and primitive (hits of
 //! triangles that it may not cover are looked at again, `shape/doubt.rs`), a box as far as the nearest hit is still opened, and among
-//! equally near primitives the lowest number wins. It is built by one thread from total orders, so the same scene gives the same tree.
+//! equally near primitives the lowest number wins. It is built from total orders, so the same scene gives the same tree, whatever the number of
+//! threads that build it.
 //!
 //! To add a way of splitting: write its file with a type that implements [`Split`], and give it a line in `accelerators!` below.
 
@@ -12,6 +13,7 @@ mod build;
 mod gather;
 mod median;
 mod sah;
+mod sorted;
 mod traverse;
 
 pub use bounds::{Bounds, padding};
@@ -47,10 +49,14 @@ pub struct Hierarchy {
 }
 
 /// How a node's primitives are divided between its children.
-trait Split {
-    /// The axis, and how many of the node's primitives, in the order of their centroids along it, go to the first child; `None` makes
+trait Split: Clone + Send + Sync {
+    /// Of few primitives: the axis, and how many of the node's primitives, in the order of their centroids along it, go to the first child; `None` makes
     /// it a leaf. `sorted` holds them three times, in the order of each axis.
     fn split(&mut self, bounds: &[Bounds], node: &Bounds, sorted: [&[u32]; 3]) -> Option<(usize, usize)>;
+
+    /// Of many, which nobody has sorted: puts those of the first child to the front and says how many they are, at least one and not all; `None` if
+    /// they have to be sorted.
+    fn divide(&self, bounds: &[Bounds], own: &mut [u32]) -> Option<usize>;
 }
 
 /// From the boxes of primitives to a tree, if any has a box.
@@ -74,8 +80,8 @@ macro_rules! accelerators {
 
 accelerators! {
     "none", "every primitive is tested" => None;
-    "median", "a bounding volume hierarchy, split at the median of the widest axis" => Some(|bounds| build::build(bounds, median::Median));
-    "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|bounds| build::build(bounds, sah::Sah::new()));
+    "median", "a bounding volume hierarchy, split at the median of the widest axis" => Some(|bounds| build::build(bounds, &median::Median));
+    "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|bounds| build::build(bounds, &sah::Sah::new()));
 }
 
 /// From so many primitives on, a hierarchy is faster than testing all of them (experiment `acceleration`). Of the shipped scenes those with

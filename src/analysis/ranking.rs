@@ -1,0 +1,183 @@
+//! Which of several things is faster than which, where all orders that are told hold together.
+//!
+//! Two things are compared by the sign test over the blocks in which both were measured: if neither is faster in more than half of the blocks,
+//! how often one of them is faster is binomial (n, 1/2). The two one-sided hypotheses of every pair are tested together by S. Holm, "A simple
+//! sequentially rejective multiple test procedure", Scandinavian Journal of Statistics 6 (1979). The chance that any order told is wrong is then
+//! at most what was asked for, whatever the distributions are and however the comparisons depend on each other.
+
+use super::interval::is_level;
+use statrs::distribution::{Binomial, DiscreteCDF};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The pairs (less, more) of things that are told apart by their values in blocks; `miss` is the chance that any of them is wrong, in (0, 1).
+/// Blocks in which a thing has no value, or two things have the same, say nothing of them.
+///
+/// ```
+/// use pathmark::analysis::ranking::told_apart;
+/// use std::collections::{BTreeMap, BTreeSet};
+/// let (fast, slow) = ((0..8).map(|block| (block, 1.0)), (0..8).map(|block| (block, 1.5)));
+/// let things: [BTreeMap<u32, f64>; 2] = [slow.collect(), fast.collect()];
+/// assert_eq!(told_apart(&things, 0.05), BTreeSet::from([(1, 0)]));
+/// ```
+pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(usize, usize)> {
+    let mut tests = Vec::new();
+    for (a, of_a) in things.iter().enumerate() {
+        for (b, of_b) in things.iter().enumerate().take(a) {
+            let pairs = || of_a.iter().filter_map(|(block, value)| Some((*value, *of_b.get(block)?)));
+            let wins = pairs().filter(|(a, b)| a < b).count() as u64;
+            let losses = pairs().filter(|(a, b)| a > b).count() as u64;
+            let Ok(chance) = Binomial::new(0.5, wins + losses) else { continue };
+            tests.push((chance.cdf(losses), (a, b)));
+            tests.push((chance.cdf(wins), (b, a)));
+        }
+    }
+    tests.sort_by(|x, y| x.0.total_cmp(&y.0));
+    let count = tests.len();
+    let rejected =
+        tests.into_iter().enumerate().take_while(|(at, (p, _))| is_level(miss) && *p <= miss / (count - at) as f64);
+    rejected.map(|(_, (_, pair))| pair).collect()
+}
+
+/// The fewest blocks in which any two of so many things can be told apart.
+pub fn least_blocks(things: usize, miss: f64) -> u32 {
+    let tests = (things * things.saturating_sub(1)).max(1) as f64;
+    (0..64).find(|blocks| libm::ldexp(1.0, -blocks) <= miss / tests).map_or(64, i32::unsigned_abs)
+}
+
+/// The largest sets of which no two members are told apart; every thing is in one or more, and two things share a set unless they are told
+/// apart. Sets come in the order of their first members (H.-P. Piepho, "An algorithm for a letter-based representation of all-pairwise
+/// comparisons", Journal of Computational and Graphical Statistics 13, 2004).
+pub fn groups(things: usize, told: &BTreeSet<(usize, usize)>) -> Vec<BTreeSet<usize>> {
+    let mut sets: Vec<BTreeSet<usize>> = vec![(0..things).collect()];
+    for (a, b) in told {
+        let (both, mut kept): (Vec<_>, Vec<_>) = sets.into_iter().partition(|set| set.contains(a) && set.contains(b));
+        for set in both {
+            for without in [a, b] {
+                let mut smaller = set.clone();
+                smaller.remove(without);
+                if !kept.iter().any(|larger| smaller.is_subset(larger)) {
+                    kept.retain(|other| !other.is_subset(&smaller));
+                    kept.push(smaller);
+                }
+            }
+        }
+        sets = kept;
+    }
+    sets.sort();
+    sets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::Rng;
+    use rand_pcg::Pcg64Dxsm;
+
+    fn things(values: &[&[f64]]) -> Vec<BTreeMap<usize, f64>> {
+        values.iter().map(|own| own.iter().copied().enumerate().collect()).collect()
+    }
+
+    /// With two things and n blocks of one order, p = 2^-n is compared with .05 / 2: five blocks do not do, six do.
+    #[test]
+    fn it_takes_enough_blocks_to_tell_an_order() {
+        assert_eq!(least_blocks(2, 0.05), 6);
+        let told = |blocks: usize| told_apart(&things(&[&vec![2.0; blocks], &vec![1.0; blocks]]), 0.05);
+        assert_eq!((told(5), told(6)), (BTreeSet::new(), BTreeSet::from([(1, 0)])));
+        // 30 things have 870 hypotheses: 2^14 = 16 384 < 870 / .05 = 17 400 <= 2^15.
+        assert_eq!(least_blocks(30, 0.05), 15);
+        assert_eq!((least_blocks(1, 0.05), least_blocks(0, 0.05)), (5, 5));
+        assert!(told_apart(&things(&[&[1.0; 9]]), 0.05).is_empty());
+        assert!(told_apart(&things(&[&[1.0; 9], &[2.0; 9]]), 0.0).is_empty());
+    }
+
+    /// Ties and missing values are no evidence.
+    #[test]
+    fn blocks_without_an_order_say_nothing() {
+        let (mut a, b) = (vec![1.0; 6], vec![2.0; 6]);
+        assert_eq!(told_apart(&things(&[&a, &b]), 0.05).len(), 1);
+        a[3] = 2.0;
+        assert!(told_apart(&things(&[&a, &b]), 0.05).is_empty());
+        assert!(told_apart(&things(&[&a[..5], &b]), 0.05).is_empty());
+    }
+
+    /// Three things of 7 blocks, of which the first two differ in one: p = 8/128 for them and 1/128 for the others. Six hypotheses: Holm
+    /// compares the two least with .05 / 6 = .00833 and .05 / 5 = .01, and the third, .0625, with .05 / 4.
+    #[test]
+    fn holms_limits_grow() {
+        let (a, b, c) = ([1.0; 7], [2.0, 2.0, 2.0, 0.5, 2.0, 2.0, 2.0], [3.0; 7]);
+        assert_eq!(told_apart(&things(&[&a, &b, &c]), 0.05), BTreeSet::from([(0, 2), (1, 2)]));
+    }
+
+    #[test]
+    fn groups_are_the_largest_sets_without_an_order() {
+        let sets = |things: usize, told: &[(usize, usize)]| -> Vec<Vec<usize>> {
+            groups(things, &told.iter().copied().collect()).into_iter().map(|set| set.into_iter().collect()).collect()
+        };
+        assert_eq!(sets(3, &[]), [vec![0, 1, 2]]);
+        assert_eq!(sets(3, &[(0, 1), (0, 2), (1, 2)]), [[0], [1], [2]]);
+        assert_eq!(sets(4, &[(0, 2), (0, 3), (1, 3)]), [[0, 1], [1, 2], [2, 3]]);
+        // An order that is not told between neighbours, and is between others.
+        assert_eq!(sets(4, &[(0, 3), (1, 2)]), [[0, 1], [0, 2], [1, 3], [2, 3]]);
+    }
+
+    /// Every two things share a group unless they are told apart, and no group is part of another.
+    #[test]
+    fn groups_say_what_the_pairs_say() {
+        let mut generator = Pcg64Dxsm::new(3, 1);
+        for _ in 0..200 {
+            let mut told = BTreeSet::new();
+            for a in 0..7 {
+                for b in a + 1..7 {
+                    if generator.next_u64().is_multiple_of(3) {
+                        told.insert((a, b));
+                    }
+                }
+            }
+            let sets = groups(7, &told);
+            for a in 0..7 {
+                for b in a + 1..7 {
+                    let is_shared = sets.iter().any(|set| set.contains(&a) && set.contains(&b));
+                    assert_eq!(is_shared, !told.contains(&(a, b)), "{a} {b} {told:?} {sets:?}");
+                }
+            }
+            for (at, set) in sets.iter().enumerate() {
+                assert!(sets.iter().enumerate().all(|(other, larger)| other == at || !set.is_subset(larger)));
+            }
+        }
+    }
+
+    /// Tables of six things and 20 blocks, with noise of a heavy tail and a drift that all things of a block share: how many tables tell a
+    /// wrong order, and how many orders they tell. Thing i takes `step`^i times as long.
+    fn tables(count: u32, step: f64) -> (u32, usize) {
+        let mut generator = Pcg64Dxsm::new(11, 4);
+        let mut uniform = || ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0;
+        let (mut wrong, mut told) = (0, 0);
+        for _ in 0..count {
+            let mut things = vec![BTreeMap::new(); 6];
+            for block in 0..20 {
+                let drift = 1.0 + uniform();
+                for (at, thing) in (0..).zip(&mut things) {
+                    let (u, disturbed) = (uniform(), if uniform() < 0.1 { 1.5 } else { 1.0 });
+                    let noise = libm::exp(0.03 * libm::log(u / (1.0 - u)));
+                    thing.insert(block, drift * disturbed * noise * libm::pow(step, f64::from(at)));
+                }
+            }
+            let found = told_apart(&things, 0.05);
+            wrong += u32::from(found.iter().any(|(less, more)| step == 1.0 || less > more));
+            told += found.len();
+        }
+        (wrong, told)
+    }
+
+    /// Equal things: at most 5 % of 400 tables tell an order, 20, and three standard deviations are 13. Things that differ by 10 % each are told
+    /// apart, most of them, and never the wrong way round.
+    #[test]
+    fn orders_are_seldom_wrong_and_found() {
+        let ((wrong, _), (wrong_way, told)) = (tables(400, 1.0), tables(40, 1.1));
+        println!(
+            "equal things: {wrong} of 400 tables tell an order; 10 % apart: {told} of 600 orders, {wrong_way} wrong"
+        );
+        assert!(wrong <= 33, "{wrong}");
+        assert!(told > 450 && wrong_way <= 8, "{told} {wrong_way}");
+    }
+}

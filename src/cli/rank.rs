@@ -1,0 +1,96 @@
+//! `pathmark rank DIR`: which schedules can be told apart?
+
+use super::output::{counted, number, print, print_json};
+use super::progress::Talk;
+use super::run::talk_of;
+use crate::error::Result;
+use crate::experiment::{ImageRanking, Place, Progress as _, Ranking, ranking};
+use crate::lab::Lab;
+use clap::Args;
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// `pathmark rank out/thread-scaling --filter threads=2`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// Folder of an experiment: `out/thread-scaling`
+    folder: PathBuf,
+    /// Rank only cells in which AXIS has one of the values; may be given several times
+    #[arg(long, value_name = "AXIS=VALUES")]
+    filter: Vec<String>,
+    /// Print the ranking as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    let found = ranking(lab, &arguments.folder, &arguments.filter)?;
+    if arguments.json {
+        print_json(&object(&found))?;
+    } else {
+        let tables: Vec<String> = found.images.iter().map(table).collect();
+        print(&tables.join("\n\n"))?;
+        print(
+            "\nSchedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.",
+        )?;
+    }
+    let most = found.images.iter().flat_map(|image| &image.places).map(|place| place.repetitions).max().unwrap_or(0);
+    let least = found.least_repetitions as usize;
+    if most < least {
+        talk.note(&format!(
+            "{} can tell no two of them apart: it takes {least} (run --repetitions {least}), or fewer schedules (--filter)",
+            counted(most, "repetition")
+        ));
+    }
+    talk_of(&found.doubts, talk);
+    Ok(())
+}
+
+/// The letter of a group: a to z, then aa, ab and so on.
+fn letter(group: usize) -> String {
+    let last = char::from(b'a' + (group % 26) as u8);
+    if group < 26 { last.to_string() } else { format!("{}{last}", letter(group / 26 - 1)) }
+}
+
+fn letters(place: &Place) -> String {
+    place.groups.iter().map(|group| letter(*group)).collect::<Vec<_>>().join(" ")
+}
+
+fn table(image: &ImageRanking) -> String {
+    let width = image.places.iter().map(|place| letters(place).len()).max().unwrap_or(0).max("groups".len());
+    let head = format!("{:>8} {:>16} {:>11}  {:width$}  schedule", "ratio", "interval", "median", "groups");
+    let line = |place: &Place| {
+        let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
+        let Place { ratio, median_s, schedule, .. } = place;
+        format!("{ratio:>8.3} {interval:>16} {:>8.1} ms  {:width$}  {schedule}", 1e3 * median_s, letters(place))
+    };
+    [image.image.clone(), head].into_iter().chain(image.places.iter().map(line)).collect::<Vec<_>>().join("\n")
+}
+
+fn object(found: &Ranking) -> Value {
+    let image = |image: &ImageRanking| {
+        let place = |place: &Place| {
+            json!({
+                "schedule": place.schedule, "ratio": number(place.ratio), "interval": place.interval, "groups": place.groups,
+                "median_s": number(place.median_s), "repetitions": place.repetitions,
+            })
+        };
+        json!({ "image": image.image, "places": image.places.iter().map(place).collect::<Vec<_>>() })
+    };
+    json!({
+        "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,
+        "doubted_rows": found.doubts.count(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_group_has_its_letter() {
+        let found: Vec<String> = [0, 1, 25, 26, 27, 51, 52, 701, 702].into_iter().map(letter).collect();
+        assert_eq!(found, ["a", "b", "z", "aa", "ab", "az", "ba", "zz", "aaa"]);
+    }
+}

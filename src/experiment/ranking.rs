@@ -1,0 +1,232 @@
+//! Which schedules of an image are faster than which, from the rows of an experiment.
+//!
+//! A repetition of an image is a block: its rows were measured one soon after the other, so drift of the machine falls on all of them.
+
+use super::definition::Definition;
+use super::diff::level_of;
+use super::profile::Profile;
+use super::records_file::read_records;
+use super::run_file::{MACHINE, read_run_file};
+use super::until::MOST_REPETITIONS;
+use crate::analysis::Interval;
+use crate::analysis::confidence_sequence::{Stopping, median_sequence};
+use crate::analysis::quantile::median;
+use crate::analysis::ranking::{groups, least_blocks, told_apart};
+use crate::error::{InputError, Result};
+use crate::input::read_text;
+use crate::lab::Lab;
+use crate::measure::{Doubts, ImageKey, Record};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Arc;
+
+/// The chance that any order told is wrong.
+const MISS: f64 = 0.05;
+
+/// A schedule's place among those of its image.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Place {
+    /// The schedule: what its cells' names have behind the image.
+    pub schedule: String,
+    /// Median seconds.
+    pub median_s: f64,
+    /// How many times as long as the first it takes: the median of the ratios within a repetition.
+    pub ratio: f64,
+    /// The interval of the ratio; those of all places hold together with 95 % confidence. None for the first, and where there are too few
+    /// repetitions for one.
+    pub interval: Option<Interval>,
+    /// Repetitions.
+    pub repetitions: usize,
+    /// Numbers of the groups that it belongs to, from 0. Two schedules cannot be told apart if they share one.
+    pub groups: Vec<usize>,
+}
+
+/// The schedules of an image, the fastest first.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ImageRanking {
+    /// The image, in one word.
+    pub image: String,
+    /// The schedules.
+    pub places: Vec<Place>,
+}
+
+/// The schedules of all images of an experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranking {
+    /// Image by image.
+    pub images: Vec<ImageRanking>,
+    /// Repetitions that it takes to tell any two schedules apart.
+    pub least_repetitions: u32,
+    /// Doubts about all times.
+    pub doubts: Doubts,
+}
+
+/// Seconds by repetition.
+type Times = BTreeMap<u32, f64>;
+
+/// Ranks the schedules in the folder of an experiment, or those that the filters leave.
+pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Ranking> {
+    let records = folder.join("records.csv");
+    let rows: Vec<Record> = read_records(&records)?.into_iter().filter(|row| row.error.is_empty()).collect();
+    let run = read_run_file(&folder.join(MACHINE))?;
+    let wanted = if filters.is_empty() { None } else { Some(wanted(lab, folder, &run.profile, filters)?) };
+    let rows: Vec<&Record> =
+        rows.iter().filter(|row| wanted.as_ref().is_none_or(|wanted| wanted.contains(&row.cell))).collect();
+    let mut images: BTreeMap<ImageKey, BTreeMap<String, Times>> = BTreeMap::new();
+    for row in &rows {
+        let image = row.image_key();
+        let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
+        if let Some(seconds) = row.makespan_s.filter(|seconds| *seconds > 0.0 && seconds.is_finite()) {
+            images.entry(image).or_default().entry(schedule).or_default().insert(row.repetition, seconds);
+        }
+    }
+    images.retain(|_, schedules| schedules.len() > 1);
+    let tests = |schedules: &BTreeMap<String, Times>| (schedules.len() * (schedules.len() - 1)) as f64;
+    let all: f64 = images.values().map(tests).sum();
+    if images.is_empty() {
+        let problem = "has no two schedules of one image, so there is nothing to rank";
+        let error = InputError::new("folder", folder.display().to_string(), problem);
+        return Err(error.allowed("the folder of an experiment with several schedules").into());
+    }
+    let places: usize = images.values().map(BTreeMap::len).sum();
+    let level = level_of(places - images.len());
+    let stopping = if run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed };
+    let least = images.values().map(|schedules| least(schedules.len(), MISS * tests(schedules) / all, stopping));
+    Ok(Ranking {
+        least_repetitions: least.max().unwrap_or(0),
+        doubts: Doubts::of(rows.iter().map(|row| row.warnings.as_str())),
+        images: images
+            .iter()
+            .map(|(image, schedules)| ImageRanking {
+                image: image.to_string(),
+                places: placed(schedules, MISS * tests(schedules) / all, level, stopping),
+            })
+            .collect(),
+    })
+}
+
+/// The rows' keys that the filters leave.
+fn wanted(lab: &Arc<Lab>, folder: &Path, profile: &str, filters: &[String]) -> Result<BTreeSet<String>> {
+    let path = folder.join("experiment.toml");
+    let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
+    let mut wanted = BTreeSet::new();
+    for cell in definition.cells(Profile::from_name(profile).unwrap_or(Profile::Quick))? {
+        let mut is_wanted = true;
+        for filter in filters {
+            is_wanted &= cell.matches(filter)?;
+        }
+        if is_wanted {
+            wanted.extend(cell.points.into_iter().map(|point| point.id));
+        }
+    }
+    Ok(wanted)
+}
+
+/// The pairs (faster, slower) of schedules that are told apart. Where repetitions went on until something was known, each pair's median ratio has
+/// an interval that holds at every look, and those of all pairs hold together.
+fn orders(times: &[Times], miss: f64, stopping: Stopping) -> BTreeSet<(usize, usize)> {
+    if stopping == Stopping::Fixed {
+        return told_apart(times, miss);
+    }
+    let mut told = BTreeSet::new();
+    for (a, of_a) in times.iter().enumerate() {
+        for (b, of_b) in times.iter().enumerate().take(a) {
+            let ratios: Vec<f64> = of_a.iter().filter_map(|(at, seconds)| Some(seconds / of_b.get(at)?)).collect();
+            match median_sequence(&ratios, sequence_level(times.len(), miss)) {
+                Some(interval) if interval.low > 1.0 => told.insert((b, a)),
+                Some(interval) if interval.high < 1.0 => told.insert((a, b)),
+                _ => false,
+            };
+        }
+    }
+    told
+}
+
+/// The confidence of each pair's interval, where those of all pairs hold together.
+fn sequence_level(schedules: usize, miss: f64) -> f64 {
+    1.0 - 2.0 * miss / (schedules * schedules.saturating_sub(1)).max(1) as f64
+}
+
+/// The fewest repetitions that tell any two of so many schedules apart.
+fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
+    if stopping == Stopping::Fixed {
+        return least_blocks(schedules, miss);
+    }
+    let is_enough =
+        |count: &u32| median_sequence(&vec![1.0; *count as usize], sequence_level(schedules, miss)).is_some();
+    (1..MOST_REPETITIONS).find(is_enough).unwrap_or(MOST_REPETITIONS)
+}
+
+/// Schedules in the order of their times over the median time of their repetition.
+fn placed(schedules: &BTreeMap<String, Times>, miss: f64, level: f64, stopping: Stopping) -> Vec<Place> {
+    let mut blocks: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
+    for (repetition, seconds) in schedules.values().flatten() {
+        blocks.entry(*repetition).or_default().push(*seconds);
+    }
+    let usual: BTreeMap<u32, f64> =
+        blocks.into_iter().filter_map(|(repetition, times)| Some((repetition, median(&times)?))).collect();
+    let score = |times: &Times| {
+        let shares: Vec<f64> = times.iter().map(|(repetition, seconds)| seconds / usual[repetition]).collect();
+        median(&shares).unwrap_or(f64::INFINITY)
+    };
+    let mut ordered: Vec<(&String, &Times)> = schedules.iter().collect();
+    ordered.sort_by(|(_, a), (_, b)| score(a).total_cmp(&score(b)));
+    let times: Vec<Times> = ordered.iter().map(|(_, times)| (*times).clone()).collect();
+    let sets = groups(times.len(), &orders(&times, miss, stopping));
+    let place = |(at, (schedule, own)): (usize, &(&String, &Times))| {
+        let ratios: Vec<f64> = own.iter().filter_map(|(at, seconds)| Some(seconds / times[0].get(at)?)).collect();
+        let interval = stopping.median_interval(&ratios, level).filter(|interval| at > 0 && interval.level >= level);
+        Some(Place {
+            schedule: (*schedule).clone(),
+            median_s: median(&own.values().copied().collect::<Vec<_>>())?,
+            ratio: median(&ratios)?,
+            interval,
+            repetitions: own.len(),
+            groups: sets.iter().enumerate().filter(|(_, set)| set.contains(&at)).map(|(number, _)| number).collect(),
+        })
+    };
+    ordered.iter().enumerate().filter_map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(factor: f64) -> Times {
+        (0..9).map(|at| (at, factor * (1.0 + 0.4 * f64::from(at % 3)))).collect()
+    }
+
+    /// Two schedules that are faster in turns, and one that takes twice as long in every repetition, on a machine whose speed drifts.
+    #[test]
+    fn the_fastest_come_first_and_those_that_cannot_be_told_apart_share_a_group() {
+        let mut b = times(1.0);
+        for (at, seconds) in &mut b {
+            *seconds *= if at % 2 == 0 { 1.01 } else { 0.99 };
+        }
+        let schedules =
+            BTreeMap::from([("a".to_string(), times(2.0)), ("b".to_string(), b), ("c".to_string(), times(1.0))]);
+        let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
+        let names: Vec<(&str, &[usize])> = places.iter().map(|p| (p.schedule.as_str(), p.groups.as_slice())).collect();
+        assert_eq!(names, [("c", &[0][..]), ("b", &[0]), ("a", &[1])]);
+        assert_eq!((places[0].ratio, places[0].interval), (1.0, None));
+        assert_eq!(places[2].ratio, 2.0);
+        let interval = places[2].interval.unwrap();
+        assert_eq!((interval.low, interval.high), (2.0, 2.0));
+        assert!(places.iter().all(|place| place.repetitions == 9));
+    }
+
+    /// Where one has no time in common with the first, its place says so by its absence and not by a number.
+    #[test]
+    fn a_schedule_without_a_common_repetition_has_no_place() {
+        let elsewhere: Times = times(3.0).into_iter().map(|(at, seconds)| (at + 100, seconds)).collect();
+        let schedules = BTreeMap::from([
+            ("a".to_string(), times(1.0)),
+            ("b".to_string(), times(1.1)),
+            ("z".to_string(), elsewhere),
+        ]);
+        let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
+        assert!(places.iter().all(|place| place.ratio.is_finite()), "{places:?}");
+    }
+}

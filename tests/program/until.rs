@@ -1,0 +1,109 @@
+//! `run --until`: as many repetitions as it takes.
+
+use crate::diff::run;
+use crate::experiment::{TINY, write_tiny};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// A limit that everything is within as soon as there is an interval at every look, which takes eight values.
+const HUGE: &str = "1000000000%";
+
+/// How many rows each cell has, by the end of its name.
+fn counts(folder: &Path) -> BTreeMap<String, usize> {
+    let mut reader = csv::Reader::from_path(folder.join("tiny/records.csv")).unwrap();
+    let cell = reader.headers().unwrap().iter().position(|head| head == "cell").unwrap();
+    let mut found = BTreeMap::new();
+    for row in reader.records() {
+        let row = row.unwrap();
+        let (_, schedule) = row[cell].rsplit_once("tiles:8x8/").unwrap();
+        *found.entry(schedule.to_string()).or_default() += 1;
+    }
+    found
+}
+
+fn all(count: usize) -> BTreeMap<String, usize> {
+    let names = ["serial/1t", "static-blocks/1t", "static-blocks/2t", "work-stealing/1t", "work-stealing/2t"];
+    names.into_iter().map(|name| (name.to_string(), count)).collect()
+}
+
+/// Gives every row the time that `times` says.
+fn retime(folder: &Path, times: impl Fn(&str, u32) -> f64) {
+    let path = folder.join("tiny/records.csv");
+    let mut reader = csv::Reader::from_path(&path).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let column = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let (cell, repetition, makespan) = (column("cell"), column("repetition"), column("makespan_s"));
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let mut writer = csv::Writer::from_path(&path).unwrap();
+    writer.write_record(&heads).unwrap();
+    for row in rows {
+        let seconds = times(&row[cell], row[repetition].parse().unwrap()).to_string();
+        writer
+            .write_record(row.iter().enumerate().map(|(at, value)| if at == makespan { &seconds } else { value }))
+            .unwrap();
+    }
+}
+
+#[test]
+fn repetitions_go_on_until_speedups_are_known_also_after_a_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    let out = folder.path().join("out");
+    let sweep = ["run", "tiny.toml", "--until", HUGE];
+    let finished = run(folder.path(), &sweep, 0);
+    assert!(finished.err.contains("5 of 5 cells decided"), "{}", finished.err);
+    assert_eq!(counts(&out), all(8));
+    let machine = fs::read_to_string(out.join("tiny/machine.toml")).unwrap();
+    assert!(machine.contains("until = "), "{machine}");
+    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("until each cell was decided"));
+    // Stopped after 17 rows, and gone on with.
+    let records = out.join("tiny/records.csv");
+    let text = fs::read_to_string(&records).unwrap();
+    fs::write(&records, text.split_inclusive('\n').take(18).collect::<String>()).unwrap();
+    run(folder.path(), &[&sweep[..], &["--resume"]].concat(), 0);
+    assert_eq!(counts(&out), all(8));
+    // Rows whose number depends on their times are no rows of a fixed number.
+    let finished = run(folder.path(), &["run", "tiny.toml", "--resume"], 2);
+    assert!(finished.err.contains("until"), "{}", finished.err);
+}
+
+/// One cell's times scatter, those of all others do not: it goes on, and the serial run with it.
+#[test]
+fn what_is_known_is_left_out_and_what_it_is_compared_with_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    let out = folder.path().join("out");
+    run(folder.path(), &["run", "tiny.toml", "--until", HUGE], 0);
+    let drift = |repetition: u32| 1.0 + f64::from(repetition % 3);
+    retime(&out, |cell, repetition| {
+        let scatter = if cell.ends_with("work-stealing/2t") { f64::from(1 << (repetition % 8)) } else { 2.0 };
+        if cell.ends_with("serial/1t") { drift(repetition) } else { drift(repetition) * scatter }
+    });
+    run(folder.path(), &["run", "tiny.toml", "--until", "1%", "--repetitions", "10", "--resume"], 0);
+    let mut expected = all(8);
+    expected.extend([("serial/1t".to_string(), 10), ("work-stealing/2t".to_string(), 10)]);
+    assert_eq!(counts(&out), expected);
+}
+
+#[test]
+fn an_experiment_says_until_when() {
+    let folder = tempfile::tempdir().unwrap();
+    let until = |what: &str| TINY.replacen("repetitions = 3", &format!("repetitions = {what}"), 1);
+    write_tiny(folder.path(), &until(&format!("{{ until = \"{HUGE}\", at-most = 9, within = \"90 min\" }}")));
+    run(folder.path(), &["run", "tiny.toml"], 0);
+    assert_eq!(counts(&folder.path().join("out")), all(8));
+    for (wrong, said) in [
+        ("{ until = \"-1 %\" }", "until"),
+        ("{ until = \"0\" }", "until"),
+        ("{ until = \"1 %\", within = \"soon\" }", "within"),
+        ("{ until = \"1 %\", at-most = 0 }", "repetitions"),
+        ("{ until = \"1 %\", mood = 1 }", "at-most"),
+        ("\"often\"", "at-most"),
+    ] {
+        write_tiny(folder.path(), &until(wrong));
+        let finished = run(folder.path(), &["run", "tiny.toml", "--out", "wrong"], 2);
+        assert!(finished.err.contains(said) && finished.err.contains("tiny.toml:"), "{wrong}: {}", finished.err);
+    }
+    assert!(!folder.path().join("wrong").exists());
+}
