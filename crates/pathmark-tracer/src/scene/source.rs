@@ -20,8 +20,8 @@ pub struct OwnScene {
 /// Name and text of the meshes that they use.
 const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"));
 
-/// Bytes: some ten million triangles.
-const LARGEST_MESH: u64 = 1 << 30;
+/// Some hundred thousand triangles.
+const LARGEST_MESH: u64 = 16 << 20;
 
 /// Where a scene's other files are looked for.
 #[derive(Debug, Clone)]
