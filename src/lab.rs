@@ -19,7 +19,7 @@
 //! The program above is `pathmark` with one workload more: `cargo run --release -- render squares --strategy rayon`. Cells of experiments run in
 //! processes of the same program, so they have the same tables.
 
-mod rank_rules;
+mod rank_rule;
 
 use crate::error::{InputError, Result};
 use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
@@ -27,7 +27,7 @@ use crate::kernel::OwnEstimator;
 use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::scene::{Library, OwnScene, Scene};
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
-pub use rank_rules::{MASTER_WORKER, WORKING_MASTER, rank_rules};
+pub use rank_rule::{Master, RankRule, Way};
 use std::fmt;
 use std::panic::Location;
 use std::sync::{Arc, LazyLock};

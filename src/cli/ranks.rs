@@ -1,8 +1,8 @@
 //! `mpiexec -n 4 pathmark render SCENE --ranks RULE`: one image by several processes.
 
-use crate::cluster::{Cluster, RankRow, RankRule};
+use crate::cluster::{Cluster, RankRow};
 use crate::error::Result;
-use crate::lab::Lab;
+use crate::lab::{Lab, RankRule};
 use crate::measure::{Outcome, Record, Setup};
 use clap::Args;
 use serde::Serialize;
@@ -58,7 +58,7 @@ pub(super) fn label(told: &Told, record: &mut Record) {
 impl Ranks {
     /// The rule, if there is one.
     pub(super) fn rule(&self, lab: &Lab) -> Result<Option<RankRule>> {
-        self.ranks.as_deref().map(|text| RankRule::parse(lab, "ranks", text)).transpose()
+        self.ranks.as_deref().map(|text| lab.rank_rule("ranks", text)).transpose()
     }
 
     /// Renders; `None` on all ranks but the first.

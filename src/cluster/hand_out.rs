@@ -1,9 +1,10 @@
 //! Jobs on their way to ranks.
 
 use super::failed;
-use super::rank_rule::{Master, RankRule, Way};
 use crate::error::{Error, Result};
+use crate::lab::{Master, RankRule, Way};
 use crate::measure::Share;
+use crate::strategy::ChunkRule;
 use pathmark_mpi::{Counter, World};
 use std::ops::Range;
 use std::panic::resume_unwind;
@@ -25,6 +26,11 @@ const NOTHING_LEFT: u64 = u64::MAX;
 /// calls MPI. Looking takes some microseconds.
 const LOOK: Duration = Duration::from_micros(200);
 
+/// The chunks of a rule in the order of their numbers, for so many ranks that render.
+fn chunks_of(rule: ChunkRule, jobs: usize, ranks: usize) -> Vec<Range<usize>> {
+    rule.chunks(jobs, ranks.max(1)).collect()
+}
+
 /// What the ranks need to share jobs by a rule: made before the clock starts.
 pub(super) struct HandOut<'a> {
     world: &'a World,
@@ -34,13 +40,13 @@ pub(super) struct HandOut<'a> {
 
 impl<'a> HandOut<'a> {
     pub(super) fn new(rule: &RankRule, world: &'a World, share: &mut Share<'_>) -> Result<Self> {
-        if let Way::Dealt(deal) = rule.way {
+        if let Way::Dealt(deal) = rule.way() {
             let jobs: Vec<usize> = deal(world.rank(), world.size(), share.plan().len()).collect();
             share.reserve(&jobs)?;
         }
         let counter =
-            if matches!(rule.way, Way::Counted(_)) { Some(Counter::new(world).map_err(failed)?) } else { None };
-        Ok(Self { world, way: rule.way, counter })
+            if matches!(rule.way(), Way::Counted(_)) { Some(Counter::new(world).map_err(failed)?) } else { None };
+        Ok(Self { world, way: rule.way(), counter })
     }
 
     /// Does this rank's jobs until none are left for it.
@@ -52,12 +58,12 @@ impl<'a> HandOut<'a> {
                 Ok(Wait::default())
             }
             Way::Counted(rule) => {
-                let chunks = RankRule::chunks(rule, jobs, world.size());
+                let chunks = chunks_of(rule, jobs, world.size());
                 self.counter.as_ref().map_or(Ok(Wait::default()), |counter| counted(counter, &chunks, world, share))
             }
             Way::Asked(master, rule) => {
                 let ranks = if master == Master::Only { world.size() - 1 } else { world.size() };
-                let chunks = RankRule::chunks(rule, jobs, ranks);
+                let chunks = chunks_of(rule, jobs, ranks);
                 match (world.rank(), master) {
                     (0, Master::Only) => answer_all(chunks.len(), world),
                     (0, Master::Working) => work_and_answer(&chunks, world, share),

@@ -5,16 +5,15 @@
 //! together by their place.
 
 mod hand_out;
-mod rank_rule;
 mod wire;
 
 use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::kernel::REVISION;
+use crate::lab::RankRule;
 use crate::measure::{Outcome, Setup};
 use hand_out::HandOut;
 use pathmark_mpi::{MpiError, World};
-pub use rank_rule::RankRule;
 use serde::Serialize;
 use std::io;
 use std::path::Path;

@@ -1,6 +1,5 @@
 //! A cell whose workers are processes: `mpiexec` starts as many of this program, and the first prints the row.
 
-use crate::cluster::RankRule;
 use crate::error::{Error, InputError, Result};
 use crate::image_io::{self, Image};
 use crate::lab::Lab;
@@ -89,7 +88,7 @@ pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
     if ranks == 0 {
         return Err(InputError::new("ranks", "0", "is out of range").allowed("1 or more").into());
     }
-    RankRule::parse(lab, "rank-rule", rule)?.check(ranks.into())?;
+    lab.rank_rule("rank-rule", rule)?.check(ranks.into())?;
     if settings.output == Settings::default().output {
         return Ok(());
     }
