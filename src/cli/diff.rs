@@ -22,7 +22,8 @@ pub(super) struct Arguments {
     /// Whether cells that nobody can tell make it fail
     #[arg(long, value_enum, default_value_t = Undecided::Pass)]
     undecided: Undecided,
-    /// Compare what was counted instead of times: jobs, paths, rays, tests of boxes and primitives. Counts have no noise
+    /// Compare what was counted instead of times: jobs, paths, rays, tests of boxes and primitives, and instructions after
+    /// `run --count-instructions`. Counts have no noise
     #[arg(long)]
     counts: bool,
     /// Compare measurements of two machines all the same

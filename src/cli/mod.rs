@@ -16,6 +16,7 @@ mod guards;
 mod list;
 mod man;
 mod merge;
+mod message_costs;
 mod new;
 mod out_of_memory;
 mod output;
@@ -56,7 +57,7 @@ Examples:
   pathmark reproduce                                         run all experiments
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
-Measure: reproduce, run, rank, diff, price, report, claims   Render: render, merge, reference, compare, convert
+Measure: reproduce, run, rank, diff, price, report, claims, message-costs   Render: render, merge, reference, compare, convert
 Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check, man, completions";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
@@ -84,6 +85,8 @@ enum Verb {
     Compare(compare::Arguments),
     /// Rank the schedules of an experiment: which can be told apart?
     Rank(rank::Arguments),
+    /// Time the messages of the processes that mpiexec started.
+    MessageCosts(message_costs::Arguments),
     /// Compare two measurements of an experiment: which cells got slower?
     Diff(diff::Arguments),
     /// Write a film or an image in another format.
@@ -165,6 +168,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Run(arguments) => run::run(&arguments, lab, talk),
         Verb::Compare(arguments) => compare::run(&arguments),
         Verb::Rank(arguments) => rank::run(&arguments, lab, talk),
+        Verb::MessageCosts(arguments) => message_costs::run(&arguments),
         Verb::Diff(arguments) => diff::run(&arguments, talk),
         Verb::Convert(arguments) => convert::run(&arguments),
         Verb::Price(arguments) => price::run(&arguments, lab, talk),

@@ -1,19 +1,19 @@
 //! `mpiexec -n 4 pathmark render SCENE --ranks RULE`: one image by several processes.
 
+use super::message_costs::library;
 use crate::cluster::{Cluster, RankRow};
 use crate::error::Result;
 use crate::lab::{Lab, RankRule};
 use crate::measure::{Outcome, Record, Setup};
 use clap::Args;
 use serde::Serialize;
-use std::env;
 use std::path::PathBuf;
 
 /// The options of a render by several processes.
 #[derive(Args)]
 pub(super) struct Ranks {
     /// Render with all processes that mpiexec started, which share the jobs by this rule: static-blocks, static-cyclic, dynamic:C, guided,
-    /// trapezoid, factoring, master-worker:C or working-master:C. Each process spreads its jobs over --threads by --strategy
+    /// trapezoid, factoring, mfac:S, weighted-factoring:W, awf-b, awf-c, adaptive-factoring, master-worker:C or working-master:C. Each process spreads its jobs over --threads by --strategy
     #[arg(long, value_name = "RULE", help_heading = "Processes",
           conflicts_with_all = ["target_error", "time_limit", "checkpoint", "adaptive", "shard"])]
     ranks: Option<String>,
@@ -63,8 +63,7 @@ impl Ranks {
 
     /// Renders; `None` on all ranks but the first.
     pub(super) fn render(&self, rule: &RankRule, setup: &Setup) -> Result<Option<(Outcome, Told)>> {
-        let library = self.mpi.clone().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
-        let library = library.filter(|path| path.as_os_str() != "auto");
+        let library = library(self.mpi.as_ref());
         let cluster = Cluster::begin(library.as_deref())?;
         let ranks = cluster.size();
         let clustered = cluster.render(setup, rule)?;

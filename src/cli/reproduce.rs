@@ -49,6 +49,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         serial_for: None,
         until: None,
         rerun_doubtful: false,
+        count_instructions: false,
         command: command_line(),
     };
     let mut definitions =

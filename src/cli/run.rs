@@ -28,6 +28,10 @@ pub(super) struct Arguments {
     /// After all repetitions run those cells again of which rows are doubtful, once for each; keep both
     #[arg(long)]
     rerun_doubtful: bool,
+    /// Count the instructions of each cell besides, by valgrind, which takes some fifty times as long as a repetition;
+    /// `pathmark diff --counts` compares them
+    #[arg(long)]
+    count_instructions: bool,
     /// How often each cell is run [default: what the experiment says]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repetitions: Option<u32>,
@@ -74,6 +78,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         serial_for: figure_of_serial(&definition),
         until: arguments.until.as_deref().map(|limit| Until::parse(limit, arguments.within.as_deref())).transpose()?,
         rerun_doubtful: arguments.rerun_doubtful,
+        count_instructions: arguments.count_instructions,
         command: command_line(),
     };
     let mut files = Files::default();

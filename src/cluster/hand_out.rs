@@ -4,13 +4,14 @@ use super::failed;
 use crate::error::{Error, Result};
 use crate::lab::{Master, RankRule, Way};
 use crate::measure::Share;
-use crate::strategy::ChunkRule;
+use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use pathmark_mpi::{Counter, World};
 use std::ops::Range;
 use std::panic::resume_unwind;
 use std::sync::mpsc::channel;
 use std::thread;
 use std::time::Duration;
+use std::vec::IntoIter;
 
 /// What getting jobs took.
 #[derive(Debug, Clone, Copy, Default)]
@@ -20,11 +21,11 @@ pub(super) struct Wait {
 }
 
 /// The answer to a rank for which there is no chunk left.
-const NOTHING_LEFT: u64 = u64::MAX;
+const NOTHING_LEFT: [u64; 2] = [0; 2];
 
 /// How often rank 0 looks after the other ranks' requests while it renders. Some libraries answer them without its help, others only when it
 /// calls MPI. Looking takes some microseconds.
-const LOOK: Duration = Duration::from_micros(200);
+pub(super) const LOOK: Duration = Duration::from_micros(200);
 
 /// The chunks of a rule in the order of their numbers, for so many ranks that render.
 fn chunks_of(rule: ChunkRule, jobs: usize, ranks: usize) -> Vec<Range<usize>> {
@@ -63,13 +64,18 @@ impl<'a> HandOut<'a> {
             }
             Way::Asked(master, rule) => {
                 let ranks = if master == Master::Only { world.size() - 1 } else { world.size() };
-                let chunks = chunks_of(rule, jobs, ranks);
+                let stock = || Stock::Chunks(chunks_of(rule, jobs, ranks).into_iter());
                 match (world.rank(), master) {
-                    (0, Master::Only) => answer_all(chunks.len(), world),
-                    (0, Master::Working) => work_and_answer(&chunks, world, share),
-                    _ => ask(&chunks, world, share),
+                    (0, Master::Only) => answer_all(stock(), world),
+                    (0, Master::Working) => work_and_answer(stock(), Answers::BetweenChunks, world, share),
+                    _ => ask(world, share),
                 }
             }
+            Way::Told(rule) if world.rank() == 0 => {
+                let ledger = Box::new(Ledger::new(jobs, world.size(), rule.weights));
+                work_and_answer(Stock::Learned(rule, ledger), Answers::AtOnce, world, share)
+            }
+            Way::Told(_) => ask(world, share),
         }
     }
 
@@ -95,7 +101,7 @@ fn counted(counter: &Counter<'_>, chunks: &[Range<usize>], world: &World, share:
         let Some(chunk) = usize::try_from(step).ok().and_then(|step| chunks.get(step)) else { return Ok(wait) };
         let jobs = chunk.clone().collect();
         if world.rank() == 0 && world.size() > 1 {
-            render_attentively(jobs, world, share)?;
+            render_attentively(jobs, share, || world.has_message().map(drop).map_err(failed))?;
         } else {
             share.render(jobs)?;
         }
@@ -103,7 +109,7 @@ fn counted(counter: &Counter<'_>, chunks: &[Range<usize>], world: &World, share:
 }
 
 /// Renders on another thread, while this one, which alone may call MPI, looks after the other ranks.
-fn render_attentively(jobs: Vec<usize>, world: &World, share: &mut Share<'_>) -> Result<()> {
+fn render_attentively(jobs: Vec<usize>, share: &mut Share<'_>, mut look: impl FnMut() -> Result<()>) -> Result<()> {
     thread::scope(|scope| {
         let (tell, told) = channel();
         let render = move || {
@@ -116,77 +122,134 @@ fn render_attentively(jobs: Vec<usize>, world: &World, share: &mut Share<'_>) ->
             .spawn_scoped(scope, render)
             .map_err(|e| Error::system("starting", "the thread that renders", e))?;
         while told.recv_timeout(LOOK).is_err() && !rendering.is_finished() {
-            world.has_message().map_err(failed)?;
+            look()?;
         }
         rendering.join().unwrap_or_else(|panic| resume_unwind(panic))
     })
 }
 
-/// Asks rank 0 for chunks.
-fn ask(chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
-    let mut wait = Wait::default();
+/// Asks rank 0 for chunks, and tells it how long the last one took.
+fn ask(world: &World, share: &mut Share<'_>) -> Result<Wait> {
+    let (mut wait, mut seen) = (Wait::default(), Seen::default());
     loop {
-        let step = timed(&mut wait, share, || {
-            world.send(0, &[world.rank() as u64]).map_err(failed)?;
-            let mut answer = [0];
+        let request = [world.rank() as u64, seen.jobs as u64, seen.seconds.to_bits(), seen.squares.to_bits()];
+        let answer = timed(&mut wait, share, || {
+            world.send(0, &request).map_err(failed)?;
+            let mut answer = NOTHING_LEFT;
             world.receive(Some(0), &mut answer).map_err(failed)?;
-            Ok(answer[0])
+            Ok(answer)
         })?;
-        let Some(chunk) = usize::try_from(step).ok().and_then(|step| chunks.get(step)) else { return Ok(wait) };
-        share.render(chunk.clone().collect())?;
+        let [start, end] = answer.map(|word| usize::try_from(word).unwrap_or(usize::MAX));
+        if start >= end.min(share.plan().len()) {
+            return Ok(wait);
+        }
+        seen = seen_rendering(start..end.min(share.plan().len()), share, |jobs, share| share.render(jobs))?;
     }
+}
+
+/// Renders, and says how long that took. Jobs of several threads count as if they had come one after the other in that time.
+fn seen_rendering<'a>(
+    jobs: Range<usize>,
+    share: &mut Share<'a>,
+    render: impl FnOnce(Vec<usize>, &mut Share<'a>) -> Result<()>,
+) -> Result<Seen> {
+    let (before_s, count) = (share.elapsed_s(), jobs.len());
+    render(jobs.collect(), share)?;
+    let seconds = share.elapsed_s() - before_s;
+    let durations = || share.last(count).iter().map(|job| job.span.duration_s());
+    let busy_s: f64 = durations().sum();
+    if busy_s <= 0.0 {
+        return Ok(Seen::default());
+    }
+    Ok(durations().map(|duration| duration * seconds / busy_s).collect())
+}
+
+/// What rank 0 hands out.
+enum Stock {
+    /// Chunks of sizes that are known.
+    Chunks(IntoIter<Range<usize>>),
+    /// Chunks by how fast the ranks have been.
+    Learned(LearnedRule, Box<Ledger>),
 }
 
 /// The other side of [`ask`].
 struct Desk<'a> {
     world: &'a World,
-    chunks: usize,
-    next: usize,
+    stock: Stock,
     /// Ranks that have not been told that nothing is left.
     asking: usize,
 }
 
 impl<'a> Desk<'a> {
-    fn new(chunks: usize, world: &'a World) -> Self {
-        Self { world, chunks, next: 0, asking: world.size() - 1 }
+    fn new(stock: Stock, world: &'a World) -> Self {
+        Self { world, stock, asking: world.size() - 1 }
     }
 
-    /// The number of the next chunk, if one is left.
-    fn take(&mut self) -> Option<usize> {
-        let step = self.next;
-        self.next += 1;
-        (step < self.chunks).then_some(step)
+    /// The next chunk of a rank, if one is left.
+    fn take(&mut self, rank: usize, seen: Seen) -> Option<Range<usize>> {
+        match &mut self.stock {
+            Stock::Chunks(chunks) => chunks.next(),
+            Stock::Learned(rule, ledger) => {
+                ledger.note(rank, seen);
+                rule.next(ledger, rank)
+            }
+        }
+    }
+
+    /// Answers the requests that are there.
+    fn answer_who_waits(&mut self) -> Result<()> {
+        while self.asking > 0 && self.world.has_message().map_err(failed)? {
+            self.answer()?;
+        }
+        Ok(())
     }
 
     /// Waits for a request, and answers it.
     fn answer(&mut self) -> Result<()> {
-        let mut from = [0];
-        self.world.receive(None, &mut from).map_err(failed)?;
-        let step = self.take();
-        if step.is_none() {
+        let mut request = [0; 4];
+        self.world.receive(None, &mut request).map_err(failed)?;
+        let [rank, jobs, seconds, squares] = request;
+        let rank = usize::try_from(rank).ok().filter(|rank| *rank < self.world.size()).unwrap_or(0);
+        let jobs = usize::try_from(jobs).unwrap_or(0);
+        let seen = Seen { jobs, seconds: f64::from_bits(seconds), squares: f64::from_bits(squares) };
+        let answer = if let Some(chunk) = self.take(rank, seen) {
+            [chunk.start as u64, chunk.end as u64]
+        } else {
             self.asking -= 1;
-        }
-        let step = step.map_or(NOTHING_LEFT, |step| step as u64);
-        self.world.send(usize::try_from(from[0]).unwrap_or(0), &[step]).map_err(failed)
+            NOTHING_LEFT
+        };
+        self.world.send(rank, &answer).map_err(failed)
     }
 }
 
-fn answer_all(chunks: usize, world: &World) -> Result<Wait> {
-    let mut desk = Desk::new(chunks, world);
+fn answer_all(stock: Stock, world: &World) -> Result<Wait> {
+    let mut desk = Desk::new(stock, world);
     while desk.asking > 0 {
         desk.answer()?;
     }
     Ok(Wait::default())
 }
 
-fn work_and_answer(chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
-    let mut desk = Desk::new(chunks.len(), world);
+/// When rank 0 answers while it has jobs of its own.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Answers {
+    /// Between its chunks, as a program without further threads does.
+    BetweenChunks,
+    /// At any time: chunks of learned rules are large at first, and who asks should not wait for one.
+    AtOnce,
+}
+
+fn work_and_answer(stock: Stock, answers: Answers, world: &World, share: &mut Share<'_>) -> Result<Wait> {
+    let (mut desk, mut seen) = (Desk::new(stock, world), Seen::default());
     loop {
-        while desk.asking > 0 && world.has_message().map_err(failed)? {
-            desk.answer()?;
-        }
-        let Some(step) = desk.take() else { break };
-        share.render(chunks[step].clone().collect())?;
+        desk.answer_who_waits()?;
+        let Some(chunk) = desk.take(0, seen) else { break };
+        seen = match answers {
+            Answers::BetweenChunks => seen_rendering(chunk, share, |jobs, share| share.render(jobs))?,
+            Answers::AtOnce => {
+                seen_rendering(chunk, share, |jobs, share| render_attentively(jobs, share, || desk.answer_who_waits()))?
+            }
+        };
     }
     let before_s = share.elapsed_s();
     while desk.asking > 0 {

@@ -5,6 +5,7 @@
 //! together by their place.
 
 mod hand_out;
+mod message_costs;
 mod wire;
 
 use crate::digest;
@@ -13,6 +14,7 @@ use crate::kernel::REVISION;
 use crate::lab::RankRule;
 use crate::measure::{Outcome, Setup};
 use hand_out::HandOut;
+pub use message_costs::MessageCost;
 use pathmark_mpi::{MpiError, World};
 use serde::Serialize;
 use std::io;

@@ -4,6 +4,7 @@
 //! a new time. All intervals of a comparison together hold with 95 % confidence (Bonferroni). Where repetitions went on until the answer was
 //! known (`run --until`), intervals are those that hold at every look.
 
+use super::instructions;
 use super::records_file::read_records;
 use super::run_file::{MACHINE, RunFile, read_run_file};
 use crate::analysis::confidence_sequence::median_sequence;
@@ -113,6 +114,8 @@ pub fn parse_share(field: &str, text: &str) -> Result<f64> {
 pub(super) struct Side {
     run: Option<RunFile>,
     pub(super) rows: Vec<Record>,
+    /// The instructions of cells, where they were counted.
+    pub(super) instructions: BTreeMap<String, u64>,
 }
 
 /// Reads a folder of one experiment, or a file of rows.
@@ -121,7 +124,7 @@ fn side(path: &Path) -> Result<Side> {
         if path.is_dir() { (path.join("records.csv"), Some(path)) } else { (path.to_path_buf(), path.parent()) };
     let machine = folder.map(|folder| folder.join(MACHINE)).filter(|path| path.is_file());
     let run = machine.map(|path| read_run_file(&path)).transpose()?;
-    Ok(Side { run, rows: read_records(&file)? })
+    Ok(Side { run, rows: read_records(&file)?, instructions: instructions::read(&file)? })
 }
 
 /// Both measurements. Those of two machines are refused unless `across_machines`.

@@ -13,6 +13,7 @@ mod diff;
 mod drift;
 mod external;
 mod half;
+mod instructions;
 mod keys;
 mod matrix;
 mod merge_sweeps;

@@ -3,6 +3,7 @@
 use super::against::{Against, check_program, folder_against};
 use super::calibration_file::write_calibration;
 use super::cell::trace_file;
+use super::instructions;
 use super::object_pixels::check_object;
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
@@ -26,7 +27,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// What a sweep writes into its folder, beside images and traces.
-const OWN_FILES: [&str; 4] = ["records.csv", "machine.toml", "experiment.toml", "calibration.csv"];
+const OWN_FILES: [&str; 5] =
+    ["records.csv", "machine.toml", "experiment.toml", "calibration.csv", instructions::INSTRUCTIONS];
 
 /// How to run an experiment.
 #[derive(Debug, Clone)]
@@ -51,6 +53,8 @@ pub struct Options {
     pub until: Option<Until>,
     /// Cells with doubtful rows are run again.
     pub rerun_doubtful: bool,
+    /// The instructions of each cell are counted besides.
+    pub count_instructions: bool,
     /// The command as the user gave it.
     pub command: String,
 }
@@ -109,6 +113,9 @@ impl<'a> Sweep<'a> {
                 let error = InputError::new("out", rows.display().to_string(), "is there already");
                 return Err(error.allowed("another --out").into());
             }
+        }
+        if options.count_instructions {
+            instructions::check_counter()?;
         }
         files.reads("the experiment", Path::new(&definition.file));
         for cell in &cells {
@@ -186,7 +193,11 @@ impl<'a> Sweep<'a> {
         if options.rerun_doubtful {
             self.rerun(&mut running, repetitions, progress)?;
         }
-        running.finish()
+        let summary = running.finish()?;
+        if options.count_instructions {
+            self.count_instructions(&summary.folder, progress)?;
+        }
+        Ok(summary)
     }
 
     /// How often each cell is run; at most, where it is until something is known.

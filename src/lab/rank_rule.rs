@@ -1,11 +1,12 @@
-//! Which rank does which jobs: `--ranks static-blocks | static-cyclic | dynamic:C | guided | ... | master-worker:C | working-master:C`.
+//! Which rank does which jobs: `--ranks static-blocks | static-cyclic | dynamic:C | guided | ... | master-worker:C | working-master:C | awf-b`.
 //!
-//! Deals and chunk rules are those of the strategies of the same names. Chunks are pure functions of their number, so a rank that is free
-//! counts up one number in the memory of rank 0 and looks its chunk up. A master answers requests by messages instead.
+//! Deals and rules are those of the strategies of the same names. Where chunks are pure functions of their number, a rank that is free counts up
+//! one number in the memory of rank 0 and looks its chunk up. A master answers requests by messages instead. Where chunks depend on how fast the
+//! ranks have been, a rank's request says how long its last chunk took.
 
 use super::Lab;
 use crate::error::{InputError, Result};
-use crate::strategy::{ChunkRule, Deal, Discipline};
+use crate::strategy::{ChunkRule, Deal, Discipline, LearnedRule};
 use std::fmt;
 
 /// Rank 0 hands out chunks of so many jobs by messages, and renders nothing.
@@ -14,8 +15,21 @@ const MASTER_WORKER: &str = "master-worker";
 const WORKING_MASTER: &str = "working-master";
 
 /// The rules, by name. All but those of masters are the strategies of the same names.
-const RULES: [&str; 8] =
-    ["static-blocks", "static-cyclic", "dynamic", "guided", "trapezoid", "factoring", MASTER_WORKER, WORKING_MASTER];
+const RULES: [&str; 13] = [
+    "static-blocks",
+    "static-cyclic",
+    "dynamic",
+    "guided",
+    "trapezoid",
+    "factoring",
+    "mfac",
+    "weighted-factoring",
+    "awf-b",
+    "awf-c",
+    "adaptive-factoring",
+    MASTER_WORKER,
+    WORKING_MASTER,
+];
 
 /// Who hands out chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,6 +49,8 @@ pub enum Way {
     Counted(ChunkRule),
     /// A rank that is free asks rank 0.
     Asked(Master, ChunkRule),
+    /// A rank that is free asks rank 0, which renders beside that, and tells how long its last chunk took.
+    Told(LearnedRule),
 }
 
 /// A rule, as the user named it.
@@ -89,6 +105,7 @@ impl Lab {
         let entry = self.strategies().iter().find(|entry| entry.name == name)?;
         match entry.discipline(parameter).ok()? {
             Discipline::Chunks(rule) => Some(Way::Counted(rule)),
+            Discipline::Learned(rule) => Some(Way::Told(rule)),
             Discipline::Dealt(deal) => Some(Way::Dealt(deal)),
             _ => None,
         }
@@ -108,7 +125,13 @@ mod tests {
     #[test]
     fn every_rule_that_is_listed_can_be_read_and_others_cannot() {
         let lab = Lab::built_in();
-        for text in RULES.into_iter().chain(["dynamic:3", "master-worker:3", "working-master:3"]) {
+        for text in RULES.into_iter().chain([
+            "dynamic:3",
+            "master-worker:3",
+            "working-master:3",
+            "mfac:50",
+            "weighted-factoring:1:0.5",
+        ]) {
             let rule = lab.rank_rule("ranks", text).unwrap();
             assert_eq!(rule.check(1).is_err(), text.starts_with("master-worker"), "{text}");
             assert!(rule.check(2).is_ok());

@@ -125,6 +125,11 @@ impl Share<'_> {
         self.done.iter().fold(0.0, |sum, job| sum + job.span.duration_s())
     }
 
+    /// Its last jobs, so many of them.
+    pub fn last(&self, count: usize) -> &[DoneJob] {
+        &self.done[self.done.len().saturating_sub(count)..]
+    }
+
     /// Takes what it has done.
     pub fn take_done(&mut self) -> Vec<DoneJob> {
         mem::take(&mut self.done)

@@ -51,7 +51,7 @@ impl Overheads {
     ///   is the thread's own beginning and end, on another processor: `job`.
     /// * A chunk rule that hands out single jobs, and a queue in which all jobs start, are the place that all share; their slope at
     ///   p threads is taken for its rate, although the place could be faster than p workers are.
-    /// * A rule with larger chunks has too few of them to be told from its jobs: [`Overheads::knows_chunks`] is false and chunks are
+    /// * A rule with larger chunks, or with chunks that depend on the clock, has too few of them to be told from its jobs: [`Overheads::knows_chunks`] is false and chunks are
     ///   free until [`Overheads::with_chunks_of`].
     pub fn fit<'a>(rows: impl IntoIterator<Item = &'a CalibrationRow>, discipline: Discipline) -> Self {
         let rows: Vec<&CalibrationRow> = rows.into_iter().collect();
@@ -79,6 +79,7 @@ impl Overheads {
                 let place = || Place { take_s: first.slope, served: served().collect() };
                 if single { (0.0, Some(place())) } else { (first.slope, None) }
             }
+            Discipline::Learned(_) => (first.slope, None),
             Discipline::Stealing(stealing) if matches!(stealing.start, Start::Shared(_)) => {
                 (first.slope, Some(Place { take_s: 0.0, served: served().collect() }))
             }

@@ -133,6 +133,7 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
             serial_for: None,
             until: None,
             rerun_doubtful: false,
+            count_instructions: false,
             command: String::new(),
         };
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();

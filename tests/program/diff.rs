@@ -7,6 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 pub(crate) fn run(folder: &Path, arguments: &[&str], code: i32) -> Finished {
     finish(pathmark(folder, arguments)).with_code(code)
@@ -204,6 +205,40 @@ fn two_builds_are_measured_in_turns() {
     let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "new"], 1);
     assert!(finished.err.contains("15 of"), "{}", finished.err);
     assert_eq!(rows("new/tiny").len(), 15);
+}
+
+/// Instructions are counted beside the rows, and those that differ by a thousandth or less are the same. Without valgrind this says so and passes.
+#[test]
+fn instructions_are_counted_and_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    let count = ["run", "tiny.toml", "--repetitions", "1", "--filter", "threads=1", "--count-instructions", "--out"];
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        println!("no valgrind: instructions are not counted");
+        let refused = run(folder.path(), &[&count[..], &["none"]].concat(), 3);
+        assert!(refused.err.contains("valgrind") && !folder.path().join("none").exists(), "{}", refused.err);
+        return;
+    }
+    run(folder.path(), &[&count[..], &["a"]].concat(), 0);
+    run(folder.path(), &[&count[..], &["b"]].concat(), 0);
+    let compare = |new: &str, code: i32| run(folder.path(), &["diff", "a/tiny", new, "--counts"], code);
+    assert!(compare("b/tiny", 0).out.contains("0 of "), "two runs of one build");
+    let path = folder.path().join("b/tiny/instructions.csv");
+    let counted = fs::read_to_string(&path).unwrap();
+    let more = |factor: f64| {
+        let row = |line: &str| {
+            let (cell, count) = line.rsplit_once(',').unwrap();
+            let count = count.parse().map_or_else(|_| count.to_string(), |n: f64| format!("{:.0}", n * factor));
+            format!("{cell},{count}\n")
+        };
+        fs::write(&path, counted.lines().map(row).collect::<String>()).unwrap();
+    };
+    more(1.01);
+    assert!(compare("b/tiny", 0).out.contains("instructions"));
+    more(1.1);
+    assert!(compare("b/tiny", 1).err.contains("grew by more than 2 %"));
+    fs::write(&path, "cell,instructions\nx,y\n").unwrap();
+    assert!(compare("b/tiny", 2).err.contains("instructions.csv:2"));
 }
 
 /// Counts are compared exactly: a build that traces more rays for the same cells fails, and one that traces fewer does not.

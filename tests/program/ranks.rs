@@ -8,21 +8,29 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-const RULES: [&str; 8] = [
+const RULES: [&str; 12] = [
     "static-blocks",
     "static-cyclic",
     "dynamic:3",
     "guided",
     "trapezoid",
     "factoring",
+    "weighted-factoring:1:0.5",
+    "awf-b",
+    "awf-c",
+    "adaptive-factoring",
     "master-worker:3",
     "working-master:3",
 ];
 const SCENE: [&str; 6] = ["render", "cornell", "--spp", "20", "--size", "70x40"];
 
+fn is_launcher(name: &str) -> bool {
+    Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+}
+
 /// Whether processes can be started; says so if not.
 fn has_launcher() -> bool {
-    let found = Command::new("mpiexec").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok();
+    let found = is_launcher("mpiexec");
     if !found {
         println!("no mpiexec: nothing was tested (Debian: apt install mpich)");
     }
@@ -30,15 +38,21 @@ fn has_launcher() -> bool {
 }
 
 /// Open MPI asks for words that MPICH does not know: more processes than processors, and root.
+const OPEN_MPI: [(&str, &str); 4] = [
+    ("OMPI_ALLOW_RUN_AS_ROOT", "1"),
+    ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
+    ("OMPI_MCA_rmaps_base_oversubscribe", "1"),
+    ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
+];
+
 fn launcher(folder: &Path) -> Command {
-    let mut command = Command::new("mpiexec");
+    launcher_named("mpiexec", folder)
+}
+
+fn launcher_named(name: &str, folder: &Path) -> Command {
+    let mut command = Command::new(name);
     command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.envs([
-        ("OMPI_ALLOW_RUN_AS_ROOT", "1"),
-        ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
-        ("OMPI_MCA_rmaps_base_oversubscribe", "1"),
-        ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
-    ]);
+    command.envs(OPEN_MPI);
     command
 }
 
@@ -90,7 +104,7 @@ fn every_rule_gives_the_image_of_one_process() {
             together(1, rule, &serial, &expected);
         }
     }
-    for rule in ["static-cyclic", "guided", "master-worker:3"] {
+    for rule in ["static-cyclic", "guided", "adaptive-factoring", "master-worker:3"] {
         // More ranks than rows of tiles, and pieces of some of a pixel's samples.
         let threads = ["--threads", "2", "--decomposition", "samples:16:32x32"];
         together(5, rule, &threads, &expected);
@@ -98,6 +112,28 @@ fn every_rule_gives_the_image_of_one_process() {
         together(2, rule, &single, &alone(&single));
     }
     together(8, "dynamic:3", &["--threads", "2", "--strategy", "thread-per-row"], &expected);
+}
+
+/// Debian's launchers stand beside each other under these names, each with its own library: one checksum.
+#[test]
+fn every_library_gives_the_image_of_one_process() {
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--threads", "1", "--decomposition", "tiles:16x16", "--json"];
+    let alone = json(&finish(pathmark(folder.path(), &[&SCENE[..], &options].concat())).with_code(0).out);
+    for name in ["mpiexec.mpich", "mpiexec.openmpi"] {
+        if !is_launcher(name) {
+            println!("no {name}: its library was not tested");
+            continue;
+        }
+        for (count, rule) in [(2, "static-cyclic"), (3, "guided"), (5, "master-worker:3"), (8, "awf-c")] {
+            let mut command = launcher_named(name, folder.path());
+            command.arg("-n").arg(count.to_string()).arg(program());
+            command.args([&SCENE[..], &options, &["--ranks", rule]].concat());
+            let found = json(&finish(command).with_code(0).out);
+            assert_eq!((&found["checksum"], &found["ranks"]), (&alone["checksum"], &count.into()), "{name} by {rule}");
+        }
+    }
 }
 
 #[test]
@@ -127,6 +163,26 @@ fn what_ranks_cannot_do_is_refused() {
     command.envs([("OMPI_COMM_WORLD_SIZE", "3"), ("OMPI_COMM_WORLD_RANK", "0")]);
     let finished = finish(command);
     assert!(finished.code == Some(3) && finished.err.contains("mpiexec"), "{:?} {}", finished.code, finished.err);
+}
+
+/// What messages cost is told by rank 0 alone, medians within their intervals.
+#[test]
+fn what_messages_cost_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let alone = finish(pathmark(folder.path(), &["message-costs", "--mpi", "/etc/passwd"])).with_code(2);
+    assert!(alone.err.contains("/etc/passwd"), "{}", alone.err);
+    if !has_launcher() {
+        return;
+    }
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let found = json(&ranks(folder.path(), 3, &["message-costs", "--json"]).with_code(0).out);
+    let costs = found["costs"].as_array().unwrap();
+    assert_eq!((&found["ranks"], costs.len()), (&3.into(), 5));
+    for cost in costs {
+        let [low, median, high] = ["low_s", "median_s", "high_s"].map(|key| cost[key].as_f64().unwrap());
+        assert!(0.0 < low && low <= median && median <= high && high < 10.0, "{cost}");
+    }
+    assert!(ranks(folder.path(), 2, &["message-costs"]).with_code(0).out.contains("a fetch-and-op, waits"));
 }
 
 /// Ranks that were given another scene, seed or rule say so instead of making an image of two.
@@ -239,7 +295,7 @@ repetitions = 2
     fs::write(folder.path().join("ranks.toml"), text).unwrap();
     let rows = |out: &str, launcher: Option<&str>| {
         let mut command = pathmark(folder.path(), &["run", "ranks.toml", "--out", out]);
-        command.envs(launcher.map(|launcher| ("PATHMARK_MPIEXEC", launcher)));
+        command.envs(OPEN_MPI).envs(launcher.map(|launcher| ("PATHMARK_MPIEXEC", launcher)));
         finish(command).with_code(0);
         let mut reader = csv::Reader::from_path(folder.path().join(out).join("ranks/records.csv")).unwrap();
         let heads = reader.headers().unwrap().clone();

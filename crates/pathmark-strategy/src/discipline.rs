@@ -3,6 +3,7 @@
 //! A strategy's [`Discipline`] is pure data and pure functions, so the simulator can replay it on workers that this machine does not
 //! have. The strategy itself is built on the same functions wherever that is possible: both then agree by construction.
 
+use crate::ledger::LearnedRule;
 use std::iter::StepBy;
 use std::ops::Range;
 
@@ -17,6 +18,8 @@ pub enum Discipline {
     Dealt(Deal),
     /// A worker that is free takes the next chunk of jobs from one place that all share.
     Chunks(ChunkRule),
+    /// A worker that is free takes the next chunk of jobs, whose size depends on how fast the workers have been.
+    Learned(LearnedRule),
     /// A worker that is free takes from its own queue, and when that is empty from another's.
     Stealing(Stealing),
     /// The range of jobs is halved again and again; a worker goes on with the first half, and one that is free takes the largest

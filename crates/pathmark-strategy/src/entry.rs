@@ -1,6 +1,9 @@
 //! A strategy's line in the table.
 
-use crate::{Blueprint, ChunkRule, Config, Deal, Discipline, Handout, Strategy, StrategyError, dealt, self_scheduling};
+use crate::{
+    Blueprint, ChunkRule, Config, Deal, Discipline, Handout, LearnedRule, Strategy, StrategyError, dealt, learning,
+    self_scheduling,
+};
 
 /// A strategy's line in the table: what it is called, what it promises, and how it is made.
 ///
@@ -83,6 +86,11 @@ impl Entry {
     /// ```
     pub const fn chunks(name: &'static str, about: &'static str, size: fn(&Handout) -> usize) -> Self {
         Self::new(name, about, Discipline::Chunks(ChunkRule { size, parameter: 1 }), self_scheduling::make)
+    }
+
+    /// A self-scheduling strategy whose workers read the clock and get chunks by how fast they have been. Threads start in each run.
+    pub const fn learned(name: &'static str, about: &'static str, rule: LearnedRule) -> Self {
+        Self::new(name, about, Discipline::Learned(rule), learning::make)
     }
 
     /// A strategy whose workers know their jobs before they start. Threads start in each run.

@@ -45,6 +45,8 @@ mod discipline;
 mod entry;
 mod error;
 mod host;
+mod learning;
+mod ledger;
 mod locked_queue;
 mod panics;
 mod ranges;
@@ -61,6 +63,7 @@ pub use discipline::{Amount, ChunkRule, Deal, Discipline, Handout, Start, Steali
 pub use entry::{Entry, Parameter, Sharing, Threads, Workers};
 pub use error::StrategyError;
 pub use host::Host;
+pub use ledger::{Clock, LearnedRule, Ledger, Seen, Weights};
 pub use panics::Panics;
 pub use strategies::{STRATEGIES, block, find};
 

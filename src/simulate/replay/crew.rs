@@ -2,11 +2,13 @@
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use super::Replay;
 use crate::measure::{JobSpan, Trace};
 use crate::simulate::hardware::{Hardware, Processor};
 use crate::simulate::overhead::Overhead;
+use crate::strategy::Seen;
 
 /// A point in time, in seconds, that can be compared with every other.
 #[derive(Debug, Clone, Copy)]
@@ -96,6 +98,11 @@ impl<'a> Crew<'a> {
         // A worker that finds no job has been started all the same, and the caller waits for it.
         self.last_s = self.last_s.max(now_s);
         now_s
+    }
+
+    /// How long jobs took that are done.
+    pub(super) fn seen(&self, jobs: Range<usize>) -> Seen {
+        self.spans[jobs].iter().map(JobSpan::duration_s).collect()
     }
 
     pub(super) fn into_replay(self) -> Replay {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::simulate::bounds;
-use crate::strategy::{Amount, STRATEGIES, Start, Stealing, Victim};
+use crate::strategy::{Amount, LearnedRule, Ledger, STRATEGIES, Seen, Start, Stealing, Victim};
 use rand::Rng;
 use rand_pcg::Pcg32;
 
@@ -26,7 +26,7 @@ fn disciplines() -> Vec<(String, Discipline)> {
 fn greedy(discipline: Discipline, jobs: usize, workers: usize) -> bool {
     match discipline {
         Discipline::Chunks(rule) => rule.chunks(jobs, workers).all(|chunk| chunk.len() == 1),
-        Discipline::InOrder | Discipline::Dealt(_) => workers == 1,
+        Discipline::InOrder | Discipline::Dealt(_) | Discipline::Learned(_) => workers == 1,
         // Sharing is no list schedule, but Graham's argument holds: who has less than a processor knows that all of them are busy.
         Discipline::Stealing(_) | Discipline::Halving | Discipline::AllAtOnce => true,
     }
@@ -53,6 +53,17 @@ fn no_discipline_beats_the_bounds_and_greedy_ones_keep_grahams() {
     }
 }
 
+/// How many chunks one worker takes of jobs of these costs.
+fn chunks_of_one(rule: LearnedRule, costs: &[f64]) -> usize {
+    let mut ledger = Ledger::new(costs.len(), 1, rule.weights);
+    let mut chunks = 0;
+    while let Some(chunk) = rule.next(&mut ledger, 0) {
+        ledger.note(0, costs[chunk].iter().copied().collect::<Seen>());
+        chunks += 1;
+    }
+    chunks
+}
+
 #[test]
 fn one_worker_needs_the_sum_and_its_overheads() {
     let overhead = Overhead { run_s: 0.5, start_s: 0.25, job_s: 1e-3, take_s: 2e-3, shared_s: 0.0 };
@@ -60,6 +71,7 @@ fn one_worker_needs_the_sum_and_its_overheads() {
     for (name, discipline) in disciplines() {
         let takes = match discipline {
             Discipline::Chunks(rule) => rule.chunks(costs.len(), 1).count() as f64,
+            Discipline::Learned(rule) => chunks_of_one(rule, &costs) as f64,
             // One for each batch from the shared queue.
             Discipline::Stealing(Stealing { start: Start::Shared(_), .. }) => 7.0,
             _ => 0.0,

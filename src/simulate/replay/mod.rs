@@ -8,6 +8,7 @@ mod all_at_once;
 mod chunks;
 mod crew;
 mod halving;
+mod learned;
 mod stealing;
 
 #[cfg(test)]
@@ -53,6 +54,7 @@ pub fn replay(
         Discipline::InOrder | Discipline::AllAtOnce => dealt(&mut crew, |_, _, jobs| (0..jobs).step_by(1)),
         Discipline::Dealt(deal) => dealt(&mut crew, deal),
         Discipline::Chunks(rule) => chunks::run(&mut crew, rule),
+        Discipline::Learned(rule) => learned::run(&mut crew, rule),
         Discipline::Stealing(stealing) => stealing::run(&mut crew, stealing),
         Discipline::Halving => halving::run(&mut crew),
     }

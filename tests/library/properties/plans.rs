@@ -2,7 +2,7 @@
 
 use super::cases;
 use pathmark::film::{DECOMPOSITIONS, Decomposition, Plan, SAMPLE_BLOCK, sections};
-use pathmark::strategy::{Config, Discipline, STRATEGIES, block};
+use pathmark::strategy::{Config, Discipline, Ledger, STRATEGIES, Seen, block};
 use proptest::prelude::*;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -91,6 +91,17 @@ proptest! {
                 }
                 Discipline::Chunks(rule) => {
                     let handed: Vec<usize> = rule.chunks(jobs, workers).flatten().collect();
+                    prop_assert!(handed.into_iter().eq(0..jobs), "{}", entry.name);
+                }
+                Discipline::Learned(rule) => {
+                    // Each worker in turn tells another speed.
+                    let (mut ledger, mut handed) = (Ledger::new(jobs, workers, rule.weights), Vec::new());
+                    for worker in (0..workers).cycle() {
+                        let Some(chunk) = rule.next(&mut ledger, worker) else { break };
+                        let seconds = chunk.clone().map(|job| (worker + 1 + job % 3) as f64);
+                        ledger.note(worker, seconds.collect::<Seen>());
+                        handed.extend(chunk);
+                    }
                     prop_assert!(handed.into_iter().eq(0..jobs), "{}", entry.name);
                 }
                 _ => {}

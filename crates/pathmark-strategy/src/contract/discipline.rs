@@ -16,6 +16,7 @@ pub(super) fn as_told(case: &Case) -> Result<(), String> {
             Discipline::InOrder => in_order(case, threads)?,
             Discipline::Dealt(deal) => dealt(case, threads, deal)?,
             Discipline::Chunks(rule) => in_chunks(case, threads, rule)?,
+            Discipline::Learned(_) => ascending(case, threads)?,
             Discipline::Stealing(stealing) if stealing.start == Start::Blocks => from_blocks(case, threads)?,
             // Who gets what depends on who asks when.
             Discipline::Stealing(_) | Discipline::Halving | Discipline::AllAtOnce => {}
@@ -89,6 +90,15 @@ fn in_chunks(case: &Case, threads: usize, rule: ChunkRule) -> Result<(), String>
     };
     match rule.chunks(JOBS, threads).find(|chunk| !together(chunk)) {
         Some(chunk) => Err(format!("the jobs {chunk:?} are a chunk, but no thread ran them one after the other")),
+        None => Ok(()),
+    }
+}
+
+/// Chunks of one range that are handed out in order: no worker goes back in it. How large they are depends on the clock.
+fn ascending(case: &Case, threads: usize) -> Result<(), String> {
+    let hands = by_thread(case, threads, 1000, |_| ())?;
+    match hands.values().find(|jobs| !jobs.is_sorted()) {
+        Some(jobs) => Err(format!("a worker ran the jobs {jobs:?}, which are not in order")),
         None => Ok(()),
     }
 }

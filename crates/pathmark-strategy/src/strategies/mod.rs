@@ -1,5 +1,8 @@
 //! The strategies, one a file, and their table.
 
+mod adaptive_factoring;
+mod awf_b;
+mod awf_c;
 mod chili;
 mod dynamic;
 mod factoring;
@@ -7,6 +10,7 @@ mod fixed_pool;
 #[cfg(feature = "forkunion")]
 mod forkunion;
 mod guided;
+mod mfac;
 mod mutex_queue;
 #[cfg(feature = "openmp")]
 mod openmp;
@@ -31,6 +35,7 @@ mod steal_half;
 mod steal_one;
 mod thread_per_job;
 mod trapezoid;
+mod weighted_factoring;
 mod work_stealing;
 
 use crate::Entry;
@@ -48,6 +53,11 @@ pub static STRATEGIES: &[Entry] = &[
     guided::ENTRY,
     trapezoid::ENTRY,
     factoring::ENTRY,
+    mfac::ENTRY,
+    weighted_factoring::ENTRY,
+    awf_b::ENTRY,
+    awf_c::ENTRY,
+    adaptive_factoring::ENTRY,
     mutex_queue::ENTRY,
     fixed_pool::ENTRY,
     work_stealing::ENTRY,

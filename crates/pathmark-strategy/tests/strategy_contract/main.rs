@@ -25,9 +25,11 @@ fn every_strategy_keeps_the_contract() {
 /// Every parameter that a strategy's documentation names.
 const PARAMETERS: &[(&str, &[&str])] = &[
     ("dynamic", &["1", "2", "7", "5000"]),
+    ("mfac", &["0", "50", "100000"]),
     ("orx-parallel", &["1", "7", "5000"]),
     ("steal-one", &["neighbour", "random", "richest"]),
     ("steal-half", &["neighbour", "random", "richest"]),
+    ("weighted-factoring", &["1", "1:0.5"]),
     #[cfg(feature = "openmp")]
     ("openmp-dynamic", &["1", "7", "5000"]),
     #[cfg(feature = "openmp")]

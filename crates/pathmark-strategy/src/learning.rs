@@ -1,0 +1,78 @@
+//! What strategies share that learn how fast their workers are: a free worker tells what it saw of its last chunk and gets the next one, whose
+//! size a [`LearnedRule`] says.
+
+use std::ops::Range;
+use std::sync::{Arc, PoisonError};
+use std::time::Instant;
+
+use crate::ledger::{Clock, LearnedRule, Ledger, Seen};
+use crate::panics::Panics;
+use crate::sync::Mutex;
+use crate::{Blueprint, Discipline, Job, Strategy, StrategyError, team};
+
+/// A strategy whose discipline is a learned rule.
+pub(crate) fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
+    match blueprint.discipline {
+        Discipline::Learned(rule) => Ok(Box::new(Learning { blueprint: blueprint.clone(), rule })),
+        other => unreachable!("{} hands out jobs by {other:?}", blueprint.strategy),
+    }
+}
+
+struct Learning {
+    blueprint: Blueprint,
+    rule: LearnedRule,
+}
+
+impl Strategy for Learning {
+    fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
+        let (rule, workers) = (self.rule, self.blueprint.threads.get().min(jobs));
+        let ledger = Arc::new(Mutex::new(Ledger::new(jobs, workers, rule.weights)));
+        let bodies = (0..workers).map(|worker| {
+            let (job, ledger) = (Arc::clone(&job), Arc::clone(&ledger));
+            move |panics: &Panics| {
+                let mut seen = Seen::default();
+                while !panics.stop_asked() {
+                    let Some(chunk) = next(&ledger, rule, worker, seen) else { break };
+                    seen = match rule.clock {
+                        Clock::Chunks => timed_whole(chunk, panics, &*job),
+                        Clock::Jobs => timed_each(chunk, panics, &*job),
+                    };
+                }
+            }
+        });
+        team::run(&*self.blueprint.spawner, bodies)
+    }
+}
+
+/// The next chunk. The lock is free again when this returns, so that no job runs under it.
+fn next(ledger: &Mutex<Ledger>, rule: LearnedRule, worker: usize, seen: Seen) -> Option<Range<usize>> {
+    // Nothing that can panic happens under the lock.
+    let mut ledger = ledger.lock().unwrap_or_else(PoisonError::into_inner);
+    ledger.note(worker, seen);
+    rule.next(&mut ledger, worker)
+}
+
+fn timed_whole(chunk: Range<usize>, panics: &Panics, job: &dyn Fn(usize)) -> Seen {
+    let (begin, jobs) = (Instant::now(), chunk.len());
+    for index in chunk {
+        if panics.stop_asked() {
+            break;
+        }
+        job(index);
+    }
+    Seen { jobs, seconds: begin.elapsed().as_secs_f64(), squares: 0.0 }
+}
+
+fn timed_each(chunk: Range<usize>, panics: &Panics, job: &dyn Fn(usize)) -> Seen {
+    let (mut seen, mut begin) = (Seen::default(), Instant::now());
+    for index in chunk {
+        if panics.stop_asked() {
+            break;
+        }
+        job(index);
+        let end = Instant::now();
+        seen.add(end.duration_since(begin).as_secs_f64());
+        begin = end;
+    }
+    seen
+}

@@ -1,0 +1,43 @@
+//! `mpiexec -n 2 pathmark message-costs`: what MPI costs here.
+
+use super::output::{print, print_json};
+use crate::cluster::{Cluster, MessageCost};
+use crate::error::Result;
+use clap::Args;
+use serde_json::json;
+use std::env;
+use std::path::PathBuf;
+
+/// `mpiexec -n 2 pathmark message-costs`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// MPI library: auto, or the path of one [default: auto, or `PATHMARK_MPI`]
+    #[arg(long, value_name = "auto|FILE")]
+    mpi: Option<PathBuf>,
+    /// Print the costs as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// The library that the user names, in the option or the environment; `None` for one that is found.
+pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
+    let named = option.cloned().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
+    named.filter(|path| path.as_os_str() != "auto")
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let cluster = Cluster::begin(library(arguments.mpi.as_ref()).as_deref())?;
+    let ranks = cluster.size();
+    let Some((costs, library)) = cluster.message_costs()? else { return Ok(()) };
+    if arguments.json {
+        return print_json(&json!({ "ranks": ranks, "mpi": library, "costs": costs }));
+    }
+    print(&format!("{ranks} ranks of {library}; microseconds, medians with 95 % intervals"))?;
+    print(&format!("{:>10} {:>22} {:>11}  operation, while rank 0", "median", "interval", "repetitions"))?;
+    for MessageCost { operation, rank_0, repetitions, median_s, low_s, high_s } in costs {
+        let [median, low, high] = [median_s, low_s, high_s].map(|seconds| 1e6 * seconds);
+        let interval = format!("{low:.2} to {high:.2}");
+        print(&format!("{median:>10.2} {interval:>22} {repetitions:>11}  {operation}, {rank_0}"))?;
+    }
+    Ok(())
+}

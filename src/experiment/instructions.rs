@@ -1,0 +1,135 @@
+//! Instructions of each cell, whole processes of it, as valgrind's callgrind counts them: `run EXPERIMENT --count-instructions`.
+//!
+//! A count repeats to some millionths where a time does not to some hundredths, whatever else the machine does. It knows nothing of caches and of
+//! waiting, and valgrind runs threads one at a time and has no AVX-512, so a kernel in lanes is the one for AVX2. The counts of a sweep lie beside
+//! its rows in `instructions.csv`, which `diff --counts` compares.
+
+use super::cell_process::{CellJob, PointJob};
+use super::{Cell, Progress, Sweep, folder_against, process_group};
+use crate::atomic_file;
+use crate::error::{Error, InputError, Result};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// The file's name.
+pub(super) const INSTRUCTIONS: &str = "instructions.csv";
+const COUNTER: &str = "valgrind";
+
+/// A line of the file.
+#[derive(Debug, Serialize, Deserialize)]
+struct Row {
+    cell: String,
+    instructions: u64,
+}
+
+/// Refuses to begin where nothing can count.
+pub(super) fn check_counter() -> Result<()> {
+    let found = Command::new(COUNTER).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
+    found.map(drop).map_err(|e| Error::system("starting", COUNTER, e))
+}
+
+impl Sweep<'_> {
+    /// Counts the instructions of each cell of this program's own, and of the other build if there is one.
+    pub(super) fn count_instructions(&self, folder: &Path, progress: &dyn Progress) -> Result<()> {
+        let own = env::current_exe().map_err(|e| Error::system("finding", "this program", e))?;
+        let other = self.options.against.clone();
+        let against = other.map(|program| (program, folder_against(&self.options.out, &self.definition.name)));
+        let builds = [Some((own, folder.to_path_buf())), against];
+        let of_this_program = |cell: &&Cell| cell.external.is_none() && cell.settings.ranks.is_none();
+        let cells: Vec<&Cell> = self.cells.iter().filter(of_this_program).collect();
+        for (program, folder) in builds.into_iter().flatten() {
+            progress.begin(&format!("{}, instructions", self.definition.name), cells.len() as u64);
+            let mut counts = BTreeMap::new();
+            for (done, cell) in (1..).zip(&cells) {
+                let job = self.job(cell, (0, 0), &folder, &[], None);
+                match count(&job, &program) {
+                    Ok(count) => _ = counts.insert(cell.id.clone(), count),
+                    Err(error) => progress.note(&format!("{}: {error}", cell.id)),
+                }
+                progress.advance(done);
+            }
+            progress.end();
+            write(&folder.join(INSTRUCTIONS), &counts)?;
+        }
+        Ok(())
+    }
+}
+
+/// The instructions of a cell that a program runs. `Err` says why there are none.
+fn count(job: &CellJob, program: &Path) -> std::result::Result<u64, String> {
+    // Nothing is read, written or compared beside the image itself.
+    let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
+    let job = CellJob { points, references: None, object: None, trace: None, ..job.clone() };
+    let text = serde_json::to_string(&job).map_err(|e| format!("describing the cell: {e}"))?;
+    let mut command = Command::new(COUNTER);
+    command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).arg("cell");
+    let output = process_group::answer(command, &text).map_err(|e| format!("running {COUNTER}: {e}"))?;
+    let said = String::from_utf8_lossy(&output.stderr);
+    if !output.status.success() {
+        return Err(format!("{COUNTER} ended with {}: {}", output.status, said.trim()));
+    }
+    collected(&said).ok_or_else(|| format!("{COUNTER} told no count"))
+}
+
+/// The total in what callgrind says at its end: `==7== Collected : 1234`.
+fn collected(said: &str) -> Option<u64> {
+    said.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
+}
+
+/// Writes the counts of a sweep.
+fn write(path: &Path, counts: &BTreeMap<String, u64>) -> Result<()> {
+    let system = |e: std::io::Error| Error::system("writing", path, e);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for (cell, instructions) in counts {
+        let row = Row { cell: cell.clone(), instructions: *instructions };
+        writer.serialize(row).map_err(|e| system(e.into()))?;
+    }
+    let bytes = writer.into_inner().map_err(|e| system(e.into_error()))?;
+    atomic_file::write(path, |file| file.write_all(&bytes))
+}
+
+/// The counts beside some rows; none if nothing was counted.
+pub(super) fn read(rows: &Path) -> Result<BTreeMap<String, u64>> {
+    let path: PathBuf = rows.with_file_name(INSTRUCTIONS);
+    if !path.is_file() {
+        return Ok(BTreeMap::new());
+    }
+    let mut reader = csv::Reader::from_path(&path).map_err(|e| Error::system("reading", &path, e.into()))?;
+    let row = |(index, row): (usize, csv::Result<Row>)| {
+        let row = row.map_err(|e| {
+            let error = InputError::new("row", "", format!("cannot be read: {e}"));
+            Error::from(error.in_file(path.display().to_string(), Some((index + 2, 1))))
+        })?;
+        Ok((row.cell, row.instructions))
+    };
+    reader.deserialize().enumerate().map(row).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_total_is_found_in_what_the_counter_says() {
+        let said = "==12== Callgrind\n==12== Events    : Ir\n==12== Collected : 1066254367\n==12== \n==12== I   refs:      1,066,254,367\n";
+        assert_eq!(collected(said), Some(1_066_254_367));
+        assert_eq!((collected("==12== Collected : "), collected("")), (None, None));
+    }
+
+    #[test]
+    fn what_is_written_is_read_and_a_bad_row_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows = folder.path().join("records.csv");
+        assert!(read(&rows).unwrap().is_empty());
+        let counts = BTreeMap::from([("a,b".to_string(), 7), ("c".to_string(), u64::MAX)]);
+        let path = folder.path().join(INSTRUCTIONS);
+        write(&path, &counts).unwrap();
+        assert_eq!(read(&rows).unwrap(), counts);
+        std::fs::write(&path, "cell,instructions\na,1\nb,-1\n").unwrap();
+        let error = read(&rows).unwrap_err();
+        assert!(error.exit_code() == 2 && error.to_string().contains("instructions.csv:3"), "{error}");
+    }
+}
