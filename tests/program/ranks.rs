@@ -219,13 +219,17 @@ fn processes_of(program: &Path, launcher: u32) -> Vec<u32> {
         }
     };
     let all = fs::read_dir("/proc").unwrap().filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
-    let runs = |pid: &u32| fs::read_link(format!("/proc/{pid}/exe")).is_ok_and(|exe| exe == program);
-    all.filter(runs).filter(|pid| is_below(*pid)).collect()
+    all.filter(|pid| runs(program, *pid)).filter(|pid| is_below(*pid)).collect()
+}
+
+fn runs(program: &Path, pid: u32) -> bool {
+    fs::read_link(format!("/proc/{pid}/exe")).is_ok_and(|exe| exe == program)
 }
 
 const KILLS: u64 = if cfg!(debug_assertions) { 3 } else { 6 };
 
-/// A rank that dies (SIGKILL) ends the whole run, with an error and without an image.
+/// A rank that dies (SIGKILL) ends all ranks, with an error and without an image. The launcher of Open MPI 4.1.4 sometimes waits for a lock of its
+/// own for ever after it has ended them all, so it is killed then.
 #[test]
 fn a_rank_that_dies_ends_the_run() {
     if !has_launcher() {
@@ -239,7 +243,7 @@ fn a_rank_that_dies_ends_the_run() {
         let long = ["render", "cornell", "--spp", "20000", "--size", "64x48", "--threads", "1", "-o", "a.png"];
         let rule = ["dynamic:1", "working-master:1", "static-cyclic"][kill as usize % 3];
         command.args(["-n", "3"]).arg(&program).args(long).args(["--ranks", rule]);
-        let child = command.spawn().unwrap();
+        let mut child = command.spawn().unwrap();
         let found = loop {
             let found = processes_of(&program, child.id());
             if found.len() == 3 {
@@ -252,6 +256,14 @@ fn a_rank_that_dies_ends_the_run() {
         let victim = found[kill as usize % 3];
         let killed = Command::new("kill").args(["-9", &victim.to_string()]).status().unwrap();
         assert!(killed.success());
+        while found.iter().any(|pid| runs(&program, *pid)) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        if child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_secs(3));
+            // It may have ended meanwhile.
+            let _ = child.kill();
+        }
         let finished = wait(child);
         assert_ne!(finished.code, Some(0), "{rule}");
         assert!(!folder.path().join("a.png").exists());

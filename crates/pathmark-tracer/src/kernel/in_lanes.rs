@@ -55,7 +55,7 @@ pub(super) fn lanes_for(
         (None, Some(course), Some(sampler)) => {
             let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
             // Where most of the time goes to lights, being compiled for it would gain 3 %, and takes as long to compile as the others.
-            let is_matt = is_diffuse && course.aims.is_none();
+            let is_matt = is_diffuse && course.aims.is_none() && !level.is_fallback();
             return Ok(Ok(InLanes { level, precision, course, sampler, is_matt }));
         }
         (Some(reason), ..) => reason,

@@ -162,6 +162,8 @@ pub const MOST_LANES: usize = 32;
 
 /// What runs on a level: a function that is compiled once for each.
 pub trait Work {
+    /// Whether other work gives the same and this is only faster. A level that is a last resort ([`Level::is_fallback`]) is not compiled for it.
+    const IS_SHORTCUT: bool = false;
     /// What it returns.
     type Output;
     /// Does it. Everything that it calls must be `#[inline(always)]`, or it is compiled without the
@@ -225,6 +227,11 @@ impl Level {
     /// Its name.
     pub fn name(self) -> &'static str {
         self.0.name
+    }
+
+    /// Whether it is for processors alone that have none of the others: [`Work::IS_SHORTCUT`].
+    pub fn is_fallback(self) -> bool {
+        plain::IS_FALLBACK && matches!(self.0.set, Set::Baseline)
     }
 }
 

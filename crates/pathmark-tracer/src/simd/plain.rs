@@ -12,8 +12,12 @@ pub(super) fn is_available() -> bool {
     true
 }
 
+/// Processors of x86 that have nothing better are older than 2013.
+pub(super) const IS_FALLBACK: bool = cfg!(target_arch = "x86_64");
+
 /// Does the work.
 pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
+    assert!(!(IS_FALLBACK && W::IS_SHORTCUT), "a fallback is not compiled for shortcuts");
     match precision {
         Precision::F64 => work.run::<Plain<f64>>(),
         Precision::F32 => work.run::<Plain<f32>>(),

@@ -151,6 +151,7 @@ struct Render<'a, const AIMS: bool, const MATT: bool> {
 }
 
 impl<const AIMS: bool, const MATT: bool> Work for Render<'_, AIMS, MATT> {
+    const IS_SHORTCUT: bool = MATT;
     type Output = Counts;
 
     #[inline(always)]
