@@ -15,6 +15,8 @@ pub(super) struct Meeting {
     size: usize,
     /// Those who wait; all if `None`.
     invited: Option<BTreeSet<usize>>,
+    /// Nobody waits after the first meeting.
+    once: bool,
     sharing: Sharing,
     patience: Duration,
     state: Mutex<State>,
@@ -34,7 +36,8 @@ impl Meeting {
     /// Where `size` jobs come together, if only those that are invited wait, and for so long.
     fn new(case: &Case, size: usize, invited: Option<BTreeSet<usize>>, patience: Duration) -> Self {
         let sharing = case.entry.sharing;
-        Self { size, invited, sharing, patience, state: Mutex::default(), change: Condvar::new() }
+        let once = sharing == Sharing::Heartbeat;
+        Self { size, invited, once, sharing, patience, state: Mutex::default(), change: Condvar::new() }
     }
 
     /// Runs of so many jobs, and where their jobs meet, for which the strategy of `threads` is meant to have a worker each.
@@ -63,6 +66,10 @@ impl Meeting {
                     enough.into_iter().map(|jobs| (jobs, heads(jobs))).filter(|(_, heads)| heads.len() == threads);
                 plans.next().map(|(jobs, heads)| some(jobs, heads)).into_iter().collect()
             }
+            // Who has how many jobs left depends on the clock, but everybody begins with one.
+            Discipline::Learned(_) => {
+                [threads, 5 * threads].map(|jobs| (jobs, Self { once: true, ..all(jobs).1 })).into()
+            }
             // With more jobs than workers, one that has taken several and waits in the first must leave the rest to others.
             _ => vec![all(threads), all(5 * threads)],
         })
@@ -82,14 +89,14 @@ impl Meeting {
         self.invited.as_ref().is_none_or(|invited| invited.contains(&index))
     }
 
-    /// What job `index` does: waits for the others, and not at all once they have come in vain or, where they need not come, once.
+    /// What job `index` does: waits for the others, and not at all once they have not come or, where one meeting is enough, have come.
     pub(super) fn wait(&self, index: usize) {
         if !self.invites(index) {
             return;
         }
         let mut state = self.state();
         let met = state.met;
-        if state.given_up || (self.sharing == Sharing::Heartbeat && met > 0) {
+        if state.given_up || (self.once && met > 0) {
             return;
         }
         state.present += 1;
