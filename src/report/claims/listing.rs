@@ -208,11 +208,11 @@ pub(in crate::report) fn blocks(answers: &[Answer<'_>]) -> Vec<Block> {
         blocks.push(
             Block::table(stem, title, own)
                 .column("claim", |a| format!("{}. {}", a.claim.id, a.claim.claim))
-                .column("the report says", |a| format!("\u{201c}{}\u{201d}", a.claim.quote))
-                .column("reported", |a| a.claim.reported.clone())
+                .column("verdict", |a| a.verdict.to_string())
                 .column("measured", |a| a.measured())
                 .column("predicted", |a| a.predicted())
-                .column("verdict", |a| a.verdict.to_string())
+                .column("the report says", |a| format!("\u{201c}{}\u{201d}", a.claim.quote))
+                .column("reported", |a| a.claim.reported.clone())
                 .column("conditions", |a| a.why.clone())
                 .end(),
         );

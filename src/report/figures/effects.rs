@@ -141,9 +141,9 @@ fn generality(found: &[Found<'_>]) -> Option<Block> {
     let beyond = found.iter().filter(|found| found.unused.1.interval.low > 1.0);
     let beyond: Vec<&str> = beyond.map(|found| found.price.effect.as_str()).collect();
     let verdict = if beyond.is_empty() {
-        "None of them costs anything beyond the noise".to_string()
+        "None of them costs more than the noise".to_string()
     } else {
-        format!("Beyond the noise cost: {}", beyond.join("; "))
+        format!("These cost more than the noise: {}", beyond.join("; "))
     };
     Some(Block::finding(format!(
         "An effect that is compiled into the kernel but not used by the scene makes a sample take {} times as long at most ({}). {verdict}.",

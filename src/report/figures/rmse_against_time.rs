@@ -89,8 +89,8 @@ fn price_finding(prices: &BTreeMap<&Key<'_>, Vec<f64>>, goal: f64) -> Option<Blo
     let (cheapest, least) = costs().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let (dearest, most) = costs().max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(Block::finding(format!(
-        "MSE times seconds is the price of accuracy; along no line does its largest value exceed its smallest by more than a factor of \
-         {widest:.2}. Extrapolated with its median, an RMSE of {goal} costs about {least:.0} s with {} and {most:.0} s with {}; half that \
+        "MSE times seconds is the price of accuracy. Along each line its largest value is at most {widest:.2} times its smallest. \
+         Extrapolated with its median, an RMSE of {goal} costs about {least:.0} s with {} and {most:.0} s with {}; half that \
          RMSE costs four times as much. These seconds were not measured.",
         label(cheapest),
         label(dearest),
