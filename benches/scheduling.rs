@@ -66,7 +66,7 @@ fn scheduling(criterion: &mut Criterion) {
     let (jobs, job) = render_job(&spec);
     let mut group = criterion.benchmark_group("scheduling");
     group.sample_size(10).sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(samples));
-    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));
+    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(800));
     for entry in STRATEGIES {
         for &threads in thread_counts(entry.workers) {
             let mut strategy = strategy(entry, threads);
