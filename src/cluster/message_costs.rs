@@ -49,7 +49,7 @@ impl Cluster {
         let mut costs = vec![self.told("a request and its answer", "waits", &self.requests()?)?];
         for (rank_0, pause, repetitions) in [
             ("waits", None, MANY),
-            ("computes, and looks every 0.2 ms", Some(LOOK), MANY),
+            ("computes, and looks every ms", Some(LOOK), MANY),
             ("computes for 20 ms at a time", Some(COMPUTATION), FEW),
         ] {
             costs.push(self.told("a fetch-and-op", rank_0, &self.fetches(pause, repetitions)?)?);
