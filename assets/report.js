@@ -150,20 +150,40 @@ const addButton = (within, label, act) => {
     });
   });
 
-  // The verdicts on the claims, by verdict.
+  // The claims, by report and by verdict. A filter opens the tables that it leaves rows in.
   const claims = document.getElementById("claims");
-  if (claims) {
-    const verdicts = ["all", ...new Set(all("td[data-verdict]", claims).map((cell) => cell.dataset.verdict))];
-    if (verdicts.length > 2) {
+  const tables = claims ? all("details", claims).filter((table) => table.querySelector("td[data-verdict]")) : [];
+  if (tables.length > 0) {
+    const nameOf = (table) => table.querySelector("summary").textContent.split(":")[0];
+    const verdictOf = (row) => row.querySelector("td[data-verdict]").dataset.verdict;
+    const rowsOf = (table) => Array.from(table.querySelector("tbody").rows);
+    const chooser = (name, choices) => {
       const label = document.createElement("label");
-      label.textContent = "Verdict: ";
       const choice = document.createElement("select");
-      verdicts.forEach((verdict) => choice.append(new Option(verdict, verdict)));
-      choice.addEventListener("change", () => all("td[data-verdict]", claims).forEach((cell) => {
-        cell.parentElement.hidden = choice.value !== "all" && cell.dataset.verdict !== choice.value;
-      }));
-      label.append(choice);
-      claims.querySelector("h2").after(label);
-    }
+      ["all", ...new Set(choices)].forEach((of) => choice.append(new Option(of, of)));
+      choice.addEventListener("change", () => filter());
+      label.append(`${name}: `, choice);
+      return [label, (of) => choice.value === "all" || choice.value === of, () => choice.value !== "all"];
+    };
+    const [byReport, isReport, reportIsChosen] = chooser("Report", tables.map(nameOf));
+    const [byVerdict, isVerdict, verdictIsChosen] = chooser("Verdict", tables.flatMap(rowsOf).map(verdictOf).sort());
+    const shown = document.createElement("output");
+    const filter = () => {
+      tables.forEach((table) => {
+        const rows = rowsOf(table);
+        rows.forEach((row) => { row.hidden = !isVerdict(verdictOf(row)); });
+        const left = rows.filter((row) => !row.hidden).length;
+        table.hidden = !isReport(nameOf(table)) || left === 0;
+        table.previousElementSibling.hidden = table.hidden;
+        if (reportIsChosen() || verdictIsChosen()) table.open = true;
+      });
+      const rows = tables.flatMap(rowsOf);
+      shown.textContent = `${rows.filter((row) => !row.hidden && !row.closest("details").hidden).length} of ${rows.length} claims`;
+    };
+    const filters = document.createElement("p");
+    filters.className = "filters";
+    filters.append(byReport, byVerdict, shown);
+    claims.querySelector("h2").after(filters);
+    filter();
   }
 })();

@@ -297,7 +297,7 @@ fn table_markup(table: &Table) -> Markup {
                     @for row in table.rows() {
                         tr {
                             @for ((cell, column), is_text) in row.iter().zip(table.heads()).zip(&is_text) {
-                                td.text[*is_text] data-verdict=[(column == "verdict").then_some(cell)] { (cell) }
+                                td.text[*is_text] data-verdict=[(column == "verdict").then_some(cell)] { (broken(cell, *is_text)) }
                             }
                         }
                     }
@@ -305,6 +305,18 @@ fn table_markup(table: &Table) -> Markup {
             }
         }
     }
+}
+
+/// The text of a cell. A narrow column breaks a number, its interval and its confidence from each other, and nothing else.
+fn broken(cell: &str, is_text: bool) -> Markup {
+    if is_text || !cell.starts_with(|first: char| first.is_ascii_digit() || first == '-') {
+        return html! { (cell) };
+    }
+    let parts = cell.split_inclusive(", ").flat_map(|part| match part.find(" (") {
+        Some(at) => vec![&part[..at], &part[at + 1..]],
+        None => vec![part.trim_end()],
+    });
+    html! { @for part in parts { span { (part) } " " } }
 }
 
 fn provenance(section: &Section) -> Markup {

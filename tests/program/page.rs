@@ -52,6 +52,22 @@ window.addEventListener("load", () => {
     return canvas.toDataURL();
   });
   seen.slides = pictures[0] !== pictures[1];
+  const claims = document.getElementById("claims");
+  const [report, verdict] = Array.from(claims.querySelectorAll(".filters select"));
+  const choose = (choice, value) => {
+    choice.value = value;
+    choice.dispatchEvent(new Event("change"));
+  };
+  const left = () => Array.from(claims.querySelectorAll("td[data-verdict]")).filter((cell) => cell.checkVisibility());
+  const letters = () => Array.from(new Set(left().map((cell) => cell.closest("details").querySelector("summary").textContent)));
+  choose(report, "Report C");
+  seen.ofReport = letters();
+  choose(verdict, "context");
+  seen.ofVerdict = Array.from(new Set(left().map((cell) => cell.dataset.verdict)));
+  seen.filtered = [left().length, claims.querySelector("output").textContent];
+  choose(report, "all");
+  choose(verdict, "all");
+  seen.unfiltered = [left().length, claims.querySelector("output").textContent];
   seen.background = getComputedStyle(document.body).backgroundColor;
   const told = document.createElement("script");
   told.type = "application/json";
@@ -124,6 +140,13 @@ fn the_page_works_in_a_browser() {
         let (up, down) = (numbers(&seen["ascending"]), numbers(&seen["descending"]));
         assert!(up.len() > 2 && up.is_sorted() && down.iter().rev().eq(&up), "{seen}");
         assert_eq!(seen["slides"], true, "the slider changes the picture: {seen}");
+        assert_eq!(seen["ofReport"], serde_json::json!(["Report C: claims and verdicts"]), "{seen}");
+        assert_eq!(seen["ofVerdict"], serde_json::json!(["context"]), "{seen}");
+        for (choice, at_least) in [("filtered", 1), ("unfiltered", 72)] {
+            let left = seen[choice][0].as_u64().unwrap();
+            assert!(left >= at_least && left <= 72, "{seen}");
+            assert_eq!(seen[choice][1], serde_json::json!(format!("{left} of 72 claims")), "{seen}");
+        }
         assert_eq!(seen["tools"], serde_json::json!(["SVG", "PNG", "CSV", "logarithmic axes"]));
         backgrounds.push(seen["background"].as_str().unwrap().to_string());
     }
