@@ -66,7 +66,7 @@ fn scheduling(criterion: &mut Criterion) {
     let (jobs, job) = render_job(&spec);
     let mut group = criterion.benchmark_group("scheduling");
     group.sample_size(10).sampling_mode(SamplingMode::Flat).throughput(Throughput::Elements(samples));
-    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(800));
+    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(700));
     for entry in STRATEGIES {
         for &threads in thread_counts(entry.workers) {
             let mut strategy = strategy(entry, threads);
@@ -122,7 +122,7 @@ fn seam(criterion: &mut Criterion) {
 fn trace(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("trace");
     group.sample_size(20).sampling_mode(SamplingMode::Flat);
-    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_secs(1));
+    group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(700));
     // The smallest jobs there are, so that what a job costs besides is as large a part of the time as it can be.
     let spec = Spec { width: 64, height: 48, estimator: "bsdf".to_string(), ..Spec::default() };
     let pieces = "tiles:1x1";

@@ -1,7 +1,9 @@
 //! `mpiexec -n 4 pathmark render SCENE --ranks RULE`: one image by several processes.
 
 use super::message_costs::library;
-use crate::cluster::{Cluster, RankRow};
+use super::progress::Talk;
+use super::rounds::{self, Until};
+use crate::cluster::{Cluster, RankRow, Tally};
 use crate::error::Result;
 use crate::lab::{Lab, RankRule};
 use crate::measure::{Outcome, Record, Setup};
@@ -15,7 +17,7 @@ pub(super) struct Ranks {
     /// Render with all processes that mpiexec started, which share the jobs by this rule: static-blocks, static-cyclic, dynamic:C, guided,
     /// trapezoid, factoring, mfac:S, weighted-factoring:W, awf-b, awf-c, adaptive-factoring, master-worker:C or working-master:C. Each process spreads its jobs over --threads by --strategy
     #[arg(long, value_name = "RULE", help_heading = "Processes",
-          conflicts_with_all = ["target_error", "time_limit", "checkpoint", "adaptive", "shard"])]
+          conflicts_with_all = ["adaptive", "shard"])]
     ranks: Option<String>,
     /// MPI library: auto, or the path of one [default: auto, or `PATHMARK_MPI`]
     #[arg(long, value_name = "auto|FILE", help_heading = "Processes", requires = "ranks")]
@@ -61,17 +63,31 @@ impl Ranks {
         self.ranks.as_deref().map(|text| lab.rank_rule("ranks", text)).transpose()
     }
 
-    /// Renders; `None` on all ranks but the first.
-    pub(super) fn render(&self, rule: &RankRule, setup: &Setup) -> Result<Option<(Outcome, Told)>> {
+    /// Renders `spp` samples a pixel or until another goal is reached; `None` on all ranks but the first.
+    pub(super) fn render(
+        &self,
+        rule: &RankRule,
+        setup: Setup,
+        until: &Until,
+        spp: u32,
+        talk: &Talk,
+    ) -> Result<Option<(Setup, Outcome, Told)>> {
         let library = library(self.mpi.as_ref());
         let cluster = Cluster::begin(library.as_deref())?;
-        let ranks = cluster.size();
-        let clustered = cluster.render(setup, rule)?;
-        Ok(clustered.map(|done| {
-            let rank_rule = rule.to_string();
-            let told = Told { ranks, rank_rule, mpi: done.library, gather_s: done.gather_s, by_rank: done.ranks };
-            (done.outcome, told)
-        }))
+        let done = if until.is_multi_round() {
+            cluster.render_in_rounds(setup, rule, |setup, extend| rounds::render(until, setup, spp, talk, extend))?
+        } else {
+            let done = cluster.render(&setup, rule)?;
+            done.map(|(outcome, tally)| ((setup, outcome), tally))
+        };
+        Ok(done.map(|((setup, outcome), tally)| (setup, outcome, Told::new(rule, tally))))
+    }
+}
+
+impl Told {
+    fn new(rule: &RankRule, tally: Tally) -> Self {
+        let Tally { ranks, gather_s, library } = tally;
+        Self { ranks: ranks.len(), rank_rule: rule.to_string(), mpi: library, gather_s, by_rank: ranks }
     }
 }
 

@@ -81,12 +81,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 
     let mut clustered = None;
     let (setup, outcome) = if let Some(rule) = arguments.ranks.rule(lab)? {
-        let Some((outcome, cluster)) = arguments.ranks.render(&rule, &setup)? else { return Ok(()) };
-        clustered = Some(cluster);
+        let rendered = arguments.ranks.render(&rule, setup, &arguments.rounds, spp, talk)?;
+        let Some((setup, outcome, told)) = rendered else { return Ok(()) };
+        clustered = Some(told);
         (setup, outcome)
     } else if arguments.rounds.is_multi_round() {
-        let goal_spp = (!arguments.rounds.has_goal()).then_some(spp);
-        rounds::render(&arguments.rounds, setup, goal_spp, talk)?
+        rounds::render(&arguments.rounds, setup, spp, talk, &mut |rounds, spp| rounds.extend_to(spp, None))?
     } else {
         talk.begin(&format!("{} at {spp} spp", setup.name()), setup.jobs() as u64);
         let watch = |done| talk.advance(done);

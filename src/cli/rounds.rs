@@ -3,7 +3,7 @@
 use super::progress::Talk;
 use crate::error::Result;
 use crate::experiment::Progress as _;
-use crate::measure::{CONFIDENCE, Checkpoint, Goal, Outcome, Record, Rounds, Setup, Warning};
+use crate::measure::{CONFIDENCE, Checkpoint, Extend, Goal, Outcome, Record, Rounds, Setup, Warning};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -31,7 +31,7 @@ impl Until {
     }
 
     /// Whether something else than a number of samples says when to stop.
-    pub(super) fn has_goal(&self) -> bool {
+    fn has_goal(&self) -> bool {
         self.target_error.is_some() || self.time_limit.is_some()
     }
 
@@ -47,8 +47,15 @@ impl Until {
     }
 }
 
-/// Renders until the goal is reached.
-pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &Talk) -> Result<(Setup, Outcome)> {
+/// Renders until the goal is reached: `spp` samples a pixel, if nothing else says when to stop.
+pub(super) fn render(
+    arguments: &Until,
+    setup: Setup,
+    spp: u32,
+    talk: &Talk,
+    extend: Extend<'_>,
+) -> Result<(Setup, Outcome)> {
+    let spp = (!arguments.has_goal()).then_some(spp);
     let mut rounds = Rounds::new(setup)?;
     let (checkpoint, saved) = match &arguments.checkpoint {
         Some(path) => {
@@ -76,7 +83,7 @@ pub(super) fn render(arguments: &Until, setup: Setup, spp: Option<u32>, talk: &T
         (.., limit_s) => format!("{name} for {} s", limit_s.unwrap_or_default()),
     };
     talk.begin(&title, u64::from(spp.unwrap_or(0)));
-    let missed = goal.pursue(&mut rounds, before, None, &mut |rounds, position| {
+    let missed = goal.pursue(&mut rounds, before, extend, &mut |rounds, position| {
         talk.note(&format!("{name}: {} spp after {:.2} s", rounds.spp(), position.rendering_s));
         talk.advance(u64::from(rounds.spp()));
         checkpoint.as_ref().map_or(Ok(()), |checkpoint| checkpoint.save(rounds, position))

@@ -83,7 +83,8 @@ pub(super) fn render(shard: Shard, setup: Setup, path: &Path, as_json: bool, tal
     let (name, resumed) = (rounds.setup().name().to_string(), rounds.spp() - samples.start);
     let goal = Goal { spp: Some(samples.end), target_error: None, time_limit_s: None, pause_s: Some(PAUSE_S) };
     talk.begin(&format!("part {shard} of {name}"), samples.len() as u64);
-    goal.pursue(&mut rounds, before, None, &mut |rounds, position| {
+    let extend = &mut |rounds: &mut Rounds, spp| rounds.extend_to(spp, None);
+    goal.pursue(&mut rounds, before, extend, &mut |rounds, position| {
         let done = rounds.spp() - samples.start;
         talk.note(&format!("{name}: {done} of {} samples after {:.2} s", samples.len(), position.rendering_s));
         talk.advance(u64::from(done));

@@ -51,7 +51,7 @@ impl<'a> HandOut<'a> {
     }
 
     /// Does this rank's jobs until none are left for it.
-    pub(super) fn run(&self, share: &mut Share<'_>) -> Result<Wait> {
+    pub(super) fn run(&mut self, share: &mut Share<'_>) -> Result<Wait> {
         let (world, jobs) = (self.world, share.plan().len());
         match self.way {
             Way::Dealt(deal) => {
@@ -60,7 +60,7 @@ impl<'a> HandOut<'a> {
             }
             Way::Counted(rule) => {
                 let chunks = chunks_of(rule, jobs, world.size());
-                self.counter.as_ref().map_or(Ok(Wait::default()), |counter| counted(counter, &chunks, world, share))
+                self.counter.as_mut().map_or(Ok(Wait::default()), |counter| counted(counter, &chunks, world, share))
             }
             Way::Asked(master, rule) => {
                 let ranks = if master == Master::Only { world.size() - 1 } else { world.size() };
@@ -94,11 +94,13 @@ fn timed<T>(wait: &mut Wait, share: &Share<'_>, get: impl FnOnce() -> Result<T>)
     Ok(got)
 }
 
-fn counted(counter: &Counter<'_>, chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
+/// Asks for the next chunk before it renders the one that it has: the answer may need rank 0, which renders too.
+fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let mut wait = Wait::default();
     loop {
         let step = timed(&mut wait, share, || counter.next().map_err(failed))?;
         let Some(chunk) = usize::try_from(step).ok().and_then(|step| chunks.get(step)) else { return Ok(wait) };
+        counter.ask().map_err(failed)?;
         let jobs = chunk.clone().collect();
         if world.rank() == 0 && world.size() > 1 {
             render_attentively(jobs, share, || world.has_message().map(drop).map_err(failed))?;

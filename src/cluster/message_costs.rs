@@ -84,7 +84,7 @@ impl Cluster {
     /// Seconds of fetch-and-ops that rank 1 did in the memory of rank 0, which computes for `pause` between two looks after MPI.
     fn fetches(&self, pause: Option<Duration>, repetitions: usize) -> Result<Vec<f64>> {
         let world = &self.world;
-        let counter = Counter::new(world).map_err(failed)?;
+        let mut counter = Counter::new(world).map_err(failed)?;
         world.barrier().map_err(failed)?;
         let seconds = match world.rank() {
             0 => {

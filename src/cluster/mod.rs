@@ -6,19 +6,22 @@
 
 mod hand_out;
 mod message_costs;
+mod rounds;
 mod wire;
 
 use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::kernel::REVISION;
 use crate::lab::RankRule;
-use crate::measure::{Outcome, Setup};
+use crate::measure::{Gathered, Outcome, Setup};
 use hand_out::HandOut;
 pub use message_costs::MessageCost;
 use pathmark_mpi::{MpiError, World};
 use serde::Serialize;
 use std::io;
+use std::ops::Range;
 use std::path::Path;
+use std::slice::from_ref;
 
 /// What one rank did.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,13 +38,12 @@ pub struct RankRow {
     pub waiting_s: f64,
 }
 
-/// A render by all ranks.
-pub struct Clustered {
-    /// What one process would have given, with the workers of all ranks.
-    pub outcome: Outcome,
-    /// What each rank did.
+/// What all ranks came to, beside the film.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tally {
+    /// What each rank did, over all rounds.
     pub ranks: Vec<RankRow>,
-    /// Seconds to bring all pieces to rank 0.
+    /// Seconds to bring all pieces to rank 0, over all rounds.
     pub gather_s: f64,
     /// Name and version of the library.
     pub library: String,
@@ -82,24 +84,35 @@ impl Cluster {
         self.world.size()
     }
 
-    /// Renders; rank 0 has the outcome. After an error of one rank the others cannot go on, and are ended.
-    pub fn render(self, setup: &Setup, rule: &RankRule) -> Result<Option<Clustered>> {
-        rule.check(self.size())?;
-        if let Err(error) = self.check_same(setup, rule) {
-            self.world.end().map_err(failed)?;
-            return Err(error);
-        }
+    /// Renders; rank 0 has what one process would have given, with the workers of all ranks. After an error of one rank the others cannot go on,
+    /// and are ended.
+    pub fn render(self, setup: &Setup, rule: &RankRule) -> Result<Option<(Outcome, Tally)>> {
+        let ranks = self.agreed(setup, rule, "at once")?;
+        let mut tally = Tally::new(&ranks.world);
         // A process that ends with an error and without MPI's farewell makes the launcher end the others.
-        let clustered = self.rendered(setup, rule)?;
-        self.world.end().map_err(failed)?;
-        Ok(clustered)
+        let gathered = ranks.round(setup, rule, from_ref(&(0..setup.settings().spp)), &mut tally)?;
+        let outcome = gathered.map(|gathered| setup.assembled(gathered)).transpose()?;
+        ranks.world.end().map_err(failed)?;
+        Ok(outcome.map(|outcome| (outcome, tally)))
+    }
+
+    /// The same, if all ranks can do this and were asked to. If not they part in peace: each says so.
+    fn agreed(self, setup: &Setup, rule: &RankRule, way: &str) -> Result<Self> {
+        rule.check(self.size())?;
+        match self.check_same(setup, rule, way) {
+            Ok(()) => Ok(self),
+            Err(error) => {
+                self.world.end().map_err(failed)?;
+                Err(error)
+            }
+        }
     }
 
     /// Refuses ranks that were given something else to do.
-    fn check_same(&self, setup: &Setup, rule: &RankRule) -> Result<()> {
+    fn check_same(&self, setup: &Setup, rule: &RankRule, way: &str) -> Result<()> {
         let settings = setup.settings();
         let text = format!(
-            "{} {REVISION} {:?} {} {} {rule}",
+            "{} {REVISION} {:?} {} {} {rule} {way}",
             env!("CARGO_PKG_VERSION"),
             setup.film_key(),
             settings.decomposition,
@@ -117,10 +130,17 @@ impl Cluster {
         }
     }
 
-    fn rendered(&self, setup: &Setup, rule: &RankRule) -> Result<Option<Clustered>> {
+    /// One round of these sections; rank 0 has all jobs.
+    fn round(
+        &self,
+        setup: &Setup,
+        rule: &RankRule,
+        sections: &[Range<u32>],
+        tally: &mut Tally,
+    ) -> Result<Option<Gathered>> {
         let (world, threads) = (&self.world, setup.threads());
-        let mut share = setup.share()?;
-        let hand_out = HandOut::new(rule, world, &mut share)?;
+        let mut share = setup.share(sections)?;
+        let mut hand_out = HandOut::new(rule, world, &mut share)?;
         world.barrier().map_err(failed)?;
         share.begin();
         let mut wait = hand_out.run(&mut share)?;
@@ -136,21 +156,26 @@ impl Cluster {
         let first_worker = u32::try_from(world.rank() * threads).unwrap_or(u32::MAX);
         let before_s = share.elapsed_s();
         let words = world.gather(&wire::words(&done, first_worker)).map_err(failed)?;
-        let gather_s = share.elapsed_s() - before_s;
+        tally.gather_s += share.elapsed_s() - before_s;
+        for (rank, row) in tally.ranks.iter_mut().zip(rows.chunks_exact(row.len())) {
+            rank.jobs += row[0];
+            rank.requests += row[1];
+            rank.busy_s += f64::from_bits(row[2]);
+            rank.waiting_s += f64::from_bits(row[3]);
+        }
         if !self.is_first() {
             return Ok(None);
         }
         drop(done);
         let done =
             wire::jobs(&words, share.plan()).ok_or_else(|| Error::Check("what a rank sent are no jobs".to_string()))?;
-        let outcome = setup.assembled(done, world.size() * threads, makespan_s)?;
-        let ranks = rows.chunks_exact(row.len()).enumerate().map(|(rank, row)| RankRow {
-            rank,
-            jobs: row[0],
-            requests: row[1],
-            busy_s: f64::from_bits(row[2]),
-            waiting_s: f64::from_bits(row[3]),
-        });
-        Ok(Some(Clustered { outcome, ranks: ranks.collect(), gather_s, library: world.version().to_string() }))
+        Ok(Some(Gathered { done, workers: world.size() * threads, makespan_s }))
+    }
+}
+
+impl Tally {
+    fn new(world: &World) -> Self {
+        let row = |rank| RankRow { rank, jobs: 0, requests: 0, busy_s: 0.0, waiting_s: 0.0 };
+        Self { ranks: (0..world.size()).map(row).collect(), gather_s: 0.0, library: world.version().to_string() }
     }
 }

@@ -10,7 +10,7 @@
 //! Looks follow from the film alone, so a render that was stopped in between comes to the same end. Between looks, a time limit or a
 //! checkpoint may cut the way into steps.
 
-use super::run::{RoundTimes, Watch};
+use super::run::RoundTimes;
 use super::settings::LARGEST_SPP;
 use super::{Rounds, Warning};
 use crate::analysis::z_test::normal_quantile;
@@ -43,6 +43,9 @@ pub struct Position {
     /// Samples at which the goal is looked at next.
     pub look: u32,
 }
+
+/// Who renders until there are so many samples a pixel: [`Rounds::extend_to`], or several processes.
+pub type Extend<'a> = &'a mut dyn FnMut(&mut Rounds, u32) -> Result<RoundTimes>;
 
 /// What happens between rounds.
 pub type Between<'a> = &'a mut dyn FnMut(&Rounds, Position) -> Result<()>;
@@ -131,13 +134,13 @@ impl Goal {
         (end > spp).then_some(end)
     }
 
-    /// Renders until the goal is reached. `before` is what was done already, where a checkpoint knows. Warns if time was up before the
+    /// Renders until the goal is reached, by `extend`. `before` is what was done already, where a checkpoint knows. Warns if time was up before the
     /// target was reached.
     pub fn pursue(
         &self,
         rounds: &mut Rounds,
         before: Option<Position>,
-        watch: Watch<'_>,
+        extend: Extend<'_>,
         between: Between<'_>,
     ) -> Result<Option<Warning>> {
         let mut last = RoundTimes::default();
@@ -152,7 +155,7 @@ impl Goal {
                 let Some(step) = self.next_step(rounds, rendering_s, &last, end) else {
                     return Ok(self.target_error.map(|_| Warning::TargetMissed));
                 };
-                last = rounds.extend_to(step, watch)?;
+                last = extend(rounds, step)?;
                 rendering_s += last.makespan_s;
                 between(rounds, Position { rendering_s, look: end })?;
             }

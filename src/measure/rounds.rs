@@ -5,10 +5,11 @@
 
 use super::run::{Account, RoundTimes, Watch};
 use super::settings::check_spp;
-use super::{History, Outcome, Setup};
+use super::{Gathered, History, Outcome, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{Film, GrowingFilm, Shard};
 use crate::film_file::FilmKey;
+use std::ops::Range;
 
 /// A render that can go on.
 pub struct Rounds {
@@ -52,6 +53,25 @@ impl Rounds {
         let plan = self.shard.map_or_else(|| plan.clone(), |shard| shard.part_of(&plan));
         self.setup.check_jobs(plan.len())?;
         let films = self.account.round(&self.setup, plan, &sections, watch)?;
+        for (samples, film) in sections.into_iter().zip(films) {
+            self.film.add(samples, film);
+        }
+        Ok(self.account.last)
+    }
+
+    /// The same by several processes: `render` has them do the jobs of the sections that it is given. Not for a part of an image.
+    pub fn extend_by(
+        &mut self,
+        spp: u32,
+        render: impl FnOnce(&Setup, &[Range<u32>]) -> Result<Gathered>,
+    ) -> Result<RoundTimes> {
+        check_spp(spp, &self.setup.settings().spec.estimator, self.setup.spp_multiple())?;
+        let sections = self.film.missing(spp);
+        if sections.is_empty() {
+            return Ok(RoundTimes::default());
+        }
+        let gathered = render(&self.setup, &sections)?;
+        let films = self.account.assemble(&self.setup, &sections, gathered)?;
         for (samples, film) in sections.into_iter().zip(films) {
             self.film.add(samples, film);
         }

@@ -12,6 +12,7 @@ use crate::strategy::Strategy;
 use crossbeam::atomic::AtomicCell;
 use std::collections::VecDeque;
 use std::mem;
+use std::ops::Range;
 use std::slice::from_ref;
 use std::sync::Arc;
 use std::time::Instant;
@@ -49,11 +50,21 @@ struct Handout {
     ledger: Ledger,
 }
 
+/// The jobs of a round that several processes did.
+pub struct Gathered {
+    /// All of them, in any order.
+    pub done: Vec<DoneJob>,
+    /// Workers of all processes together.
+    pub workers: usize,
+    /// Seconds until all were done.
+    pub makespan_s: f64,
+}
+
 impl Setup {
-    /// A share that has done nothing yet, with the kernel and the workers that it will need.
-    pub fn share(&self) -> Result<Share<'_>> {
+    /// A share of a round that renders these sections, which has done nothing yet, with the kernel and the workers that it will need.
+    pub fn share(&self, sections: &[Range<u32>]) -> Result<Share<'_>> {
         let (kernel, _) = self.kernel()?;
-        let plan = Arc::new(self.ordered(self.plan(), &*kernel));
+        let plan = Arc::new(self.ordered(self.plan_of(sections)?, &*kernel));
         let strategy = self.new_strategy()?;
         let (reserved, done) = (VecDeque::new(), Vec::new());
         Ok(Share { setup: self, kernel, plan, strategy, start: Instant::now(), reserved, done })
@@ -137,18 +148,30 @@ impl Share<'_> {
 }
 
 impl Setup {
-    /// The run that several shares, of `workers` workers together, make: each job must have been done once.
-    pub fn assembled(&self, mut done: Vec<DoneJob>, workers: usize, makespan_s: f64) -> Result<Outcome> {
+    /// The run that several shares make together.
+    pub fn assembled(&self, gathered: Gathered) -> Result<Outcome> {
         let (spec, samples) = (&self.settings().spec, 0..self.settings().spp);
-        let (kernel, build_s) = self.kernel()?;
-        let plan = self.ordered(self.plan(), &*kernel);
+        let mut account = Account::new();
+        let films = account.assemble(self, from_ref(&samples), gathered)?;
+        let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
+        Ok(account.outcome(self, samples.end, film))
+    }
+}
+
+impl Account {
+    /// A round that several shares have done: the film of each section. Each job must have been done once.
+    pub(super) fn assemble(&mut self, setup: &Setup, sections: &[Range<u32>], gathered: Gathered) -> Result<Vec<Film>> {
+        let Gathered { mut done, workers, makespan_s } = gathered;
+        let spec = &setup.settings().spec;
+        let (kernel, build_s) = setup.kernel()?;
+        let plan = setup.ordered(setup.plan_of(sections)?, &*kernel);
         let before_merge = Instant::now();
         done.sort_by_key(|job| job.index);
         if !done.iter().map(|job| job.index).eq(0..plan.len()) {
             let problem = format!("{} jobs came from all processes, and not each of {} once", done.len(), plan.len());
             return Err(Error::Check(problem));
         }
-        let mut films = Sections::new(spec.width, spec.height, from_ref(&samples))?;
+        let mut films = Sections::new(spec.width, spec.height, sections)?;
         let (mut spans, mut counts, mut used) = (Vec::new(), Vec::new(), vec![false; workers]);
         for (piece, job) in plan.pieces().iter().zip(done) {
             films.add(&piece.samples, job.tile);
@@ -158,13 +181,12 @@ impl Setup {
             spans.push(job.span);
             counts.push(job.counts);
         }
-        let film = films.finish().into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
+        let films = films.finish();
         let used = used.iter().filter(|used| **used).count();
-        let mut account = Account::new();
-        account.build_s = build_s;
+        self.build_s = build_s;
         let round = Round {
             plan: &plan,
-            sections: from_ref(&samples),
+            sections,
             spans,
             counts,
             workers: u32::try_from(used).unwrap_or(u32::MAX),
@@ -172,7 +194,7 @@ impl Setup {
             timed: Timed { makespan_s, cpu: None },
             merge_s: before_merge.elapsed().as_secs_f64(),
         };
-        account.enter(self, &*kernel, round);
-        Ok(account.outcome(self, samples.end, film))
+        self.enter(setup, &*kernel, round);
+        Ok(films)
     }
 }

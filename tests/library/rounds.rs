@@ -1,11 +1,12 @@
 //! Renders that decide for themselves: where they stop, and where their samples go.
 
 use crate::scene_text::{Ball, load_scene};
+use pathmark::Error;
 use pathmark::analysis::z_test::{critical_value, normal_quantile, z_score};
 use pathmark::film::Film;
 use pathmark::kernel::Spec;
 use pathmark::math::Rgb;
-use pathmark::measure::{CONFIDENCE, Checkpoint, Goal, Position, Rounds, Settings, Setup, Warning};
+use pathmark::measure::{CONFIDENCE, Checkpoint, Goal, Position, RoundTimes, Rounds, Settings, Setup, Warning};
 use pathmark::scene::{Scene, load};
 use std::sync::Arc;
 
@@ -22,9 +23,14 @@ fn goal() -> Goal {
     Goal { spp: None, target_error: None, time_limit_s: None, pause_s: None }
 }
 
+/// This process renders.
+fn by_itself(rounds: &mut Rounds, spp: u32) -> Result<RoundTimes, Error> {
+    rounds.extend_to(spp, None)
+}
+
 fn pursue(rounds: &mut Rounds, goal: Goal) -> Option<Warning> {
     goal.check(rounds).unwrap();
-    goal.pursue(rounds, None, None, &mut |_, _| Ok(())).unwrap()
+    goal.pursue(rounds, None, &mut by_itself, &mut |_, _| Ok(())).unwrap()
 }
 
 /// A closed diffuse sphere of albedo 1/2 and emission 1 around the camera (P07): the radiance is 2 everywhere. Five vertices are certain,
@@ -144,7 +150,7 @@ fn an_earlier_look_does_not_lead_beyond_the_goal() {
             stops.push(rounds.spp());
             Ok(())
         };
-        Goal { spp: Some(32), ..goal() }.pursue(&mut rounds, before, None, between).unwrap();
+        Goal { spp: Some(32), ..goal() }.pursue(&mut rounds, before, &mut by_itself, between).unwrap();
         assert_eq!((rounds.spp(), stops.contains(&20)), (expected, look == 20));
     }
 }
@@ -163,7 +169,8 @@ fn goals_that_say_nothing_are_refused() {
     refused(Goal { target_error: Some(0.1), ..goal() }, 7);
     // More samples than an image can have: found out at the first look, not after hours.
     let mut rounds = Rounds::new(setup(&scene, 8, 8, 1, 16)).unwrap();
-    let error = Goal { target_error: Some(1e-6), ..goal() }.pursue(&mut rounds, None, None, &mut |_, _| Ok(()));
+    let error =
+        Goal { target_error: Some(1e-6), ..goal() }.pursue(&mut rounds, None, &mut by_itself, &mut |_, _| Ok(()));
     assert!(error.is_err_and(|error| error.to_string().contains("samples per pixel")));
     assert_eq!(rounds.spp(), 16);
 }

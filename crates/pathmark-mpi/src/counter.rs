@@ -10,6 +10,9 @@ use std::ptr::null_mut;
 pub struct Counter<'a> {
     world: &'a World,
     window: Handle,
+    /// What is added, and what was there before.
+    words: *mut [u64; 2],
+    is_asked: bool,
 }
 
 impl<'a> Counter<'a> {
@@ -29,21 +32,35 @@ impl<'a> Counter<'a> {
         world.barrier()?;
         // SAFETY: the window is there.
         checked("MPI_Win_lock_all", unsafe { (functions.window_lock_all)(0, window) })?;
-        Ok(Self { world, window })
+        // These sixteen bytes are never freed: after an error the library may still write to them.
+        let words = Box::into_raw(Box::new([1, 0]));
+        Ok(Self { world, window, words, is_asked: false })
     }
 
-    /// The number, which is one more for whoever comes next.
-    pub fn next(&self) -> Result<u64, MpiError> {
+    /// Asks for the next number, and does not wait for it.
+    pub fn ask(&mut self) -> Result<(), MpiError> {
+        if self.is_asked {
+            return Ok(());
+        }
         let (functions, abi) = (&self.world.library.functions, &self.world.library.abi);
-        let (one, mut found) = (1_u64, 0_u64);
-        // SAFETY: both words outlive the flush, which completes the operation.
+        // SAFETY: both words stay, and nobody touches them before the flush that completes the operation.
         checked("MPI_Fetch_and_op", unsafe {
-            let (one, found) = ((&raw const one).cast(), (&raw mut found).cast());
+            let (one, found) = ((&raw const (*self.words)[0]).cast(), (&raw mut (*self.words)[1]).cast());
             (functions.fetch_and_op)(one, found, abi.int64, 0, 0, abi.sum, self.window)
         })?;
+        self.is_asked = true;
+        Ok(())
+    }
+
+    /// The number that was asked for, or the next; it is one more for whoever comes next.
+    pub fn next(&mut self) -> Result<u64, MpiError> {
+        self.ask()?;
+        let functions = &self.world.library.functions;
         // SAFETY: the window is there, and locked.
         checked("MPI_Win_flush", unsafe { (functions.window_flush)(0, self.window) })?;
-        Ok(found)
+        self.is_asked = false;
+        // SAFETY: the operation is complete, so MPI is done with the words.
+        Ok(unsafe { (*self.words)[1] })
     }
 
     /// Frees it, when all ranks are here.

@@ -112,7 +112,11 @@ impl GrowingFilm {
     /// What has to be rendered so that there are `spp` samples: to be added in this order. Nothing if there are as many already; a film
     /// does not shrink.
     pub fn missing(&self, spp: u32) -> Vec<Range<u32>> {
-        let end = self.samples.end;
+        Self::missing_after(self.samples.end, spp)
+    }
+
+    /// The same for any film that has the samples up to `end`.
+    pub fn missing_after(end: u32, spp: u32) -> Vec<Range<u32>> {
         if spp <= end { Vec::new() } else { sections(&(end / SAMPLE_BLOCK * SAMPLE_BLOCK..spp)) }
     }
 
