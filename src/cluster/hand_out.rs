@@ -94,13 +94,20 @@ fn timed<T>(wait: &mut Wait, share: &Share<'_>, get: impl FnOnce() -> Result<T>)
     Ok(got)
 }
 
-/// Asks for the next chunk before it renders the one that it has: the answer may need rank 0, which renders too.
+/// A chunk of at most this share of what each rank gets on average is small.
+const SMALL: f64 = 1.0 / 32.0;
+
+/// While a rank renders a small chunk its request for the next is under way: the answer may need rank 0, which renders too. Of large chunks
+/// it would soon have more than its share.
 fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let mut wait = Wait::default();
+    let small = SMALL * share.plan().len() as f64 / world.size() as f64;
     loop {
         let step = timed(&mut wait, share, || counter.next().map_err(failed))?;
         let Some(chunk) = usize::try_from(step).ok().and_then(|step| chunks.get(step)) else { return Ok(wait) };
-        counter.ask().map_err(failed)?;
+        if world.rank() > 0 && chunk.len() as f64 <= small {
+            counter.ask().map_err(failed)?;
+        }
         let jobs = chunk.clone().collect();
         if world.rank() == 0 && world.size() > 1 {
             render_attentively(jobs, share, || world.has_message().map(drop).map_err(failed))?;
