@@ -6,11 +6,12 @@ use crate::lab::{Master, RankRule, Way};
 use crate::measure::Share;
 use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use pathmark_mpi::{Counter, World};
+use std::cell::RefCell;
 use std::ops::Range;
 use std::panic::resume_unwind;
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use std::vec::IntoIter;
 
 /// What getting jobs took.
@@ -67,13 +68,13 @@ impl<'a> HandOut<'a> {
                 let stock = || Stock::Chunks(chunks_of(rule, jobs, ranks).into_iter());
                 match (world.rank(), master) {
                     (0, Master::Only) => answer_all(stock(), world),
-                    (0, Master::Working) => work_and_answer(stock(), Answers::BetweenChunks, world, share),
+                    (0, Master::Working) => answer_between_chunks(stock(), world, share),
                     _ => ask(world, share),
                 }
             }
             Way::Told(rule) if world.rank() == 0 => {
                 let ledger = Box::new(Ledger::new(jobs, world.size(), rule.weights));
-                work_and_answer(Stock::Learned(rule, ledger), Answers::AtOnce, world, share)
+                answer_at_once(Stock::Learned(rule, ledger), world, share)
             }
             Way::Told(_) => ask(world, share),
         }
@@ -86,10 +87,10 @@ impl<'a> HandOut<'a> {
 }
 
 /// Waits for something, and adds how long that took.
-fn timed<T>(wait: &mut Wait, share: &Share<'_>, get: impl FnOnce() -> Result<T>) -> Result<T> {
-    let before_s = share.elapsed_s();
+fn timed<T>(wait: &mut Wait, get: impl FnOnce() -> Result<T>) -> Result<T> {
+    let begin = Instant::now();
     let got = get()?;
-    wait.seconds += share.elapsed_s() - before_s;
+    wait.seconds += begin.elapsed().as_secs_f64();
     wait.requests += 1;
     Ok(got)
 }
@@ -102,37 +103,60 @@ const SMALL: f64 = 1.0 / 32.0;
 fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let mut wait = Wait::default();
     let small = SMALL * share.plan().len() as f64 / world.size() as f64;
-    loop {
-        let step = timed(&mut wait, share, || counter.next().map_err(failed))?;
-        let Some(chunk) = usize::try_from(step).ok().and_then(|step| chunks.get(step)) else { return Ok(wait) };
-        if world.rank() > 0 && chunk.len() as f64 <= small {
+    let next = |counter: &mut Counter<'_>| {
+        let step = counter.next().map_err(failed)?;
+        Ok(usize::try_from(step).ok().and_then(|step| chunks.get(step)).cloned())
+    };
+    if world.rank() == 0 && world.size() > 1 {
+        let look = || world.has_message().map(drop).map_err(failed);
+        render_attentively(share, |_| timed(&mut wait, || next(counter)), look)?;
+        return Ok(wait);
+    }
+    while let Some(chunk) = timed(&mut wait, || next(counter))? {
+        if chunk.len() as f64 <= small {
             counter.ask().map_err(failed)?;
         }
-        let jobs = chunk.clone().collect();
-        if world.rank() == 0 && world.size() > 1 {
-            render_attentively(jobs, share, || world.has_message().map(drop).map_err(failed))?;
-        } else {
-            share.render(jobs)?;
-        }
+        share.render(chunk.collect())?;
     }
+    Ok(wait)
 }
 
-/// Renders on another thread, while this one, which alone may call MPI, looks after the other ranks.
-fn render_attentively(jobs: Vec<usize>, share: &mut Share<'_>, mut look: impl FnMut() -> Result<()>) -> Result<()> {
+/// Renders chunk after chunk on another thread, while this one, which alone may call MPI, gets the chunks and looks after the other ranks.
+fn render_attentively(
+    share: &mut Share<'_>,
+    mut next: impl FnMut(Seen) -> Result<Option<Range<usize>>>,
+    mut look: impl FnMut() -> Result<()>,
+) -> Result<()> {
     thread::scope(|scope| {
-        let (tell, told) = channel();
+        let (ask, asked) = channel();
+        let (give, given) = channel();
         let render = move || {
-            let done = share.render(jobs);
-            // Nobody listens any more if MPI has failed.
-            tell.send(()).unwrap_or_default();
-            done
+            let mut seen = Seen::default();
+            // After an error of MPI nobody answers.
+            while ask.send(seen).is_ok()
+                && let Ok(chunk) = given.recv()
+            {
+                seen = seen_rendering(chunk, share, |jobs, share| share.render(jobs))?;
+            }
+            Ok(())
         };
         let rendering = thread::Builder::new()
             .spawn_scoped(scope, render)
             .map_err(|e| Error::system("starting", "the thread that renders", e))?;
-        while told.recv_timeout(LOOK).is_err() && !rendering.is_finished() {
+        loop {
+            let request = asked.recv_timeout(LOOK);
             look()?;
+            match request {
+                // It is there: it waits for the answer.
+                Ok(seen) => match next(seen)? {
+                    Some(chunk) => give.send(chunk).unwrap_or_default(),
+                    None => break,
+                },
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
         }
+        drop(give);
         rendering.join().unwrap_or_else(|panic| resume_unwind(panic))
     })
 }
@@ -142,7 +166,7 @@ fn ask(world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let (mut wait, mut seen) = (Wait::default(), Seen::default());
     loop {
         let request = [world.rank() as u64, seen.jobs as u64, seen.seconds.to_bits(), seen.squares.to_bits()];
-        let answer = timed(&mut wait, share, || {
+        let answer = timed(&mut wait, || {
             world.send(0, &request).map_err(failed)?;
             let mut answer = NOTHING_LEFT;
             world.receive(Some(0), &mut answer).map_err(failed)?;
@@ -213,6 +237,15 @@ impl<'a> Desk<'a> {
         Ok(())
     }
 
+    /// Tells all who will still ask that nothing is left.
+    fn answer_the_last(&mut self) -> Result<Wait> {
+        let mut wait = Wait::default();
+        while self.asking > 0 {
+            timed(&mut wait, || self.answer())?;
+        }
+        Ok(Wait { requests: 0, ..wait })
+    }
+
     /// Waits for a request, and answers it.
     fn answer(&mut self) -> Result<()> {
         let mut request = [0; 4];
@@ -239,30 +272,21 @@ fn answer_all(stock: Stock, world: &World) -> Result<Wait> {
     Ok(Wait::default())
 }
 
-/// When rank 0 answers while it has jobs of its own.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Answers {
-    /// Between its chunks, as a program without further threads does.
-    BetweenChunks,
-    /// At any time: chunks of learned rules are large at first, and who asks should not wait for one.
-    AtOnce,
-}
-
-fn work_and_answer(stock: Stock, answers: Answers, world: &World, share: &mut Share<'_>) -> Result<Wait> {
+/// Answers between its own chunks, as a program without further threads does.
+fn answer_between_chunks(stock: Stock, world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let (mut desk, mut seen) = (Desk::new(stock, world), Seen::default());
     loop {
         desk.answer_who_waits()?;
         let Some(chunk) = desk.take(0, seen) else { break };
-        seen = match answers {
-            Answers::BetweenChunks => seen_rendering(chunk, share, |jobs, share| share.render(jobs))?,
-            Answers::AtOnce => {
-                seen_rendering(chunk, share, |jobs, share| render_attentively(jobs, share, || desk.answer_who_waits()))?
-            }
-        };
+        seen = seen_rendering(chunk, share, |jobs, share| share.render(jobs))?;
     }
-    let before_s = share.elapsed_s();
-    while desk.asking > 0 {
-        desk.answer()?;
-    }
-    Ok(Wait { requests: 0, seconds: share.elapsed_s() - before_s })
+    desk.answer_the_last()
+}
+
+/// Answers at any time: chunks of learned rules are large at first, and who asks should not wait for one.
+fn answer_at_once(stock: Stock, world: &World, share: &mut Share<'_>) -> Result<Wait> {
+    let desk = RefCell::new(Desk::new(stock, world));
+    let next = |seen| Ok(desk.borrow_mut().take(0, seen));
+    render_attentively(share, next, || desk.borrow_mut().answer_who_waits())?;
+    desk.into_inner().answer_the_last()
 }

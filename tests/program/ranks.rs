@@ -1,12 +1,15 @@
 //! One image by several processes: MPI as the system has it. Without `mpiexec` these tests say so and pass.
 
+use crate::faults::is_thorough;
 use crate::program::{Finished, finish, pathmark, wait};
 use crate::watchdog::Watchdog;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const RULES: [&str; 12] = [
     "static-blocks",
@@ -155,9 +158,8 @@ fn what_ranks_cannot_do_is_refused() {
     refused(&["--ranks", "guided", "--mpi", "/nowhere/libmpi.so"], 2, &["mpi", "/nowhere/libmpi.so"]);
     refused(&["--ranks", "guided", "--mpi", "libc.so.6"], 2, &["mpi", "libc.so.6", "MPI_Init_thread"]);
     refused(&["--mpi", "auto"], 2, &["--ranks"]);
-    for option in [["--target-error", "0.1"], ["--checkpoint", "c"], ["--shard", "1/2"]] {
-        refused(&[&["--ranks", "guided", "-o", "x"], option.as_slice()].concat(), 2, &["--ranks", option[0]]);
-    }
+    refused(&["--ranks", "guided", "-o", "x", "--shard", "1/2"], 2, &["--ranks", "--shard"]);
+    refused(&["--ranks", "guided", "-o", "x.png", "--adaptive"], 2, &["--ranks", "--adaptive"]);
     // A launcher that the library knows nothing of: each process would be alone, and render all of the image.
     let mut command = pathmark(folder.path(), &[&SCENE, ["--ranks", "guided"].as_slice()].concat());
     command.envs([("OMPI_COMM_WORLD_SIZE", "3"), ("OMPI_COMM_WORLD_RANK", "0")]);
@@ -226,48 +228,120 @@ fn runs(program: &Path, pid: u32) -> bool {
     fs::read_link(format!("/proc/{pid}/exe")).is_ok_and(|exe| exe == program)
 }
 
-const KILLS: u64 = if cfg!(debug_assertions) { 3 } else { 6 };
+/// How long a launcher may take to end after all its processes have.
+const LAUNCHERS_PATIENCE: Duration = Duration::from_secs(3);
 
-/// A rank that dies (SIGKILL) ends all ranks, with an error and without an image. The launcher of Open MPI 4.1.4 sometimes waits for a lock of its
-/// own for ever after it has ended them all, so it is killed then.
+/// Kills one of the ranks of a launcher, if they are all there and still there `after` some time. Once one is gone all are; the launcher of
+/// Open MPI 4.1.4 sometimes waits for a lock of its own for ever after that, so it is killed then.
+fn with_a_rank_killed(mut command: Command, count: usize, after: Duration, victim: usize) -> Finished {
+    let program = fs::canonicalize(program()).unwrap();
+    let mut child = command.spawn().unwrap();
+    let found = loop {
+        let found = processes_of(&program, child.id());
+        if found.len() == count || child.try_wait().unwrap().is_some() {
+            break found;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    std::thread::sleep(after);
+    if let Some(victim) = found.get(victim).filter(|pid| runs(&program, **pid)) {
+        // It may have ended meanwhile.
+        let _ = Command::new("kill").args(["-9", &victim.to_string()]).stderr(Stdio::null()).status().unwrap();
+    }
+    while found.iter().any(|pid| runs(&program, *pid)) {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let gone = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if gone.elapsed() > LAUNCHERS_PATIENCE {
+            let _ = child.kill();
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    wait(child)
+}
+
+/// A rank that dies (SIGKILL) ends all ranks, with an error and without an image.
 #[test]
 fn a_rank_that_dies_ends_the_run() {
     if !has_launcher() {
         return;
     }
-    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let watchdog = Watchdog::new(Duration::from_secs(30));
     let folder = tempfile::tempdir().unwrap();
-    let program = fs::canonicalize(program()).unwrap();
-    for kill in 0..KILLS {
+    for (victim, rule) in ["dynamic:1", "working-master:1", "static-cyclic"].into_iter().enumerate() {
+        watchdog.now(format!("{rule}, rank {victim}"));
         let mut command = launcher(folder.path());
         let long = ["render", "cornell", "--spp", "20000", "--size", "64x48", "--threads", "1", "-o", "a.png"];
-        let rule = ["dynamic:1", "working-master:1", "static-cyclic"][kill as usize % 3];
-        command.args(["-n", "3"]).arg(&program).args(long).args(["--ranks", rule]);
-        let mut child = command.spawn().unwrap();
-        let found = loop {
-            let found = processes_of(&program, child.id());
-            if found.len() == 3 {
-                break found;
-            }
-            std::thread::sleep(Duration::from_millis(5));
-        };
-        std::thread::sleep(Duration::from_millis(100 * kill));
-        // Any of the three, rank 0 included.
-        let victim = found[kill as usize % 3];
-        let killed = Command::new("kill").args(["-9", &victim.to_string()]).status().unwrap();
-        assert!(killed.success());
-        while found.iter().any(|pid| runs(&program, *pid)) {
-            std::thread::sleep(Duration::from_millis(5));
-        }
-        if child.try_wait().unwrap().is_none() {
-            std::thread::sleep(Duration::from_secs(3));
-            // It may have ended meanwhile.
-            let _ = child.kill();
-        }
-        let finished = wait(child);
+        command.args(["-n", "3"]).arg(program()).args(long).args(["--ranks", rule]);
+        let finished = with_a_rank_killed(command, 3, Duration::from_millis(100 * victim as u64), victim);
         assert_ne!(finished.code, Some(0), "{rule}");
         assert!(!folder.path().join("a.png").exists());
     }
+}
+
+/// A render by ranks goes on with the checkpoint that it left when one of them was killed: with other ranks and another rule, to the image of
+/// one process that nobody disturbed.
+#[test]
+fn what_killed_ranks_have_rendered_is_gone_on_with() {
+    if !has_launcher() {
+        return;
+    }
+    let watchdog = Watchdog::new(Duration::from_secs(30));
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "cornell", "--size", "40x30", "--spp", "2000", "--threads", "1", "--json"];
+    let start = Instant::now();
+    let alone = json(&finish(pathmark(folder.path(), &render)).with_code(0).out);
+    let whole_s = start.elapsed().as_secs_f64();
+    let checkpoint = folder.path().join("c");
+    let mut random = Pcg64::seed_from_u64(1);
+    let (mut kills, mut resumed) = (0, 0);
+    let enough = if is_thorough() { 200 } else { 4 };
+    while kills < enough || resumed == 0 {
+        fs::remove_file(&checkpoint).ok();
+        let image = loop {
+            let count = random.random_range(1..4);
+            let rule = RULES[random.random_range(0..RULES.len())];
+            if count == 1 && rule.starts_with("master-worker") {
+                continue;
+            }
+            let after = Duration::from_secs_f64(random.random_range(0.0..2.0) * whole_s);
+            watchdog.now(format!("{count} ranks by {rule}, killed after {after:?}"));
+            let mut command = launcher(folder.path());
+            command.args(["-n", &count.to_string()]).arg(program()).args(render);
+            command.args(["--checkpoint", "c", "--ranks", rule]);
+            let finished = with_a_rank_killed(command, count, after, random.random_range(0..count));
+            assert!(!finished.err.contains("panicked"), "{}", finished.err);
+            if finished.code == Some(0) {
+                break json(&finished.out);
+            }
+            kills += 1;
+            resumed += usize::from(checkpoint.exists());
+        };
+        assert_eq!(image["checksum"], alone["checksum"], "after {kills} kills");
+    }
+    println!("{kills} kills of ranks, {resumed} with a checkpoint to go on from");
+}
+
+/// An accuracy is reached with the samples that one process takes for it, and its image.
+#[test]
+fn ranks_stop_at_the_accuracy_at_which_one_process_stops() {
+    if !has_launcher() {
+        return;
+    }
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let until = ["render", "cornell", "--size", "70x40", "--threads", "1", "--target-error", "0.2", "--json"];
+    let alone = json(&finish(pathmark(folder.path(), &until)).with_code(0).out);
+    let together = json(&ranks(folder.path(), 2, &[&until[..], &["--ranks", "guided"]].concat()).with_code(0).out);
+    for key in ["checksum", "spp", "target_error", "paths"] {
+        assert_eq!(together[key], alone[key], "{key}");
+    }
+    // Who may not go on with a file says so, and the others end with it.
+    fs::write(folder.path().join("c"), "no checkpoint").unwrap();
+    let refused = [&SCENE[..], &["--threads", "1", "--ranks", "guided", "--checkpoint", "c"]].concat();
+    let finished = ranks(folder.path(), 3, &refused).with_code(2);
+    assert_eq!(finished.err.matches("checkpoint = c").count(), 1, "{}", finished.err);
 }
 
 /// Rows of processes stand among those of threads, with one checksum; without a launcher they say that nothing was measured.

@@ -127,6 +127,16 @@ const RENDER: [&str; 14] = [
     "image.exr",
 ];
 
+/// Runs the program again and again until nobody kills it; how many kills there were, and after how many it could go on from `file`.
+fn in_spite_of_kills(killer: &mut Killer<'_>, ending: Ending, arguments: &[&str], file: &Path) -> (usize, usize) {
+    let (mut kills, mut resumed) = (0, 0);
+    while killer.run(pathmark(killer.folder, arguments), ending, !file.exists()) == End::Killed {
+        kills += 1;
+        resumed += usize::from(file.exists());
+    }
+    (kills, resumed)
+}
+
 #[test]
 fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
     let folder = tempfile::tempdir().unwrap();
@@ -142,26 +152,44 @@ fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
         while kills < Killer::kills() || resumed == 0 {
             fs::remove_file(&checkpoint).ok();
             fs::remove_file(&image).ok();
-            loop {
-                let end = killer.run(pathmark(folder.path(), &RENDER), ending, !checkpoint.exists());
-                // Killed at its very end it may have written the image.
-                if image.exists() {
-                    assert!(fs::read(&image).unwrap() == expected, "{ending:?}: another image after {kills} kills");
-                }
-                if end == End::Finished {
-                    assert!(image.exists());
-                    break;
-                }
-                kills += 1;
-                resumed += usize::from(checkpoint.exists());
-            }
-            renders += 1;
+            let (more, of_them) = in_spite_of_kills(&mut killer, ending, &RENDER, &checkpoint);
+            assert!(fs::read(&image).unwrap() == expected, "{ending:?}: another image after {more} kills");
+            (kills, resumed, renders) = (kills + more, resumed + of_them, renders + 1);
         }
         println!(
             "{ending:?}: {kills} kills, {resumed} with a checkpoint to go on from, {renders} renders to their end"
         );
     }
     println!("whole render {whole:?}");
+    assert_eq!(leftovers(folder.path()), 0, "unfinished files that kills left");
+}
+
+/// Parts of an image likewise: together they have the bits of an image that nobody disturbed.
+#[test]
+fn parts_killed_at_any_instant_come_to_the_same_image() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = Instant::now();
+    finish(pathmark(folder.path(), &RENDER)).with_code(0);
+    let mut killer = Killer::new(folder.path(), start.elapsed() / 3);
+    let expected = fs::read(folder.path().join("image.exr")).unwrap();
+    let common = &RENDER[..10];
+    let (mut kills, mut resumed) = (0, 0);
+    while kills < Killer::kills() || resumed == 0 {
+        for by in ["samples", "tiles"] {
+            let shards = ["1/3", "2/3", "3/3"].map(|shard| (shard, format!("{}.film", &shard[..1])));
+            for (shard, name) in &shards {
+                let arguments = [common, &["--shard", shard, "--shard-by", by, "-o", name]].concat();
+                let file = folder.path().join(name);
+                fs::remove_file(&file).ok();
+                let (more, of_them) = in_spite_of_kills(&mut killer, Ending::One(Signal::SIGKILL), &arguments, &file);
+                (kills, resumed) = (kills + more, resumed + of_them);
+            }
+            let merge = ["merge", "1.film", "2.film", "3.film", "-o", "merged.exr"];
+            finish(pathmark(folder.path(), &merge)).with_code(0);
+            assert!(fs::read(folder.path().join("merged.exr")).unwrap() == expected, "{by}, after {kills} kills");
+        }
+    }
+    println!("{kills} kills of parts, {resumed} with a file to go on from");
     assert_eq!(leftovers(folder.path()), 0, "unfinished files that kills left");
 }
 

@@ -9,7 +9,7 @@ mod sweep;
 mod threads;
 
 /// Whether the full counts are asked for.
-fn is_thorough() -> bool {
+pub(crate) fn is_thorough() -> bool {
     std::env::var_os("PATHMARK_THOROUGH").is_some()
 }
 

@@ -1,0 +1,70 @@
+//! Several rounds by all ranks: until an accuracy, until time is up, with checkpoints.
+//!
+//! Rank 0 alone knows the film and the goal. Before each round it tells the others from which sample to which it goes; they do their share, and
+//! forget it. So a run that was ended can go on with another number of ranks.
+
+use super::{Cluster, Tally, failed};
+use crate::error::{Error, Result};
+use crate::film::GrowingFilm;
+use crate::lab::RankRule;
+use crate::measure::{Extend, RoundTimes, Rounds, Setup};
+
+/// The samples of a round that is none: the end.
+const NO_MORE: [u64; 2] = [0; 2];
+
+impl Cluster {
+    /// Renders in rounds. `lead` is called on rank 0 with what extends its film, and decides when to stop; the other ranks follow.
+    pub fn render_in_rounds<T>(
+        self,
+        setup: Setup,
+        rule: &RankRule,
+        lead: impl FnOnce(Setup, Extend<'_>) -> Result<T>,
+    ) -> Result<Option<(T, Tally)>> {
+        let ranks = self.agreed(&setup, rule, "in rounds")?;
+        let mut tally = Tally::new(&ranks.world);
+        if !ranks.is_first() {
+            ranks.follow(&setup, rule, &mut tally)?;
+            ranks.world.end().map_err(failed)?;
+            return Ok(None);
+        }
+        let mut is_broken = false;
+        let led = lead(setup, &mut |rounds, spp| {
+            is_broken = true;
+            let times = ranks.lead_round(rounds, spp, rule, &mut tally)?;
+            is_broken = false;
+            Ok(times)
+        });
+        // Where a round failed, the others do not listen any more; the launcher ends them.
+        if !is_broken {
+            ranks.tell(NO_MORE)?;
+            ranks.world.end().map_err(failed)?;
+        }
+        led.map(|led| Some((led, tally)))
+    }
+
+    fn lead_round(&self, rounds: &mut Rounds, spp: u32, rule: &RankRule, tally: &mut Tally) -> Result<RoundTimes> {
+        let from = rounds.spp();
+        rounds.extend_by(spp, |setup, sections| {
+            self.tell([u64::from(from), u64::from(spp)])?;
+            let gathered = self.round(setup, rule, sections, tally)?;
+            gathered.ok_or_else(|| Error::Check("rank 0 has no jobs of the others".to_string()))
+        })
+    }
+
+    fn follow(&self, setup: &Setup, rule: &RankRule, tally: &mut Tally) -> Result<()> {
+        loop {
+            let told = self.tell(NO_MORE)?;
+            if told == NO_MORE {
+                return Ok(());
+            }
+            let [from, to] = told.map(|samples| u32::try_from(samples).unwrap_or(u32::MAX));
+            self.round(setup, rule, &GrowingFilm::missing_after(from, to), tally)?;
+        }
+    }
+
+    /// What rank 0 tells all ranks.
+    fn tell(&self, samples: [u64; 2]) -> Result<[u64; 2]> {
+        let all = self.world.all_gather(&samples).map_err(failed)?;
+        Ok(all.first_chunk().copied().unwrap_or(NO_MORE))
+    }
+}
