@@ -27,7 +27,7 @@ use crate::kernel::OwnEstimator;
 use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::scene::{Library, OwnScene, Scene};
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
-pub use rank_rule::{Master, RankRule, Way};
+pub use rank_rule::{LOOK, Master, RankRule, Way, is_small};
 use std::fmt;
 use std::panic::Location;
 use std::sync::{Arc, LazyLock};

@@ -1,10 +1,9 @@
 //! `mpiexec -n 2 pathmark message-costs`: what MPI costs here.
 
 use super::output::{print, print_json};
-use crate::cluster::{Cluster, MessageCost};
+use crate::cluster::{Cluster, MessageCost, MessageCosts};
 use crate::error::Result;
 use clap::Args;
-use serde_json::json;
 use std::env;
 use std::path::PathBuf;
 
@@ -27,12 +26,12 @@ pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let cluster = Cluster::begin(library(arguments.mpi.as_ref()).as_deref())?;
-    let ranks = cluster.size();
-    let Some((costs, library)) = cluster.message_costs()? else { return Ok(()) };
+    let Some(told) = cluster.message_costs()? else { return Ok(()) };
     if arguments.json {
-        return print_json(&json!({ "ranks": ranks, "mpi": library, "costs": costs }));
+        return print_json(&told);
     }
-    print(&format!("{ranks} ranks of {library}; microseconds, medians with 95 % intervals"))?;
+    let MessageCosts { ranks, mpi, costs } = told;
+    print(&format!("{ranks} ranks of {mpi}; microseconds, medians with 95 % intervals"))?;
     print(&format!("{:>10} {:>22} {:>11}  operation, while rank 0", "median", "interval", "repetitions"))?;
     for MessageCost { operation, rank_0, repetitions, median_s, low_s, high_s } in costs {
         let [median, low, high] = [median_s, low_s, high_s].map(|seconds| 1e6 * seconds);

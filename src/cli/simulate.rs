@@ -3,13 +3,17 @@
 use super::output::print;
 use super::progress::Talk;
 use super::run::talk_of;
+use crate::cluster::MessageCosts;
 use crate::error::{Error, InputError, Result};
-use crate::experiment::{Progress, read_calibration};
+use crate::experiment::{MESSAGES, Progress, read_calibration};
 use crate::files::Files;
 use crate::lab::Lab;
-use crate::measure::{Doubts, ForeignLoad, Settings, Setup, TraceFile, available_threads, calibrate};
+use crate::measure::{Doubts, ForeignLoad, SERIAL, Settings, Setup, TraceFile, available_threads, calibrate};
+use crate::report::rank_forecasts::{self, RankPlan};
 use crate::report::{Block, Results, forecasts, save};
-use crate::simulate::{Contender, Hardware, Noise, Observed, Prediction, Speeds, contenders, forecast, predict};
+use crate::simulate::{
+    Contender, Hardware, Messages, Noise, Observed, Prediction, Speeds, contenders, forecast, predict,
+};
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -35,6 +39,15 @@ pub(super) struct Arguments {
     /// Share of the time that the system takes in interruptions, and how long one lasts
     #[arg(long, value_name = "SHARE[:MILLISECONDS]")]
     noise: Option<String>,
+    /// Forecast processes instead: the rules by which they share jobs, as in `render --ranks`
+    #[arg(long, value_name = "RULE", value_delimiter = ',', help_heading = "Processes")]
+    ranks: Vec<String>,
+    /// Numbers of processes, each with --workers threads
+    #[arg(long, value_name = "LIST", default_value = "2..64", help_heading = "Processes", requires = "ranks")]
+    nodes: String,
+    /// What messages cost, as `mpiexec -n 2 pathmark message-costs --json` printed it [default: what the folder has, else nothing]
+    #[arg(long, value_name = "FILE", help_heading = "Processes", requires = "ranks")]
+    messages: Option<PathBuf>,
     /// Do not predict this machine first
     #[arg(long)]
     no_check: bool,
@@ -44,7 +57,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
-    let workers = parse_workers(&arguments.workers)?;
+    let workers = parse_workers("workers", &arguments.workers)?;
     let hardware = hardware(arguments)?;
     let measured = if arguments.trace.is_dir() { Some(Results::open(lab, &arguments.trace)?) } else { None };
     let trace = match &measured {
@@ -61,6 +74,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     check_noise(arguments, &hardware, costs.iter().sum())?;
     let names = match &arguments.strategies[..] {
         [] => lab.strategies().iter().map(|entry| entry.name.to_string()).collect(),
+        // A process of one thread does its jobs in order.
+        names if !arguments.ranks.is_empty() => [names, &[SERIAL.to_string()]].concat(),
         names => names.to_vec(),
     };
     for name in &names {
@@ -68,7 +83,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     let mut files = Files::default();
     files.reads("the trace", &arguments.trace);
-    for name in forecasts::FORECAST_FILES {
+    let mut rules = Vec::new();
+    for rule in &arguments.ranks {
+        rules.push(lab.rank_rule("ranks", rule)?);
+    }
+    let nodes = parse_workers("nodes", &arguments.nodes)?;
+    let own = if rules.is_empty() { forecasts::FORECAST_FILES } else { rank_forecasts::RANK_FORECAST_FILES };
+    for name in own {
         files.claims("out", &arguments.out.join(name))?;
     }
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
@@ -95,8 +116,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         talk_of(&doubts, talk);
         show(&forecasts::prediction_blocks(&predictions))?;
     }
-    contenders.push(Contender::longest_first());
-    let rows = forecast(&costs, &contenders, &workers, &hardware);
     let settings = &trace.header.settings;
     let spec = &settings.spec;
     let workload = format!(
@@ -108,16 +127,45 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         settings.decomposition,
         hardware_in_words(arguments)
     );
-    let blocks = forecasts::forecast_blocks(&rows, &workload, hardware == Hardware::default());
+    let (blocks, table) = if rules.is_empty() {
+        contenders.push(Contender::longest_first());
+        let rows = forecast(&costs, &contenders, &workers, &hardware);
+        (forecasts::forecast_blocks(&rows, &workload, hardware == Hardware::default()), "forecast.csv")
+    } else {
+        let messages = messages(arguments, talk)?;
+        if let Some(results) = measured.as_ref().filter(|_| !arguments.no_check) {
+            let predictions = rank_forecasts::rank_predictions(results, &contenders, messages)?;
+            show(&rank_forecasts::rank_prediction_blocks(&predictions))?;
+        }
+        let strategy = arguments.strategies.first().map_or("work-stealing", String::as_str);
+        let (rules, ranks, threads) = (&rules, &nodes, &workers);
+        let plan = RankPlan { rules, strategy, ranks, threads, messages, hardware };
+        let pixels = f64::from(spec.width) * f64::from(spec.height);
+        let rows = rank_forecasts::rank_forecast(&plan, &contenders, &costs, pixels);
+        let workload = format!("{workload}, {strategy} within");
+        (rank_forecasts::rank_forecast_blocks(&rows, &workload), "ranks-forecast.csv")
+    };
     show(&blocks)?;
     for block in &blocks {
         save(block, &arguments.out)?;
     }
-    print(&format!("figures and forecast.csv in {}", arguments.out.display()))
+    print(&format!("figures and {table} in {}", arguments.out.display()))
+}
+
+/// What the user says that messages cost, or what the folder knows.
+fn messages(arguments: &Arguments, talk: &Talk) -> Result<Messages> {
+    let own = arguments.trace.join(MESSAGES);
+    match arguments.messages.as_ref().or(own.is_file().then_some(&own)) {
+        Some(path) => Ok(Messages::from(&MessageCosts::read(path)?)),
+        None => {
+            talk.note("messages cost nothing here; --messages says what they cost");
+            Ok(Messages::default())
+        }
+    }
 }
 
 /// 1..4096, or 1,2,768.
-fn parse_workers(text: &str) -> Result<Vec<usize>> {
+fn parse_workers(field: &'static str, text: &str) -> Result<Vec<usize>> {
     let number = |text: &str| text.trim().parse::<usize>().ok().filter(|workers| (1..=MOST_WORKERS).contains(workers));
     let list = match text.split_once("..") {
         Some((first, last)) => {
@@ -134,7 +182,7 @@ fn parse_workers(text: &str) -> Result<Vec<usize>> {
         list
     };
     list.map(sorted).ok_or_else(|| {
-        InputError::new("workers", text, "cannot be read")
+        InputError::new(field, text, "cannot be read")
             .allowed(format!("1..{MOST_WORKERS}, or a list like 1,2,768"))
             .into()
     })
@@ -316,11 +364,11 @@ mod tests {
 
     #[test]
     fn workers_are_doubled_or_listed() {
-        assert_eq!(parse_workers("1..10").unwrap(), [1, 2, 4, 8, 10]);
-        assert_eq!(parse_workers("3..3").unwrap(), [3]);
-        assert_eq!(parse_workers("1, 2,768").unwrap(), [1, 2, 768]);
+        assert_eq!(parse_workers("workers", "1..10").unwrap(), [1, 2, 4, 8, 10]);
+        assert_eq!(parse_workers("workers", "3..3").unwrap(), [3]);
+        assert_eq!(parse_workers("workers", "1, 2,768").unwrap(), [1, 2, 768]);
         for wrong in ["", "0", "4..2", "1..", "x", "1,,2", "1..99999999"] {
-            assert!(parse_workers(wrong).is_err(), "{wrong}");
+            assert!(parse_workers("workers", wrong).is_err(), "{wrong}");
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::failed;
 use crate::error::{Error, Result};
-use crate::lab::{Master, RankRule, Way};
+use crate::lab::{LOOK, Master, RankRule, Way, is_small};
 use crate::measure::Share;
 use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use pathmark_mpi::{Counter, World};
@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::panic::resume_unwind;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use std::vec::IntoIter;
 
 /// What getting jobs took.
@@ -23,10 +23,6 @@ pub(super) struct Wait {
 
 /// The answer to a rank for which there is no chunk left.
 const NOTHING_LEFT: [u64; 2] = [0; 2];
-
-/// How often rank 0 looks after the other ranks' requests while it renders. Some libraries answer them without its help, others only when it
-/// calls MPI. Looking takes some microseconds, and the thread that renders is interrupted for it: every 0.2 ms cost 2 to 3 % of the makespan.
-pub(super) const LOOK: Duration = Duration::from_millis(1);
 
 /// The chunks of a rule in the order of their numbers, for so many ranks that render.
 fn chunks_of(rule: ChunkRule, jobs: usize, ranks: usize) -> Vec<Range<usize>> {
@@ -95,14 +91,10 @@ fn timed<T>(wait: &mut Wait, get: impl FnOnce() -> Result<T>) -> Result<T> {
     Ok(got)
 }
 
-/// A chunk of at most this share of what each rank gets on average is small.
-const SMALL: f64 = 1.0 / 32.0;
-
-/// While a rank renders a small chunk its request for the next is under way: the answer may need rank 0, which renders too. Of large chunks
-/// it would soon have more than its share.
+/// While a rank renders a small chunk its request for the next is under way.
 fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let mut wait = Wait::default();
-    let small = SMALL * share.plan().len() as f64 / world.size() as f64;
+    let jobs = share.plan().len();
     let next = |counter: &mut Counter<'_>| {
         let step = counter.next().map_err(failed)?;
         Ok(usize::try_from(step).ok().and_then(|step| chunks.get(step)).cloned())
@@ -113,7 +105,7 @@ fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, sh
         return Ok(wait);
     }
     while let Some(chunk) = timed(&mut wait, || next(counter))? {
-        if chunk.len() as f64 <= small {
+        if is_small(chunk.len(), jobs, world.size()) {
             counter.ask().map_err(failed)?;
         }
         share.render(chunk.collect())?;

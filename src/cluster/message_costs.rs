@@ -4,13 +4,15 @@
 //! only while rank 0 is inside a call of MPI. So it is timed while rank 0 waits, while it computes and looks after MPI now and then, as it does
 //! when it renders, and while it computes without a look.
 
-use super::hand_out::LOOK;
 use super::{Cluster, failed};
 use crate::analysis::quantile::{median, median_interval};
 use crate::error::{InputError, Result};
+use crate::input::read_text;
+use crate::lab::LOOK;
 use pathmark_mpi::Counter;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::hint::spin_loop;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Repetitions of what takes microseconds, and of what may take as long as a computation.
@@ -22,13 +24,32 @@ const COMPUTATION: Duration = Duration::from_millis(20);
 const GATHERED: usize = 7 * 512 * 384 / 2;
 const LEVEL: f64 = 0.95;
 
+const REQUEST: &str = "a request and its answer";
+const FETCH: &str = "a fetch-and-op";
+const GATHER: &str = "a gather of 5 MB from each rank";
+const WAITS: &str = "waits";
+const LOOKS: &str = "computes, and looks every ms";
+
+/// What was measured between some ranks, as `message-costs --json` prints it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MessageCosts {
+    /// How many ranks there were.
+    pub ranks: usize,
+    /// Name and version of the library.
+    pub mpi: String,
+    /// The operations.
+    pub costs: Vec<MessageCost>,
+}
+
 /// What one operation cost.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct MessageCost {
     /// The operation.
-    pub operation: &'static str,
+    pub operation: String,
     /// What rank 0 does meanwhile.
-    pub rank_0: &'static str,
+    pub rank_0: String,
     /// How often it was timed.
     pub repetitions: u64,
     /// Median seconds.
@@ -39,25 +60,65 @@ pub struct MessageCost {
     pub high_s: f64,
 }
 
+impl MessageCosts {
+    /// Reads what `message-costs --json` printed.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = read_text(path)?;
+        serde_json::from_str(&text).map_err(|e| {
+            let error = InputError::new("messages", path.display().to_string(), format!("cannot be read: {e}"));
+            error.allowed("what mpiexec -n 2 pathmark message-costs --json prints").into()
+        })
+    }
+
+    fn median_s(&self, operation: &str, rank_0: Option<&str>) -> f64 {
+        let is_it = |cost: &&MessageCost| {
+            cost.operation == operation
+                && rank_0.is_none_or(|rank_0| cost.rank_0 == rank_0)
+                && cost.median_s.is_finite()
+        };
+        self.costs.iter().find(is_it).map_or(0.0, |cost| cost.median_s)
+    }
+
+    /// Seconds of a request and its answer, while rank 0 waits.
+    pub fn request_s(&self) -> f64 {
+        self.median_s(REQUEST, None)
+    }
+
+    /// Seconds of a fetch-and-op, while rank 0 waits.
+    pub fn fetch_s(&self) -> f64 {
+        self.median_s(FETCH, Some(WAITS))
+    }
+
+    /// Seconds of a fetch-and-op after another, while rank 0 renders and looks after MPI every [`LOOK`].
+    pub fn fetch_while_rendering_s(&self) -> f64 {
+        self.median_s(FETCH, Some(LOOKS))
+    }
+
+    /// Seconds for each byte that rank 0 gathers.
+    pub fn gathered_byte_s(&self) -> f64 {
+        let bytes = GATHERED * size_of::<u64>() * self.ranks.saturating_sub(1);
+        self.median_s(GATHER, None) / bytes.max(1) as f64
+    }
+}
+
 impl Cluster {
-    /// Times the operations; rank 0 has the costs, with name and version of the library.
-    pub fn message_costs(self) -> Result<Option<(Vec<MessageCost>, String)>> {
+    /// Times the operations; rank 0 has the costs.
+    pub fn message_costs(self) -> Result<Option<MessageCosts>> {
         if self.size() < 2 {
             let error = InputError::new("ranks", self.size().to_string(), "messages need two processes");
             return Err(error.allowed("mpiexec -n 2 pathmark message-costs").into());
         }
-        let mut costs = vec![self.told("a request and its answer", "waits", &self.requests()?)?];
-        for (rank_0, pause, repetitions) in [
-            ("waits", None, MANY),
-            ("computes, and looks every ms", Some(LOOK), MANY),
-            ("computes for 20 ms at a time", Some(COMPUTATION), FEW),
-        ] {
-            costs.push(self.told("a fetch-and-op", rank_0, &self.fetches(pause, repetitions)?)?);
+        let mut costs = vec![self.told(REQUEST, WAITS, &self.requests()?)?];
+        for (rank_0, pause, repetitions) in
+            [(WAITS, None, MANY), (LOOKS, Some(LOOK), MANY), ("computes for 20 ms at a time", Some(COMPUTATION), FEW)]
+        {
+            costs.push(self.told(FETCH, rank_0, &self.fetches(pause, repetitions)?)?);
         }
-        costs.push(self.told("a gather of 5 MB from each rank", "gathers", &self.gathers()?)?);
-        let (is_first, library) = (self.is_first(), self.world.version().to_string());
+        costs.push(self.told(GATHER, "gathers", &self.gathers()?)?);
+        let told = MessageCosts { ranks: self.size(), mpi: self.world.version().to_string(), costs };
+        let is_first = self.is_first();
         self.world.end().map_err(failed)?;
-        Ok(is_first.then_some((costs, library)))
+        Ok(is_first.then_some(told))
     }
 
     /// Seconds of requests that rank 1 made.
@@ -120,13 +181,14 @@ impl Cluster {
     }
 
     /// What the rank that timed an operation tells the others of it.
-    fn told(&self, operation: &'static str, rank_0: &'static str, seconds: &[f64]) -> Result<MessageCost> {
+    fn told(&self, operation: &str, rank_0: &str, seconds: &[f64]) -> Result<MessageCost> {
         let interval = median_interval(seconds, LEVEL);
         let own = [median(seconds), interval.map(|own| own.low), interval.map(|own| own.high)];
         let words = own.map(|value| value.unwrap_or(f64::NAN).to_bits());
         let all = self.world.all_gather(&[seconds.len() as u64, words[0], words[1], words[2]]).map_err(failed)?;
         let timed = all.chunks_exact(4).find(|rank| rank[0] > 0).unwrap_or(&[0; 4]);
         let [median_s, low_s, high_s] = [1, 2, 3].map(|at| f64::from_bits(timed[at]));
+        let (operation, rank_0) = (operation.to_string(), rank_0.to_string());
         Ok(MessageCost { operation, rank_0, repetitions: timed[0], median_s, low_s, high_s })
     }
 }

@@ -15,7 +15,7 @@ use crate::kernel::REVISION;
 use crate::lab::RankRule;
 use crate::measure::{Gathered, Outcome, Setup};
 use hand_out::HandOut;
-pub use message_costs::MessageCost;
+pub use message_costs::{MessageCost, MessageCosts};
 use pathmark_mpi::{MpiError, World};
 use serde::Serialize;
 use std::io;

@@ -8,7 +8,7 @@
 //! chapter = "scheduling"          # optional: accuracy, scheduling, hard-inputs or effects; where the page has it
 //! place = 3                       # optional: its place among the experiments of the chapter
 //! in-short = 1                    # optional: the number of the finding that stands at the beginning of the page
-//! keep = ["traces"]               # optional: images, traces, calibration
+//! keep = ["traces"]               # optional: images, traces, calibration, messages
 //!
 //! [matrix]                       # cells are all combinations
 //! scene = ["cornell"]            # or "all"
@@ -79,6 +79,8 @@ pub enum Keep {
     Traces,
     /// What handing out empty jobs costs, which the simulator needs.
     Calibration,
+    /// What messages between processes cost, which the simulator needs for ranks.
+    Messages,
 }
 
 /// An experiment as it is written.

@@ -12,7 +12,7 @@ const KEYS: &[(&str, &str)] = &[
     ("chapter", "chapter of the page: accuracy, scheduling, hard-inputs or effects"),
     ("place", "place among the chapter's experiments"),
     ("in-short", "number of the finding that stands at the beginning of the page"),
-    ("keep", "what stays beside the rows: images, traces, calibration"),
+    ("keep", "what stays beside the rows: images, traces, calibration, messages"),
     ("unverified", "true for samplers that give other numbers in each run, so that no checksum can be expected"),
     ("requires", "features that the program must be built with: openmp"),
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),

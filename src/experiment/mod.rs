@@ -50,6 +50,7 @@ pub use keys::keys;
 pub use merge_sweeps::{MergedSweep, merge_sweeps};
 pub use plan::{Plan, Prices};
 pub use pricing::{Paid, Pilot, Piloted, law_of, pay};
+pub use processes::MESSAGES;
 pub use profile::Profile;
 pub use ranking::{ImageRanking, Place, Ranking, ranking};
 pub use records_file::{RecordsFile, read_records};

@@ -1,5 +1,6 @@
 //! A cell whose workers are processes: `mpiexec` starts as many of this program, and the first prints the row.
 
+use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::image_io::{self, Image};
 use crate::lab::Lab;
@@ -24,27 +25,44 @@ pub(super) fn run_processes(
 ) -> Result<Option<(Record, Image)>> {
     let folder = tempfile::tempdir().map_err(|e| Error::system("making", "a temporary folder", e))?;
     let image = folder.path().join("image.pfm");
+    let mut arguments = options(settings, rule);
+    arguments.extend(["--image".into(), image.clone().into_os_string()]);
+    if let Some(path) = trace {
+        arguments.extend(["--trace".into(), path.as_os_str().to_owned()]);
+    }
+    let Some(printed) = printed_by_ranks(ranks, &arguments)? else { return Ok(None) };
+    let record = record(&printed).ok_or_else(|| Error::Check(format!("{ranks} processes printed no record")))?;
+    Ok(Some((record, image_io::read(&image)?)))
+}
+
+/// What so many processes of this program print. `Ok(None)` if there is no launcher.
+fn printed_by_ranks(ranks: u16, arguments: &[OsString]) -> Result<Option<Vec<u8>>> {
     let launcher = env::var(LAUNCHER_VARIABLE).unwrap_or_else(|_| LAUNCHER.to_string());
     let mut words = launcher.split_whitespace();
     let program = words.next().unwrap_or(LAUNCHER);
     let own = env::current_exe().map_err(|e| Error::system("finding", "this program", e))?;
     let mut command = Command::new(program);
-    command.args(words).arg("-n").arg(ranks.to_string()).arg(own).args(options(settings, rule));
-    command.arg("--image").arg(&image);
-    if let Some(path) = trace {
-        command.arg("--trace").arg(path);
-    }
+    command.args(words).arg("-n").arg(ranks.to_string()).arg(own).args(arguments);
     let output = match command.stdin(Stdio::null()).output() {
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
         other => other.map_err(|e| Error::system("running", program, e))?,
     };
-    let told = || format!("{command:?}");
     if !output.status.success() {
         let said: String = String::from_utf8_lossy(&output.stderr).trim().chars().take(400).collect();
-        return Err(Error::Check(format!("{} ended with {}: {said}", told(), output.status)));
+        return Err(Error::Check(format!("{command:?} ended with {}: {said}", output.status)));
     }
-    let record = record(&output.stdout).ok_or_else(|| Error::Check(format!("{} printed no record", told())))?;
-    Ok(Some((record, image_io::read(&image)?)))
+    Ok(Some(output.stdout))
+}
+
+/// What messages between two processes cost, beside the rows of a sweep.
+pub const MESSAGES: &str = "messages.json";
+
+/// Times messages between two processes and writes the file; `Ok(false)` if there is no launcher.
+pub(super) fn write_messages(path: &Path) -> Result<bool> {
+    let arguments = ["message-costs", "--json"].map(OsString::from);
+    let Some(printed) = printed_by_ranks(2, &arguments)? else { return Ok(false) };
+    atomic_file::write(path, |file| file.write_all(&printed))?;
+    Ok(true)
 }
 
 /// The options of a render with these settings, by name.

@@ -5,6 +5,7 @@ use super::calibration_file::write_calibration;
 use super::cell::trace_file;
 use super::instructions;
 use super::object_pixels::check_object;
+use super::processes::{MESSAGES, write_messages};
 use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::running::Running;
@@ -27,8 +28,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// What a sweep writes into its folder, beside images and traces.
-const OWN_FILES: [&str; 5] =
-    ["records.csv", "machine.toml", "experiment.toml", "calibration.csv", instructions::INSTRUCTIONS];
+const OWN_FILES: [&str; 6] =
+    ["records.csv", "machine.toml", "experiment.toml", "calibration.csv", MESSAGES, instructions::INSTRUCTIONS];
 
 /// How to run an experiment.
 #[derive(Debug, Clone)]
@@ -144,6 +145,10 @@ impl<'a> Sweep<'a> {
         if definition.keeps(Keep::Calibration) && !calibration.is_file() {
             progress.note("calibrating: every strategy hands out empty jobs");
             write_calibration(&definition.lab, &calibration)?;
+        }
+        let messages = folder.join(MESSAGES);
+        if definition.keeps(Keep::Messages) && !messages.is_file() && !write_messages(&messages)? {
+            progress.note("there is no mpiexec, so nobody knows what messages cost");
         }
         let references = references(definition, wanted, options, progress)?;
         let programs = folder.join("external");

@@ -17,12 +17,7 @@ use std::collections::HashMap;
 pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Prediction>> {
     let serial = results.serial()?;
     let processors = results.processors();
-    let mut costs: HashMap<(&str, u32), Vec<f64>> = HashMap::new();
-    for row in results.rows().filter(|row| row.schedule.is_serial()) {
-        if let Some(trace) = results.trace(row)? {
-            costs.insert((&row.cell, row.repetition), trace.costs_s());
-        }
-    }
+    let costs = serial_costs(results)?;
     let modelled = |row: &Row| row.threads <= processors || row.threads == row.jobs;
     let pairs = serial.in_order(results).filter(|(row, _)| modelled(row));
     let runs = pairs.filter_map(|(row, serial)| {
@@ -36,6 +31,17 @@ pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Pr
         Some((observed, costs.get(&(serial.cell.as_str(), serial.repetition))?.as_slice()))
     });
     Ok(predict(runs, contenders, processors))
+}
+
+/// What each job of the serial runs cost, by cell and repetition.
+pub(super) fn serial_costs(results: &Results) -> Result<HashMap<(&str, u32), Vec<f64>>> {
+    let mut costs = HashMap::new();
+    for row in results.rows().filter(|row| row.schedule.is_serial()) {
+        if let Some(trace) = results.trace(row)? {
+            costs.insert((row.cell.as_str(), row.repetition), trace.costs_s());
+        }
+    }
+    Ok(costs)
 }
 
 /// CPU time over that of the serial run beside it; 1 where the system told none.

@@ -9,6 +9,7 @@ pub mod forecasts;
 mod guards;
 mod naming;
 mod page;
+pub mod rank_forecasts;
 mod reference_image;
 mod results;
 mod rows;

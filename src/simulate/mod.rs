@@ -35,6 +35,7 @@ mod forecast;
 mod hardware;
 mod overhead;
 mod prediction;
+mod ranks;
 mod replay;
 
 pub use agreement::{Agreement, agreement};
@@ -44,4 +45,5 @@ pub use forecast::{Forecast, forecast};
 pub use hardware::{Hardware, Noise, Speeds};
 pub use overhead::{Overhead, Overheads};
 pub use prediction::{DISTURBED, Observed, Prediction, predict};
+pub use ranks::{Cluster, Crew, Messages};
 pub use replay::{Replay, replay};

@@ -410,3 +410,50 @@ repetitions = 2
         assert_eq!(warnings.contains("no-program"), !is_alone, "{strategy} by {rule}: {warnings}");
     }
 }
+
+/// Processes that this machine does not have, from the trace of a serial run and a file of costs. Needs no MPI.
+#[test]
+fn processes_are_forecast_from_a_trace() {
+    let folder = tempfile::tempdir().unwrap();
+    let render = ["render", "cornell", "--spp", "4", "--size", "64x48", "--strategy", "serial", "--threads", "1"];
+    let pieces = ["--decomposition", "tiles:8x8", "--trace", "run.csv", "-o", "a.png"];
+    finish(pathmark(folder.path(), &[&render[..], &pieces].concat())).with_code(0);
+    let cost = |operation: &str, rank_0: &str, median_s: f64| serde_json::json!({ "operation": operation, "rank_0": rank_0, "repetitions": 9, "median_s": median_s, "low_s": 0, "high_s": 1 });
+    let costs = [
+        cost("a request and its answer", "waits", 2e-6),
+        cost("a fetch-and-op", "waits", 1.0),
+        cost("a fetch-and-op", "computes, and looks every ms", 1.0),
+        cost("a gather of 5 MB from each rank", "gathers", 0.01),
+    ];
+    let messages = serde_json::json!({ "ranks": 2, "mpi": "MPICH 4.0.2", "costs": costs });
+    fs::write(folder.path().join("messages.json"), messages.to_string()).unwrap();
+    let simulate = |more: &[&str]| {
+        let own = ["simulate", "run.csv", "--workers", "1,4", "--strategies", "shared-counter", "--no-check"];
+        pathmark(folder.path(), &[&own[..], more].concat())
+    };
+    let rules = ["--ranks", "static-cyclic,dynamic:1", "--nodes", "1,4", "--messages", "messages.json"];
+    finish(simulate(&rules)).with_code(0);
+    let mut table = csv::Reader::from_path(folder.path().join("out/simulation/ranks-forecast.csv")).unwrap();
+    let rows: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
+    let told: Vec<[&str; 3]> = rows.iter().map(|row| [0, 1, 2].map(|column| &row[column])).collect();
+    let expected = ["static-cyclic", "dynamic:1"].into_iter().flat_map(|rule| {
+        [["1", "1"], ["4", "1"], ["1", "4"], ["4", "4"]].map(|[ranks, threads]| [rule, ranks, threads])
+    });
+    assert_eq!(told, expected.collect::<Vec<_>>());
+    let number = |row: usize, column: usize| rows[row][column].parse::<f64>().unwrap();
+    assert!((0.9..=1.0).contains(&number(0, 4)), "one process of one thread: {}", number(0, 4));
+    for row in 0..4 {
+        assert!(number(row, 4) <= number(row, 5) * (1.0 + 1e-9) * [1.0, 4.0, 4.0, 16.0][row], "{:?}", rows[row]);
+        // Whoever waits a second for an answer leaves rank 0 alone, and is waited for.
+        assert!(row % 2 == 0 || number(4 + row, 3) >= 1.0, "{:?}", rows[4 + row]);
+    }
+    let refused = |more: &[&str], said: &[&str]| {
+        let finished = finish(simulate(more)).with_code(2);
+        assert!(said.iter().all(|text| finished.err.contains(text)), "{said:?} is not in {}", finished.err);
+    };
+    refused(&["--ranks", "work-stealing"], &["ranks", "work-stealing", "working-master"]);
+    refused(&["--nodes", "2"], &["--ranks"]);
+    refused(&["--ranks", "guided", "--nodes", "0"], &["nodes = 0"]);
+    refused(&["--ranks", "guided", "--messages", "run.csv"], &["messages = run.csv", "message-costs"]);
+    refused(&["--ranks", "guided", "--messages", "nowhere.json"], &["nowhere.json"]);
+}

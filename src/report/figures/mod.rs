@@ -28,6 +28,7 @@ mod pairs;
 mod precision;
 mod prelude;
 mod price_list;
+mod ranks_forecast;
 mod rmse_against_spp;
 mod rmse_against_time;
 mod roughness;
@@ -103,6 +104,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     openmp, "openmp", Yardstick, "time of each strategy as a multiple of OpenMP's dynamic schedule";
     self_test, "self-test", NoOptions, "how often a cell measured twice seems to differ from itself";
     forecast, "forecast", forecast::Options, "simulated speedup on other machines, and how well this one is predicted";
+    ranks_forecast, "ranks-forecast", ranks_forecast::Options, needs serial, "simulated speedup of several processes, and how well those here are predicted";
     gallery, "gallery", NoOptions, "what every scene looks like, and what it calls for";
     scene_accuracy, "scene-accuracy", scene_accuracy::Options, "error, path length and price of accuracy by scene";
     effects, "effects", effects::Options, "what an effect costs: absent, compiled in but unused, used";

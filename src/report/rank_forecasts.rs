@@ -1,0 +1,195 @@
+//! Simulated and predicted runs of several processes as tables and a chart: for the figure of an experiment and for `simulate --ranks`.
+
+use super::block::Block;
+use super::forecasts::serial_costs;
+use super::results::Results;
+use super::rows::{Row, group};
+use super::table::Digits::{Decimals, Significant};
+use super::words::counted;
+use crate::analysis::quantile::median;
+use crate::error::Result;
+use crate::lab::{Lab, RankRule};
+use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
+use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
+
+/// Bytes of a pixel on its way to rank 0: three sums, three sums of squares, and the number of samples.
+const PIXEL_BYTES: f64 = 56.0;
+
+/// The runs of one rule on some ranks, predicted.
+pub struct RankPrediction {
+    rule: String,
+    strategy: String,
+    pieces: String,
+    crew: Crew,
+    runs: usize,
+    predicted_s: f64,
+    measured_s: f64,
+    ratio: f64,
+}
+
+/// One row of a forecast.
+pub struct RankForecast {
+    rule: String,
+    crew: Crew,
+    makespan_s: f64,
+    speedup: f64,
+    gather_s: f64,
+}
+
+/// What the threads of a rank do: nothing but its jobs in order, if there is one.
+fn within<'a>(contenders: &'a [Contender], strategy: &str, threads: usize) -> Option<&'a Contender> {
+    let name = if threads == 1 { crate::measure::SERIAL } else { strategy };
+    contenders.iter().find(|contender| contender.name == name)
+}
+
+/// The runs of several processes that had a processor for each of their threads, predicted from the serial run of the same pieces in the same
+/// repetition.
+pub fn rank_predictions(
+    results: &Results,
+    contenders: &[Contender],
+    messages: Messages,
+) -> Result<Vec<RankPrediction>> {
+    let lab: &Lab = &results.definition.lab;
+    let (serial, costs, processors) = (results.serial()?, serial_costs(results)?, results.processors());
+    let pairs: Vec<(&Row, &Row)> = serial.in_order(results).filter(|(row, _)| row.threads <= processors).collect();
+    let serial_of = |row: &Row| pairs.iter().find(|(own, _)| std::ptr::eq(*own, row)).map(|(_, serial)| *serial);
+    let of_ranks = pairs.iter().map(|(row, _)| *row).filter(|row| row.as_written().ranks.is_some());
+    let groups = group(of_ranks, |row| {
+        let written = row.as_written();
+        let crew = (written.ranks.unwrap_or(1), written.threads);
+        (written.rank_rule.clone(), written.strategy.clone(), written.decomposition.clone(), crew)
+    });
+    let mut predictions = Vec::new();
+    for ((rule, strategy, pieces, (ranks, threads)), rows) in groups {
+        let crew = Crew { ranks: ranks.into(), threads };
+        let way = lab.rank_rule("rank-rule", &rule)?.way();
+        let Some(within) = within(contenders, &strategy, threads) else { continue };
+        let cluster = Cluster { crew, within, messages, hardware: Hardware::default() };
+        let pair = |row: &&Row| {
+            let serial = serial_of(row)?;
+            let costs = costs.get(&(serial.cell.as_str(), serial.repetition))?;
+            Some([cluster.makespan_s(costs, way), row.makespan_s?])
+        };
+        let pairs: Vec<[f64; 2]> = rows.iter().filter_map(pair).collect();
+        let middle = |value: fn(&[f64; 2]) -> f64| median(&pairs.iter().map(value).collect::<Vec<f64>>());
+        let medians = (middle(|pair| pair[0]), middle(|pair| pair[1]), middle(|pair| pair[0] / pair[1]));
+        if let (Some(predicted_s), Some(measured_s), Some(ratio)) = medians {
+            let runs = pairs.len();
+            predictions.push(RankPrediction { rule, strategy, pieces, crew, runs, predicted_s, measured_s, ratio });
+        }
+    }
+    Ok(predictions)
+}
+
+/// Predicted against measured, and the errors in a sentence.
+pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
+    let pairs: Vec<(f64, f64)> = predictions.iter().map(|prediction| (prediction.ratio, 1.0)).collect();
+    let Some(found) = agreement(&pairs) else { return Vec::new() };
+    let finding = format!(
+        "{} of this machine predicted from serial runs: median absolute error {:.1} %, worst {:.1} %, bias {:+.1} %.",
+        counted(predictions.len(), "schedule of processes"),
+        100.0 * found.median_absolute,
+        100.0 * found.worst_absolute,
+        100.0 * found.bias,
+    );
+    let table = Block::table("rank-predictions", "The simulator predicts processes on this machine", predictions)
+        .column("rule", |p| p.rule.clone())
+        .column("strategy within", |p| p.strategy.clone())
+        .column("pieces", |p| p.pieces.clone())
+        .column("processes", |p| p.crew.ranks.to_string())
+        .column("threads of each", |p| p.crew.threads.to_string())
+        .column("runs", |p| p.runs.to_string())
+        .number("predicted ms", Decimals(2), |p| p.predicted_s * 1e3)
+        .number("measured ms", Decimals(2), |p| p.measured_s * 1e3)
+        .number("error, %", Decimals(1), |p| 100.0 * (p.ratio - 1.0))
+        .end();
+    vec![Block::Finding(finding), table]
+}
+
+/// What a forecast of ranks is of.
+pub struct RankPlan<'a> {
+    /// Rules between ranks.
+    pub rules: &'a [RankRule],
+    /// The strategy within a rank that has several threads.
+    pub strategy: &'a str,
+    /// Numbers of ranks.
+    pub ranks: &'a [usize],
+    /// Numbers of threads of each.
+    pub threads: &'a [usize],
+    /// What messages cost.
+    pub messages: Messages,
+    /// The processors of each rank.
+    pub hardware: Hardware,
+}
+
+/// Replays jobs of these costs, which make an image of so many pixels, by every rule on all numbers of ranks and threads.
+pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64], pixels: f64) -> Vec<RankForecast> {
+    let serial_s: f64 = costs.iter().sum();
+    let mut rows = Vec::new();
+    for rule in plan.rules {
+        for &threads in plan.threads {
+            let Some(within) = within(contenders, plan.strategy, threads) else { continue };
+            for &ranks in plan.ranks.iter().filter(|ranks| rule.check(**ranks).is_ok()) {
+                let crew = Crew { ranks, threads };
+                let cluster = Cluster { crew, within, messages: plan.messages, hardware: plan.hardware };
+                let makespan_s = cluster.makespan_s(costs, rule.way());
+                let speedup = if makespan_s > 0.0 { serial_s / makespan_s } else { 1.0 };
+                let gather_s = cluster.gather_s(PIXEL_BYTES * pixels);
+                rows.push(RankForecast { rule: rule.to_string(), crew, makespan_s, speedup, gather_s });
+            }
+        }
+    }
+    rows
+}
+
+/// The files that [`rank_forecast_blocks`] are saved in.
+pub const RANK_FORECAST_FILES: &[&str] = &["ranks-forecast.svg", "ranks-forecast.png", "ranks-forecast.csv"];
+
+/// Speedup against cores, and all numbers as a table.
+pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str) -> Vec<Block> {
+    let name = |row: &RankForecast| format!("{}, {}", row.rule, counted(row.crew.threads, "thread"));
+    let cores = |row: &RankForecast| (row.crew.ranks * row.crew.threads) as f64;
+    let fewest = rows.iter().map(|row| row.crew.threads).min().unwrap_or(1);
+    let most = rows.iter().map(|row| row.crew.threads).max().unwrap_or(1);
+    let mut names: Vec<String> = Vec::new();
+    for row in rows.iter().filter(|row| [fewest, most].contains(&row.crew.threads)) {
+        if !names.contains(&name(row)) {
+            names.push(name(row));
+        }
+    }
+    let points = |wanted: &String| {
+        let own = rows.iter().filter(|row| name(row) == *wanted);
+        own.map(|row| Point::new(cores(row), row.speedup)).collect::<Vec<Point>>()
+    };
+    let series = Series::by_name(names.iter().map(|name| (name, points(name))));
+    let mut chart = LineChart::new("Forecast: processes", Axis::log("cores"), Axis::log("speedup"), series);
+    chart.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
+    chart.subtitle = workload.to_string();
+    let told = if fewest == most {
+        String::new()
+    } else {
+        " Of the numbers of threads a process the fewest and the most are drawn; the table has all.".to_string()
+    };
+    chart.caption = format!("Simulated from the jobs of one serial run, gathering left out.{told}");
+    let best = rows.iter().max_by(|a, b| a.speedup.total_cmp(&b.speedup));
+    let finding = best.map(|row| {
+        Block::finding(format!(
+            "On {} of {} each, {} would be {:.3} times as fast as one core; gathering the film would take {:.3} ms more.",
+            counted(row.crew.ranks, "process"),
+            counted(row.crew.threads, "thread"),
+            row.rule,
+            row.speedup,
+            1e3 * row.gather_s,
+        ))
+    });
+    let table = Block::table("ranks-forecast", "Forecast: processes", rows)
+        .column("rule", |row| row.rule.clone())
+        .column("processes", |row| row.crew.ranks.to_string())
+        .column("threads of each", |row| row.crew.threads.to_string())
+        .number("makespan, s", Decimals(5), |row| row.makespan_s)
+        .number("speedup", Decimals(2), |row| row.speedup)
+        .number("efficiency", Decimals(3), |row| row.speedup / (row.crew.ranks * row.crew.threads) as f64)
+        .number("gathering, ms", Significant(3), |row| 1e3 * row.gather_s)
+        .end();
+    finding.into_iter().chain([Block::figure("ranks-forecast", chart), table]).collect()
+}
