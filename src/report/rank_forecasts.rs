@@ -162,7 +162,12 @@ pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str) -> Vec<Block>
         own.map(|row| Point::new(cores(row), row.speedup)).collect::<Vec<Point>>()
     };
     let series = Series::by_name(names.iter().map(|name| (name, points(name))));
-    let mut chart = LineChart::new("Forecast: processes", Axis::log("cores"), Axis::log("speedup"), series);
+    let mut chart = LineChart::new(
+        "Forecast: processes",
+        Axis::log("cores: processes times threads"),
+        Axis::log("speedup"),
+        series,
+    );
     chart.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
     chart.subtitle = workload.to_string();
     let told = if fewest == most {
