@@ -155,13 +155,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 /// What the user says that messages cost, or what the folder knows.
 fn messages(arguments: &Arguments, talk: &Talk) -> Result<Messages> {
     let own = arguments.trace.join(MESSAGES);
-    match arguments.messages.as_ref().or(own.is_file().then_some(&own)) {
-        Some(path) => Ok(Messages::from(&MessageCosts::read(path)?)),
-        None => {
-            talk.note("messages cost nothing here; --messages says what they cost");
-            Ok(Messages::default())
-        }
+    if let Some(path) = arguments.messages.as_ref().or(own.is_file().then_some(&own)) {
+        return Ok(Messages::from(&MessageCosts::read(path)?));
     }
+    talk.note("messages cost nothing here; --messages says what they cost");
+    Ok(Messages::default())
 }
 
 /// 1..4096, or 1,2,768.

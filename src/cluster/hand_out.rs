@@ -96,7 +96,7 @@ fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, sh
     let mut wait = Wait::default();
     let jobs = share.plan().len();
     let next = |counter: &mut Counter<'_>| {
-        let step = counter.next().map_err(failed)?;
+        let step = counter.number().map_err(failed)?;
         Ok(usize::try_from(step).ok().and_then(|step| chunks.get(step)).cloned())
     };
     if world.rank() == 0 && world.size() > 1 {

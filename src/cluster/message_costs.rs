@@ -159,7 +159,7 @@ impl Cluster {
                 Vec::new()
             }
             1 => {
-                let seconds = timed(repetitions, || counter.next().map(drop).map_err(failed))?;
+                let seconds = timed(repetitions, || counter.number().map(drop).map_err(failed))?;
                 world.send(0, &[1]).map_err(failed)?;
                 seconds
             }

@@ -1,8 +1,8 @@
 //! Renders that decide for themselves: where they stop, and where their samples go.
 
 use crate::scene_text::{Ball, load_scene};
-use pathmark::Error;
 use pathmark::analysis::z_test::{critical_value, normal_quantile, z_score};
+use pathmark::error::Error;
 use pathmark::film::Film;
 use pathmark::kernel::Spec;
 use pathmark::math::Rgb;

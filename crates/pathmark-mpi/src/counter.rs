@@ -53,7 +53,7 @@ impl<'a> Counter<'a> {
     }
 
     /// The number that was asked for, or the next; it is one more for whoever comes next.
-    pub fn next(&mut self) -> Result<u64, MpiError> {
+    pub fn number(&mut self) -> Result<u64, MpiError> {
         self.ask()?;
         let functions = &self.world.library.functions;
         // SAFETY: the window is there, and locked.
