@@ -156,7 +156,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 fn messages(arguments: &Arguments, talk: &Talk) -> Result<Messages> {
     let own = arguments.trace.join(MESSAGES);
     if let Some(path) = arguments.messages.as_ref().or(own.is_file().then_some(&own)) {
-        return Ok(Messages::from(&MessageCosts::read(path)?));
+        return Ok(rank_forecasts::messages(&MessageCosts::read(path)?));
     }
     talk.note("messages cost nothing here; --messages says what they cost");
     Ok(Messages::default())

@@ -7,13 +7,25 @@ use super::rows::{Row, group};
 use super::table::Digits::{Decimals, Significant};
 use super::words::counted;
 use crate::analysis::quantile::median;
+use crate::cluster::MessageCosts;
 use crate::error::Result;
-use crate::lab::{Lab, RankRule};
+use crate::lab::{LOOK, Lab, RankRule};
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
 
 /// Bytes of a pixel on its way to rank 0: three sums, three sums of squares, and the number of samples.
 const PIXEL_BYTES: f64 = 56.0;
+
+/// Messages that cost what was measured.
+pub fn messages(costs: &MessageCosts) -> Messages {
+    let needs_rank_0 = (costs.fetch_while_rendering_s() - costs.fetch_s()) / LOOK.as_secs_f64();
+    Messages {
+        request_s: costs.request_s(),
+        fetch_s: costs.fetch_s(),
+        needs_rank_0: needs_rank_0.clamp(0.0, 1.0),
+        gathered_byte_s: costs.gathered_byte_s(),
+    }
+}
 
 /// The runs of one rule on some ranks, predicted.
 pub struct RankPrediction {

@@ -1,12 +1,11 @@
 //! The replay of ranks: jobs of known costs on processes that share them by a rule, each with threads that share its jobs by a strategy.
 //!
 //! A rank's chunk is replayed as a run of its own ([`Contender::replay`]), so the threads of a rank wait for the last of them before the next
-//! chunk, as they do in [`crate::cluster`]. Messages cost what was measured between two processes ([`Messages`]). Waiting takes no
+//! chunk, as they do in `crate::cluster`. Messages cost what was measured between two processes ([`Messages`]). Waiting takes no
 //! processor here: there must be one for each thread of each rank.
 
 use super::contender::Contender;
 use super::hardware::{Hardware, Speeds};
-use crate::cluster::MessageCosts;
 use crate::lab::{LOOK, Master, Way, is_small};
 use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use serde::Serialize;
@@ -23,18 +22,6 @@ pub struct Messages {
     pub needs_rank_0: f64,
     /// A byte that rank 0 gathers.
     pub gathered_byte_s: f64,
-}
-
-impl From<&MessageCosts> for Messages {
-    fn from(costs: &MessageCosts) -> Self {
-        let needs_rank_0 = (costs.fetch_while_rendering_s() - costs.fetch_s()) / LOOK.as_secs_f64();
-        Self {
-            request_s: costs.request_s(),
-            fetch_s: costs.fetch_s(),
-            needs_rank_0: needs_rank_0.clamp(0.0, 1.0),
-            gathered_byte_s: costs.gathered_byte_s(),
-        }
-    }
 }
 
 /// Ranks and the threads of each.

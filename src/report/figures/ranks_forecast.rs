@@ -4,9 +4,9 @@ use super::prelude::*;
 use crate::cluster::MessageCosts;
 use crate::experiment::{MESSAGES, read_calibration};
 use crate::report::rank_forecasts::{
-    RankPlan, rank_forecast, rank_forecast_blocks, rank_prediction_blocks, rank_predictions,
+    self, RankPlan, rank_forecast, rank_forecast_blocks, rank_prediction_blocks, rank_predictions,
 };
-use crate::simulate::{Hardware, Messages, contenders};
+use crate::simulate::{Hardware, contenders};
 use std::num::NonZeroUsize;
 
 #[derive(Deserialize)]
@@ -43,7 +43,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     }
     let lab = &results.definition.lab;
     let contenders = contenders(lab, &read_calibration(&calibration)?);
-    let messages = Messages::from(&MessageCosts::read(&messages)?);
+    let messages = rank_forecasts::messages(&MessageCosts::read(&messages)?);
     let mut blocks = rank_prediction_blocks(&rank_predictions(results, &contenders, messages)?);
     let serial: Vec<&Row> = results.rows().filter(|row| row.schedule.is_serial()).collect();
     let most = serial.iter().map(|row| row.jobs).max();
