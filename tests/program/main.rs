@@ -10,6 +10,7 @@ mod experiment;
 mod external;
 mod faults;
 mod inspection;
+mod killed_ranks;
 mod merged_sweeps;
 mod page;
 mod plan;

@@ -1,17 +1,14 @@
 //! One image by several processes: MPI as the system has it. Without `mpiexec` these tests say so and pass.
 
-use crate::faults::is_thorough;
-use crate::program::{Finished, finish, pathmark, wait};
+use crate::program::{Finished, finish, pathmark};
 use crate::watchdog::Watchdog;
-use rand::{RngExt, SeedableRng};
-use rand_pcg::Pcg64;
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-const RULES: [&str; 12] = [
+pub(crate) const RULES: [&str; 12] = [
     "static-blocks",
     "static-cyclic",
     "dynamic:3",
@@ -27,12 +24,12 @@ const RULES: [&str; 12] = [
 ];
 const SCENE: [&str; 6] = ["render", "cornell", "--spp", "20", "--size", "70x40"];
 
-fn is_launcher(name: &str) -> bool {
+pub(crate) fn is_launcher(name: &str) -> bool {
     Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
 /// Whether processes can be started; says so if not.
-fn has_launcher() -> bool {
+pub(crate) fn has_launcher() -> bool {
     let found = is_launcher("mpiexec");
     if !found {
         println!("no mpiexec: nothing was tested (Debian: apt install mpich)");
@@ -48,18 +45,18 @@ const OPEN_MPI: [(&str, &str); 4] = [
     ("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe"),
 ];
 
-fn launcher(folder: &Path) -> Command {
+pub(crate) fn launcher(folder: &Path) -> Command {
     launcher_named("mpiexec", folder)
 }
 
-fn launcher_named(name: &str, folder: &Path) -> Command {
+pub(crate) fn launcher_named(name: &str, folder: &Path) -> Command {
     let mut command = Command::new(name);
     command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
     command.envs(OPEN_MPI);
     command
 }
 
-fn program() -> PathBuf {
+pub(crate) fn program() -> PathBuf {
     assert_cmd::cargo::cargo_bin!("pathmark").to_path_buf()
 }
 
@@ -69,7 +66,7 @@ fn ranks(folder: &Path, count: usize, arguments: &[&str]) -> Finished {
     finish(command)
 }
 
-fn json(text: &str) -> Value {
+pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
 }
 
@@ -207,129 +204,6 @@ fn ranks_that_would_render_something_else_are_refused() {
         assert!(finished.code != Some(0) && finished.err.contains("rank 1 would render"), "{}", finished.err);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
-}
-
-/// The processes that run this program, by number.
-fn processes_of(program: &Path, launcher: u32) -> Vec<u32> {
-    let is_below = |mut pid: u32| loop {
-        let Ok(stat) = fs::read_to_string(format!("/proc/{pid}/stat")) else { return false };
-        let parent = stat.rsplit_once(')').and_then(|(_, rest)| rest.split_whitespace().nth(1)?.parse().ok());
-        match parent {
-            Some(parent) if parent == launcher => return true,
-            Some(parent) if parent > 1 => pid = parent,
-            _ => return false,
-        }
-    };
-    let all = fs::read_dir("/proc").unwrap().filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok());
-    all.filter(|pid| runs(program, *pid)).filter(|pid| is_below(*pid)).collect()
-}
-
-fn runs(program: &Path, pid: u32) -> bool {
-    fs::read_link(format!("/proc/{pid}/exe")).is_ok_and(|exe| exe == program)
-}
-
-/// How long a launcher may take to end after all its processes have.
-const LAUNCHERS_PATIENCE: Duration = Duration::from_secs(3);
-
-/// Kills one of the ranks of a launcher, if they are all there and still there `after` some time. Once one is gone all are; the launcher of
-/// Open MPI 4.1.4 sometimes waits for a lock of its own for ever after that, so it is killed then.
-/// Who ends by itself must not fail.
-fn with_a_rank_killed(mut command: Command, count: usize, after: Duration, victim: usize) -> Finished {
-    let program = fs::canonicalize(program()).unwrap();
-    let mut child = command.spawn().unwrap();
-    let found = loop {
-        let found = processes_of(&program, child.id());
-        if found.len() == count || child.try_wait().unwrap().is_some() {
-            break found;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    };
-    std::thread::sleep(after);
-    let victim = found.get(victim).filter(|pid| runs(&program, **pid));
-    // It may have ended meanwhile.
-    let kill = |pid: &u32| Command::new("kill").args(["-9", &pid.to_string()]).stderr(Stdio::null()).status().unwrap();
-    let is_killed = victim.is_some_and(|pid| kill(pid).success());
-    while found.iter().any(|pid| runs(&program, *pid)) {
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let gone = Instant::now();
-    while child.try_wait().unwrap().is_none() {
-        if gone.elapsed() > LAUNCHERS_PATIENCE {
-            let _ = child.kill();
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let finished = wait(child);
-    assert!(is_killed || finished.code == Some(0), "{:?}: {}", finished.code, finished.err);
-    finished
-}
-
-/// A rank that dies (SIGKILL) ends all ranks, with an error and without an image.
-#[test]
-fn a_rank_that_dies_ends_the_run() {
-    if !has_launcher() {
-        return;
-    }
-    let watchdog = Watchdog::new(Duration::from_secs(30));
-    let folder = tempfile::tempdir().unwrap();
-    for (victim, rule) in ["dynamic:1", "working-master:1", "static-cyclic"].into_iter().enumerate() {
-        watchdog.now(format!("{rule}, rank {victim}"));
-        let mut command = launcher(folder.path());
-        let long = ["render", "cornell", "--spp", "20000", "--size", "64x48", "--threads", "1", "-o", "a.png"];
-        command.args(["-n", "3"]).arg(program()).args(long).args(["--ranks", rule]);
-        let finished = with_a_rank_killed(command, 3, Duration::from_millis(100 * victim as u64), victim);
-        assert_ne!(finished.code, Some(0), "{rule}");
-        assert!(!folder.path().join("a.png").exists());
-    }
-}
-
-/// A render by ranks goes on with the checkpoint that it left when one of them was killed: with other ranks, another rule and another library,
-/// to the image of one process that nobody disturbed.
-#[test]
-fn what_killed_ranks_have_rendered_is_gone_on_with() {
-    if !has_launcher() {
-        return;
-    }
-    let watchdog = Watchdog::new(Duration::from_secs(30));
-    let folder = tempfile::tempdir().unwrap();
-    let render = ["render", "cornell", "--size", "40x30", "--spp", "2000", "--threads", "1", "--json"];
-    let start = Instant::now();
-    let alone = json(&finish(pathmark(folder.path(), &render)).with_code(0).out);
-    let whole_s = start.elapsed().as_secs_f64();
-    let checkpoint = folder.path().join("c");
-    let mut launchers = vec!["mpiexec.mpich", "mpiexec.openmpi"];
-    launchers.retain(|name| is_launcher(name));
-    if launchers.is_empty() {
-        launchers.push("mpiexec");
-    }
-    let mut random = Pcg64::seed_from_u64(1);
-    let (mut kills, mut resumed) = (0, 0);
-    let enough = if is_thorough() { 200 } else { 4 };
-    while kills < enough || resumed == 0 {
-        fs::remove_file(&checkpoint).ok();
-        let image = loop {
-            let count = random.random_range(1..4);
-            let rule = RULES[random.random_range(0..RULES.len())];
-            if count == 1 && rule.starts_with("master-worker") {
-                continue;
-            }
-            let after = Duration::from_secs_f64(random.random_range(0.0..2.0) * whole_s);
-            let name = launchers[random.random_range(0..launchers.len())];
-            watchdog.now(format!("{name}: {count} ranks by {rule}, killed after {after:?}"));
-            let mut command = launcher_named(name, folder.path());
-            command.args(["-n", &count.to_string()]).arg(program()).args(render);
-            command.args(["--checkpoint", "c", "--ranks", rule]);
-            let finished = with_a_rank_killed(command, count, after, random.random_range(0..count));
-            assert!(!finished.err.contains("panicked"), "{}", finished.err);
-            if finished.code == Some(0) {
-                break json(&finished.out);
-            }
-            kills += 1;
-            resumed += usize::from(checkpoint.exists());
-        };
-        assert_eq!(image["checksum"], alone["checksum"], "after {kills} kills");
-    }
-    println!("{kills} kills of ranks of {launchers:?}, {resumed} with a checkpoint to go on from");
 }
 
 /// An accuracy is reached with the samples that one process takes for it, and its image.
