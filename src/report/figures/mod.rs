@@ -20,6 +20,7 @@ mod gallery;
 mod generators;
 mod granularity;
 mod kernels;
+mod message_costs;
 mod openmp;
 mod options;
 mod outputs;
@@ -105,6 +106,7 @@ pub const FIGURES: &[FigureEntry] = entries! {
     self_test, "self-test", NoOptions, "how often a cell measured twice seems to differ from itself";
     forecast, "forecast", forecast::Options, "simulated speedup on other machines, and how well this one is predicted";
     ranks_forecast, "ranks-forecast", ranks_forecast::Options, needs serial, "simulated speedup of several processes, and how well those here are predicted";
+    message_costs, "message-costs", NoOptions, "what messages between two processes cost, and how long one waits for a rank that computes";
     gallery, "gallery", NoOptions, "what every scene looks like, and what it calls for";
     scene_accuracy, "scene-accuracy", scene_accuracy::Options, "error, path length and price of accuracy by scene";
     effects, "effects", effects::Options, "what an effect costs: absent, compiled in but unused, used";
