@@ -44,19 +44,12 @@ impl Rounds {
 
     /// Renders until there are `spp` samples a pixel. If there are as many already nothing happens: films do not shrink.
     pub fn extend_to(&mut self, spp: u32, watch: Watch<'_>) -> Result<RoundTimes> {
-        check_spp(spp, &self.setup.settings().spec.estimator, self.setup.spp_multiple())?;
-        let sections = self.film.missing(spp);
-        if sections.is_empty() {
-            return Ok(RoundTimes::default());
-        }
-        let plan = self.setup.plan_of(&sections)?;
-        let plan = self.shard.map_or_else(|| plan.clone(), |shard| shard.part_of(&plan));
-        self.setup.check_jobs(plan.len())?;
-        let films = self.account.round(&self.setup, plan, &sections, watch)?;
-        for (samples, film) in sections.into_iter().zip(films) {
-            self.film.add(samples, film);
-        }
-        Ok(self.account.last)
+        self.extend(spp, |Self { setup, shard, account, .. }, sections| {
+            let plan = setup.plan_of(sections)?;
+            let plan = shard.map_or_else(|| plan.clone(), |shard| shard.part_of(&plan));
+            setup.check_jobs(plan.len())?;
+            account.round(setup, plan, sections, watch)
+        })
     }
 
     /// The same by several processes: `render` has them do the jobs of the sections that it is given. Not for a part of an image.
@@ -65,13 +58,23 @@ impl Rounds {
         spp: u32,
         render: impl FnOnce(&Setup, &[Range<u32>]) -> Result<Gathered>,
     ) -> Result<RoundTimes> {
+        self.extend(spp, |Self { setup, account, .. }, sections| {
+            account.assemble(setup, sections, render(setup, sections)?)
+        })
+    }
+
+    /// Adds what is missing; `round` gives the film of each section.
+    fn extend(
+        &mut self,
+        spp: u32,
+        round: impl FnOnce(&mut Self, &[Range<u32>]) -> Result<Vec<Film>>,
+    ) -> Result<RoundTimes> {
         check_spp(spp, &self.setup.settings().spec.estimator, self.setup.spp_multiple())?;
         let sections = self.film.missing(spp);
         if sections.is_empty() {
             return Ok(RoundTimes::default());
         }
-        let gathered = render(&self.setup, &sections)?;
-        let films = self.account.assemble(&self.setup, &sections, gathered)?;
+        let films = round(self, &sections)?;
         for (samples, film) in sections.into_iter().zip(films) {
             self.film.add(samples, film);
         }

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::forecasts::serial_costs;
 use super::results::Results;
-use super::rows::{Row, group};
+use super::rows::{Row, gathered};
 use super::table::Digits::{Decimals, Significant};
 use super::words::counted;
 use crate::analysis::quantile::median;
@@ -63,26 +63,24 @@ pub fn rank_predictions(
 ) -> Result<Vec<RankPrediction>> {
     let lab: &Lab = &results.definition.lab;
     let (serial, costs, processors) = (results.serial()?, serial_costs(results)?, results.processors());
-    let pairs: Vec<(&Row, &Row)> = serial.in_order(results).filter(|(row, _)| row.threads <= processors).collect();
-    let serial_of = |row: &Row| pairs.iter().find(|(own, _)| std::ptr::eq(*own, row)).map(|(_, serial)| *serial);
-    let of_ranks = pairs.iter().map(|(row, _)| *row).filter(|row| row.as_written().ranks.is_some());
-    let groups = group(of_ranks, |row| {
+    let pairs = serial.in_order(results).filter(|(row, _)| row.threads <= processors);
+    let groups = gathered(pairs.filter_map(|(row, serial)| {
         let written = row.as_written();
-        let crew = (written.ranks.unwrap_or(1), written.threads);
-        (written.rank_rule.clone(), written.strategy.clone(), written.decomposition.clone(), crew)
-    });
+        let crew = (written.ranks?, written.threads);
+        let key = (written.rank_rule.clone(), written.strategy.clone(), written.decomposition.clone(), crew);
+        Some((key, (row, serial)))
+    }));
     let mut predictions = Vec::new();
-    for ((rule, strategy, pieces, (ranks, threads)), rows) in groups {
+    for ((rule, strategy, pieces, (ranks, threads)), pairs) in groups {
         let crew = Crew { ranks: ranks.into(), threads };
         let way = lab.rank_rule("rank-rule", &rule)?.way();
         let Some(within) = within(contenders, &strategy, threads) else { continue };
         let cluster = Cluster { crew, within, messages, hardware: Hardware::default() };
-        let pair = |row: &&Row| {
-            let serial = serial_of(row)?;
+        let seconds = |(row, serial): &(&Row, &Row)| {
             let costs = costs.get(&(serial.cell.as_str(), serial.repetition))?;
             Some([cluster.makespan_s(costs, way), row.makespan_s?])
         };
-        let pairs: Vec<[f64; 2]> = rows.iter().filter_map(pair).collect();
+        let pairs: Vec<[f64; 2]> = pairs.iter().filter_map(seconds).collect();
         let middle = |value: fn(&[f64; 2]) -> f64| median(&pairs.iter().map(value).collect::<Vec<f64>>());
         let medians = (middle(|pair| pair[0]), middle(|pair| pair[1]), middle(|pair| pair[0] / pair[1]));
         if let (Some(predicted_s), Some(measured_s), Some(ratio)) = medians {

@@ -45,12 +45,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let contenders = contenders(lab, &read_calibration(&calibration)?);
     let messages = rank_forecasts::messages(&MessageCosts::read(&messages)?);
     let mut blocks = rank_prediction_blocks(&rank_predictions(results, &contenders, messages)?);
-    let serial: Vec<&Row> = results.rows().filter(|row| row.schedule.is_serial()).collect();
-    let most = serial.iter().map(|row| row.jobs).max();
-    let serial: Vec<&Row> = serial.into_iter().filter(|row| Some(row.jobs) == most).collect();
-    if let Some(row) = Results::typical(&serial)
-        && let Some(trace) = results.trace(row)?
-    {
+    if let Some(trace) = results.largest_serial_trace()? {
         let rules = rules.iter().map(|rule| lab.rank_rule("rules", rule)).collect::<Result<Vec<_>>>()?;
         let numbers = |numbers: Vec<NonZeroUsize>| numbers.into_iter().map(NonZeroUsize::get).collect::<Vec<_>>();
         let (ranks, threads) = (numbers(ranks), numbers(threads));
@@ -58,10 +53,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let plan =
             RankPlan { rules: &rules, strategy: &strategy, ranks: &ranks, threads: &threads, messages, hardware };
         let costs = trace.costs_s();
-        let pixels = f64::from(row.width) * f64::from(row.height);
+        let settings = &trace.header.settings;
+        let (spec, pieces) = (&settings.spec, &settings.decomposition);
+        let pixels = f64::from(spec.width) * f64::from(spec.height);
         let rows = rank_forecast(&plan, &contenders, &costs, pixels);
-        let of = format!("{}x{}, {} spp, {} {}", row.width, row.height, row.spp, costs.len(), row.decomposition);
-        blocks.extend(rank_forecast_blocks(&rows, &format!("{}, {of}, {strategy} within", row.scene)));
+        let of = format!("{}x{}, {} spp, {} {pieces}", spec.width, spec.height, settings.spp, costs.len());
+        blocks.extend(rank_forecast_blocks(&rows, &format!("{}, {of}, {strategy} within", settings.scene)));
     }
     Ok(blocks)
 }
