@@ -316,7 +316,7 @@ fn broken(cell: &str, is_text: bool) -> Markup {
         Some(at) => vec![&part[..at], &part[at + 1..]],
         None => vec![part.trim_end()],
     });
-    html! { @for part in parts { span { (part) } " " } }
+    html! { @for part in parts { span { (part.replace(" %", "\u{a0}%")) } " " } }
 }
 
 fn provenance(section: &Section) -> Markup {

@@ -53,13 +53,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.subtitle = results.workload();
     let intervals = lines.iter().filter_map(|line| Some(line.ratio?.interval));
     plot.caption = format!("Median of ratios within a repetition. Bars: {}.", confidence(intervals));
-    let table = Block::table("outputs-table", "Outputs: medians over repetitions", &lines)
+    // Not every output was tried on all pieces.
+    let measured = lines.iter().filter(|line| !line.rows.is_empty());
+    let table = Block::table("outputs-table", "Outputs: medians over repetitions", measured)
         .column("output", |line| line.output.to_string())
         .column("pieces", |line| line.decomposition.to_string())
         .column("threads", |line| line.threads.to_string())
         .number("median ms", Decimals(3), |line| line.typical(|row| Some(row.makespan_s? * 1e3)))
         .told(format!("time / time with {yardstick}"), Decimals(3), |line| {
-            line.ratio.map_or(Told::of(1.0, None), Told::from)
+            if line.output == yardstick { Some(Told::of(1.0, None)) } else { line.ratio.map(Told::from) }
         })
         .number("ms to put the film together", Decimals(3), |line| line.typical(|row| Some(row.merge_s? * 1e3)))
         .number("peak memory, MiB", Decimals(1), |line| {
