@@ -226,6 +226,25 @@ fn what_the_program_does_not_know_is_drawn() {
     }
 }
 
+/// An output that was tried on some pieces has no line for the others.
+#[test]
+fn outputs_are_told_only_where_they_were_tried() {
+    let rows = Record { decomposition: "rows".to_string(), ..row() };
+    let locked = Record { output: "locked".to_string(), makespan_s: Some(2.0), ..row() };
+    let results = results(&["outputs"], "", vec![row(), rows, locked]).unwrap();
+    let tables = blocks(&results).unwrap();
+    let table = tables.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None });
+    let told: Vec<[String; 4]> =
+        table.unwrap().rows().map(|row| [0, 1, 3, 4].map(|column: usize| row[column].clone())).collect();
+    let expected = [
+        ["slots", "rows", "1000.000", "1.000, no interval"],
+        ["slots", "tiles:2x2", "1000.000", "1.000, no interval"],
+        // One repetition gives no ratio with an interval.
+        ["locked", "tiles:2x2", "2000.000", "-"],
+    ];
+    assert_eq!(told, expected);
+}
+
 #[test]
 fn no_figure_goes_through_the_rows_once_for_each_of_many_groups() {
     for entry in FIGURES {
