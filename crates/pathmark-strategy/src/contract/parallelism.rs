@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, ThreadId};
 
 use super::case::{Case, run};
 use super::meeting::Meeting;
@@ -26,67 +26,80 @@ fn verdict(sharing: Sharing, meetings: impl Iterator<Item = Result<(), String>>)
     }
 }
 
-/// Many rounds, because a worker that leaves too early does so in a gap of nanoseconds.
-pub(super) fn all_meet(case: &Case) -> Result<(), String> {
+/// Many rounds, because a worker that leaves too early does so in a gap of nanoseconds, and one too many may come too late to meet others.
+pub(super) fn as_many_as_told(case: &Case) -> Result<(), String> {
     for threads in case.threads() {
         let mut strategy = case.ready(threads)?;
         for round in 0..30 {
+            let mut excess = Ok(());
             let meetings = Meeting::plans(case, threads)?.into_iter().map(|(jobs, meeting)| {
                 case.at(format!("{threads} threads, {jobs} jobs that wait for each other, round {round}"));
+                let seen = Arc::new(Seen::default());
                 let meeting = Arc::new(meeting);
-                let (place, runs) = (Arc::clone(&meeting), case.runs(jobs));
-                let noted = runs.clone();
+                let runs = case.runs(jobs);
+                let (noted, place, who) = (runs.clone(), Arc::clone(&meeting), Arc::clone(&seen));
                 let job = move |index| {
                     noted.note(index);
-                    place.wait(index);
+                    who.during(|| place.wait(index));
                 };
                 run(&mut *strategy, jobs, Arc::new(job))?;
                 runs.each_once()?;
-                meeting.met()
+                if excess.is_ok() {
+                    excess = seen.no_more_than(case.entry.workers.at_once(threads, jobs));
+                }
+                meeting.met()?;
+                seen.are(case.entry.workers, threads, jobs)
             });
-            verdict(case.entry.sharing, meetings)?;
+            let verdict = verdict(case.entry.sharing, meetings);
+            excess.and(verdict)?;
         }
     }
     Ok(())
 }
 
 /// The threads that jobs run on, and how many jobs run at a time.
-pub(super) fn no_more_than_asked(case: &Case) -> Result<(), String> {
-    for threads in case.threads() {
-        let meetings = Meeting::plans(case, threads)?.into_iter().map(|(jobs, meeting)| {
-            case.at(format!("{threads} threads, {jobs} jobs that wait for each other"));
-            let expected = case.entry.workers.at_once(threads, jobs);
-            let meeting = Arc::new(meeting);
-            let seen = Arc::new(Mutex::new(HashSet::new()));
-            let (running, most) = (AtomicUsize::new(0), Arc::new(AtomicUsize::new(0)));
-            let (place, ids, peak) = (Arc::clone(&meeting), Arc::clone(&seen), Arc::clone(&most));
-            let job = move |index| {
-                ids.lock().unwrap_or_else(PoisonError::into_inner).insert(thread::current().id());
-                peak.fetch_max(running.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
-                place.wait(index);
-                running.fetch_sub(1, Ordering::SeqCst);
-            };
-            run(&mut *case.ready(threads)?, jobs, Arc::new(job))?;
-            meeting.met()?;
-            let most = most.load(Ordering::SeqCst);
-            if most > expected {
-                return Err(format!("{most} jobs at a time instead of {expected}"));
-            }
-            let seen = seen.lock().unwrap_or_else(PoisonError::into_inner);
-            if seen.len() != expected {
-                return Err(format!("jobs ran on {} threads instead of {expected}", seen.len()));
-            }
-            let (on_caller, said) = (seen.contains(&thread::current().id()), case.entry.workers == Workers::Caller);
-            if on_caller != said {
-                let not = if on_caller { "" } else { "not " };
-                return Err(format!(
-                    "jobs ran {not}on the caller's thread, but its workers are {:?}",
-                    case.entry.workers
-                ));
-            }
-            Ok(())
-        });
-        verdict(case.entry.sharing, meetings)?;
+#[derive(Default)]
+struct Seen {
+    threads: Mutex<HashSet<ThreadId>>,
+    running: AtomicUsize,
+    most: AtomicUsize,
+}
+
+impl Seen {
+    fn during(&self, job: impl FnOnce()) {
+        self.threads().insert(thread::current().id());
+        self.most.fetch_max(self.running.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+        job();
+        self.running.fetch_sub(1, Ordering::SeqCst);
     }
-    Ok(())
+
+    fn threads(&self) -> MutexGuard<'_, HashSet<ThreadId>> {
+        self.threads.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn no_more_than(&self, expected: usize) -> Result<(), String> {
+        let most = self.most.load(Ordering::SeqCst);
+        if most > expected {
+            return Err(format!("{most} jobs at a time instead of {expected}"));
+        }
+        let threads = self.threads().len();
+        if threads > expected {
+            return Err(format!("jobs ran on {threads} threads instead of {expected}"));
+        }
+        Ok(())
+    }
+
+    /// That jobs ran on as many threads as `workers` says, and on the caller's only where it says so.
+    fn are(&self, workers: Workers, threads: usize, jobs: usize) -> Result<(), String> {
+        let (seen, expected) = (self.threads(), workers.at_once(threads, jobs));
+        if seen.len() != expected {
+            return Err(format!("jobs ran on {} threads instead of {expected}", seen.len()));
+        }
+        let (on_caller, said) = (seen.contains(&thread::current().id()), workers == Workers::Caller);
+        if on_caller != said {
+            let not = if on_caller { "" } else { "not " };
+            return Err(format!("jobs ran {not}on the caller's thread, but its workers are {workers:?}"));
+        }
+        Ok(())
+    }
 }

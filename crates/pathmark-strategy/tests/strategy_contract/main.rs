@@ -5,6 +5,9 @@ mod broken;
 mod openmp;
 mod refusals;
 
+use std::sync::Mutex;
+use std::thread;
+
 use pathmark_strategy::contract::Contract;
 use pathmark_strategy::{Entry, STRATEGIES, find};
 
@@ -15,11 +18,23 @@ fn verify(entry: &Entry, parameter: Option<&str>) {
     contract.verify(entry).unwrap_or_else(|violations| panic!("{}: {violations:#?}", entry.name));
 }
 
+/// Four at a time, because a trial waits more than it works; no more, so that waiting for each other is no matter of patience.
+fn verify_all(trials: &[(&Entry, Option<&str>)]) {
+    let next = Mutex::new(trials.iter());
+    thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                while let Some((entry, parameter)) = { next.lock().unwrap().next() } {
+                    verify(entry, *parameter);
+                }
+            });
+        }
+    });
+}
+
 #[test]
 fn every_strategy_keeps_the_contract() {
-    for entry in STRATEGIES {
-        verify(entry, None);
-    }
+    verify_all(&STRATEGIES.iter().map(|entry| (entry, None)).collect::<Vec<_>>());
 }
 
 /// Every parameter that a strategy's documentation names.
@@ -38,12 +53,11 @@ const PARAMETERS: &[(&str, &[&str])] = &[
 
 #[test]
 fn every_parameter_keeps_the_contract() {
-    for (name, parameters) in PARAMETERS {
+    let trials = PARAMETERS.iter().flat_map(|(name, parameters)| {
         let entry = find(name).expect("it is in the table");
-        for parameter in *parameters {
-            verify(entry, Some(parameter));
-        }
-    }
+        parameters.iter().map(move |&parameter| (entry, Some(parameter)))
+    });
+    verify_all(&trials.collect::<Vec<_>>());
     // Who has a parameter is in the list.
     let listed = |entry: &&Entry| PARAMETERS.iter().any(|(name, _)| *name == entry.name);
     assert!(STRATEGIES.iter().filter(|entry| entry.parameter.is_some()).all(|entry| listed(&entry)));

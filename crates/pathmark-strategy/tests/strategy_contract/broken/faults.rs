@@ -1,5 +1,6 @@
 //! What can be wrong with an entry and with threads.
 
+use std::sync::{Arc, Barrier};
 use std::thread;
 
 use pathmark_strategy::contract::Promise;
@@ -32,7 +33,19 @@ pub(super) const FAULTS: &[Fault] = &[
     (
         "a worker too many",
         Promise::Workers,
-        made_by(|Blueprint { threads, spawner, .. }| of_threads("fixed-pool", threads.get() + 1, spawner)),
+        runs!(|broken, jobs, job| {
+            let Blueprint { threads, spawner, .. } = &broken.blueprint;
+            let workers = threads.get() + 1;
+            // Each of them takes a job, whoever is first: the first jobs wait until all have one.
+            let all = Barrier::new(workers);
+            let together = move |index| {
+                if jobs >= workers && index < workers {
+                    all.wait();
+                }
+                job(index);
+            };
+            of_threads("shared-counter", workers, spawner)?.run(jobs, Arc::new(together))
+        }),
     ),
     ("jobs on the caller's thread", Promise::Workers, made_by(|blueprint| other("serial", blueprint))),
     ("a worker keeps jobs to itself", Promise::Workers, made_by(|blueprint| other("dynamic:2", blueprint))),
@@ -115,7 +128,7 @@ pub(super) const FAULTS: &[Fault] = &[
         "a job runs again if a thread is refused",
         Promise::Refusals,
         runs!(|broken, jobs, job| {
-            let outcome = broken.inner.run(jobs, std::sync::Arc::clone(&job));
+            let outcome = broken.inner.run(jobs, Arc::clone(&job));
             if outcome.is_err() {
                 (0..2).for_each(|_| job(0));
             }
