@@ -5,8 +5,10 @@
 //! sequentially rejective multiple test procedure", Scandinavian Journal of Statistics 6 (1979). The chance that any order told is wrong is then
 //! at most what was asked for, whatever the distributions are and however the comparisons depend on each other.
 
+use super::confidence_sequence::median_sequence;
 use super::interval::is_level;
 use statrs::distribution::{Binomial, DiscreteCDF};
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The pairs (less, more) of things that are told apart by their values in blocks; `miss` is the chance that any of them is wrong, in (0, 1).
@@ -23,12 +25,8 @@ pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(u
     let mut tests = Vec::new();
     for (a, of_a) in things.iter().enumerate() {
         for (b, of_b) in things.iter().enumerate().take(a) {
-            let pairs = || of_a.iter().filter_map(|(block, value)| Some((*value, *of_b.get(block)?)));
-            let wins = pairs().filter(|(a, b)| a < b).count() as u64;
-            let losses = pairs().filter(|(a, b)| a > b).count() as u64;
-            let Ok(chance) = Binomial::new(0.5, wins + losses) else { continue };
-            tests.push((chance.cdf(losses), (a, b)));
-            tests.push((chance.cdf(wins), (b, a)));
+            tests.push((sign_test(of_a, of_b), (a, b)));
+            tests.push((sign_test(of_b, of_a), (b, a)));
         }
     }
     tests.sort_by(|x, y| x.0.total_cmp(&y.0));
@@ -36,6 +34,28 @@ pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(u
     let rejected =
         tests.into_iter().enumerate().take_while(|(at, (p, _))| is_level(miss) && *p <= miss / (count - at) as f64);
     rejected.map(|(_, (_, pair))| pair).collect()
+}
+
+/// Whether the first of two things is less, by a one-sided sign test that misses with that probability at most.
+pub fn is_less<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>, miss: f64) -> bool {
+    is_level(miss) && sign_test(first, second) <= miss
+}
+
+/// How likely it is that the first is less in so many blocks, or more, if it is less in half of them.
+fn sign_test<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>) -> f64 {
+    let pairs = || first.iter().filter_map(|(block, value)| Some((*value, *second.get(block)?)));
+    let wins = pairs().filter(|(a, b)| a < b).count() as u64;
+    let losses = pairs().filter(|(a, b)| a > b).count() as u64;
+    Binomial::new(0.5, wins + losses).map_or(1.0, |chance| chance.cdf(losses))
+}
+
+/// Whether the first of two things is less or greater by the median of their ratios, as far as it is known at this look: all looks together miss
+/// with that probability at most.
+pub fn order_so_far<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>, miss: f64) -> Option<Ordering> {
+    let ratios: Vec<f64> = first.iter().filter_map(|(block, value)| Some(value / second.get(block)?)).collect();
+    let interval = median_sequence(&ratios, 1.0 - miss)?;
+    let is_known = !interval.contains(1.0);
+    is_known.then(|| interval.low.total_cmp(&1.0))
 }
 
 /// The fewest blocks in which any two of so many things can be told apart.

@@ -65,7 +65,12 @@ fn table(image: &ImageRanking) -> String {
         let Place { ratio, median_s, schedule, .. } = place;
         format!("{ratio:>8.3} {interval:>16} {:>8.1} ms  {:width$}  {schedule}", 1e3 * median_s, letters(place))
     };
-    [image.image.clone(), head].into_iter().chain(image.places.iter().map(line)).collect::<Vec<_>>().join("\n")
+    let fastest = match image.places.len() - image.fastest.len() {
+        0 => "any of them may be the fastest".to_string(),
+        _ => format!("the fastest is among, with 95 % confidence: {}", image.fastest.join(", ")),
+    };
+    let lines = [image.image.clone(), head].into_iter().chain(image.places.iter().map(line));
+    lines.chain([fastest]).collect::<Vec<_>>().join("\n")
 }
 
 fn object(found: &Ranking) -> Value {
@@ -76,7 +81,7 @@ fn object(found: &Ranking) -> Value {
                 "median_s": number(place.median_s), "repetitions": place.repetitions,
             })
         };
-        json!({ "image": image.image, "places": image.places.iter().map(place).collect::<Vec<_>>() })
+        json!({ "image": image.image, "fastest": image.fastest, "places": image.places.iter().map(place).collect::<Vec<_>>() })
     };
     json!({
         "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,

@@ -17,6 +17,8 @@ pub struct Cell {
     pub points: Vec<CellPoint>,
     /// Samples that one of this machine's processors has to render: how long it takes, in the same unit for all cells.
     pub weight: u64,
+    /// The most repetitions that its matrix allows, whatever its experiment has.
+    pub at_most: Option<u32>,
     /// The other program that renders it, if it is not this one.
     pub external: Option<External>,
 }
@@ -40,6 +42,11 @@ impl CellPoint {
 }
 
 impl Cell {
+    /// How often it is run where others are run so many times.
+    pub(super) fn repetitions(&self, others: u32) -> u32 {
+        self.at_most.map_or(others, |most| most.min(others))
+    }
+
     /// Whether it is one after the other on one thread.
     pub(super) fn is_serial(&self) -> bool {
         self.settings.is_serial()
@@ -98,7 +105,7 @@ impl Cell {
         let samples = u64::from(spec.width) * u64::from(spec.height) * u64::from(settings.spp);
         let weight = samples / settings.workers(settings.threads).min(available_threads()) as u64;
         let scene = SceneVersion::of(setup);
-        Self { id, points, weight: weight.max(1), external: None, scene, settings }
+        Self { id, points, weight: weight.max(1), at_most: None, external: None, scene, settings }
     }
 
     /// Whether it has one of the values that a filter `field=value,value...` asks for.

@@ -20,7 +20,8 @@
 //! decomposition = ["tiles:32x32"]
 //! # There may be several, each under [[matrix]]. Optional: sampler, output, effects, accelerator, roulette, max-depth, size (instead of the
 //! # profile's), kernel, simd, precision, clamp, filter, epsilon, weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
-//! # fewest samples on the way to each spp. profiles = ["reports"] is for a matrix that other profiles do not have.
+//! # fewest samples on the way to each spp. profiles = ["reports"] is for a matrix that other profiles do not have, and repetitions = 3 for one
+//! # whose cells are run no more often.
 //!
 //! [figure.price-list]            # optional: what a figure of the list above is told
 //! goals = [0.1, 0.01]
@@ -31,7 +32,7 @@
 //!
 //! [quick]                        # what `--quick` renders; the profile may replace any axis of the matrices
 //! size = [128, 96]
-//! repetitions = 6                # or { until = "3 %", at-most = 200, within = "60 s" }
+//! repetitions = 6                # or { until = "3 %", at-most = 200, within = "60 s" }; until = "fastest" or "order" compares schedules
 //! reference-spp = 2000           # optional: ten times the largest spp
 //!
 //! [full]                         # `--full`; without any of [quick], [full] and [reports] there is a [quick] of 320x240, 6 repetitions

@@ -150,7 +150,8 @@ impl Definition {
                 let points = vec![CellPoint { id: id.clone(), spp, image: id.clone() }];
                 let version = SceneVersion { hash: scene.hash.clone(), files: scene.files.clone() };
                 let external = Some(external.clone());
-                let cell = Cell { id, settings, scene: version, points, weight: samples.max(1), external };
+                let cell =
+                    Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
                 match cells.iter().find(|known: &&Cell| known.id == cell.id) {
                     None => cells.push(cell),
                     // Curves share their beginnings, and a list may name a number twice.

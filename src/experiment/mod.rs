@@ -59,7 +59,7 @@ pub use run_file::{MACHINE, RunFile, read_run_file};
 pub use scene_version::SceneVersion;
 pub use sweep::{Options, Summary, Sweep};
 pub use sweep_shard::SweepShard;
-pub use until::{MOST_REPETITIONS, Until};
+pub use until::{Goal, MOST_REPETITIONS, Until};
 
 /// Told how far long work has come. Implemented by the command line.
 pub trait Progress: Sync {

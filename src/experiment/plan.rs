@@ -143,6 +143,7 @@ impl Sweep<'_> {
         }
         let mut images = HashSet::new();
         for cell in &self.cells {
+            let repetitions = cell.repetitions(repetitions);
             plan.rows += cell.points.len() * repetitions as usize;
             if cell.external.is_none() {
                 let once = cell.weight as f64 * prices.sample_s(&cell.settings)? + ROW_S;
@@ -155,6 +156,11 @@ impl Sweep<'_> {
             if definition.keeps(Keep::Images) {
                 images.extend(cell.points.iter().map(|point| (point.image.as_str(), pixels(cell))));
             }
+        }
+        if let Some(within) = self.until.as_ref().and_then(|until| until.within) {
+            let share = (within.as_secs_f64() / plan.cells_s).min(1.0);
+            plan.cells_s *= share;
+            plan.rows = (plan.rows as f64 * share).ceil() as usize;
         }
         plan.bytes += plan.rows as u64 * BYTES[0];
         plan.bytes += images.iter().map(|(_, pixels)| pixels * BYTES[2]).sum::<u64>();

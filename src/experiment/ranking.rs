@@ -11,18 +11,19 @@ use super::until::MOST_REPETITIONS;
 use crate::analysis::Interval;
 use crate::analysis::confidence_sequence::{Stopping, median_sequence};
 use crate::analysis::quantile::median;
-use crate::analysis::ranking::{groups, least_blocks, told_apart};
+use crate::analysis::ranking::{groups, is_less, least_blocks, order_so_far, told_apart};
 use crate::error::{InputError, Result};
 use crate::input::read_text;
 use crate::lab::Lab;
 use crate::measure::{Doubts, ImageKey, Record};
 use serde::Serialize;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
 /// The chance that any order told is wrong.
-const MISS: f64 = 0.05;
+pub(super) const MISS: f64 = 0.05;
 
 /// A schedule's place among those of its image.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,6 +50,8 @@ pub struct ImageRanking {
     pub image: String,
     /// The schedules.
     pub places: Vec<Place>,
+    /// Those of which none is known to be slower than another one: the fastest is among them with 95 % confidence, for all images together.
+    pub fastest: Vec<String>,
 }
 
 /// The schedules of all images of an experiment.
@@ -101,6 +104,7 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
             .map(|(image, schedules)| ImageRanking {
                 image: image.to_string(),
                 places: placed(schedules, MISS * tests(schedules) / all, level, stopping),
+                fastest: fastest(schedules, MISS / (places - images.len()) as f64, stopping),
             })
             .collect(),
     })
@@ -133,10 +137,9 @@ fn orders(times: &[Times], miss: f64, stopping: Stopping) -> BTreeSet<(usize, us
     let mut told = BTreeSet::new();
     for (a, of_a) in times.iter().enumerate() {
         for (b, of_b) in times.iter().enumerate().take(a) {
-            let ratios: Vec<f64> = of_a.iter().filter_map(|(at, seconds)| Some(seconds / of_b.get(at)?)).collect();
-            match median_sequence(&ratios, sequence_level(times.len(), miss)) {
-                Some(interval) if interval.low > 1.0 => told.insert((b, a)),
-                Some(interval) if interval.high < 1.0 => told.insert((a, b)),
+            match order_so_far(of_a, of_b, 1.0 - sequence_level(times.len(), miss)) {
+                Some(Ordering::Greater) => told.insert((b, a)),
+                Some(Ordering::Less) => told.insert((a, b)),
                 _ => false,
             };
         }
@@ -157,6 +160,16 @@ fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
     let is_enough =
         |count: &u32| median_sequence(&vec![1.0; *count as usize], sequence_level(schedules, miss)).is_some();
     (1..MOST_REPETITIONS).find(is_enough).unwrap_or(MOST_REPETITIONS)
+}
+
+/// The schedules that no other one is faster than, where each comparison may miss with that probability.
+fn fastest(schedules: &BTreeMap<String, Times>, miss: f64, stopping: Stopping) -> Vec<String> {
+    let is_slower = |own: &Times, other: &Times| match stopping {
+        Stopping::Fixed => is_less(other, own, miss),
+        Stopping::Sequential => order_so_far(other, own, 2.0 * miss) == Some(Ordering::Less),
+    };
+    let is_left = |own: &Times| schedules.values().all(|other| !is_slower(own, other));
+    schedules.iter().filter(|(_, own)| is_left(own)).map(|(name, _)| name.clone()).collect()
 }
 
 /// Schedules in the order of their times over the median time of their repetition.
@@ -228,5 +241,18 @@ mod tests {
         ]);
         let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
         assert!(places.iter().all(|place| place.ratio.is_finite()), "{places:?}");
+    }
+
+    /// One comparison for each of the two others: six repetitions of one order, 1/64 <= .05 / 2, and seven would be 1/128.
+    #[test]
+    fn the_fastest_is_among_those_that_none_is_faster_than() {
+        let of = |count: u32, factor: f64| (0..count).map(|at| (at, factor)).collect::<Times>();
+        let left = |count: u32, stopping: Stopping| {
+            let three =
+                [("a", 1.0), ("b", 1.1), ("c", 2.0)].map(|(name, factor)| (name.to_string(), of(count, factor)));
+            fastest(&BTreeMap::from(three), MISS / 2.0, stopping).len()
+        };
+        assert_eq!((left(5, Stopping::Fixed), left(6, Stopping::Fixed)), (3, 1));
+        assert_eq!((left(7, Stopping::Sequential), left(8, Stopping::Sequential)), (3, 1));
     }
 }

@@ -24,7 +24,7 @@ pub struct RunFile {
     /// The other program whose rows were measured in turns with these; none if there was none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
-    /// The limit to which cells were to be decided, where repetitions went on until they were; none if their number was fixed.
+    /// The share to which cells were to be decided, `fastest` or `order`, where repetitions went on until they were; none if their number was fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.

@@ -4,11 +4,11 @@ use super::against::Against;
 use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::sweep::{Summary, Sweep};
-use super::until::Decisions;
+use super::until::{Decisions, Goal};
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
 use crate::measure::{Doubts, Record};
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 
 /// What a sweep knows of the rows so far, and where it puts the next ones.
@@ -143,9 +143,35 @@ impl<'a> Running<'a> {
         Ok(())
     }
 
-    /// The cells of which not enough is known yet: on which side of the limit the ratio of both builds is, or, of one build, what they are compared
-    /// by; and the serial runs beside them.
-    pub(super) fn undecided(&self, limit: f64) -> Vec<usize> {
+    /// The cells of which not enough is known yet.
+    pub(super) fn undecided(&self, goal: Goal) -> Vec<usize> {
+        match goal {
+            Goal::Share(limit) => self.unknown(limit),
+            Goal::Fastest | Goal::Order => self.unordered(goal),
+        }
+    }
+
+    /// The cells whose place among the schedules of their image is not known, and those that are run so many times and not compared. A curve's
+    /// place is that of its end.
+    fn unordered(&self, goal: Goal) -> Vec<usize> {
+        let mut images: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
+        let (compared, counted): (Vec<_>, Vec<_>) =
+            self.sweep.cells.iter().enumerate().partition(|(_, cell)| cell.at_most.is_none());
+        for (index, cell) in compared {
+            if let Some(end) = cell.points.last() {
+                images.entry(&end.image).or_default().push((index, &end.id));
+            }
+        }
+        let ids: Vec<Vec<&str>> = images.values().map(|cells| cells.iter().map(|(_, id)| *id).collect()).collect();
+        let open = self.decisions.open_schedules(&ids, goal);
+        let cells = images.values().flatten().zip(open.into_iter().flatten());
+        let open = cells.filter(|(_, is_open)| *is_open).map(|((index, _), _)| *index);
+        open.chain(counted.into_iter().map(|(index, _)| index)).collect()
+    }
+
+    /// The cells of which it is not known on which side of the limit the ratio of both builds is, or, of one build, what they are compared by; and
+    /// the serial runs beside them.
+    fn unknown(&self, limit: f64) -> Vec<usize> {
         let cells = &self.sweep.cells;
         let count = cells.iter().map(|cell| cell.points.len()).sum();
         let is_decided = |index: usize, point: &CellPoint| {

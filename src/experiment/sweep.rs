@@ -81,14 +81,18 @@ pub struct Sweep<'a> {
     pub(super) options: &'a Options,
     pub(super) cells: Vec<Cell>,
     pub(super) references: Vec<Reference>,
-    until: Option<Until>,
+    pub(super) until: Option<Until>,
 }
 
 impl<'a> Sweep<'a> {
     /// Checks an experiment and enters its files into those of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
         let cells = filtered(&definition.cells(options.profile)?, options)?;
-        let cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
+        let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
+        if options.repetitions.is_some() || options.until.is_some() {
+            // Whoever says how often means all cells.
+            cells.iter_mut().for_each(|cell| cell.at_most = None);
+        }
         if let Some(figure) = options.serial_for.filter(|_| !cells.iter().any(Cell::is_serial)) {
             let error = InputError::new("strategy", "", format!("the figure `{figure}` compares with serial runs"));
             return Err(definition.located(options.profile, error.allowed("serial beside the other strategies")));
@@ -126,7 +130,15 @@ impl<'a> Sweep<'a> {
         for name in OWN_FILES {
             files.claims("out", &folder.join(name))?;
         }
-        let until = options.until.clone().or(definition.until(options.profile)?.cloned());
+        let until = match &options.until {
+            Some(until) => Some(until.clone()),
+            None if options.repetitions.is_some() => None,
+            None => definition.until(options.profile)?.cloned(),
+        };
+        if let Some(goal) = until.as_ref().filter(|until| until.goal.is_of_schedules() && options.against.is_some()) {
+            let problem = "compares schedules with each other, and --against compares each with another build";
+            return Err(InputError::new("until", &goal.text, problem).allowed("a share, as 3%").into());
+        }
         Ok(Self { definition, options, cells, references, until })
     }
 
@@ -170,15 +182,16 @@ impl<'a> Sweep<'a> {
         let repetitions = self.repetitions()?;
         let rows = (file, done);
         let mut running = Running::new(self, folder, references, against, rows, progress);
-        let total: u64 = cells.iter().map(|cell| cell.weight).sum::<u64>() * u64::from(repetitions);
+        let total: u64 = cells.iter().map(|cell| cell.weight * u64::from(cell.repetitions(repetitions))).sum();
         let (mut units, begun, mut open) = (0, Instant::now(), cells.len());
         progress.begin(&definition.name, total);
         for repetition in 0..repetitions {
-            let undecided = match until {
+            let mut undecided = match until {
                 Some(until) if repetition > 0 && until.is_over(begun.elapsed()) => break,
-                Some(until) => running.undecided(until.limit),
+                Some(until) => running.undecided(until.goal),
                 None => (0..cells.len()).collect(),
             };
+            undecided.retain(|index| repetition < cells[*index].repetitions(repetitions));
             if undecided.len() < open {
                 open = undecided.len();
                 progress.note(&format!("{} of {} cells decided", cells.len() - open, cells.len()));
@@ -187,7 +200,7 @@ impl<'a> Sweep<'a> {
                 if undecided.contains(&index) {
                     running.cell(index, repetition)?;
                 }
-                units += cells[index].weight;
+                units += if repetition < cells[index].repetitions(repetitions) { cells[index].weight } else { 0 };
                 progress.advance(units);
             }
             if undecided.is_empty() {

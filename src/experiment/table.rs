@@ -24,6 +24,8 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) profiles: Option<Vec<Profile>>,
     /// How often each cell is run; at most, where it is `until` something.
     pub(super) repetitions: u32,
+    /// The most that the cells of the matrix are run.
+    pub(super) at_most: Option<u32>,
     pub(super) until: Option<Until>,
     pub(super) reference_spp: Option<u32>,
 }
@@ -90,7 +92,8 @@ struct Key<const PROFILE: bool>(String);
 impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
-        let others: &[&str] = if PROFILE { &["repetitions", REFERENCE_SPP] } else { &["weak", "curve", "profiles"] };
+        let others: &[&str] =
+            if PROFILE { &["repetitions", REFERENCE_SPP] } else { &["repetitions", "weak", "curve", "profiles"] };
         let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
         if known.contains(&name.as_str()) {
             return Ok(Self(name));
@@ -168,6 +171,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                 (None, "weak") => table.weak = map.next_value()?,
                 (None, "curve") => table.curve = map.next_value()?,
                 (None, "profiles") => table.profiles = Some(map.next_value()?),
+                (None, "repetitions") if !PROFILE => table.at_most = Some(map.next_value()?),
                 (None, "repetitions") => match map.next_value()? {
                     Repetitions::Count(count) => (table.repetitions, table.until) = (count, None),
                     Repetitions::Until { until, at_most, within } => {

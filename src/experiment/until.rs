@@ -1,16 +1,19 @@
 //! Repetitions that go on until enough is known: `run EXPERIMENT --until 3%`, or `repetitions = { until = "3 %" }` in its file.
 //!
-//! With another build beside this one (`--against OLD`), a cell is decided when the interval of its ratio of times lies above 1 plus the limit, below 1,
+//! With a share as the goal, cells are decided one by one. With another build beside this one (`--against OLD`), a cell is decided when the interval of its ratio of times lies above 1 plus the limit, below 1,
 //! or within the limit of 1. Otherwise it is decided when its speedup over the serial run of its image, or its time where there is no serial run, is
 //! known to within the limit. Intervals hold at every look ([`crate::analysis::confidence_sequence`]), so stopping by them does not make them wrong.
 //! What is decided is left out of later repetitions; serial runs go on beside the cells that are compared with them.
 
 use super::diff::{Change, Pairing, compared, level_of, parse_share};
+use super::ranking::MISS;
 use crate::analysis::Interval;
 use crate::analysis::confidence_sequence::median_sequence;
 use crate::analysis::quantile::median;
-use crate::error::{InputError, Result};
+use crate::analysis::ranking::order_so_far;
+use crate::error::{Error, InputError, Result};
 use crate::measure::Record;
+use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::time::Duration;
 
@@ -20,37 +23,70 @@ const LEVEL: f64 = 0.95;
 /// As many repetitions as a comparison takes, if nobody says how many it may.
 pub const MOST_REPETITIONS: u32 = 200;
 
+/// What is to be known.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Goal {
+    /// By which share a cell got slower than in another build; or, of one build, what it is compared by, to within that share.
+    Share(f64),
+    /// The fastest schedule of each image: a cell is left out once another one is faster (successive elimination: E. Even-Dar, S. Mannor and
+    /// Y. Mansour, "Action elimination and stopping conditions for the multi-armed bandit and reinforcement learning problems", 2006).
+    Fastest,
+    /// The order of the schedules of each image: a cell is left out once it is told apart from every other one.
+    Order,
+}
+
+impl Goal {
+    /// Goals that are no share, by the words for them.
+    const WORDS: [(&'static str, Self); 2] = [("fastest", Self::Fastest), ("order", Self::Order)];
+
+    /// Whether it compares schedules with each other.
+    pub(super) fn is_of_schedules(self) -> bool {
+        Self::WORDS.iter().any(|(_, goal)| *goal == self)
+    }
+}
+
 /// When to stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Until {
-    /// The share by which a cell may get slower, or to which what it is compared by is to be known.
-    pub limit: f64,
-    /// The limit as the user gave it.
+    /// What is to be known.
+    pub goal: Goal,
+    /// The goal as the user gave it.
     pub text: String,
     /// No repetition begins later than that.
     pub within: Option<Duration>,
 }
 
 impl Until {
-    /// From text: `3%` or `0.03`, and `60s`.
-    pub fn parse(limit: &str, within: Option<&str>) -> Result<Self> {
+    /// From text: `3%` or `0.03`, `fastest` or `order`, and `60s`.
+    pub fn parse(goal: &str, within: Option<&str>) -> Result<Self> {
         let length = |text: &str| -> Result<Duration> {
             let wrong = || InputError::new("within", text, "is no length of time").allowed("60s, or 2min");
             Ok(humantime::parse_duration(text).map_err(|_| wrong())?)
         };
         let within = within.map(length).transpose()?;
-        let share = parse_share("until", limit)?;
-        if share <= 0.0 {
-            let problem = "would never be reached: no interval of times has no width";
-            return Err(InputError::new("until", limit, problem).allowed("a share above 0, as 3%").into());
-        }
-        Ok(Self { limit: share, text: limit.to_string(), within })
+        let word = Goal::WORDS.iter().find(|(word, _)| *word == goal.trim());
+        let goal_of = word.map_or_else(|| share(goal).map(Goal::Share), |(_, goal)| Ok(*goal));
+        Ok(Self { goal: goal_of?, text: goal.to_string(), within })
     }
 
     /// Whether no repetition may begin any more.
     pub(super) fn is_over(&self, elapsed: Duration) -> bool {
         self.within.is_some_and(|within| elapsed >= within)
     }
+}
+
+/// A share that repetitions can reach.
+fn share(text: &str) -> Result<f64> {
+    const ALLOWED: &str = "a share above 0, as 3%, or fastest, or order";
+    let share = parse_share("until", text).map_err(|error| match error {
+        Error::Input(input) => Error::from(input.allowed(ALLOWED)),
+        other => other,
+    })?;
+    if share <= 0.0 {
+        let problem = "would never be reached: no interval of times has no width";
+        return Err(InputError::new("until", text, problem).allowed(ALLOWED).into());
+    }
+    Ok(share)
 }
 
 /// The seconds of both builds so far, by cell and repetition.
@@ -97,6 +133,40 @@ impl Decisions {
         let width = |(middle, interval): (f64, Interval)| (interval.high - interval.low) / middle;
         median(&values).zip(median_sequence(&values, LEVEL)).is_some_and(|found| width(found) <= 2.0 * limit)
     }
+
+    /// Which cells are open, image by image: those of which it is not known yet whether another schedule is faster, or which are not told apart
+    /// from all others. What is told of all images together is wrong with a probability of 5 % at most.
+    pub(super) fn open_schedules(&self, images: &[Vec<&str>], goal: Goal) -> Vec<Vec<bool>> {
+        let comparisons = |cells: usize| match goal {
+            // Only those with the fastest one can make it lose.
+            Goal::Fastest => cells.saturating_sub(1),
+            _ => cells * cells.saturating_sub(1) / 2,
+        };
+        let all: usize = images.iter().map(|cells| comparisons(cells.len())).sum();
+        // A wrong order of one pair has two sides, of which one can make the fastest lose.
+        let sides = if goal == Goal::Fastest { 2.0 } else { 1.0 };
+        let miss = (sides * MISS / all.max(1) as f64).min(1.0);
+        images.iter().map(|cells| self.open_of(cells, goal, miss)).collect()
+    }
+
+    /// As [`Self::open_schedules`], of one image and at a miss for each pair.
+    fn open_of(&self, cells: &[&str], goal: Goal, miss: f64) -> Vec<bool> {
+        let nothing = BTreeMap::new();
+        let times: Vec<_> = cells.iter().map(|cell| self.times.get(*cell).map_or(&nothing, |[_, new]| new)).collect();
+        let is_comparable = |at: usize| !self.without_time.contains(cells[at]);
+        let others = |own: usize| (0..cells.len()).filter(move |other| *other != own && is_comparable(*other));
+        let is_open = |own: usize| {
+            let order = |other: usize| order_so_far(times[own], times[other], miss);
+            is_comparable(own)
+                && match goal {
+                    Goal::Fastest => others(own).all(|other| order(other) != Some(Ordering::Greater)),
+                    _ => others(own).any(|other| order(other).is_none()),
+                }
+        };
+        let open: Vec<bool> = (0..cells.len()).map(is_open).collect();
+        // One alone is the fastest.
+        if open.iter().filter(|is_open| **is_open).count() > 1 { open } else { vec![false; cells.len()] }
+    }
 }
 
 #[cfg(test)]
@@ -133,5 +203,44 @@ mod tests {
         let decisions = noted(&[("failed", &[f64::NAN]), ("sound", &[1.0; 9])]);
         assert!(decisions.is_known("failed", None, 0.01) && decisions.is_known("sound", None, 0.01));
         assert!(decisions.is_known("sound", Some("failed"), 0.01));
+    }
+
+    /// After n repetitions of one order the stake is nearly 2^(n + 1) / (n + 1). Each of two comparisons with the fastest needs 40, which eight
+    /// repetitions give, and each of three pairs 120, which ten give.
+    #[test]
+    fn a_schedule_is_left_out_once_another_is_faster() {
+        let [fast, close, slow] = [1.0, 1.01, 2.0].map(|own| [own; 10]);
+        let cells: &[Vec<&str>] = &[vec!["fast", "close", "slow"]];
+        let open = |count: usize, goal: Goal| {
+            let all = noted(&[("fast", &fast[..count]), ("close", &close[..count]), ("slow", &slow[..count])]);
+            all.open_schedules(cells, goal).concat()
+        };
+        assert_eq!(open(7, Goal::Fastest), [true; 3]);
+        assert_eq!(open(8, Goal::Fastest), [false; 3], "the only one that is left needs no more repetitions");
+        assert_eq!((open(9, Goal::Order), open(10, Goal::Order)), (vec![true; 3], vec![false; 3]));
+    }
+
+    /// The two fast ones take turns, so only the third can be left out; nobody waits for one that failed or for an image's only schedule.
+    #[test]
+    fn schedules_that_take_turns_stay() {
+        let turns = |first: usize| -> Vec<f64> { (0..20).map(|at| [1.0, 1.1][(at + first) % 2]).collect() };
+        let (a, b, slow, failed) = (turns(0), turns(1), vec![3.0; 20], vec![f64::NAN; 20]);
+        let all = noted(&[("a", &a), ("b", &b), ("slow", &slow), ("failed", &failed), ("alone", &slow)]);
+        let images = [vec!["a", "slow", "failed", "b"], vec!["alone"], vec!["failed", "alone"]];
+        for goal in [Goal::Fastest, Goal::Order] {
+            let open = all.open_schedules(&images, goal);
+            assert_eq!(open, [vec![true, false, false, true], vec![false], vec![false; 2]], "{goal:?}");
+        }
+    }
+
+    #[test]
+    fn goals_have_words() {
+        let goal = |text: &str| Until::parse(text, None).map(|until| until.goal);
+        assert_eq!(goal("fastest").unwrap(), Goal::Fastest);
+        assert_eq!((goal("order").unwrap(), goal("3 %").unwrap()), (Goal::Order, Goal::Share(0.03)));
+        for wrong in ["slowest", "0%", "-1%"] {
+            let error = goal(wrong).unwrap_err().to_string();
+            assert!(error.contains(wrong) && error.contains("fastest, or order"), "{error}");
+        }
     }
 }

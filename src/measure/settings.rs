@@ -7,6 +7,7 @@ use crate::lab::{SERIAL, THREAD_PER_ROW};
 use crate::sampling::REFERENCE_SEEDS;
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
+use std::sync::LazyLock;
 
 /// Most workers that can be asked for, and most threads that a strategy may start by its own rule: systems refuse some tens of
 /// thousands, some of them by ending the process.
@@ -79,9 +80,11 @@ pub(super) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> 
     Ok(())
 }
 
-/// Threads that this process may use at once.
+/// Threads that this process may use at once, as it was when somebody first asked: the answer takes eight calls of the system.
 pub fn available_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
+    static THREADS: LazyLock<usize> =
+        LazyLock::new(|| std::thread::available_parallelism().map_or(1, NonZeroUsize::get));
+    *THREADS
 }
 
 impl Settings {
