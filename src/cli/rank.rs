@@ -65,9 +65,16 @@ fn table(image: &ImageRanking) -> String {
         let Place { ratio, median_s, schedule, .. } = place;
         format!("{ratio:>8.3} {interval:>16} {:>8.1} ms  {:width$}  {schedule}", 1e3 * median_s, letters(place))
     };
-    let fastest = match image.places.len() - image.fastest.len() {
-        0 => "any of them may be the fastest".to_string(),
-        _ => format!("the fastest is among, with 95 % confidence: {}", image.fastest.join(", ")),
+    let ImageRanking { fastest, compared, places, .. } = image;
+    let of = if *compared < places.len() {
+        format!("{compared} (the matrix of the others has fewer repetitions)")
+    } else {
+        "them".to_string()
+    };
+    let fastest = match (compared, compared - fastest.len()) {
+        (0, _) => "nothing tells the fastest: their matrix has fewer repetitions than the experiment".to_string(),
+        (_, 0) => format!("any of {of} may be the fastest"),
+        _ => format!("with 95 % confidence, the fastest of {of} is among: {}", fastest.join(", ")),
     };
     let lines = [image.image.clone(), head].into_iter().chain(image.places.iter().map(line));
     lines.chain([fastest]).collect::<Vec<_>>().join("\n")

@@ -2,6 +2,7 @@
 //!
 //! A repetition of an image is a block: its rows were measured one soon after the other, so drift of the machine falls on all of them.
 
+use super::Cell;
 use super::definition::Definition;
 use super::diff::level_of;
 use super::profile::Profile;
@@ -51,7 +52,10 @@ pub struct ImageRanking {
     /// The schedules.
     pub places: Vec<Place>,
     /// Those of which none is known to be slower than another one: the fastest is among them with 95 % confidence, for all images together.
+    /// Schedules that a matrix shows with fewer repetitions are not compared.
     pub fastest: Vec<String>,
+    /// How many were compared for it.
+    pub compared: usize,
 }
 
 /// The schedules of all images of an experiment.
@@ -76,10 +80,15 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     let wanted = if filters.is_empty() { None } else { Some(wanted(lab, folder, &run.profile, filters)?) };
     let rows: Vec<&Record> =
         rows.iter().filter(|row| wanted.as_ref().is_none_or(|wanted| wanted.contains(&row.cell))).collect();
+    let shown_only = shown_only(lab, folder, &run.profile);
     let mut images: BTreeMap<ImageKey, BTreeMap<String, Times>> = BTreeMap::new();
+    let mut most: BTreeMap<(ImageKey, String), usize> = BTreeMap::new();
     for row in &rows {
         let image = row.image_key();
         let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
+        if let Some(most_of) = shown_only.get(&row.cell) {
+            most.insert((image.clone(), schedule.clone()), *most_of as usize);
+        }
         if let Some(seconds) = row.makespan_s.filter(|seconds| *seconds > 0.0 && seconds.is_finite()) {
             images.entry(image).or_default().entry(schedule).or_default().insert(row.repetition, seconds);
         }
@@ -95,28 +104,53 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     let places: usize = images.values().map(BTreeMap::len).sum();
     let level = level_of(places - images.len());
     let stopping = if run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed };
+    let compared = |image: &ImageKey, schedules: &BTreeMap<String, Times>| -> BTreeMap<String, Times> {
+        let is_compared = |(name, times): &(&String, &Times)| {
+            most.get(&(image.clone(), (*name).clone())).is_none_or(|most| times.len() > *most)
+        };
+        schedules.iter().filter(is_compared).map(|(name, times)| (name.clone(), times.clone())).collect()
+    };
+    let comparisons: usize =
+        images.iter().map(|(image, schedules)| compared(image, schedules).len().saturating_sub(1)).sum();
     let least = images.values().map(|schedules| least(schedules.len(), MISS * tests(schedules) / all, stopping));
     Ok(Ranking {
         least_repetitions: least.max().unwrap_or(0),
         doubts: Doubts::of(rows.iter().map(|row| row.warnings.as_str())),
         images: images
             .iter()
-            .map(|(image, schedules)| ImageRanking {
-                image: image.to_string(),
-                places: placed(schedules, MISS * tests(schedules) / all, level, stopping),
-                fastest: fastest(schedules, MISS / (places - images.len()) as f64, stopping),
+            .map(|(image, schedules)| {
+                let compared = compared(image, schedules);
+                ImageRanking {
+                    image: image.to_string(),
+                    places: placed(schedules, MISS * tests(schedules) / all, level, stopping),
+                    fastest: fastest(&compared, MISS / comparisons.max(1) as f64, stopping),
+                    compared: compared.len(),
+                }
             })
             .collect(),
     })
 }
 
-/// The rows' keys that the filters leave.
-fn wanted(lab: &Arc<Lab>, folder: &Path, profile: &str, filters: &[String]) -> Result<BTreeSet<String>> {
+/// The rows' keys whose matrix has fewer repetitions than its experiment, with how many; none where no definition lies beside the rows that this
+/// program can read.
+fn shown_only(lab: &Arc<Lab>, folder: &Path, profile: &str) -> BTreeMap<String, u32> {
+    let cells = cells(lab, folder, profile).unwrap_or_default();
+    let points = cells.into_iter().filter_map(|cell| Some((cell.at_most?, cell.points)));
+    points.flat_map(|(most, points)| points.into_iter().map(move |point| (point.id, most))).collect()
+}
+
+/// The cells of the definition that lies beside rows.
+fn cells(lab: &Arc<Lab>, folder: &Path, profile: &str) -> Result<Vec<Cell>> {
     let path = folder.join("experiment.toml");
     let name = folder.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let definition = Definition::from_text(lab, &name, &path.display().to_string(), &read_text(&path)?)?;
+    definition.cells(Profile::from_name(profile).unwrap_or(Profile::Quick))
+}
+
+/// The rows' keys that the filters leave.
+fn wanted(lab: &Arc<Lab>, folder: &Path, profile: &str, filters: &[String]) -> Result<BTreeSet<String>> {
     let mut wanted = BTreeSet::new();
-    for cell in definition.cells(Profile::from_name(profile).unwrap_or(Profile::Quick))? {
+    for cell in cells(lab, folder, profile)? {
         let mut is_wanted = true;
         for filter in filters {
             is_wanted &= cell.matches(filter)?;

@@ -91,7 +91,9 @@ impl<'a> Sweep<'a> {
         let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
         if options.repetitions.is_some() || options.until.is_some() {
             // Whoever says how often means all cells.
-            cells.iter_mut().for_each(|cell| cell.at_most = None);
+            for cell in &mut cells {
+                cell.at_most = None;
+            }
         }
         if let Some(figure) = options.serial_for.filter(|_| !cells.iter().any(Cell::is_serial)) {
             let error = InputError::new("strategy", "", format!("the figure `{figure}` compares with serial runs"));

@@ -113,7 +113,7 @@ fn who_is_slower_is_left_out() {
         found["images"][0]["fastest"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
     assert!(fastest.len() == 2 && fastest.iter().all(|name| name.ends_with("2t")), "{found}");
     let printed = run(folder.path(), &["rank", "out/tiny"], 0);
-    assert!(printed.out.contains("the fastest is among, with 95 % confidence: "), "{}", printed.out);
+    assert!(printed.out.contains("with 95 % confidence, the fastest of them is among: "), "{}", printed.out);
     let against = env!("CARGO_BIN_EXE_pathmark");
     let refused =
         run(folder.path(), &["run", "tiny.toml", "--until", "order", "--against", against, "--out", "other"], 2);
@@ -129,6 +129,9 @@ fn a_matrix_has_fewer_repetitions_than_its_experiment() {
     for (options, count) in [(["--out", "own"].as_slice(), 2), (&["--repetitions", "3", "--out", "told"], 3)] {
         run(folder.path(), &[&["run", "tiny.toml"], options].concat(), 0);
         assert_eq!(counts(&folder.path().join(options.last().unwrap())), all(count));
+        let printed = run(folder.path(), &["rank", &format!("{}/tiny", options.last().unwrap())], 0);
+        let said = if count == 2 { "nothing tells the fastest" } else { "any of them may be the fastest" };
+        assert!(printed.out.contains(said), "{}", printed.out);
     }
     write_tiny(folder.path(), &text.replace("repetitions = 2", "repetitions = 0"));
     let refused = run(folder.path(), &["run", "tiny.toml", "--out", "none"], 2);
