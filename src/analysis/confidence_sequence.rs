@@ -14,6 +14,9 @@
 use super::interval::{Interval, is_level};
 use super::quantile::{median_interval, sorted};
 
+/// The fewest values of which an interval at every look can say anything at 95 %.
+const FEWEST: usize = 8;
+
 /// How it was decided how many values there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stopping {
@@ -29,6 +32,8 @@ impl Stopping {
     pub fn median_interval(self, values: &[f64], level: f64) -> Option<Interval> {
         match self {
             Self::Fixed => median_interval(values, level),
+            // Nothing could be decided by so few, so their number did not depend on them.
+            Self::Sequential if values.len() < FEWEST => median_interval(values, level),
             Self::Sequential => median_sequence(values, level),
         }
     }
@@ -81,6 +86,21 @@ mod tests {
     use rand_pcg::Pcg64Dxsm;
 
     const LEVEL: f64 = 0.95;
+
+    /// Seven values were not stopped by what they said, and eight may have been.
+    #[test]
+    fn a_number_of_values_that_no_look_can_have_chosen_is_fixed() {
+        let values: Vec<f64> = (0..9).map(f64::from).collect();
+        let interval = |stopping: Stopping, count: usize, level: f64| stopping.median_interval(&values[..count], level);
+        for count in 0..=7 {
+            assert_eq!(interval(Stopping::Sequential, count, LEVEL), interval(Stopping::Fixed, count, LEVEL));
+        }
+        assert!(rank(FEWEST, LEVEL).is_some() && rank(FEWEST - 1, LEVEL).is_none());
+        assert_eq!(interval(Stopping::Sequential, 8, 0.99), None);
+        let [fixed, sequential] =
+            [Stopping::Fixed, Stopping::Sequential].map(|stopping| interval(stopping, 9, LEVEL).unwrap());
+        assert!(sequential.low < fixed.low && fixed.high < sequential.high);
+    }
 
     /// From an integral of the bets over their shares, by the midpoint rule in another program.
     #[test]

@@ -71,9 +71,10 @@ fn table(image: &ImageRanking) -> String {
     } else {
         "them".to_string()
     };
-    let fastest = match (compared, compared - fastest.len()) {
-        (0, _) => "nothing tells the fastest: their matrix has fewer repetitions than the experiment".to_string(),
-        (_, 0) => format!("any of {of} may be the fastest"),
+    let fastest = match (*compared, fastest.len()) {
+        (0 | 1, _) => "too few schedules have all repetitions to tell the fastest".to_string(),
+        (_, 0) => format!("each of {of} is slower than another one"),
+        (all, left) if left == all => format!("any of {of} may be the fastest"),
         _ => format!("with 95 % confidence, the fastest of {of} is among: {}", fastest.join(", ")),
     };
     let lines = [image.image.clone(), head].into_iter().chain(image.places.iter().map(line));
@@ -88,7 +89,7 @@ fn object(found: &Ranking) -> Value {
                 "median_s": number(place.median_s), "repetitions": place.repetitions,
             })
         };
-        json!({ "image": image.image, "fastest": image.fastest, "places": image.places.iter().map(place).collect::<Vec<_>>() })
+        json!({ "image": image.image, "fastest": image.fastest, "compared": image.compared, "places": image.places.iter().map(place).collect::<Vec<_>>() })
     };
     json!({
         "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,

@@ -51,7 +51,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
     against: Option<PathBuf>,
     /// Go on until each speedup (without serial runs, each time) is known to within this, as 3%, and leave out the cells
-    /// whose is. With --against: until each cell is known to be slower by more than this, faster, or within it. `fastest` leaves
+    /// that are known. With --against: until each cell is known to be slower by more than this, faster, or within it. `fastest` leaves
     /// out schedules once another one of the image is faster, `order` those that are told apart from all others. At most 200
     /// repetitions, or those of --repetitions; intervals allow for it
     #[arg(long, value_name = "SHARE|fastest|order", allow_hyphen_values = true)]

@@ -42,7 +42,7 @@ impl CellPoint {
 }
 
 impl Cell {
-    /// How often it is run where others are run so many times.
+    /// Its repetitions in an experiment of so many.
     pub(super) fn repetitions(&self, others: u32) -> u32 {
         self.at_most.map_or(others, |most| most.min(others))
     }

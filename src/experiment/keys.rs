@@ -18,6 +18,7 @@ const KEYS: &[(&str, &str)] = &[
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
     ("matrix.weak", "true: samples per pixel are for each thread"),
     ("matrix.curve", "true: a row at 1, 2, 4 ... times the fewest samples on the way to each spp"),
+    ("matrix.repetitions", "the most repetitions of its cells [default: the profile's]"),
     ("matrix.profiles", "the profiles that the matrix is for [default: all]"),
     ("figure", "a table [figure.NAME] for what a figure is told about the experiment"),
     ("reference", "measures errors"),
@@ -26,7 +27,7 @@ const KEYS: &[(&str, &str)] = &[
     ("external", "another program beside the cells, under [[external]]"),
     (
         "quick",
-        "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, within = \"60 s\" }), reference-spp [default: 320x240, 6 repetitions]",
+        "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, within = \"60 s\" }; until may be \"fastest\" or \"order\"), reference-spp [default: 320x240, 6 repetitions]",
     ),
     ("full", "the profile --full, likewise"),
     ("reports", "the profile --reports, likewise"),

@@ -22,9 +22,13 @@ struct Cells {
 
 impl Cells {
     /// Adds what a setup gives and is not there yet.
-    fn add(&mut self, setup: &Setup, matrix: &Matrix) {
-        let cell = if matrix.curve { Cell::curve(setup) } else { Cell::new(setup) };
-        let mut cell = Cell { at_most: matrix.at_most, ..cell };
+    fn add(&mut self, setup: &Setup, is_curve: bool, at_most: Option<u32>) {
+        let cell = if is_curve { Cell::curve(setup) } else { Cell::new(setup) };
+        let mut cell = Cell { at_most, ..cell };
+        // Of two matrices that have it, the one with more repetitions counts.
+        if let Some(known) = self.list.iter_mut().find(|known| known.id == cell.id) {
+            known.at_most = known.at_most.zip(at_most).map(|(first, second)| first.max(second));
+        }
         let (image, schedule) = (setup.image_key(), setup.schedule_key());
         let known = &mut self.known;
         cell.points.retain(|point| known.insert((ImageKey { spp: point.spp, ..image.clone() }, schedule.clone())));
@@ -37,7 +41,7 @@ impl Cells {
 impl Definition {
     /// The cells, each once, in the order of the matrix. Every one has been checked: nothing that the definition says can fail later.
     pub fn cells(&self, profile: Profile) -> Result<Vec<Cell>> {
-        if self.repetitions(profile)? == 0 || self.matrices(profile).any(|matrix| matrix.at_most == Some(0)) {
+        if self.repetitions(profile)? == 0 {
             return Err(self.located(profile, InputError::new("repetitions", "0", "must be at least 1")));
         }
         if let Some(unknown) = self.requires.iter().find(|name| !FEATURES.iter().any(|(known, _)| known == name)) {
@@ -156,7 +160,8 @@ impl<'a> Product<'a> {
         if self.matrix.curve {
             setup.check_rounds().map_err(|error| self.at_field(error))?;
         }
-        cells.add(&setup, self.matrix);
+        let at_most = self.matrix.at_most.filter(|most| *most < self.scale.repetitions);
+        cells.add(&setup, self.matrix.curve, at_most);
         Ok(())
     }
 

@@ -72,6 +72,15 @@ pub struct Ranking {
 /// Seconds by repetition.
 type Times = BTreeMap<u32, f64>;
 
+/// The schedules of an image.
+#[derive(Default)]
+struct Schedules {
+    /// Those that are compared with each other.
+    compared: BTreeMap<String, Times>,
+    /// Those whose matrix has fewer repetitions than the experiment.
+    shown: BTreeMap<String, Times>,
+}
+
 /// Ranks the schedules in the folder of an experiment, or those that the filters leave.
 pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Ranking> {
     let records = folder.join("records.csv");
@@ -80,63 +89,49 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     let wanted = if filters.is_empty() { None } else { Some(wanted(lab, folder, &run.profile, filters)?) };
     let rows: Vec<&Record> =
         rows.iter().filter(|row| wanted.as_ref().is_none_or(|wanted| wanted.contains(&row.cell))).collect();
-    let shown_only = shown_only(lab, folder, &run.profile);
-    let mut images: BTreeMap<ImageKey, BTreeMap<String, Times>> = BTreeMap::new();
-    let mut most: BTreeMap<(ImageKey, String), usize> = BTreeMap::new();
+    let shown_only = if run.uncapped { BTreeSet::new() } else { shown_only(lab, folder, &run.profile) };
+    let mut images: BTreeMap<ImageKey, Schedules> = BTreeMap::new();
     for row in &rows {
         let image = row.image_key();
         let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
-        if let Some(most_of) = shown_only.get(&row.cell) {
-            most.insert((image.clone(), schedule.clone()), *most_of as usize);
-        }
         if let Some(seconds) = row.makespan_s.filter(|seconds| *seconds > 0.0 && seconds.is_finite()) {
-            images.entry(image).or_default().entry(schedule).or_default().insert(row.repetition, seconds);
+            let own = images.entry(image).or_default();
+            let own = if shown_only.contains(&row.cell) { &mut own.shown } else { &mut own.compared };
+            own.entry(schedule).or_default().insert(row.repetition, seconds);
         }
     }
-    images.retain(|_, schedules| schedules.len() > 1);
-    let tests = |schedules: &BTreeMap<String, Times>| (schedules.len() * (schedules.len() - 1)) as f64;
-    let all: f64 = images.values().map(tests).sum();
+    images.retain(|_, schedules| schedules.compared.len() + schedules.shown.len() > 1);
     if images.is_empty() {
         let problem = "has no two schedules of one image, so there is nothing to rank";
         let error = InputError::new("folder", folder.display().to_string(), problem);
         return Err(error.allowed("the folder of an experiment with several schedules").into());
     }
-    let places: usize = images.values().map(BTreeMap::len).sum();
-    let level = level_of(places - images.len());
+    let sizes = || images.values().map(|schedules| schedules.compared.len());
+    let tests = |size: usize| (size * size.saturating_sub(1)) as f64;
+    let miss = MISS / sizes().map(tests).sum::<f64>().max(1.0);
+    let comparisons = sizes().map(|size| size.saturating_sub(1)).sum::<usize>().max(1);
+    let level = level_of(comparisons);
     let stopping = if run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed };
-    let compared = |image: &ImageKey, schedules: &BTreeMap<String, Times>| -> BTreeMap<String, Times> {
-        let is_compared = |(name, times): &(&String, &Times)| {
-            most.get(&(image.clone(), (*name).clone())).is_none_or(|most| times.len() > *most)
-        };
-        schedules.iter().filter(is_compared).map(|(name, times)| (name.clone(), times.clone())).collect()
-    };
-    let comparisons: usize =
-        images.iter().map(|(image, schedules)| compared(image, schedules).len().saturating_sub(1)).sum();
-    let least = images.values().map(|schedules| least(schedules.len(), MISS * tests(schedules) / all, stopping));
+    let least = sizes().filter(|size| *size > 1).map(|size| least(size, miss * tests(size), stopping));
     Ok(Ranking {
         least_repetitions: least.max().unwrap_or(0),
         doubts: Doubts::of(rows.iter().map(|row| row.warnings.as_str())),
         images: images
             .iter()
-            .map(|(image, schedules)| {
-                let compared = compared(image, schedules);
-                ImageRanking {
-                    image: image.to_string(),
-                    places: placed(schedules, MISS * tests(schedules) / all, level, stopping),
-                    fastest: fastest(&compared, MISS / comparisons.max(1) as f64, stopping),
-                    compared: compared.len(),
-                }
+            .map(|(image, schedules)| ImageRanking {
+                image: image.to_string(),
+                places: placed(schedules, miss * tests(schedules.compared.len()), level, stopping),
+                fastest: fastest(&schedules.compared, MISS / comparisons as f64, stopping),
+                compared: schedules.compared.len(),
             })
             .collect(),
     })
 }
 
-/// The rows' keys whose matrix has fewer repetitions than its experiment, with how many; none where no definition lies beside the rows that this
-/// program can read.
-fn shown_only(lab: &Arc<Lab>, folder: &Path, profile: &str) -> BTreeMap<String, u32> {
-    let cells = cells(lab, folder, profile).unwrap_or_default();
-    let points = cells.into_iter().filter_map(|cell| Some((cell.at_most?, cell.points)));
-    points.flat_map(|(most, points)| points.into_iter().map(move |point| (point.id, most))).collect()
+/// The rows' keys whose matrix has fewer repetitions than its experiment; none where no definition lies beside the rows that this program can read.
+fn shown_only(lab: &Arc<Lab>, folder: &Path, profile: &str) -> BTreeSet<String> {
+    let capped = cells(lab, folder, profile).unwrap_or_default().into_iter().filter(|cell| cell.at_most.is_some());
+    capped.flat_map(|cell| cell.points).map(|point| point.id).collect()
 }
 
 /// The cells of the definition that lies beside rows.
@@ -200,14 +195,14 @@ fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
 fn fastest(schedules: &BTreeMap<String, Times>, miss: f64, stopping: Stopping) -> Vec<String> {
     let is_slower = |own: &Times, other: &Times| match stopping {
         Stopping::Fixed => is_less(other, own, miss),
-        Stopping::Sequential => order_so_far(other, own, 2.0 * miss) == Some(Ordering::Less),
+        Stopping::Sequential => order_so_far(other, own, (2.0 * miss).min(MISS)) == Some(Ordering::Less),
     };
     let is_left = |own: &Times| schedules.values().all(|other| !is_slower(own, other));
     schedules.iter().filter(|(_, own)| is_left(own)).map(|(name, _)| name.clone()).collect()
 }
 
 /// Schedules in the order of their times over the median time of their repetition.
-fn placed(schedules: &BTreeMap<String, Times>, miss: f64, level: f64, stopping: Stopping) -> Vec<Place> {
+fn ordered(schedules: &BTreeMap<String, Times>) -> Vec<(&String, &Times)> {
     let mut blocks: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     for (repetition, seconds) in schedules.values().flatten() {
         blocks.entry(*repetition).or_default().push(*seconds);
@@ -220,10 +215,17 @@ fn placed(schedules: &BTreeMap<String, Times>, miss: f64, level: f64, stopping: 
     };
     let mut ordered: Vec<(&String, &Times)> = schedules.iter().collect();
     ordered.sort_by(|(_, a), (_, b)| score(a).total_cmp(&score(b)));
-    let times: Vec<Times> = ordered.iter().map(|(_, times)| (*times).clone()).collect();
+    ordered
+}
+
+/// The schedules that are compared, the fastest first, and then the others, which are in no group.
+fn placed(schedules: &Schedules, miss: f64, level: f64, stopping: Stopping) -> Vec<Place> {
+    let (compared, shown) = (ordered(&schedules.compared), ordered(&schedules.shown));
+    let Some((_, first)) = compared.first().or(shown.first()) else { return Vec::new() };
+    let times: Vec<Times> = compared.iter().map(|(_, times)| (*times).clone()).collect();
     let sets = groups(times.len(), &orders(&times, miss, stopping));
     let place = |(at, (schedule, own)): (usize, &(&String, &Times))| {
-        let ratios: Vec<f64> = own.iter().filter_map(|(at, seconds)| Some(seconds / times[0].get(at)?)).collect();
+        let ratios: Vec<f64> = own.iter().filter_map(|(at, seconds)| Some(seconds / first.get(at)?)).collect();
         let interval = stopping.median_interval(&ratios, level).filter(|interval| at > 0 && interval.level >= level);
         Some(Place {
             schedule: (*schedule).clone(),
@@ -234,7 +236,7 @@ fn placed(schedules: &BTreeMap<String, Times>, miss: f64, level: f64, stopping: 
             groups: sets.iter().enumerate().filter(|(_, set)| set.contains(&at)).map(|(number, _)| number).collect(),
         })
     };
-    ordered.iter().enumerate().filter_map(place).collect()
+    compared.iter().chain(&shown).enumerate().filter_map(place).collect()
 }
 
 #[cfg(test)]
@@ -254,6 +256,7 @@ mod tests {
         }
         let schedules =
             BTreeMap::from([("a".to_string(), times(2.0)), ("b".to_string(), b), ("c".to_string(), times(1.0))]);
+        let schedules = Schedules { compared: schedules, ..Schedules::default() };
         let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
         let names: Vec<(&str, &[usize])> = places.iter().map(|p| (p.schedule.as_str(), p.groups.as_slice())).collect();
         assert_eq!(names, [("c", &[0][..]), ("b", &[0]), ("a", &[1])]);
@@ -262,6 +265,21 @@ mod tests {
         let interval = places[2].interval.unwrap();
         assert_eq!((interval.low, interval.high), (2.0, 2.0));
         assert!(places.iter().all(|place| place.repetitions == 9));
+    }
+
+    /// A schedule of three repetitions is told its ratio, and no order, however fast it is.
+    #[test]
+    fn schedules_of_fewer_repetitions_come_last_and_in_no_group() {
+        let fast: Times = times(0.5).into_iter().take(3).collect();
+        let schedules = Schedules {
+            compared: BTreeMap::from([("slow".to_string(), times(2.0)), ("usual".to_string(), times(1.0))]),
+            shown: BTreeMap::from([("fast".to_string(), fast)]),
+        };
+        let places = placed(&schedules, 0.05, level_of(1), Stopping::Fixed);
+        let told: Vec<(&str, f64, &[usize])> =
+            places.iter().map(|place| (place.schedule.as_str(), place.ratio, place.groups.as_slice())).collect();
+        assert_eq!(told, [("usual", 1.0, &[0][..]), ("slow", 2.0, &[1]), ("fast", 0.5, &[])]);
+        assert_eq!(places[2].interval, None);
     }
 
     /// Where one has no time in common with the first, its place says so by its absence and not by a number.
@@ -273,11 +291,12 @@ mod tests {
             ("b".to_string(), times(1.1)),
             ("z".to_string(), elsewhere),
         ]);
+        let schedules = Schedules { compared: schedules, ..Schedules::default() };
         let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
         assert!(places.iter().all(|place| place.ratio.is_finite()), "{places:?}");
     }
 
-    /// One comparison for each of the two others: six repetitions of one order, 1/64 <= .05 / 2, and seven would be 1/128.
+    /// One comparison for each of the two others: six repetitions of one order, 1/64 <= .05 / 2, and five would be 1/32.
     #[test]
     fn the_fastest_is_among_those_that_none_is_faster_than() {
         let of = |count: u32, factor: f64| (0..count).map(|at| (at, factor)).collect::<Times>();

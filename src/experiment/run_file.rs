@@ -27,6 +27,9 @@ pub struct RunFile {
     /// The share to which cells were to be decided, `fastest` or `order`, where repetitions went on until they were; none if their number was fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
+    /// Whether the command said how often, so that the limits of matrices did not hold.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub uncapped: bool,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
     /// Where and with what.
@@ -42,7 +45,8 @@ impl RunFile {
     /// Of something that no definition describes, on this machine.
     pub fn of_now(command: String) -> Self {
         let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
-        Self { command, profile, shard: None, against: None, until: None, definition_hash, machine: Machine::look() }
+        let machine = Machine::look();
+        Self { command, profile, shard: None, against: None, until: None, uncapped: false, definition_hash, machine }
     }
 
     /// Writes it.
@@ -64,11 +68,15 @@ impl RunFile {
                 .into());
         }
         let part = |run: &Self| run.shard.clone().unwrap_or_else(|| "none".to_string());
-        let until = |run: &Self| if run.until.is_some() { "a limit" } else { "none" }.to_string();
+        let until = |run: &Self, other: &Self| match (&run.until, &other.until) {
+            (Some(own), None) => own.clone(),
+            (Some(_), Some(_)) => "some goal".to_string(),
+            (None, _) => "none".to_string(),
+        };
         let mut pairs = vec![
             ("profile", self.profile.clone(), now.profile.clone()),
             ("shard", part(self), part(now)),
-            ("until", until(self), until(now)),
+            ("until", until(self, now), until(now, self)),
         ];
         let (then, here) = (self.machine.identity(), now.machine.identity());
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));

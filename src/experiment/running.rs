@@ -8,7 +8,7 @@ use super::until::{Decisions, Goal};
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
 use crate::measure::{Doubts, Record};
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 
 /// What a sweep knows of the rows so far, and where it puts the next ones.
@@ -151,8 +151,8 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// The cells whose place among the schedules of their image is not known, and those that are run so many times and not compared. A curve's
-    /// place is that of its end.
+    /// The cells whose place among the schedules of their image is not known, and the serial runs beside them; and those that are not compared,
+    /// because their matrix has fewer repetitions. A curve's place is that of its end.
     fn unordered(&self, goal: Goal) -> Vec<usize> {
         let mut images: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
         let (compared, counted): (Vec<_>, Vec<_>) =
@@ -165,8 +165,11 @@ impl<'a> Running<'a> {
         let ids: Vec<Vec<&str>> = images.values().map(|cells| cells.iter().map(|(_, id)| *id).collect()).collect();
         let open = self.decisions.open_schedules(&ids, goal);
         let cells = images.values().flatten().zip(open.into_iter().flatten());
-        let open = cells.filter(|(_, is_open)| *is_open).map(|((index, _), _)| *index);
-        open.chain(counted.into_iter().map(|(index, _)| index)).collect()
+        let open: Vec<usize> = cells.filter(|(_, is_open)| *is_open).map(|((index, _), _)| *index).collect();
+        let beside = open.iter().filter_map(|own| self.serial[*own]);
+        let all: BTreeSet<usize> =
+            open.iter().copied().chain(beside).chain(counted.into_iter().map(|(index, _)| index)).collect();
+        all.into_iter().collect()
     }
 
     /// The cells of which it is not known on which side of the limit the ratio of both builds is, or, of one build, what they are compared by; and
@@ -195,7 +198,9 @@ impl<'a> Running<'a> {
         let cells = &self.sweep.cells;
         let lacks = |cell: &Cell| {
             let rows = cell.points.iter().filter_map(|point| self.by_doubt.get(&point.id));
-            rows.map(|[sound, doubtful]| wanted.saturating_sub(*sound).min(*doubtful)).max().unwrap_or(0)
+            rows.map(|[sound, doubtful]| cell.repetitions(wanted).saturating_sub(*sound).min(*doubtful))
+                .max()
+                .unwrap_or(0)
         };
         let own: Vec<u32> = cells.iter().map(lacks).collect();
         let of_group = |index: usize| {

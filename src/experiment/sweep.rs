@@ -90,7 +90,7 @@ impl<'a> Sweep<'a> {
         let cells = filtered(&definition.cells(options.profile)?, options)?;
         let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
         if options.repetitions.is_some() || options.until.is_some() {
-            // Whoever says how often means all cells.
+            // `--repetitions` and `--until` are for all cells.
             for cell in &mut cells {
                 cell.at_most = None;
             }
@@ -135,11 +135,16 @@ impl<'a> Sweep<'a> {
         let until = match &options.until {
             Some(until) => Some(until.clone()),
             None if options.repetitions.is_some() => None,
-            None => definition.until(options.profile)?.cloned(),
+            // Two builds and parts of a sweep are run as often as the definition allows.
+            None => {
+                let own = definition.until(options.profile)?;
+                own.filter(|until| !until.goal.is_of_schedules() || is_of_all_schedules(options).is_ok()).cloned()
+            }
         };
-        if let Some(goal) = until.as_ref().filter(|until| until.goal.is_of_schedules() && options.against.is_some()) {
-            let problem = "compares schedules with each other, and --against compares each with another build";
-            return Err(InputError::new("until", &goal.text, problem).allowed("a share, as 3%").into());
+        if let Some(until) = until.as_ref().filter(|until| until.goal.is_of_schedules()) {
+            is_of_all_schedules(options).map_err(|problem| {
+                InputError::new("until", &until.text, problem).allowed("a share, as 3%, or --repetitions")
+            })?;
         }
         Ok(Self { definition, options, cells, references, until })
     }
@@ -185,7 +190,8 @@ impl<'a> Sweep<'a> {
         let rows = (file, done);
         let mut running = Running::new(self, folder, references, against, rows, progress);
         let total: u64 = cells.iter().map(|cell| cell.weight * u64::from(cell.repetitions(repetitions))).sum();
-        let (mut units, begun, mut open) = (0, Instant::now(), cells.len());
+        let without_limit = cells.iter().filter(|cell| cell.at_most.is_none()).count();
+        let (mut units, begun, mut open) = (0, Instant::now(), without_limit);
         progress.begin(&definition.name, total);
         for repetition in 0..repetitions {
             let mut undecided = match until {
@@ -194,9 +200,10 @@ impl<'a> Sweep<'a> {
                 None => (0..cells.len()).collect(),
             };
             undecided.retain(|index| repetition < cells[*index].repetitions(repetitions));
-            if undecided.len() < open {
-                open = undecided.len();
-                progress.note(&format!("{} of {} cells decided", cells.len() - open, cells.len()));
+            let still = undecided.iter().filter(|index| cells[**index].at_most.is_none()).count();
+            if until.is_some() && still < open {
+                open = still;
+                progress.note(&format!("{} of {without_limit} cells decided", without_limit - open));
             }
             for index in shuffled(cells.len(), &definition.name, repetition) {
                 if undecided.contains(&index) {
@@ -289,6 +296,15 @@ impl<'a> Sweep<'a> {
     }
 }
 
+/// Whether a sweep compares all schedules of its images with each other, and if not, why.
+fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static str> {
+    match (&options.against, &options.shard) {
+        (Some(_), _) => Err("compares schedules with each other, and --against compares each with another build"),
+        (_, Some(_)) => Err("compares all schedules of an image, and a part of a sweep has only some of them"),
+        (None, None) => Ok(()),
+    }
+}
+
 /// The cells that all filters let through, and the serial runs that their times are compared with.
 fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
     let mut wanted: Vec<&Cell> = cells.iter().collect();
@@ -315,6 +331,7 @@ fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -
         shard: options.shard.map(|shard| shard.to_string()),
         against: options.against.as_ref().map(|program| program.display().to_string()),
         until: until.map(|until| until.text.clone()),
+        uncapped: options.repetitions.is_some() || options.until.is_some(),
         definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
     }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::marker::PhantomData;
+use std::num::NonZeroU32;
 use std::str::FromStr;
 
 /// A table: values by axis, in the words of the file, and what else a matrix or a profile says.
@@ -171,7 +172,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                 (None, "weak") => table.weak = map.next_value()?,
                 (None, "curve") => table.curve = map.next_value()?,
                 (None, "profiles") => table.profiles = Some(map.next_value()?),
-                (None, "repetitions") if !PROFILE => table.at_most = Some(map.next_value()?),
+                (None, "repetitions") if !PROFILE => table.at_most = Some(map.next_value::<NonZeroU32>()?.get()),
                 (None, "repetitions") => match map.next_value()? {
                     Repetitions::Count(count) => (table.repetitions, table.until) = (count, None),
                     Repetitions::Until { until, at_most, within } => {

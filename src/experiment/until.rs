@@ -1,9 +1,12 @@
 //! Repetitions that go on until enough is known: `run EXPERIMENT --until 3%`, or `repetitions = { until = "3 %" }` in its file.
 //!
-//! With a share as the goal, cells are decided one by one. With another build beside this one (`--against OLD`), a cell is decided when the interval of its ratio of times lies above 1 plus the limit, below 1,
-//! or within the limit of 1. Otherwise it is decided when its speedup over the serial run of its image, or its time where there is no serial run, is
-//! known to within the limit. Intervals hold at every look ([`crate::analysis::confidence_sequence`]), so stopping by them does not make them wrong.
-//! What is decided is left out of later repetitions; serial runs go on beside the cells that are compared with them.
+//! With a share as the goal, cells are decided one by one. With another build beside this one (`--against OLD`), a cell is decided when the
+//! interval of its ratio of times lies above 1 plus the limit, below 1, or within the limit of 1. Otherwise it is decided when its speedup over
+//! the serial run of its image, or its time where there is no serial run, is known to within the limit. With `fastest` or `order` as the goal, the
+//! schedules of an image are compared with each other.
+//!
+//! Intervals hold at every look ([`crate::analysis::confidence_sequence`]), so stopping by them does not make them wrong. What is decided is left
+//! out of later repetitions; serial runs go on beside the cells that are compared with them.
 
 use super::diff::{Change, Pairing, compared, level_of, parse_share};
 use super::ranking::MISS;
@@ -11,7 +14,7 @@ use crate::analysis::Interval;
 use crate::analysis::confidence_sequence::median_sequence;
 use crate::analysis::quantile::median;
 use crate::analysis::ranking::order_so_far;
-use crate::error::{Error, InputError, Result};
+use crate::error::{InputError, Result};
 use crate::measure::Record;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -23,7 +26,7 @@ const LEVEL: f64 = 0.95;
 /// As many repetitions as a comparison takes, if nobody says how many it may.
 pub const MOST_REPETITIONS: u32 = 200;
 
-/// What is to be known.
+/// The goal of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
     /// By which share a cell got slower than in another build; or, of one build, what it is compared by, to within that share.
@@ -36,7 +39,7 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// Goals that are no share, by the words for them.
+    /// Words for the goals other than a share.
     const WORDS: [(&'static str, Self); 2] = [("fastest", Self::Fastest), ("order", Self::Order)];
 
     /// Whether it compares schedules with each other.
@@ -48,7 +51,7 @@ impl Goal {
 /// When to stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Until {
-    /// What is to be known.
+    /// The goal of a sweep.
     pub goal: Goal,
     /// The goal as the user gave it.
     pub text: String,
@@ -77,14 +80,13 @@ impl Until {
 
 /// A share that repetitions can reach.
 fn share(text: &str) -> Result<f64> {
-    const ALLOWED: &str = "a share above 0, as 3%, or fastest, or order";
-    let share = parse_share("until", text).map_err(|error| match error {
-        Error::Input(input) => Error::from(input.allowed(ALLOWED)),
-        other => other,
-    })?;
+    let wrong = |problem: &str| {
+        let error = InputError::new("until", text, problem);
+        error.allowed("fastest, order, or a share above 0, as 3%")
+    };
+    let share = parse_share("until", text).map_err(|_| wrong("is neither a goal nor a share"))?;
     if share <= 0.0 {
-        let problem = "would never be reached: no interval of times has no width";
-        return Err(InputError::new("until", text, problem).allowed(ALLOWED).into());
+        return Err(wrong("would never be reached: no interval of times has no width").into());
     }
     Ok(share)
 }
@@ -145,7 +147,7 @@ impl Decisions {
         let all: usize = images.iter().map(|cells| comparisons(cells.len())).sum();
         // A wrong order of one pair has two sides, of which one can make the fastest lose.
         let sides = if goal == Goal::Fastest { 2.0 } else { 1.0 };
-        let miss = (sides * MISS / all.max(1) as f64).min(1.0);
+        let miss = (sides * MISS / all.max(1) as f64).min(MISS);
         images.iter().map(|cells| self.open_of(cells, goal, miss)).collect()
     }
 
@@ -240,7 +242,7 @@ mod tests {
         assert_eq!((goal("order").unwrap(), goal("3 %").unwrap()), (Goal::Order, Goal::Share(0.03)));
         for wrong in ["slowest", "0%", "-1%"] {
             let error = goal(wrong).unwrap_err().to_string();
-            assert!(error.contains(wrong) && error.contains("fastest, or order"), "{error}");
+            assert!(error.contains(wrong) && error.contains("fastest, order"), "{error}");
         }
     }
 }

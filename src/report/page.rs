@@ -242,7 +242,7 @@ fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
             @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark explain" } " says what each means." } }
             @if let Some(goal) = &section.run.until {
                 p.doubts {
-                    "Repetitions went on until it was known (" code { "until = \"" (goal) "\"" } "), or no longer than allowed. Intervals of medians hold all the same; those of fitted lines take the number of repetitions for fixed."
+                    "Repetitions went on until the goal " code { (goal) } " or a limit was reached. Intervals of medians hold all the same; those of fitted lines take the number of repetitions for fixed."
                 }
             }
             @for part in &parts { (part) }

@@ -44,7 +44,8 @@ pub(super) const FAULTS: &[Fault] = &[
                 }
                 job(index);
             };
-            of_threads("shared-counter", workers, spawner)?.run(jobs, Arc::new(together))
+            // A pool whose threads are all there before a job begins: none waits for one that was refused.
+            of_threads("fixed-pool", workers, spawner)?.run(jobs, Arc::new(together))
         }),
     ),
     ("jobs on the caller's thread", Promise::Workers, made_by(|blueprint| other("serial", blueprint))),
