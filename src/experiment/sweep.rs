@@ -132,20 +132,7 @@ impl<'a> Sweep<'a> {
         for name in OWN_FILES {
             files.claims("out", &folder.join(name))?;
         }
-        let until = match &options.until {
-            Some(until) => Some(until.clone()),
-            None if options.repetitions.is_some() => None,
-            // Two builds and parts of a sweep are run as often as the definition allows.
-            None => {
-                let own = definition.until(options.profile)?;
-                own.filter(|until| !until.goal.is_of_schedules() || is_of_all_schedules(options).is_ok()).cloned()
-            }
-        };
-        if let Some(until) = until.as_ref().filter(|until| until.goal.is_of_schedules()) {
-            is_of_all_schedules(options).map_err(|problem| {
-                InputError::new("until", &until.text, problem).allowed("a share, as 3%, or --repetitions")
-            })?;
-        }
+        let until = Until::of(definition, options)?;
         Ok(Self { definition, options, cells, references, until })
     }
 
@@ -293,15 +280,6 @@ impl<'a> Sweep<'a> {
             external: cell.external.clone().map(|external| (external, folder.join("external"))),
             trace: definition.keeps(Keep::Traces).then(trace),
         }
-    }
-}
-
-/// Whether a sweep compares all schedules of its images with each other, and if not, why.
-fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static str> {
-    match (&options.against, &options.shard) {
-        (Some(_), _) => Err("compares schedules with each other, and --against compares each with another build"),
-        (_, Some(_)) => Err("compares all schedules of an image, and a part of a sweep has only some of them"),
-        (None, None) => Ok(()),
     }
 }
 

@@ -10,6 +10,7 @@
 
 use super::diff::{Change, Pairing, compared, level_of, parse_share};
 use super::ranking::MISS;
+use super::{Definition, Options};
 use crate::analysis::Interval;
 use crate::analysis::confidence_sequence::median_sequence;
 use crate::analysis::quantile::median;
@@ -72,9 +73,37 @@ impl Until {
         Ok(Self { goal: goal_of?, text: goal.to_string(), within })
     }
 
+    /// The goal of a sweep: that of the command, or that of the definition if the command does not say how often.
+    pub(super) fn of(definition: &Definition, options: &Options) -> Result<Option<Self>> {
+        let until = match &options.until {
+            Some(until) => Some(until.clone()),
+            None if options.repetitions.is_some() => None,
+            // Two builds and parts of a sweep are run as often as the definition allows.
+            None => {
+                let own = definition.until(options.profile)?;
+                own.filter(|until| !until.goal.is_of_schedules() || is_of_all_schedules(options).is_ok()).cloned()
+            }
+        };
+        if let Some(until) = until.as_ref().filter(|until| until.goal.is_of_schedules()) {
+            is_of_all_schedules(options).map_err(|problem| {
+                InputError::new("until", &until.text, problem).allowed("a share, as 3%, or --repetitions")
+            })?;
+        }
+        Ok(until)
+    }
+
     /// Whether no repetition may begin any more.
     pub(super) fn is_over(&self, elapsed: Duration) -> bool {
         self.within.is_some_and(|within| elapsed >= within)
+    }
+}
+
+/// Whether a sweep compares all schedules of its images with each other, and if not, why.
+fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static str> {
+    match (&options.against, &options.shard) {
+        (Some(_), _) => Err("compares schedules with each other, and --against compares each with another build"),
+        (_, Some(_)) => Err("compares all schedules of an image, and a part of a sweep has only some of them"),
+        (None, None) => Ok(()),
     }
 }
 
