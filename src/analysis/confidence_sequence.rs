@@ -15,7 +15,7 @@ use super::interval::{Interval, is_level};
 use super::quantile::{median_interval, sorted};
 
 /// The fewest values of which an interval at every look can say anything at 95 %.
-const FEWEST: usize = 8;
+pub(super) const FEWEST: usize = 8;
 
 /// How it was decided how many values there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

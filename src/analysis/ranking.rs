@@ -5,7 +5,7 @@
 //! sequentially rejective multiple test procedure", Scandinavian Journal of Statistics 6 (1979). The chance that any order told is wrong is then
 //! at most what was asked for, whatever the distributions are and however the comparisons depend on each other.
 
-use super::confidence_sequence::median_sequence;
+use super::confidence_sequence::{FEWEST, Stopping, median_sequence};
 use super::interval::is_level;
 use statrs::distribution::{Binomial, DiscreteCDF};
 use std::cmp::Ordering;
@@ -36,9 +36,24 @@ pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(u
     rejected.map(|(_, (_, pair))| pair).collect()
 }
 
-/// Whether the first of two things is less, by a one-sided sign test that misses with that probability at most.
-pub fn is_less<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>, miss: f64) -> bool {
-    is_level(miss) && sign_test(first, second) <= miss
+/// Which of several things may be the least: those that none of the others is less than. Each comparison misses with that probability at most, so
+/// the least thing is among them but for its comparisons with the others.
+///
+/// ```
+/// use pathmark::analysis::confidence_sequence::Stopping;
+/// use pathmark::analysis::ranking::may_be_least;
+/// use std::collections::BTreeMap;
+/// let (fast, slow) = ((0..8).map(|block| (block, 1.0)).collect(), (0..8).map(|block| (block, 1.5)).collect());
+/// let things: [&BTreeMap<u32, f64>; 2] = [&slow, &fast];
+/// assert_eq!(may_be_least(&things, 0.05, Stopping::Fixed), [false, true]);
+/// ```
+pub fn may_be_least<K: Ord>(things: &[&BTreeMap<K, f64>], miss: f64, stopping: Stopping) -> Vec<bool> {
+    let is_less = |first, second| match stopping {
+        Stopping::Fixed => is_level(miss) && sign_test(first, second) <= miss,
+        // Of the two sides that an interval misses on, one counts.
+        Stopping::Sequential => order_so_far(first, second, 2.0 * miss) == Some(Ordering::Less),
+    };
+    things.iter().map(|own| !things.iter().any(|other| is_less(*other, *own))).collect()
 }
 
 /// How likely it is that the first is less in so many blocks, or more, if it is less in half of them.
@@ -50,10 +65,10 @@ fn sign_test<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>) -> f64
 }
 
 /// Whether the first of two things is less or greater by the median of their ratios, as far as it is known at this look: all looks together miss
-/// with that probability at most.
+/// with that probability at most. Too few blocks for an interval of 95 % tell nothing.
 pub fn order_so_far<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>, miss: f64) -> Option<Ordering> {
     let ratios: Vec<f64> = first.iter().filter_map(|(block, value)| Some(value / second.get(block)?)).collect();
-    let interval = median_sequence(&ratios, 1.0 - miss)?;
+    let interval = median_sequence(&ratios, 1.0 - miss).filter(|_| ratios.len() >= FEWEST)?;
     let is_known = !interval.contains(1.0);
     is_known.then(|| interval.low.total_cmp(&1.0))
 }

@@ -12,7 +12,7 @@ use super::until::MOST_REPETITIONS;
 use crate::analysis::Interval;
 use crate::analysis::confidence_sequence::{Stopping, median_sequence};
 use crate::analysis::quantile::median;
-use crate::analysis::ranking::{groups, is_less, least_blocks, order_so_far, told_apart};
+use crate::analysis::ranking::{groups, least_blocks, may_be_least, order_so_far, told_apart};
 use crate::error::{InputError, Result};
 use crate::input::read_text;
 use crate::lab::Lab;
@@ -193,12 +193,8 @@ fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
 
 /// The schedules that no other one is faster than, where each comparison may miss with that probability.
 fn fastest(schedules: &BTreeMap<String, Times>, miss: f64, stopping: Stopping) -> Vec<String> {
-    let is_slower = |own: &Times, other: &Times| match stopping {
-        Stopping::Fixed => is_less(other, own, miss),
-        Stopping::Sequential => order_so_far(other, own, (2.0 * miss).min(MISS)) == Some(Ordering::Less),
-    };
-    let is_left = |own: &Times| schedules.values().all(|other| !is_slower(own, other));
-    schedules.iter().filter(|(_, own)| is_left(own)).map(|(name, _)| name.clone()).collect()
+    let is_left = may_be_least(&schedules.values().collect::<Vec<_>>(), miss, stopping);
+    schedules.keys().zip(is_left).filter(|(_, is_left)| *is_left).map(|(name, _)| name.clone()).collect()
 }
 
 /// Schedules in the order of their times over the median time of their repetition.

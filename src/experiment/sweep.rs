@@ -89,8 +89,7 @@ impl<'a> Sweep<'a> {
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
         let cells = filtered(&definition.cells(options.profile)?, options)?;
         let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
-        if options.repetitions.is_some() || options.until.is_some() {
-            // `--repetitions` and `--until` are for all cells.
+        if options.say_how_often() {
             for cell in &mut cells {
                 cell.at_most = None;
             }
@@ -309,7 +308,7 @@ fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -
         shard: options.shard.map(|shard| shard.to_string()),
         against: options.against.as_ref().map(|program| program.display().to_string()),
         until: until.map(|until| until.text.clone()),
-        uncapped: options.repetitions.is_some() || options.until.is_some(),
+        uncapped: options.say_how_often(),
         definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
     }

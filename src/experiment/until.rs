@@ -12,12 +12,11 @@ use super::diff::{Change, Pairing, compared, level_of, parse_share};
 use super::ranking::MISS;
 use super::{Definition, Options};
 use crate::analysis::Interval;
-use crate::analysis::confidence_sequence::median_sequence;
+use crate::analysis::confidence_sequence::{Stopping, median_sequence};
 use crate::analysis::quantile::median;
-use crate::analysis::ranking::order_so_far;
+use crate::analysis::ranking::{may_be_least, order_so_far};
 use crate::error::{InputError, Result};
 use crate::measure::Record;
-use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::time::Duration;
 
@@ -98,6 +97,13 @@ impl Until {
     }
 }
 
+impl Options {
+    /// Whether the number of repetitions is the user's, which is for all cells, and not the definition's.
+    pub(super) fn say_how_often(&self) -> bool {
+        self.repetitions.is_some() || self.until.is_some()
+    }
+}
+
 /// Whether a sweep compares all schedules of its images with each other, and if not, why.
 fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static str> {
     match (&options.against, &options.shard) {
@@ -174,29 +180,35 @@ impl Decisions {
             _ => cells * cells.saturating_sub(1) / 2,
         };
         let all: usize = images.iter().map(|cells| comparisons(cells.len())).sum();
-        // A wrong order of one pair has two sides, of which one can make the fastest lose.
-        let sides = if goal == Goal::Fastest { 2.0 } else { 1.0 };
-        let miss = (sides * MISS / all.max(1) as f64).min(MISS);
+        let miss = MISS / all.max(1) as f64;
         images.iter().map(|cells| self.open_of(cells, goal, miss)).collect()
     }
 
-    /// As [`Self::open_schedules`], of one image and at a miss for each pair.
+    /// As [`Self::open_schedules`], of one image and at a miss for each comparison.
     fn open_of(&self, cells: &[&str], goal: Goal, miss: f64) -> Vec<bool> {
         let nothing = BTreeMap::new();
-        let times: Vec<_> = cells.iter().map(|cell| self.times.get(*cell).map_or(&nothing, |[_, new]| new)).collect();
-        let is_comparable = |at: usize| !self.without_time.contains(cells[at]);
-        let others = |own: usize| (0..cells.len()).filter(move |other| *other != own && is_comparable(*other));
-        let is_open = |own: usize| {
-            let order = |other: usize| order_so_far(times[own], times[other], miss);
-            is_comparable(own)
-                && match goal {
-                    Goal::Fastest => others(own).all(|other| order(other) != Some(Ordering::Greater)),
-                    _ => others(own).any(|other| order(other).is_none()),
-                }
+        let times_of = |cell: &str| self.times.get(cell).map_or(&nothing, |[_, new]| new);
+        let (timed, times): (Vec<usize>, Vec<&BTreeMap<u32, f64>>) = cells
+            .iter()
+            .enumerate()
+            .filter(|(_, cell)| !self.without_time.contains(**cell))
+            .map(|(at, cell)| (at, times_of(cell)))
+            .unzip();
+        let is_open: Vec<bool> = if goal == Goal::Fastest {
+            may_be_least(&times, miss, Stopping::Sequential)
+        } else {
+            let is_open = |own: usize| {
+                let mut others = (0..times.len()).filter(|other| *other != own);
+                others.any(|other| order_so_far(times[own], times[other], miss).is_none())
+            };
+            (0..times.len()).map(is_open).collect()
         };
-        let open: Vec<bool> = (0..cells.len()).map(is_open).collect();
+        let mut open = vec![false; cells.len()];
         // One alone is the fastest.
-        if open.iter().filter(|is_open| **is_open).count() > 1 { open } else { vec![false; cells.len()] }
+        if is_open.iter().filter(|is_open| **is_open).count() > 1 {
+            timed.into_iter().zip(is_open).for_each(|(at, is_open)| open[at] = is_open);
+        }
+        open
     }
 }
 

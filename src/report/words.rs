@@ -101,11 +101,14 @@ pub(super) fn told(estimate: &Estimate, digits: usize) -> String {
 
 /// The confidence of some intervals of medians, in words for a caption.
 pub(super) fn confidence(intervals: impl IntoIterator<Item = Interval>) -> String {
-    let least = intervals.into_iter().map(|interval| interval.level).reduce(f64::min);
-    least.map_or_else(
-        || "no interval, for want of repetitions".to_string(),
-        |least| format!("distribution-free interval of the median, {:.1} % confidence", at_least_percent(least)),
-    )
+    let mut levels: Vec<f64> = intervals.into_iter().map(|interval| at_least_percent(interval.level)).collect();
+    levels.sort_by(f64::total_cmp);
+    let levels = match levels.as_slice() {
+        [] => return "no interval, for want of repetitions".to_string(),
+        [least, .., most] if least < most => format!("{least:.1} to {most:.1}"),
+        [level, ..] => format!("{level:.1}"),
+    };
+    format!("distribution-free interval of the median, {levels} % confidence")
 }
 
 /// A confidence in percent with one decimal, never more than it is. A level that binomial sums give as .4999999 is a half.
@@ -133,6 +136,14 @@ mod tests {
     #[test]
     fn a_confidence_is_not_told_larger_than_it_is() {
         assert_eq!([0.5 - 1e-12, 0.5, 0.9299, 0.96].map(at_least_percent), [50.0, 50.0, 92.9, 96.0]);
+    }
+
+    #[test]
+    fn a_caption_tells_the_least_and_the_most_confidence() {
+        let of = |levels: &[f64]| confidence(levels.iter().map(|&level| Interval { low: 0.0, high: 1.0, level }));
+        assert_eq!(of(&[0.95, 0.75, 0.96]), "distribution-free interval of the median, 75.0 to 96.0 % confidence");
+        assert_eq!(of(&[0.95; 3]), "distribution-free interval of the median, 95.0 % confidence");
+        assert_eq!(of(&[]), "no interval, for want of repetitions");
     }
 
     #[test]
