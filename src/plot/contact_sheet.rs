@@ -17,6 +17,8 @@ use crate::image_io::tone_map::quantise_image;
 
 /// About how wide each image is shown.
 const SHOWN: u32 = 240;
+/// About how wide larger images are shown: every fifth pixel of 1024, so that a page with all sheets stays below 8 MB.
+const REDUCED: u32 = 224;
 /// Space between images.
 const GAP: f64 = 16.0;
 
@@ -170,7 +172,7 @@ fn shown(cell: &Cell) -> Result<RgbImage> {
         return Err(Error::system("drawing", "an image", std::io::Error::other(problem)));
     };
     let nearest = |a: u32, b: u32| ((a + b / 2) / b).max(1);
-    let (up, down) = (nearest(SHOWN, image.width()), nearest(image.width(), SHOWN));
+    let (up, down) = (nearest(SHOWN, image.width()), nearest(image.width(), REDUCED));
     let size = |length: u32| (length * up / down).max(1);
     let source = |place: u32, length: u32| (place * down / up + down / 2).min(length - 1);
     Ok(RgbImage::from_fn(size(image.width()), size(image.height()), |x, y| {
