@@ -125,6 +125,15 @@ mod tests {
         assert!(told_apart(&things(&[&[1.0; 9], &[2.0; 9]]), 0.0).is_empty());
     }
 
+    /// With one comparison the bet alone would do with seven blocks: 2^8 / 8 = 32 >= 20.
+    #[test]
+    fn fewer_than_eight_blocks_tell_nothing_before_their_number_is_known() {
+        for (blocks, expected) in [(7, [true, true]), (8, [false, true])] {
+            let [slow, fast] = [2.0, 1.0].map(|value| (0..blocks).map(|block| (block, value)).collect());
+            assert_eq!(may_be_least(&[&slow, &fast], 0.05, Stopping::Sequential), expected, "{blocks}");
+        }
+    }
+
     /// Ties and missing values are no evidence.
     #[test]
     fn blocks_without_an_order_say_nothing() {

@@ -177,3 +177,30 @@ impl<'a> Product<'a> {
         Err(self.at_field(InputError::new("sampler", sampler, problem).allowed(allowed).into()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::Lab;
+
+    fn limits(first: &str, second: &str) -> Vec<Option<u32>> {
+        let matrix = |own: &str| {
+            let axes =
+                "scene = [\"cornell\"]\nspp = [4]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]";
+            format!("[[matrix]]\n{axes}\n{own}\n")
+        };
+        let head = "title = \"t\"\nquestion = \"q\"\nfigures = []\n";
+        let text = format!("{head}{}{}[quick]\nrepetitions = 5", matrix(first), matrix(second));
+        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", &text).unwrap();
+        definition.cells(Profile::Quick).unwrap().into_iter().map(|cell| cell.at_most).collect()
+    }
+
+    /// Of two matrices that have a cell the one with more repetitions counts, and a limit that is none is none.
+    #[test]
+    fn a_cell_has_the_repetitions_of_the_matrix_that_gives_it_most() {
+        assert_eq!(limits("repetitions = 2", "repetitions = 3"), [Some(3)]);
+        assert_eq!(limits("repetitions = 3", "repetitions = 2"), [Some(3)]);
+        assert_eq!((limits("repetitions = 2", ""), limits("", "repetitions = 2")), (vec![None], vec![None]));
+        assert_eq!(limits("repetitions = 2", "repetitions = 5"), [None]);
+    }
+}

@@ -120,6 +120,17 @@ fn who_is_slower_is_left_out() {
     let refused =
         run(folder.path(), &["run", "tiny.toml", "--until", "order", "--against", against, "--out", "other"], 2);
     assert!(refused.err.contains("order") && refused.err.contains("3%"), "{}", refused.err);
+    let part = ["run", "tiny.toml", "--shard", "1/2", "--out", "part"];
+    let refused = run(folder.path(), &[&part[..], &["--until", "fastest"]].concat(), 2);
+    assert!(refused.err.contains("only some"), "{}", refused.err);
+    // A part of a sweep whose definition has such a goal is run as often as that allows.
+    write_tiny(
+        folder.path(),
+        &TINY.replacen("repetitions = 3", "repetitions = { until = \"fastest\", at-most = 2 }", 1),
+    );
+    run(folder.path(), &part, 0);
+    let machine = fs::read_to_string(folder.path().join("part/tiny/machine.toml")).unwrap();
+    assert!(!machine.contains("until"), "{machine}");
 }
 
 /// What a matrix says holds where nobody says otherwise.
