@@ -5,10 +5,22 @@ use std::num::NonZeroUsize;
 use std::process::Command;
 use std::sync::Arc;
 
-use pathmark_strategy::{Config, StrategyError, find};
+use pathmark_strategy::{Config, STRATEGIES, StrategyError, find};
 
 /// What OpenMP reads once, when its program starts.
 const LIMIT: &str = "OMP_THREAD_LIMIT";
+
+const NAMES: [&str; 3] = ["openmp-static", "openmp-dynamic", "openmp-guided"];
+
+/// By itself, because the others' contract does not depend on the feature: whoever has tried them without it need not try them again.
+#[test]
+fn every_strategy_on_openmp_keeps_the_contract() {
+    let ours = |name: &str| NAMES.contains(&name);
+    let plain = STRATEGIES.iter().filter(|entry| ours(entry.name)).map(|entry| (entry, None));
+    let trials: Vec<_> = plain.chain(super::parameters().filter(|(entry, _)| ours(entry.name))).collect();
+    assert_eq!(trials.len(), 9, "three strategies, and two of them with three parameters");
+    super::verify_all(&trials);
+}
 
 /// A limit in the environment would quietly leave a smaller team, and a record with a false number of threads. This test runs itself once more
 /// under such a limit.
@@ -22,7 +34,7 @@ fn a_team_that_is_too_small_is_an_error() {
         assert!(String::from_utf8_lossy(&output.stdout).contains("1 passed"), "nothing was tried");
         return;
     }
-    for strategy in ["openmp-static", "openmp-dynamic", "openmp-guided"] {
+    for strategy in NAMES {
         let run = |threads: usize| {
             let config = Config::new(NonZeroUsize::new(threads).expect("at least one thread"));
             let made = find(strategy).expect("it is in the table").build(config);
