@@ -119,8 +119,7 @@ enum Verb {
     Completions(completions::Arguments),
     /// Print a manual page.
     Man(man::Arguments),
-    /// One cell of a sweep, read from standard input.
-    #[command(hide = true)]
+    #[command(hide = true, about = crate::experiment::CELL_ABOUT)]
     Cell,
 }
 

@@ -3,7 +3,7 @@
 //! Each repetition of each cell is run by both, one right after the other, and who comes first alternates. A drift of the machine's speed falls
 //! on both rows of a pair, so their ratio is free of it. The other build's rows lie in `OUT/against`, as those of a sweep of its own.
 
-use super::cell_process::{CellJob, PointJob};
+use super::cell_process::{CELL_ABOUT, CellJob, PointJob};
 use super::records_file::RecordsFile;
 use super::run_file::{MACHINE, RunFile};
 use crate::atomic_file;
@@ -12,6 +12,7 @@ use crate::measure::Record;
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 /// The folder below that of the sweep's results.
 const FOLDER: &str = "against";
@@ -30,14 +31,23 @@ pub fn folder_against(out: &Path, name: &str) -> PathBuf {
     out.join(FOLDER).join(name)
 }
 
-/// Refuses what cannot be run at all.
+/// Refuses what is no program, and programs that do not know cells, before any work.
 pub(super) fn check_program(program: &Path) -> Result<()> {
+    let refused = |problem: &str| {
+        let error = InputError::new("against", program.display().to_string(), problem);
+        Err(error.allowed("another build of pathmark, or of a program with the same command line").into())
+    };
     let is_program = fs::metadata(program).is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0);
-    if is_program {
-        return Ok(());
+    if !is_program {
+        return refused("is no program");
     }
-    let error = InputError::new("against", program.display().to_string(), "is no program");
-    Err(error.allowed("another build of pathmark, or of a program with the same command line").into())
+    // With its place, because a name without one would be looked for elsewhere.
+    let program = fs::canonicalize(program).map_err(|e| Error::system("finding", program, e))?;
+    let help = Command::new(&program).args(["cell", "--help"]).stdin(Stdio::null()).output();
+    match help {
+        Ok(help) if String::from_utf8_lossy(&help.stdout).contains(CELL_ABOUT) => Ok(()),
+        _ => refused("does not know cells of a sweep"),
+    }
 }
 
 impl Against {

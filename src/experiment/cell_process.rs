@@ -26,6 +26,9 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+/// What the help of the verb `cell` begins with. A program whose help says so can run cells, so later builds must keep these words.
+pub const CELL_ABOUT: &str = "One cell of a sweep, read from standard input";
+
 /// What a child is asked to do.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellJob {

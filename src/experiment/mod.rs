@@ -39,7 +39,7 @@ mod with_values;
 pub use against::folder_against;
 pub use calibration_file::read_calibration;
 pub use cell::{Cell, CellPoint, trace_file};
-pub use cell_process::{CellJob, PointJob, child_main};
+pub use cell_process::{CELL_ABOUT, CellJob, PointJob, child_main};
 pub use chapter::Chapter;
 pub use count_diff::{CountDiff, count_diff};
 pub use definition::{Definition, EXPERIMENTS, Keep};

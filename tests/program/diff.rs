@@ -2,6 +2,7 @@
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{Finished, finish, pathmark};
+use assert_cmd::cargo::cargo_bin;
 use pathmark::measure::SCHEMA;
 use serde_json::Value;
 use std::fs;
@@ -126,7 +127,7 @@ fn what_does_not_compare_is_refused() {
 
 /// The same program behind a script, as another build of it.
 fn other_build(folder: &Path) -> PathBuf {
-    let (own, script) = (assert_cmd::cargo::cargo_bin!("pathmark"), folder.join("other"));
+    let (own, script) = (cargo_bin!("pathmark"), folder.join("other"));
     fs::write(&script, format!("#!/bin/sh\nexec {} \"$@\"\n", own.display())).unwrap();
     fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
     script
@@ -196,12 +197,13 @@ fn two_builds_are_measured_in_turns() {
     assert!(!found.err.contains("not measured in turns"));
     // The same folder again, and programs that are none.
     run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 2);
-    for other in ["./nowhere", "tiny.toml", "."] {
+    for other in ["./nowhere", "tiny.toml", ".", "/bin/true", "/bin/sh"] {
         let finished = run(folder.path(), &["run", "tiny.toml", "--against", other, "--out", "new"], 2);
         assert!(finished.err.contains("against") && !folder.path().join("new").exists(), "{}", finished.err);
     }
-    // A program that says something else gives failed rows, and the sweep goes on.
-    fs::write(&script, "#!/bin/sh\necho hello\n").unwrap();
+    // A build whose cells fail gives failed rows, and the sweep goes on.
+    let fails = format!("[ \"$2\" = --help ] && exec {} \"$@\"\necho hello\n", cargo_bin!("pathmark").display());
+    fs::write(&script, format!("#!/bin/sh\n{fails}")).unwrap();
     let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "new"], 1);
     assert!(finished.err.contains("15 of"), "{}", finished.err);
     assert_eq!(rows("new/tiny").len(), 15);
