@@ -4,7 +4,7 @@ use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
 use crate::error::{Error, Result};
-use crate::experiment::{CellDiff, Change, CountDiff, Diff, Progress as _, count_diff, diff, parse_share};
+use crate::experiment::{Across, CellDiff, Change, CountDiff, Diff, Progress as _, count_diff, diff, parse_share};
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -26,12 +26,21 @@ pub(super) struct Arguments {
     /// `run --count-instructions`. Counts have no noise
     #[arg(long)]
     counts: bool,
-    /// Compare measurements of two machines all the same
-    #[arg(long)]
-    across_machines: bool,
+    #[command(flatten)]
+    across: AcrossOptions,
     /// Print the comparison as one JSON object
     #[arg(long)]
     json: bool,
+}
+
+#[derive(Args)]
+struct AcrossOptions {
+    /// Compare measurements of two machines all the same
+    #[arg(long)]
+    across_machines: bool,
+    /// Compare builds whose images have other bits all the same
+    #[arg(long)]
+    across_revisions: bool,
 }
 
 /// What undecided cells count as.
@@ -48,7 +57,9 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     if arguments.counts {
         return counts(arguments, limit);
     }
-    let found = diff(&arguments.old, &arguments.new, limit, arguments.across_machines)?;
+    let AcrossOptions { across_machines: machines, across_revisions: revisions } = arguments.across;
+    let across = Across { machines, revisions };
+    let found = diff(&arguments.old, &arguments.new, limit, across)?;
     let count = |change: Change| found.cells.iter().filter(|cell| cell.change == change).count();
     let (slower, undecided) = (count(Change::Slower), count(Change::Undecided));
     if arguments.json {

@@ -46,7 +46,8 @@ pub(super) fn check_program(program: &Path) -> Result<()> {
     let help = Command::new(&program).args(["cell", "--help"]).stdin(Stdio::null()).output();
     match help {
         Ok(help) if String::from_utf8_lossy(&help.stdout).contains(CELL_ABOUT) => Ok(()),
-        _ => refused("does not know cells of a sweep"),
+        Ok(_) => refused("does not know cells of a sweep"),
+        Err(error) => refused(&format!("cannot be started ({error})")),
     }
 }
 

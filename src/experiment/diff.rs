@@ -127,6 +127,15 @@ fn side(path: &Path) -> Result<Side> {
     Ok(Side { run, rows: read_records(&file)?, instructions: instructions::read(&file)? })
 }
 
+/// What measurements may differ in and be compared all the same.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Across {
+    /// Measured on two machines.
+    pub machines: bool,
+    /// By builds that render other bits, so that their work is not known to be equal.
+    pub revisions: bool,
+}
+
 /// Both measurements. Those of two machines are refused unless `across_machines`.
 pub(super) fn sides(old: &Path, new: &Path, across_machines: bool) -> Result<[Side; 2]> {
     let both = [side(old)?, side(new)?];
@@ -143,14 +152,27 @@ pub(super) fn sides(old: &Path, new: &Path, across_machines: bool) -> Result<[Si
     Ok(both)
 }
 
-/// Compares two measurements. `limit` is the share by which a cell may get slower, .03 say. Measurements of two machines are refused
-/// unless `across_machines`.
-pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result<Diff> {
+/// Refuses cells whose images have other bits in both measurements: more work that gives another image is not slower work.
+fn check_images([before, after]: &[Side; 2], new: &Path) -> Result<()> {
+    let has_image = |row: &&Record| !row.checksum.is_empty();
+    let old: BTreeMap<&str, &str> =
+        before.rows.iter().filter(has_image).map(|row| (row.cell.as_str(), row.checksum.as_str())).collect();
+    let is_other = |row: &&Record| old.get(row.cell.as_str()).is_some_and(|checksum| *checksum != row.checksum);
+    let Some(row) = after.rows.iter().filter(has_image).find(is_other) else { return Ok(()) };
+    let problem =
+        format!("has another image than the old measurement in {}: the builds are of two revisions", row.cell);
+    let error = InputError::new("new", new.display().to_string(), problem);
+    Err(error.allowed("builds whose images have the same bits, or --across-revisions").into())
+}
+
+/// Compares two measurements. `limit` is the share by which a cell may get slower, .03 say. Measurements that differ in more than `across` allows
+/// are refused.
+pub fn diff(old: &Path, new: &Path, limit: f64, across: Across) -> Result<Diff> {
     if !(limit.is_finite() && limit >= 0.0) {
         let error = InputError::new("fail-above", limit.to_string(), "is no share by which something may get slower");
         return Err(error.allowed("numbers from 0, as 0.03 or 3%").into());
     }
-    let sides = sides(old, new, across_machines)?;
+    let sides = sides(old, new, across.machines)?;
     let both = |of: fn(&RunFile) -> bool| sides.iter().all(|side| side.run.as_ref().is_some_and(of));
     let pairing = match (both(|run| run.against.is_some()), both(|run| run.until.is_some())) {
         (false, _) => Pairing::None,
@@ -164,6 +186,9 @@ pub fn diff(old: &Path, new: &Path, limit: f64, across_machines: bool) -> Result
         return Err(InputError::new("new", new.display().to_string(), problem)
             .allowed("measurements of the same experiment at the same size")
             .into());
+    }
+    if !across.revisions {
+        check_images(&sides, new)?;
     }
     let level = level_of(common.len());
     let cells = common.iter().filter_map(|cell| compared(cell, &before[*cell], &after[*cell], pairing, level, limit));

@@ -43,7 +43,7 @@ pub use cell_process::{CELL_ABOUT, CellJob, PointJob, child_main};
 pub use chapter::Chapter;
 pub use count_diff::{CountDiff, count_diff};
 pub use definition::{Definition, EXPERIMENTS, Keep};
-pub use diff::{CellDiff, Change, Diff, diff, parse_share};
+pub use diff::{Across, CellDiff, Change, Diff, diff, parse_share};
 pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use keys::keys;

@@ -6,7 +6,6 @@ use assert_cmd::cargo::cargo_bin;
 use pathmark::measure::SCHEMA;
 use serde_json::Value;
 use std::fs;
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -115,6 +114,19 @@ fn what_does_not_compare_is_refused() {
     fs::write(folder.path().join("moved/machine.toml"), text.replace(line, "cpu = \"Another\"")).unwrap();
     refused(&["old", "moved"], &["another machine", "--across-machines"]);
     run(folder.path(), &["diff", "old", "moved", "--across-machines"], 0);
+    // A build that renders other bits.
+    measured(folder.path(), "revised", steady);
+    let revised = folder.path().join("revised/records.csv");
+    let text = fs::read_to_string(&revised).unwrap();
+    let (heads, row) = text.split_once('\n').unwrap();
+    let checksum = heads.split(',').position(|head| head == "checksum").unwrap();
+    let checksum =
+        csv::ReaderBuilder::new().has_headers(false).from_reader(row.as_bytes()).records().next().unwrap().unwrap()
+            [checksum]
+            .to_string();
+    fs::write(&revised, text.replace(&checksum, "0123456789abcdef")).unwrap();
+    refused(&["old", "revised"], &["another image", "--across-revisions"]);
+    run(folder.path(), &["diff", "old", "revised", "--across-revisions"], 0);
     let rows = fs::read_to_string(folder.path().join("old/records.csv")).unwrap();
     fs::create_dir(folder.path().join("ancient")).unwrap();
     fs::write(
@@ -125,11 +137,18 @@ fn what_does_not_compare_is_refused() {
     refused(&["old", "ancient"], &["schema", &(SCHEMA - 1).to_string()]);
 }
 
+/// Writes a shell script by a process of its own: were it open for writing here, a child that another test starts meanwhile would hold it open, too,
+/// and for that long nobody could run it.
+fn write_script(path: &Path, text: &str) {
+    let mut writer = Command::new("sh");
+    writer.args(["-c", "printf '#!/bin/sh\n%s\n' \"$1\" >\"$0\" && chmod 755 \"$0\""]).arg(path).arg(text);
+    assert!(writer.status().unwrap().success());
+}
+
 /// The same program behind a script, as another build of it.
 fn other_build(folder: &Path) -> PathBuf {
-    let (own, script) = (cargo_bin!("pathmark"), folder.join("other"));
-    fs::write(&script, format!("#!/bin/sh\nexec {} \"$@\"\n", own.display())).unwrap();
-    fs::set_permissions(&script, fs::Permissions::from_mode(0o755)).unwrap();
+    let script = folder.join("other");
+    write_script(&script, &format!("exec {} \"$@\"", cargo_bin!("pathmark").display()));
     script
 }
 
@@ -202,8 +221,8 @@ fn two_builds_are_measured_in_turns() {
         assert!(finished.err.contains("against") && !folder.path().join("new").exists(), "{}", finished.err);
     }
     // A build whose cells fail gives failed rows, and the sweep goes on.
-    let fails = format!("[ \"$2\" = --help ] && exec {} \"$@\"\necho hello\n", cargo_bin!("pathmark").display());
-    fs::write(&script, format!("#!/bin/sh\n{fails}")).unwrap();
+    let fails = format!("[ \"$2\" = --help ] && exec {} \"$@\"\necho hello", cargo_bin!("pathmark").display());
+    write_script(&script, &fails);
     let finished = run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "new"], 1);
     assert!(finished.err.contains("15 of"), "{}", finished.err);
     assert_eq!(rows("new/tiny").len(), 15);
