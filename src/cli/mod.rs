@@ -27,6 +27,7 @@ mod profile;
 mod progress;
 mod rank;
 mod ranks;
+mod rays;
 mod reference;
 mod render;
 mod replay;
@@ -58,7 +59,7 @@ Examples:
   pathmark simulate rows.csv --workers 1..64                 forecast a traced run on more cores
 
 Measure: reproduce, run, rank, diff, price, report, claims, message-costs   Render: render, merge, reference, compare, convert
-Look inside: trace, simulate, replay, bounces    Ask: list, explain, new, check, man, completions";
+Look inside: trace, simulate, replay, bounces, rays    Ask: list, explain, new, check, man, completions";
 
 /// A laboratory for scheduling unequal work on many cores, and for what accuracy costs in time.
 #[derive(Parser)]
@@ -105,6 +106,8 @@ enum Verb {
     Replay(replay::Arguments),
     /// Show the light of an image by the bounces that it made.
     Bounces(bounces::Arguments),
+    /// Time the search for what rays meet first, along the rays of paths.
+    Rays(rays::Arguments),
     /// Try the hard cases of numerics, sampling and statistics on this machine.
     Check(check::Arguments),
     /// Judge the claims of the four reports by the results in a folder.
@@ -178,6 +181,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         Verb::Trace(arguments) => trace::run(&arguments, talk),
         Verb::Replay(arguments) => replay::run(&arguments, lab),
         Verb::Bounces(arguments) => bounces::run(&arguments, lab, talk),
+        Verb::Rays(arguments) => rays::run(&arguments, lab, talk),
         Verb::Check(arguments) => check::run(&arguments, lab, talk),
         Verb::New(arguments) => new::run(&arguments),
         Verb::Explain(arguments) => explain::run(&arguments),

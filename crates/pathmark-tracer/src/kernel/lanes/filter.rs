@@ -102,7 +102,8 @@ fn dot_and<V: Float>(a: Vec3<V>, b: Vec3<V>, number: V) -> V {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::lanes::walks::{Start, nearest, side_by_side, walks};
+    use crate::kernel::lanes::walks::{nearest, side_by_side, walks};
+    use crate::kernel::rays::Start;
     use crate::scene::{SCENES, load};
     use crate::simd::{Mask, Precision, Work, levels, on_level};
 

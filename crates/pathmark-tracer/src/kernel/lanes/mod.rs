@@ -6,6 +6,7 @@ mod filter;
 mod light;
 mod nearest;
 mod packet;
+mod search;
 mod singles;
 mod supply;
 mod tables;

@@ -1,13 +1,12 @@
 //! Rays to compare searches by: those of random walks through a scene, and those that hardly miss one thing or another.
 
 use super::packet::Rays;
-use crate::math::{Ray, Vec3, dot, other_root, unit};
+use super::search::{in_packets, packet};
+use crate::kernel::rays::Start;
+use crate::math::{Ray, Vec3, dot, unit};
 use crate::sampling::{mix, uniform_sphere};
 use crate::scene::{AllEffects, Scene, Standpoint, Tests};
-use crate::simd::{Float, MOST_LANES};
-
-/// A ray and where it starts.
-pub(super) type Start = (Ray, Option<Standpoint>);
+use crate::simd::Float;
 
 struct Random(u64);
 
@@ -64,24 +63,6 @@ pub(super) fn walks(scene: &Scene, count: usize) -> (Vec<Start>, Vec<Start>) {
 /// As many rays as there are lanes.
 #[inline(always)]
 pub(super) fn side_by_side<V: Float>(scene: &Scene, starts: &[Start]) -> Rays<V> {
-    let mut numbers = [[0.0; MOST_LANES]; 8];
-    for (lane, (Ray { origin, direction }, from)) in starts.iter().enumerate() {
-        let number = from.map_or(-1.0, |from| from.primitive.into());
-        let sphere =
-            from.filter(|from| from.inside).and_then(|from| scene.primitives.spheres.get(from.primitive as usize));
-        let own_root = sphere.map_or(f64::NAN, |sphere| other_root(*origin - sphere.center, *direction));
-        let Vec3 { x, y, z } = *direction;
-        for (to, value) in numbers.iter_mut().zip([origin.x, origin.y, origin.z, x, y, z, number, own_root]) {
-            to[lane] = value;
-        }
-    }
-    let mut vectors = [V::splat(0.0); 8];
-    for (vector, numbers) in vectors.iter_mut().zip(numbers) {
-        for (lane, number) in numbers.into_iter().enumerate().take(V::LANES) {
-            vector.set_lane(lane, number);
-        }
-    }
-    let [ox, oy, oz, x, y, z, from, own_root] = vectors;
-    let ray = Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(x, y, z) };
-    Rays { ray, from, own_root }
+    let numbers: Vec<V::One> = in_packets(scene, starts, V::LANES).into_iter().map(V::one).collect();
+    packet(&numbers)
 }

@@ -198,7 +198,8 @@ impl Best {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::lanes::walks::{Start, nearest, side_by_side, walks};
+    use crate::kernel::lanes::walks::{nearest, side_by_side, walks};
+    use crate::kernel::rays::Start;
     use crate::math::{Frame, line_meets};
     use crate::sampling::uniform_sphere;
     use crate::scene::Standpoint;

@@ -1,0 +1,82 @@
+//! The search alone, for rays that are known beforehand.
+
+use super::Lanes;
+use super::packet::Rays;
+use crate::kernel::Counts;
+use crate::kernel::rays::{FoundRays, Start};
+use crate::math::{Ray, Vec3, other_root};
+use crate::scene::Scene;
+use crate::simd::{Float, Number, Numbers, Work, on_level, widths_of};
+
+/// Numbers of a ray: origin, direction, what it starts on and where it meets that again.
+const OF_RAY: usize = 8;
+
+/// A ray as it is in a lane.
+fn numbers(scene: &Scene, (Ray { origin, direction }, from): &Start) -> [f64; OF_RAY] {
+    let number = from.map_or(-1.0, |from| from.primitive.into());
+    let sphere = from.filter(|from| from.inside).and_then(|from| scene.primitives.spheres.get(from.primitive as usize));
+    let own_root = sphere.map_or(f64::NAN, |sphere| other_root(*origin - sphere.center, *direction));
+    [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, number, own_root]
+}
+
+/// Rays in packets of so many lanes: of each packet one number of all rays after the other. The last packet's empty lanes have the last ray.
+pub(super) fn in_packets(scene: &Scene, rays: &[Start], lanes: usize) -> Vec<f64> {
+    let mut all = Vec::with_capacity(rays.len().next_multiple_of(lanes) * OF_RAY);
+    for packet in rays.chunks(lanes) {
+        let rows: Vec<[f64; OF_RAY]> = packet.iter().map(|start| numbers(scene, start)).collect();
+        for k in 0..OF_RAY {
+            all.extend((0..lanes).map(|lane| rows[lane.min(rows.len() - 1)][k]));
+        }
+    }
+    all
+}
+
+/// The rays of one packet.
+#[inline(always)]
+pub(super) fn packet<V: Float>(numbers: &[V::One]) -> Rays<V> {
+    let number = |k: usize| V::load(&numbers[k * V::LANES..]);
+    let origin = Vec3 { x: number(0), y: number(1), z: number(2) };
+    let direction = Vec3 { x: number(3), y: number(4), z: number(5) };
+    Rays { ray: Ray { origin, direction }, from: number(6), own_root: number(7) }
+}
+
+impl Lanes {
+    pub(in crate::kernel) fn side_by_side(&self, rays: &[Start]) -> Numbers {
+        let [lanes, _] = widths_of(self.level, self.precision);
+        Numbers::new(in_packets(&self.scene, rays, lanes), self.precision)
+    }
+
+    /// Searches along so many rays, made by [`Self::side_by_side`].
+    pub(in crate::kernel) fn search(&self, rays: &Numbers, count: usize) -> FoundRays {
+        on_level(self.level, self.precision, Searching { lanes: self, rays, count })
+    }
+}
+
+struct Searching<'a> {
+    lanes: &'a Lanes,
+    rays: &'a Numbers,
+    count: usize,
+}
+
+impl Work for Searching<'_> {
+    type Output = FoundRays;
+
+    #[inline(always)]
+    fn run<V: Float>(self) -> FoundRays {
+        let mut found =
+            FoundRays { counts: Counts { rays: self.count as u64, ..Counts::default() }, ..FoundRays::default() };
+        let numbers = <V::One as Number>::all(self.rays);
+        let mut left = self.count;
+        for numbers in numbers.chunks_exact(OF_RAY * V::LANES) {
+            let here = left.min(V::LANES);
+            left -= here;
+            let wanted = u32::MAX >> (u32::BITS - here as u32);
+            let (distance, primitive) = self.lanes.nearest(&packet::<V>(numbers), wanted, &mut found.counts);
+            for lane in (0..here).filter(|lane| primitive.lane(*lane) >= 0.0) {
+                found.met += 1;
+                found.distance += distance.lane(lane);
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,176 @@
+//! The search for the first thing along rays, apart from all else that a path needs: for a comparison with programs that do nothing but that.
+
+use super::lanes::Lanes;
+use super::{Choice, Counts, Inspector, prepared};
+use crate::error::{InputError, Result};
+use crate::estimator::Probe;
+use crate::math::{Ray, Rgb, dot};
+use crate::scene::{Hit, Scene, Standpoint, Tests};
+use crate::simd::{Numbers, Precision};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A ray, and what it starts on.
+pub type Start = (Ray, Option<Standpoint>);
+
+/// The rays from vertex to vertex that meet something, in the order of a path.
+#[derive(Default)]
+struct Segments {
+    rays: Vec<Start>,
+    last: Option<Hit>,
+}
+
+impl Probe for Segments {
+    fn vertex(&mut self, _bounces: u16, ray: &Ray, hit: &Hit, _throughput: Rgb) {
+        let from = self.last.map(|last| {
+            let inside = dot(last.normal, ray.direction) < 0.0;
+            Standpoint { primitive: last.primitive, inside }
+        });
+        self.rays.push((*ray, from));
+        self.last = Some(*hit);
+    }
+    fn ended(&mut self, _bounces: u16) {
+        self.last = None;
+    }
+}
+
+/// The rays of an image's paths, pixel by pixel: without those that meet nothing and those that ask whether a light is hidden. Paths that fog scatters
+/// or that split are refused, because their rays start elsewhere.
+pub fn path_rays(scene: &Arc<Scene>, choice: &Choice, samples: &Range<u32>) -> Result<Vec<Start>> {
+    if !choice.estimator.is_one_path {
+        let problem = "follows several paths at once, whose rays are not told apart";
+        return Err(InputError::new("estimator", choice.estimator.name, problem).allowed("bsdf").into());
+    }
+    if scene.fog.is_some() {
+        return Err(InputError::new("scene", &scene.name, "has fog, in which rays start")
+            .allowed("a scene without")
+            .into());
+    }
+    let inspector = Inspector::new(scene, &choice.clone().in_double_precision())?;
+    let mut segments = Segments::default();
+    for y in 0..choice.height {
+        for x in 0..choice.width {
+            for sample in samples.clone() {
+                inspector.estimate(x, y, sample, &mut segments);
+            }
+        }
+    }
+    Ok(segments.rays)
+}
+
+/// What was found along rays.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FoundRays {
+    /// Rays that met something.
+    pub met: u64,
+    /// The sum of their distances, in the order of the rays.
+    pub distance: f64,
+    /// What they were tested against.
+    pub counts: Counts,
+}
+
+/// Rays by one way to search.
+pub struct RaySearch {
+    way: Way,
+    count: usize,
+}
+
+enum Way {
+    Lanes { lanes: Box<Lanes>, rays: Numbers },
+    Scalar { scene: Arc<Scene>, rays: Vec<Start> },
+}
+
+impl RaySearch {
+    /// The way that a kernel of this choice searches.
+    pub fn new(scene: &Arc<Scene>, choice: &Choice, rays: Vec<Start>) -> Self {
+        let prepared = prepared(scene, choice);
+        let count = rays.len();
+        let way = match choice.lanes {
+            Ok(chosen) => {
+                let lanes = Box::new(Lanes::new(prepared, choice, chosen));
+                let rays = lanes.side_by_side(&rays);
+                Way::Lanes { lanes, rays }
+            }
+            Err(_) => Way::Scalar { scene: prepared, rays },
+        };
+        Self { way, count }
+    }
+
+    /// How many rays there are.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Searches along all of them.
+    pub fn run(&self) -> FoundRays {
+        match &self.way {
+            Way::Lanes { lanes, rays } => lanes.search(rays, self.count),
+            Way::Scalar { scene, rays } => {
+                let (mut found, mut tests) = (FoundRays::default(), Tests::default());
+                for (ray, from) in rays {
+                    let nearest = scene.nearest(ray, *from, f64::MANTISSA_DIGITS, &mut tests);
+                    if nearest.primitive != u32::MAX {
+                        found.met += 1;
+                        found.distance += nearest.t;
+                    }
+                }
+                found.counts = Counts {
+                    rays: rays.len() as u64,
+                    box_tests: tests.boxes,
+                    primitive_tests: tests.primitives,
+                    ..Counts::default()
+                };
+                found
+            }
+        }
+    }
+}
+
+impl Choice {
+    /// The same paths as the scalar kernel has them.
+    fn in_double_precision(mut self) -> Self {
+        if let Ok(lanes) = &mut self.lanes {
+            lanes.precision = Precision::F64;
+        }
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::{Spec, choose};
+    use crate::scene::load;
+
+    fn search(scene: &str, kernel: &str, precision: &str) -> FoundRays {
+        let scene = Arc::new(load(scene).unwrap());
+        let spec = Spec {
+            width: 16,
+            height: 12,
+            estimator: "bsdf".to_string(),
+            kernel: kernel.to_string(),
+            precision: precision.to_string(),
+            ..Spec::default()
+        };
+        let choice = choose(&scene, &spec).unwrap();
+        let rays = path_rays(&scene, &choice, &(0..2)).unwrap();
+        let search = RaySearch::new(&scene, &choice, rays);
+        assert!(search.count() > 1000);
+        search.run()
+    }
+
+    /// Every ray of a path meets what its path met, whoever searches.
+    #[test]
+    fn what_paths_met_is_met() {
+        for scene in ["bumpy-ball", "cornell", "spheres:300", "cornell-mesh"] {
+            let scalar = search(scene, "scalar", "f64");
+            assert_eq!(scalar.met, scalar.counts.rays, "{scene}");
+            let lanes = search(scene, "lanes", "f64");
+            assert_eq!((lanes.met, lanes.distance.to_bits()), (scalar.met, scalar.distance.to_bits()), "{scene}");
+            let singles = search(scene, "lanes", "f32");
+            assert!(singles.met.abs_diff(scalar.met) <= 2, "{scene}");
+            // Some ten rays in a million meet the other side of an edge.
+            assert!((singles.distance / scalar.distance - 1.0).abs() < 1e-3, "{scene}");
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! `pathmark rays SCENE`: rays per second of the search for what a ray meets first, along the rays of paths.
+
+use super::axes::{What, no_paths};
+use super::output::{number, print, print_json};
+use super::progress::Talk;
+use crate::analysis::quantile::{median, median_interval};
+use crate::atomic_file;
+use crate::error::{InputError, Result};
+use crate::experiment::Progress;
+use crate::files::Files;
+use crate::kernel::{FoundRays, RaySearch, Start, path_rays};
+use crate::lab::Lab;
+use crate::math::Vec3;
+use crate::plot::number::short;
+use crate::scene::Scene;
+use clap::{Args, value_parser};
+use serde_json::json;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// `pathmark rays bumpy-ball:20000 --precision f32`
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A scene of `pathmark list scenes`, or the path of a .toml file
+    scene: String,
+    /// Samples per pixel whose paths give the rays
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    spp: u32,
+    /// Seed of the paths
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Search so many times along all rays, on one thread
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = value_parser!(u32).range(1..))]
+    repetitions: u32,
+    /// Write the triangles and the rays for another program: a line of text, then numbers of 64 bits
+    #[arg(long, value_name = "FILE")]
+    export: Option<PathBuf>,
+    #[command(flatten)]
+    what: What,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Confidence of the interval around the median.
+const LEVEL: f64 = 0.95;
+
+pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    let settings = arguments.what.settings(lab, &arguments.scene, arguments.spp, arguments.seed)?;
+    let setup = lab.prepare(settings)?;
+    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.scene)) };
+    let mut files = Files::default();
+    files.reads_scene(setup.files());
+    if let Some(path) = &arguments.export {
+        files.writes("export", path)?;
+        if scene.primitives.triangles.len() != scene.owners.len() {
+            let problem = "has spheres or planes, which the exported file has no place for";
+            return Err(InputError::new("scene", &scene.name, problem).allowed("a scene of triangles").into());
+        }
+    }
+    talk.begin(&format!("paths of {}", scene.name), 1);
+    let rays = path_rays(scene, choice, &(0..arguments.spp))?;
+    talk.end();
+    if let Some(path) = &arguments.export {
+        atomic_file::write(path, |file| export(scene, &rays, file))?;
+    }
+    let search = RaySearch::new(scene, choice, rays);
+    let found = search.run();
+    let rates: Vec<f64> = (0..arguments.repetitions)
+        .map(|_| {
+            let begin = Instant::now();
+            let again = search.run();
+            let seconds = begin.elapsed().as_secs_f64();
+            assert_eq!(again, found, "a search finds what it found before");
+            search.count() as f64 / seconds
+        })
+        .collect();
+    let rate = median(&rates).unwrap_or(f64::NAN);
+    let interval = median_interval(&rates, LEVEL);
+    let FoundRays { met, distance, counts } = found;
+    let each = |count: u64| count as f64 / (search.count() as f64).max(1.0);
+    let (boxes, primitives) = (each(counts.box_tests), each(counts.primitive_tests));
+    let (kernel, simd, precision) = (choice.kernel(), choice.simd(), choice.precision().name());
+    if arguments.json {
+        return print_json(&json!({
+            "scene": scene.name, "primitives": scene.owners.len(), "rays": search.count(), "met": met, "distance": number(distance),
+            "kernel": kernel, "simd": simd, "precision": precision, "accelerator": choice.accelerator(),
+            "box_tests": counts.box_tests, "primitive_tests": counts.primitive_tests,
+            "rays_per_s": rates, "median_rays_per_s": number(rate),
+        }));
+    }
+    let spread = interval.map_or_else(String::new, |interval| {
+        let [low, high] = [interval.low, interval.high].map(|rate| short(1e-6 * rate, 3));
+        format!(", 95 % interval {low} to {high}")
+    });
+    print(&format!(
+        "{}, {} primitives: {} rays from vertex to vertex of {} paths\n\
+         kernel {kernel}{}{simd}, {precision}, accelerator {}: {boxes:.1} box tests and {primitives:.1} primitive tests a ray\n\
+         {} million rays a second on one thread (median of {}{spread})\n\
+         {met} rays met something, after {} in the mean",
+        scene.name,
+        scene.owners.len(),
+        search.count(),
+        choice.estimator().name,
+        if simd.is_empty() { "" } else { " " },
+        choice.accelerator(),
+        short(1e-6 * rate, 3),
+        rates.len(),
+        short(distance / (met as f64).max(1.0), 6),
+    ))
+}
+
+/// `pathmark-rays 1 TRIANGLES RAYS`, a line end, then little-endian doubles: the corners of each triangle, and of each ray its origin, its direction and
+/// the number of the triangle that it starts on, which is -1 for none.
+fn export(scene: &Scene, rays: &[Start], file: &mut dyn Write) -> io::Result<()> {
+    let triangles = &scene.primitives.triangles;
+    writeln!(file, "pathmark-rays 1 {} {}", triangles.len(), rays.len())?;
+    let vector = |Vec3 { x, y, z }: Vec3| [x, y, z];
+    let corners = triangles.iter().flat_map(|triangle| triangle.corners).flat_map(vector);
+    let rays = rays.iter().flat_map(|(ray, from)| {
+        let from = from.map_or(-1.0, |from| f64::from(from.primitive));
+        vector(ray.origin).into_iter().chain(vector(ray.direction)).chain([from])
+    });
+    corners.chain(rays).try_for_each(|number| file.write_all(&number.to_le_bytes()))
+}
