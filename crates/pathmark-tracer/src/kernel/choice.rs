@@ -10,7 +10,7 @@ use crate::scene::{
     ACCELERATORS, Accelerator, AllEffects, DiffuseOnly, EPSILON, FILTERS, Filter, HIERARCHY, PROFILES, ProfileEntry,
     SUBPIXELS, Scan, Scene, SmallptEffects, Sphere, View, accelerator, effect_names,
 };
-use crate::simd::{Precision, widths_of};
+use crate::simd::{Precision, Sizes, sizes_of};
 use std::sync::Arc;
 
 /// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
@@ -200,9 +200,9 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
     let scan = match &lanes {
         Err(_) => Scan::OneByOne,
         Ok(chosen) => {
-            let [lanes, singles] = widths_of(chosen.level, chosen.precision);
+            let Sizes { lanes, single, .. } = sizes_of(chosen.level, chosen.precision);
             let are_spheres = scene.primitives.effects() == Sphere::EFFECT;
-            if are_spheres { Scan::SideBySide(singles) } else { Scan::Blocks(lanes) }
+            if are_spheres { Scan::SideBySide(single) } else { Scan::Blocks(lanes) }
         }
     };
     let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len(), scan) else {

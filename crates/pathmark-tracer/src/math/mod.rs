@@ -25,6 +25,6 @@ pub use sphere::{
     Curved, curved_normal, curved_quadratic, first_root, first_root_curved, last_root_curved, line_meets, other_root,
     roots,
 };
-pub use triangle::{Shear, sheared, triangle_root};
+pub use triangle::{Crossing, Shear, sheared, triangle_root};
 pub use trig::sin_cos_turns;
 pub use vector::{Vec3, dot};

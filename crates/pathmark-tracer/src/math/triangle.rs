@@ -70,18 +70,41 @@ fn across<T: Real>([px, py, _]: [T; 3], [qx, qy, _]: [T; 3]) -> T {
     px.times_plus(qy, -product) + lost
 }
 
+/// Where the z axis crosses the plane of a triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct Crossing<T: Real> {
+    /// Whether that is within the triangle, seen from either side, if it has an area.
+    pub is_met: T::Mask,
+    /// Of the corners.
+    weights: [T; 3],
+    heights: [T; 3],
+}
+
+impl<T: Real> Crossing<T> {
+    /// Of the triangle with these corners.
+    #[inline(always)]
+    pub fn of([a, b, c]: [[T; 3]; 3]) -> Self {
+        let weights @ [u, v, w] = [across(c, b), across(a, c), across(b, a)];
+        let zero = T::splat(0.0);
+        let front = zero.le(u) & zero.le(v) & zero.le(w);
+        let back = u.le(zero) & v.le(zero) & w.le(zero);
+        Self { is_met: front | back, weights, heights: [a[2], b[2], c[2]] }
+    }
+
+    /// Distance from the origin; NaN if the triangle is not met.
+    #[inline(always)]
+    pub fn root(&self) -> T {
+        let ([u, v, w], [a, b, c], zero) = (self.weights, self.heights, T::splat(0.0));
+        let determinant = u + v + w;
+        let t = (u * a + v * b + w * c) / determinant;
+        // Edge on, the determinant is zero and the quotient infinite or NaN.
+        let has_area = determinant.lt(zero) | zero.lt(determinant);
+        T::select(self.is_met & has_area, t, T::splat(f64::NAN))
+    }
+}
+
 /// Distance from the origin along the z axis to the triangle with these corners, seen from either side; NaN if it misses.
 #[inline(always)]
 pub fn triangle_root<T: Real>(a: [T; 3], b: [T; 3], c: [T; 3]) -> T {
-    let u = across(c, b);
-    let v = across(a, c);
-    let w = across(b, a);
-    let zero = T::splat(0.0);
-    let front = zero.le(u) & zero.le(v) & zero.le(w);
-    let back = u.le(zero) & v.le(zero) & w.le(zero);
-    let determinant = u + v + w;
-    let t = (u * a[2] + v * b[2] + w * c[2]) / determinant;
-    // Edge on, the determinant is zero and the quotient infinite or NaN.
-    let has_area = determinant.lt(zero) | zero.lt(determinant);
-    T::select((front | back) & has_area, t, T::splat(f64::NAN))
+    Crossing::of([a, b, c]).root()
 }

@@ -77,6 +77,8 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     type One: Number;
     /// What one register of the same instruction set holds in single precision.
     type Single: Float<One = f32>;
+    /// What one register holds of such numbers.
+    type Register: Float<One = Self::One>;
     /// How many there are.
     const LANES: usize;
 
@@ -263,19 +265,30 @@ levels! {
     Baseline: "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
 }
 
-struct Widths;
+struct OfLevel;
 
-impl Work for Widths {
-    type Output = [usize; 2];
+impl Work for OfLevel {
+    type Output = Sizes;
 
-    fn run<V: Float>(self) -> [usize; 2] {
-        [V::LANES, V::Single::LANES]
+    fn run<V: Float>(self) -> Sizes {
+        Sizes { lanes: V::LANES, register: V::Register::LANES, single: V::Single::LANES }
     }
 }
 
-/// How many numbers a level has side by side, and how many in a register of single precision.
-pub fn widths_of(level: Level, precision: Precision) -> [usize; 2] {
-    on_level(level, precision, Widths)
+/// How many numbers a level has side by side.
+#[derive(Debug, Clone, Copy)]
+pub struct Sizes {
+    /// In all.
+    pub lanes: usize,
+    /// In one register.
+    pub register: usize,
+    /// In one register of single precision.
+    pub single: usize,
+}
+
+/// How many numbers a level has side by side.
+pub fn sizes_of(level: Level, precision: Precision) -> Sizes {
+    on_level(level, precision, OfLevel)
 }
 
 /// The levels of this processor, the fastest first.

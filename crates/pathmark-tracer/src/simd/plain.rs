@@ -212,6 +212,7 @@ macro_rules! float {
             type Bits = Plain<u64>;
             type One = $Float;
             type Single = Plain<f32>;
+            type Register = Self;
             const LANES: usize = LANES;
 
             #[inline(always)]

@@ -95,6 +95,7 @@ macro_rules! register {
             type Bits = $Bits;
             type One = $One;
             type Single = $Single;
+            type Register = Self;
             const LANES: usize = $lanes;
 
             #[inline(always)]

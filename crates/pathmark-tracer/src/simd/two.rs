@@ -177,6 +177,7 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
     type Bits = Two<V::Bits>;
     type One = V::One;
     type Single = V::Single;
+    type Register = V;
     const LANES: usize = 2 * V::LANES;
 
     forward! {

@@ -24,7 +24,7 @@ use crate::kernel::in_lanes::InLanes;
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
-use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level, widths_of};
+use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level, sizes_of};
 use filter::Filter;
 use packet::{EMPTY_STACK, LanesOf, NextPart, Packet, Stack};
 use singles::Singles;
@@ -163,7 +163,7 @@ impl<const AIMS: bool, const MATT: bool> Work for Render<'_, AIMS, MATT> {
 
 impl Lanes {
     fn render_by<const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        let splitting = if self.course.splits > 0 { widths_of(self.level, self.precision)[0] } else { 0 };
+        let splitting = if self.course.splits > 0 { sizes_of(self.level, self.precision).lanes } else { 0 };
         let mut waiting = vec![EMPTY_STACK; splitting];
         let work = Render::<AIMS, MATT> { kernel: self, piece, waiting: &mut waiting, out };
         on_level(self.level, self.precision, work)

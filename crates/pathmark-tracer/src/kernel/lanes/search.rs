@@ -6,7 +6,7 @@ use crate::kernel::Counts;
 use crate::kernel::rays::{FoundRays, Start};
 use crate::math::{Ray, Vec3, other_root};
 use crate::scene::Scene;
-use crate::simd::{Float, Number, Numbers, Work, on_level, widths_of};
+use crate::simd::{Float, Number, Numbers, Work, on_level, sizes_of};
 
 /// Numbers of a ray: origin, direction, what it starts on and where it meets that again.
 const OF_RAY: usize = 8;
@@ -42,7 +42,7 @@ pub(super) fn packet<V: Float>(numbers: &[V::One]) -> Rays<V> {
 
 impl Lanes {
     pub(in crate::kernel) fn side_by_side(&self, rays: &[Start]) -> Numbers {
-        let [lanes, _] = widths_of(self.level, self.precision);
+        let lanes = sizes_of(self.level, self.precision).lanes;
         Numbers::new(in_packets(&self.scene, rays, lanes), self.precision)
     }
 

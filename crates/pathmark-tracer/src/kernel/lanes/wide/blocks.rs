@@ -4,7 +4,7 @@ use super::coarse::Scale;
 use super::{Best, Single, Turned};
 use crate::kernel::lanes::packet::LanesOf;
 use crate::kernel::lanes::singles::Singles;
-use crate::math::{Real, Vec3, first_root, sheared, triangle_root};
+use crate::math::{Crossing, Real, Vec3, first_root, sheared};
 use crate::scene::{Bounds, Primitives};
 use crate::simd::{Float, Mask, Number, Numbers, Precision};
 
@@ -200,12 +200,15 @@ impl Blocks {
         let Some(turned) = &ray.turned else { return };
         let triangles = V::One::all(&self.triangles);
         for block in leaf.triangles[0]..leaf.triangles[1] {
-            let a = corner(triangles, block, 0, turned);
-            let b = corner(triangles, block, 3, turned);
-            let c = corner(triangles, block, 6, turned);
-            let numbers = column::<V>(triangles, block, OF_TRIANGLE - 1);
-            let is_own = V::splat(ray.from).equal(V::load(numbers));
-            best.take(numbers, V::select(is_own, V::splat(f64::NAN), triangle_root(a, b, c)));
+            let corner = |first| corner::<V::Register>(triangles, block, first, turned);
+            let crossing = Crossing::of([corner(0), corner(3), corner(6)]);
+            let numbers = column::<V::Register>(triangles, block, OF_TRIANGLE - 1);
+            let is_own = V::Register::splat(ray.from).equal(V::Register::load(numbers));
+            let is_met = crossing.is_met & !is_own;
+            if is_met.any() {
+                let root = crossing.root();
+                best.take(numbers, V::Register::select(is_met, root, V::Register::splat(f64::NAN)));
+            }
         }
     }
 }

@@ -17,7 +17,7 @@ use super::tables::Tables;
 use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
 use crate::scene::{Bounds, Child, Plane, Scene, Tests};
-use crate::simd::{Apart, Float, Level, MOST_LANES, Mask, Precision, widths_of};
+use crate::simd::{Apart, Float, Level, MOST_LANES, Mask, Precision, Sizes, sizes_of};
 use blocks::{Blocks, Leaf, Making};
 use coarse::{AllCoarse, Coarse, Scale};
 use doubt::are_doubtful;
@@ -76,11 +76,11 @@ impl<V: Float> Apart for Nearest<'_, V> {
 
 impl Wide {
     pub(in crate::kernel::lanes) fn of(scene: &Scene, level: Level, precision: Precision, enclosing: &[u32]) -> Self {
-        let [lanes, width] = widths_of(level, precision);
+        let Sizes { register, single: width, .. } = sizes_of(level, precision);
         let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
         let bounds = scene.primitives.bounds();
         let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
-        let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, lanes]);
+        let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, register]);
         let nodes = scene.hierarchy.as_ref().map(|hierarchy| hierarchy.gathered(width));
         let search = Search::of(nodes.as_deref(), scene.owners.len(), width, scale, &mut making);
         let blocks = making.made(precision);
@@ -117,8 +117,9 @@ impl Wide {
         for lane in LanesOf(wanted) {
             let [ox, oy, oz, dx, dy, dz, from, nearest, primitive] = rows.each_ref().map(|row| row[lane].into());
             let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-            let turned = if self.blocks.has_triangles { Some(Turned::<V>::of(origin, direction)) } else { None };
-            let ray = Single { origin, direction, from, coarse: all.of_lane::<V::Single>(lane), turned };
+            let turned =
+                if self.blocks.has_triangles { Some(Turned::<V::Register>::of(origin, direction)) } else { None };
+            let ray = Single::<V> { origin, direction, from, coarse: all.of_lane::<V::Single>(lane), turned };
             let mut best = Best { nearest, primitive };
             match &self.search {
                 Search::All(leaf) => self.blocks.test(leaf, &ray, &mut best),
@@ -141,7 +142,7 @@ struct Single<V: Float> {
     from: f64,
     coarse: Coarse<V::Single>,
     /// `None` in a scene without triangles.
-    turned: Option<Turned<V>>,
+    turned: Option<Turned<V::Register>>,
 }
 
 /// A ray by its own axes, the same in every lane.
@@ -183,14 +184,9 @@ impl Best {
     #[inline(always)]
     fn take<V: Float>(&mut self, numbers: &[V::One], distance: V) {
         let ahead = V::splat(0.0).lt(distance) & distance.le(V::splat(self.nearest));
-        if ahead.any() {
-            let nearest = V::select(ahead, distance, V::splat(f64::INFINITY)).least();
-            for lane in LanesOf((ahead & distance.equal(V::splat(nearest))).bits()) {
-                let primitive = numbers[lane].into();
-                if nearest < self.nearest || primitive < self.primitive {
-                    *self = Self { nearest, primitive };
-                }
-            }
+        // Of a block most rays meet one primitive or none.
+        for lane in LanesOf(ahead.bits()) {
+            self.take_one(distance.lane(lane), numbers[lane].into());
         }
     }
 }

@@ -148,7 +148,7 @@ mod tests {
     use crate::kernel::lanes::wide::{Search, Wide};
     use crate::math::{Ray, Vec3};
     use crate::scene::{Content, Primitive, Primitives, Sphere};
-    use crate::simd::{Precision, Work, levels, on_level, widths_of};
+    use crate::simd::{Precision, Sizes, Work, levels, on_level, sizes_of};
 
     const DEPTH: usize = 200;
 
@@ -196,14 +196,14 @@ mod tests {
     fn what_there_is_no_place_for_is_looked_at() {
         for level in levels() {
             for precision in Precision::ALL {
-                let [lanes, width] = widths_of(level, precision);
+                let Sizes { register, single: width, .. } = sizes_of(level, precision);
                 let (spheres, nodes) = row(width);
                 assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&nodes));
                 assert!(is_shallow(&nodes[DEPTH - 1..]));
                 let bounds: Vec<Option<Bounds>> = spheres.iter().map(Primitive::bounds).collect();
                 let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
                 let primitives = Primitives { spheres, ..Primitives::default() };
-                let mut making = Making::new(&primitives, &bounds, scale, None, [width, lanes]);
+                let mut making = Making::new(&primitives, &bounds, scale, None, [width, register]);
                 let search = Search::of(Some(&nodes), primitives.spheres.len(), width, scale, &mut making);
                 let blocks = making.made(precision);
                 let wide = Wide { large: None, planes: Vec::new(), blocks, search };
