@@ -84,7 +84,16 @@ fn files_that_are_no_meshes_are_refused() {
     assert_eq!(place(&message, "mesh.toml").map(|at| at.0), Some(10), "{message}");
 
     refused(folder(SCENE, Some(b"v 0 0 \xff\n")).path(), &ARGUMENTS, 2, &["thing.obj", "UTF-8"]);
-    refused(folder(SCENE, Some(&vec![b'\n'; 20 << 20])).path(), &ARGUMENTS, 2, &["thing.obj", "16 MiB"]);
+    let small = SCENE.replace("\"thing.obj\"", "\"thing.obj\", largest-mib = 1");
+    refused(folder(&small, Some(&vec![b'\n'; 2 << 20])).path(), &ARGUMENTS, 2, &["thing.obj", "1 MiB"]);
+    refused(
+        folder(SCENE, Some(&vec![b' '; 2 << 20])).path(),
+        &ARGUMENTS,
+        2,
+        &["thing.obj", "a line of such a file", "1 MiB"],
+    );
+    let endless = SCENE.replace("\"thing.obj\"", "\"/dev/zero\"");
+    refused(folder(&endless, None).path(), &ARGUMENTS, 2, &["/dev/zero", "byte 0 is zero"]);
 
     let other = SCENE.replace("\"thing.obj\"", "\"thing.obj\", object = \"circle\"");
     refused(folder(&other, Some(OBJ.as_bytes())).path(), &ARGUMENTS, 2, &["thing.obj", "circle", "square"]);

@@ -2,7 +2,8 @@
 
 use crate::digest::Fingerprint;
 use crate::error::{InputError, Result};
-use crate::input::{read_text, read_text_up_to};
+use crate::input::{Limits, Text, open_text, read_text};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 /// Name and definition of the scenes that the binary carries.
@@ -20,8 +21,8 @@ pub struct OwnScene {
 /// Name and text of the meshes that they use.
 const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"));
 
-/// Some hundred thousand triangles.
-const LARGEST_MESH: u64 = 16 << 20;
+/// No line of a mesh comes near this.
+const LONGEST_LINE: u64 = 1 << 20;
 
 /// Where a scene's other files are looked for.
 #[derive(Debug, Clone)]
@@ -46,15 +47,21 @@ impl Folder {
         }
     }
 
-    fn read(&self, name: &str) -> Result<String> {
+    fn open(&self, name: &str, bytes: u64) -> Result<Opened> {
         match self {
-            Self::Disk(folder) => read_text_up_to(&folder.join(name), LARGEST_MESH),
+            Self::Disk(folder) => open_text(&folder.join(name), Limits { bytes, line: LONGEST_LINE }).map(Opened::Disk),
             Self::Embedded => match MESHES.iter().find(|(known, _)| *known == name) {
-                Some((_, text)) => Ok((*text).to_string()),
+                Some((_, text)) => Ok(Opened::Embedded(text.as_bytes())),
                 None => Err(InputError::new("file", name, "there is no such file in the program").into()),
             },
         }
     }
+}
+
+/// A file that is being read.
+enum Opened {
+    Embedded(&'static [u8]),
+    Disk(BufReader<Text>),
 }
 
 /// The other files of a scene; what is read becomes part of the scene's hash.
@@ -73,12 +80,14 @@ impl Files<'_> {
         }
     }
 
-    /// The text of a file.
-    pub(super) fn read(&mut self, name: &str) -> Result<String> {
-        let text = self.folder.read(name)?;
-        self.hash.update(text.as_bytes());
+    /// Opens a file of so many bytes at most. Whoever reads it puts what is read into the hash.
+    pub(super) fn open(&mut self, name: &str, bytes: u64) -> Result<Box<dyn BufRead>> {
+        let opened = self.folder.open(name, bytes)?;
         self.read.extend(self.folder.path_of(name));
-        Ok(text)
+        Ok(match opened {
+            Opened::Embedded(text) => Box::new(text),
+            Opened::Disk(file) => Box::new(file),
+        })
     }
 }
 

@@ -4,22 +4,33 @@
 //! ```toml
 //! shape = { mesh = { file = "box.obj", object = "tall-block" } }
 //! ```
+//!
+//! A mistaken path may lead to a file without an end, so one of more than a gibibyte is refused unless the scene says `largest-mib = 4096`.
 
-use super::obj::essence;
+use super::obj::Essence;
 use super::{Primitives, Shape, Triangle};
 use crate::error::{InputError, Result};
 use crate::math::Vec3;
 use crate::scene::source::{Files, Folder};
 use serde::Deserialize;
+use std::io::BufReader;
+
+/// A file of some ten million triangles.
+const fn largest() -> u32 {
+    1024
+}
 
 /// A mesh in a file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(in crate::scene) struct Mesh {
     /// The file, beside the scene's.
     file: String,
     /// The object in it; all if `None`.
     object: Option<String>,
+    /// Mebibytes that the file may have.
+    #[serde(default = "largest")]
+    largest_mib: u32,
 }
 
 impl Mesh {
@@ -30,16 +41,21 @@ impl Mesh {
 
 impl Shape for Mesh {
     fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
-        let text = files.read(&self.file)?;
+        let file = files.open(&self.file, u64::from(self.largest_mib) << 20)?;
         let folder = files.folder;
-        let (text, unused) = essence(&text, &folder.place_of(&self.file))?;
-        if !unused.is_empty() {
-            files.remark(format!("{}: {} are not used", folder.place_of(&self.file), unused.join(", ")));
-        }
+        let name = folder.place_of(&self.file);
+        let mut text = BufReader::new(Essence::new(file, &name, files.hash));
         let options = tobj::LoadOptions { triangulate: true, single_index: true, ..tobj::LoadOptions::default() };
         let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
-        let (models, _) = tobj::load_obj_buf(&mut text.as_bytes(), &options, no_materials)
-            .map_err(|problem| self.error(folder, "mesh", "", &problem.to_string()))?;
+        let models = tobj::load_obj_buf(&mut text, &options, no_materials);
+        let Essence { unused, error, .. } = text.into_inner();
+        if let Some(error) = error {
+            return Err(error);
+        }
+        let (models, _) = models.map_err(|problem| self.error(folder, "mesh", "", &problem.to_string()))?;
+        if !unused.is_empty() {
+            files.remark(format!("{name}: {} are not used", unused.join(", ")));
+        }
         if let Some(object) = self.object.as_ref().filter(|object| !models.iter().any(|model| model.name == **object)) {
             let names: Vec<&str> = models.iter().map(|model| model.name.as_str()).collect();
             let error = self.error(folder, "object", object, "there is no object of that name");

@@ -1,9 +1,14 @@
 //! What is used of a Wavefront OBJ file: vertices, faces without normals and texture coordinates, and the names of objects. Each is
 //! checked here, because the parser that cuts the faces into triangles does not tell where a mistake stands.
+//!
+//! A file is read line by line and never in memory as a whole.
 
+use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
-use crate::input::coordinate_limit;
+use crate::input::{coordinate_limit, unreadable};
 use std::fmt::Write;
+use std::io::{self, BufRead, ErrorKind, Read};
+use std::path::Path;
 
 /// First words of lines that are not used, and what they hold.
 const UNUSED: [(&str, &str); 5] = [
@@ -14,17 +19,86 @@ const UNUSED: [(&str, &str); 5] = [
     ("l", "lines"),
 ];
 
-/// The file with nothing in it but that, and the names of what was left out.
-pub(super) fn essence(text: &str, file: &str) -> Result<(String, Vec<&'static str>)> {
-    let (mut essence, mut unused) = (String::with_capacity(text.len()), Vec::new());
-    let mut vertices = 0_i64;
-    for (line, words) in (1..).zip(text.lines()) {
+/// A file with nothing in it but that. The first mistake ends it: [`Essence::error`].
+pub(super) struct Essence<'a, R> {
+    file: R,
+    /// What to call it.
+    name: &'a str,
+    hash: &'a mut Fingerprint,
+    /// The names of what was left out.
+    pub(super) unused: Vec<&'static str>,
+    /// Why it ended before the file did.
+    pub(super) error: Option<Error>,
+    line: Vec<u8>,
+    lines: usize,
+    bytes: usize,
+    vertices: i64,
+    /// What is left of the present line to be read, from `read` on.
+    text: String,
+    read: usize,
+}
+
+impl<'a, R: BufRead> Essence<'a, R> {
+    /// Of a file, all of which will be in the hash.
+    pub(super) fn new(file: R, name: &'a str, hash: &'a mut Fingerprint) -> Self {
+        Self {
+            file,
+            name,
+            hash,
+            unused: Vec::new(),
+            error: None,
+            line: Vec::new(),
+            lines: 0,
+            bytes: 0,
+            vertices: 0,
+            text: String::new(),
+            read: 0,
+        }
+    }
+
+    /// Reads the next line that is used; whether there was one.
+    fn next_line(&mut self) -> io::Result<bool> {
+        self.text.clear();
+        self.read = 0;
+        while self.text.is_empty() {
+            self.line.clear();
+            match self.file.read_until(b'\n', &mut self.line) {
+                Ok(0) => return Ok(false),
+                Ok(_) => {}
+                Err(e) => return Err(self.fail(unreadable(Path::new(self.name), e))),
+            }
+            self.hash.update(&self.line);
+            self.lines += 1;
+            let line = std::mem::take(&mut self.line);
+            let found = self.take(&line);
+            self.bytes += line.len();
+            self.line = line;
+            if let Err(mistake) = found {
+                return Err(self.fail(mistake));
+            }
+        }
+        Ok(true)
+    }
+
+    /// Keeps the error for whoever asked for the mesh, and tells the parser that there is one.
+    fn fail(&mut self, error: Error) -> io::Error {
+        self.error = Some(error);
+        ErrorKind::InvalidData.into()
+    }
+
+    /// Takes what is used of a line.
+    fn take(&mut self, line: &[u8]) -> Result<()> {
+        let line = std::str::from_utf8(line).map_err(|e| {
+            let at = self.bytes + e.valid_up_to();
+            Error::from(InputError::new("file", self.name, format!("is not UTF-8 text at byte {at}")))
+        })?;
         let error = |field: &str, value: &str, problem: &str, allowed: String| {
             let value: String = value.chars().take(80).collect();
-            let column = words.find(&value).map_or(1, |at| words[..at].chars().count() + 1);
-            Error::from(InputError::new(field, value, problem).allowed(allowed).in_file(file, Some((line, column))))
+            let column = line.find(&value).map_or(1, |at| line[..at].chars().count() + 1);
+            let place = Some((self.lines, column));
+            Error::from(InputError::new(field, value, problem).allowed(allowed).in_file(self.name, place))
         };
-        let mut words = words.split_whitespace();
+        let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => {
                 let coordinates: Vec<&str> = words.take(3).collect();
@@ -36,39 +110,53 @@ pub(super) fn essence(text: &str, file: &str) -> Result<(String, Vec<&'static st
                     let allowed = "-1e100 to 1e100 in each coordinate".to_string();
                     return Err(error("v", bad, "is out of range", allowed));
                 }
-                vertices += 1;
+                self.vertices += 1;
                 // Writing to a string cannot fail.
-                let _ = writeln!(essence, "v {}", coordinates.join(" "));
+                let _ = writeln!(self.text, "v {}", coordinates.join(" "));
             }
             Some("f") => {
-                let corners: Vec<&str> = words.collect();
-                if corners.len() < 3 {
-                    return Err(error("f", &corners.join(" "), "is no face", "at least three corners".to_string()));
-                }
-                essence.push('f');
-                for corner in corners {
+                let mut face = "f".to_string();
+                let mut count = 0;
+                for corner in words.clone() {
                     let index = corner.split('/').next().and_then(|index| index.parse::<i64>().ok());
-                    let there = index.filter(|index| (1..=vertices).contains(&index.saturating_abs()));
+                    let there = index.filter(|index| (1..=self.vertices).contains(&index.saturating_abs()));
                     let Some(index) = there else {
-                        let allowed = match vertices {
+                        let allowed = match self.vertices {
                             0 => "the number of a vertex in a line above it".to_string(),
                             most => format!("1 to {most}, or -{most} to -1: the vertices above it"),
                         };
                         return Err(error("f", corner, "names a vertex that is not there", allowed));
                     };
-                    let _ = write!(essence, " {index}");
+                    let _ = write!(face, " {index}");
+                    count += 1;
                 }
-                essence.push('\n');
+                if count < 3 {
+                    let corners = words.collect::<Vec<_>>().join(" ");
+                    return Err(error("f", &corners, "is no face", "at least three corners".to_string()));
+                }
+                self.text = face + "\n";
             }
             Some(name @ ("o" | "g")) => {
-                let _ = writeln!(essence, "{name} {}", words.collect::<Vec<_>>().join(" "));
+                let _ = writeln!(self.text, "{name} {}", words.collect::<Vec<_>>().join(" "));
             }
             Some(word) => {
                 let left_out = UNUSED.iter().find(|(own, _)| *own == word).map(|(_, what)| *what);
-                unused.extend(left_out.filter(|what| !unused.contains(what)));
+                self.unused.extend(left_out.filter(|what| !self.unused.contains(what)));
             }
             None => {}
         }
+        Ok(())
     }
-    Ok((essence, unused))
+}
+
+impl<R: BufRead> Read for Essence<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.read == self.text.len() && !self.next_line()? {
+            return Ok(0);
+        }
+        let count = buffer.len().min(self.text.len() - self.read);
+        buffer[..count].copy_from_slice(&self.text.as_bytes()[self.read..self.read + count]);
+        self.read += count;
+        Ok(count)
+    }
 }
