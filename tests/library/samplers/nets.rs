@@ -20,6 +20,11 @@ fn points(sampler: &dyn Sampler, (seed, pixel): (u64, u32), used: Use, samples: 
     samples.map(|sample| sampler.pair(used.of(seed, pixel, sample))).collect()
 }
 
+/// Both kinds of scrambling, each with all keys.
+fn sobols() -> impl Iterator<Item = (Box<dyn Sampler>, (u64, u32))> {
+    ["sobol", "sobol-burley"].into_iter().flat_map(|name| KEYS.map(|key| (keyed(name), key)))
+}
+
 /// Whether each of `columns` x `rows` equal cells has exactly one of the points.
 fn one_in_each_cell(points: &[[f64; 2]], columns: u32, rows: u32) -> bool {
     let mut seen = vec![false; points.len()];
@@ -32,8 +37,7 @@ fn one_in_each_cell(points: &[[f64; 2]], columns: u32, rows: u32) -> bool {
 /// two are none for the first uses: their fours are in any order.)
 #[test]
 fn sobol_pairs_are_nets_on_every_grid() {
-    let sampler = keyed("sobol");
-    for key in KEYS {
+    for (sampler, key) in sobols() {
         for used in USES {
             for m in [0, 2, 3, 4, 5, 6, 7, 8, 9, 10] {
                 let size = 1_u32 << m;
@@ -53,8 +57,7 @@ fn sobol_pairs_are_nets_on_every_grid() {
 /// of 4^m samples every grid of 4^m cells has one in each, and of a subpixel's every grid of 4^(m-2) cells four.
 #[test]
 fn the_leading_sobol_pairs_are_nets_together() {
-    let sampler = keyed("sobol");
-    for key in KEYS {
+    for (sampler, key) in sobols() {
         for (m, first) in [(1, 0), (2, 0), (2, 3), (3, 0), (4, 0), (4, 1), (5, 0), (5, 1 << 14)] {
             let (size, exponents) = (1_u32 << (2 * m), splits(m));
             let samples = first * size..(first + 1) * size;

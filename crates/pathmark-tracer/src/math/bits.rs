@@ -12,6 +12,9 @@ pub trait Bits: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Out
     /// The product modulo 2^64.
     #[must_use]
     fn times(self, other: Self) -> Self;
+    /// The product of the lower 32 bits of both, all 64 bits of it.
+    #[must_use]
+    fn times_low(self, other: Self) -> Self;
     /// Shifted towards the higher bits by `N` < 64.
     #[must_use]
     fn up<const N: u32>(self) -> Self;
@@ -38,6 +41,10 @@ impl Bits for u64 {
     #[inline(always)]
     fn times(self, other: Self) -> Self {
         self.wrapping_mul(other)
+    }
+    #[inline(always)]
+    fn times_low(self, other: Self) -> Self {
+        u64::from(self as u32) * u64::from(other as u32)
     }
     #[inline(always)]
     fn up<const N: u32>(self) -> Self {

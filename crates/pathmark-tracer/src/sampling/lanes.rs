@@ -1,6 +1,6 @@
 //! Samplers in SIMD lanes: numbers for several samples at once, the same bits as [`Sampler::pair`](super::Sampler::pair) gives for each.
 
-use super::{Purpose, SampleKey, hash, independent, mix, sobol};
+use super::{Purpose, SampleKey, hash, independent, mix, sobol, sobol_burley};
 use crate::math::Bits;
 use crate::simd::{Apart, Float, Words};
 
@@ -13,6 +13,8 @@ pub enum InLanes {
     Hash,
     /// `sobol`.
     Sobol,
+    /// `sobol-burley`.
+    SobolBurley,
 }
 
 /// What the numbers of a sample have in common, worked out once for each.
@@ -20,7 +22,7 @@ pub enum InLanes {
 pub struct PathWords<B> {
     /// A mix of the seed, the pixel and, if it matters, the sample.
     pub path: B,
-    /// The sample's index.
+    /// The sample's index, or what the sampler makes of it.
     pub sample: B,
     /// Its places in an order that the film and the first vertex share.
     pub joined: [B; 2],
@@ -33,6 +35,7 @@ impl InLanes {
             "independent" => Some(Self::Independent),
             "hash" => Some(Self::Hash),
             "sobol" => Some(Self::Sobol),
+            "sobol-burley" => Some(Self::SobolBurley),
             _ => None,
         }
     }
@@ -40,7 +43,7 @@ impl InLanes {
     /// Whether a number depends on more of its sample than [`PathWords::path`] tells.
     #[inline(always)]
     pub fn is_spread(self) -> bool {
-        self == Self::Sobol
+        matches!(self, Self::Sobol | Self::SobolBurley)
     }
 
     /// The places of a sample that the film and the first vertex share; 0 if there are none.
@@ -48,7 +51,9 @@ impl InLanes {
     pub fn joined(self, key: SampleKey) -> [u64; 2] {
         match self {
             Self::Independent | Self::Hash => [0; 2],
-            Self::Sobol => sobol::joined(sobol::pixel(key.seed, u64::from(key.pixel)), key.sample).map(u64::from),
+            Self::Sobol | Self::SobolBurley => {
+                sobol::joined(sobol::pixel(key.seed, u64::from(key.pixel)), key.sample).map(u64::from)
+            }
         }
     }
 
@@ -57,8 +62,9 @@ impl InLanes {
     pub fn words<B: Bits>(self, seed: u64, pixel: B, sample: B, joined: [B; 2]) -> PathWords<B> {
         let path = match self {
             Self::Independent | Self::Hash => independent::path(seed, pixel.up::<32>() | sample),
-            Self::Sobol => sobol::pixel(seed, pixel),
+            Self::Sobol | Self::SobolBurley => sobol::pixel(seed, pixel),
         };
+        let sample = if self == Self::SobolBurley { sobol_burley::digits(sample) } else { sample };
         PathWords { path, sample, joined }
     }
 
@@ -76,14 +82,15 @@ impl InLanes {
         let [first, second] = match self {
             Self::Independent => independent::pcg32(key, dimension),
             Self::Hash => hash::both(key),
-            Self::Sobol => return V::apart(Scrambled::<V> { key, words, bounce, branch, purpose }),
+            Self::Sobol => return V::apart(Scrambled::<V, false> { key, words, bounce, branch, purpose }),
+            Self::SobolBurley => return V::apart(Scrambled::<V, true> { key, words, bounce, branch, purpose }),
         };
         [V::unit(first), V::unit(second)]
     }
 }
 
-/// A pair of `sobol`, by so many operations that a call is nothing beside them.
-struct Scrambled<'a, V: Float> {
+/// A pair of `sobol` or `sobol-burley`, by so many operations that a call is nothing beside them.
+struct Scrambled<'a, V: Float, const BURLEY: bool> {
     /// A mix of everything.
     key: V::Bits,
     words: &'a PathWords<V::Bits>,
@@ -92,22 +99,30 @@ struct Scrambled<'a, V: Float> {
     purpose: Purpose,
 }
 
-impl<V: Float> Apart for Scrambled<'_, V> {
+impl<V: Float, const BURLEY: bool> Scrambled<'_, V, BURLEY> {
+    #[inline(always)]
+    fn own_place(&self) -> V::Bits {
+        let sample = self.words.sample;
+        if BURLEY { sobol_burley::own_place(self.key, sample) } else { sobol::own_place(self.key, sample) }
+    }
+}
+
+impl<V: Float, const BURLEY: bool> Apart for Scrambled<'_, V, BURLEY> {
     type Output = [V; 2];
 
     #[inline(always)]
     fn run(self) -> [V; 2] {
-        let Self { key, words, bounce, branch, purpose } = self;
+        let Self { key, words, bounce, branch, purpose } = &self;
         let place = match purpose {
             // Nobody but the camera asks for it.
             Purpose::Film => words.joined[0],
             Purpose::Bsdf | Purpose::Light => {
-                let is_first = (bounce.up::<16>() | branch).equal(V::Bits::splat(1 << 16));
-                V::Bits::choose(is_first, words.joined[1], sobol::own_place(key, words.sample))
+                let is_first = (bounce.up::<16>() | *branch).equal(V::Bits::splat(1 << 16));
+                V::Bits::choose(is_first, words.joined[1], self.own_place())
             }
-            _ => sobol::own_place(key, words.sample),
+            _ => self.own_place(),
         };
-        let [first, second] = sobol::fractions(key, place);
+        let [first, second] = if BURLEY { sobol_burley::fractions(*key, place) } else { sobol::fractions(*key, place) };
         [V::unit(first), V::unit(second)]
     }
 }

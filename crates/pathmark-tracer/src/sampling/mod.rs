@@ -11,6 +11,7 @@ mod locked;
 mod owen;
 mod per_thread;
 mod sobol;
+mod sobol_burley;
 mod stratified;
 mod warp;
 
@@ -22,6 +23,7 @@ pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;
 pub use sobol::Sobol;
+pub use sobol_burley::SobolBurley;
 pub use stratified::Stratified;
 pub use warp::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, tent, uniform_sphere};
 
@@ -181,6 +183,7 @@ samplers! {
     spread {
         "stratified", "4x4 jittered strata for each 16 samples, in an order of its own for each use", "0d0de625fc782297" => Stratified;
         "sobol", "Owen-scrambled Sobol pairs, each use with a scrambling and an order of its own", "6c0274abd78ac137" => Sobol;
+        "sobol-burley", "sobol by 32-bit scramblings (Burley 2020): as even, and cheaper in lanes", "9ad64a7ff83a2dc3" => SobolBurley;
     }
     stateful {
         "libc-rand", "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;

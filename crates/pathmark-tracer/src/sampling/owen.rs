@@ -22,24 +22,19 @@ pub(super) fn shuffle<B: Bits>(index: B, keys: [B; 2]) -> B {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::independent::mix;
-    use super::*;
-
+pub(super) mod flips {
     /// Owen's scrambling flips each digit independently for every way of the digits before it. The 63 flips of six digits, over a million
     /// keys: even, and no two of them go together. (Laine and Karras's own steps fail by a hundred standard deviations.)
-    #[test]
-    fn scrambling_flips_digits_independently() {
+    pub(in crate::sampling) fn are_independent(scramble: impl Fn(u64, u64) -> u64) {
         const LEVELS: u32 = 6;
         const NODES: usize = (1 << LEVELS) - 1;
         const KEYS: u64 = 1 << 20;
         let (mut single, mut double) = ([0_i64; NODES], vec![0_i64; NODES * NODES]);
         for key in 0..KEYS {
-            let keys = [mix(2 * key), mix(2 * key + 1)];
             let mut flips = [0_i64; NODES];
             for level in 0..LEVELS {
                 for before in 0..1_u64 << level {
-                    let flip = scramble(before, keys) >> level & 1;
+                    let flip = scramble(before, key) >> level & 1;
                     flips[(1 << level) - 1 + before as usize] = 2 * flip as i64 - 1;
                 }
             }
@@ -58,6 +53,17 @@ mod tests {
             let z = *sum as f64 / (KEYS as f64).sqrt();
             assert!(z.abs() < limit, "sum {index} is {z} standard deviations from 0");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::independent::mix;
+    use super::*;
+
+    #[test]
+    fn scrambling_flips_digits_independently() {
+        super::flips::are_independent(|digits, key| scramble(digits, [mix(2 * key), mix(2 * key + 1)]));
     }
 
     /// The digits before decide, and none after: what makes it a scrambling of nets.

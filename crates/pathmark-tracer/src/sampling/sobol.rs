@@ -75,7 +75,7 @@ fn pascal_of_elements<B: Bits>(elements: B) -> B {
 /// The digits of Sobol's second dimension, the first in the lowest bit: the index times Pascal's triangle of bits. (The first dimension
 /// is the index itself.)
 #[inline(always)]
-fn pascal<B: Bits>(index: B) -> B {
+pub(super) fn pascal<B: Bits>(index: B) -> B {
     pascal_of_elements(index ^ index.down::<1>() & B::splat(u64::from(LOWER)))
 }
 

@@ -88,6 +88,10 @@ impl Bits for Plain<u64> {
         each!(k => self.0[k].wrapping_mul(other.0[k]))
     }
     #[inline(always)]
+    fn times_low(self, other: Self) -> Self {
+        each!(k => self.0[k].times_low(other.0[k]))
+    }
+    #[inline(always)]
     fn up<const N: u32>(self) -> Self {
         each!(k => self.0[k] << N)
     }

@@ -112,6 +112,7 @@ impl Work for Operations {
                 for (what, found, expected) in [
                     ("sum", v.plus(w), x.wrapping_add(y)),
                     ("product", v.times(w), x.wrapping_mul(y)),
+                    ("product of lower halves", v.times_low(w), (x & 0xFFFF_FFFF) * (y & 0xFFFF_FFFF)),
                     ("and", v & w, x & y),
                     ("or", v | w, x | y),
                     ("exclusive or", v ^ w, x ^ y),

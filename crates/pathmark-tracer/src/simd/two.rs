@@ -76,6 +76,7 @@ impl<B: Bits> Bits for Two<B> {
     forward! {
         plus(other);
         times(other);
+        times_low(other);
         down_by(count);
         reversed();
     }

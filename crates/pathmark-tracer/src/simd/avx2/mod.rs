@@ -93,6 +93,10 @@ impl Bits for U64x4 {
         })
     }
     #[inline(always)]
+    fn times_low(self, other: Self) -> Self {
+        Self(op!(x86::_mm256_mul_epu32(self.0, other.0)))
+    }
+    #[inline(always)]
     fn up<const N: u32>(self) -> Self {
         Self(op!(x86::_mm256_sll_epi64(self.0, x86::_mm_cvtsi64_si128(i64::from(N)))))
     }

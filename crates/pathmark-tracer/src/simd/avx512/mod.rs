@@ -79,6 +79,10 @@ impl Bits for U64x8 {
         Self(op!(x86::_mm512_mullo_epi64(self.0, other.0)))
     }
     #[inline(always)]
+    fn times_low(self, other: Self) -> Self {
+        Self(op!(x86::_mm512_mul_epu32(self.0, other.0)))
+    }
+    #[inline(always)]
     fn up<const N: u32>(self) -> Self {
         Self(op!(x86::_mm512_slli_epi64::<N>(self.0)))
     }

@@ -1,0 +1,99 @@
+//! Sobol pairs with hash-based Owen scrambling: `--sampler sobol-burley`.
+//!
+//! The pairs and their orders are those of `sobol` ([`super::sobol`]); scramblings are made of 32-bit products, as B. Burley has them ("Practical
+//! Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020), by a hash of the family of S. Laine and T. Karras
+//! ("Stratified Sampling for Stochastic Transparency", 2011) with the constants of N. Vegdahl ("Building a Better LK Hash", 2021). A pair takes 4
+//! products of 64 bits and 12 of 32, where `sobol` takes 23 of 64 bits. Digits beyond the 32nd are no part of the net.
+
+use super::independent::mix;
+use super::sobol::{joined, pascal, pixel};
+use super::{Address, Purpose, Sampler};
+use crate::math::{Bits, unit};
+
+/// The sampler; it has no state.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SobolBurley;
+
+/// Scrambles 32 binary digits, the first in the lowest bit. What the upper half of the word becomes is of no use.
+#[inline(always)]
+fn scramble<B: Bits>(digits: B, seed: B) -> B {
+    let digits = digits ^ digits.times_low(B::splat(0x3D20_ADEA));
+    let digits = digits.plus(seed).times_low(seed.down::<16>() | B::splat(1));
+    let digits = digits ^ digits.times_low(B::splat(0x0552_6C56));
+    digits ^ digits.times_low(B::splat(0x53A2_2864))
+}
+
+/// A sample's index with its first digit in the lowest of 32 bits: the same for a whole path.
+#[inline(always)]
+pub(super) fn digits<B: Bits>(sample: B) -> B {
+    sample.reversed().down::<32>()
+}
+
+/// The place of a sample with these digits in the order of a use of its own.
+#[inline(always)]
+pub(super) fn own_place<B: Bits>(key: B, digits: B) -> B {
+    scramble(digits, mix(key ^ B::splat(1))).up::<32>().reversed()
+}
+
+/// The two numbers of a place in the sequence, scrambled for a use, as 64-bit fractions.
+#[inline(always)]
+pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
+    [scramble(place, key).reversed(), scramble(pascal(place), key.down::<32>()).reversed()]
+}
+
+impl Sampler for SobolBurley {
+    #[inline(always)]
+    fn pair(&self, at: Address) -> [f64; 2] {
+        let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
+        let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
+        let key = mix(pixel ^ dimension);
+        let place = match (at.bounce, at.branch, at.purpose) {
+            (0, 0, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
+            (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
+            _ => own_place(key, digits(u64::from(at.key.sample))),
+        };
+        fractions(key, place).map(unit)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::owen::flips;
+    use super::*;
+
+    /// The constants and their order, by another way: as Vegdahl writes his hash, on 32-bit words.
+    #[test]
+    fn it_is_vegdahls_hash() {
+        let hash = |mut x: u32, seed: u32| {
+            x ^= x.wrapping_mul(0x3d20_adea);
+            x = x.wrapping_add(seed);
+            x = x.wrapping_mul((seed >> 16) | 1);
+            x ^= x.wrapping_mul(0x0552_6c56);
+            x ^ x.wrapping_mul(0x53a2_2864)
+        };
+        for k in 0..1000 {
+            let (digits, seed) = (mix(k) as u32, mix(!k) as u32);
+            assert_eq!(scramble(u64::from(digits), u64::from(seed)) as u32, hash(digits, seed));
+        }
+    }
+
+    #[test]
+    fn scrambling_flips_digits_independently() {
+        flips::are_independent(|digits, key| scramble(digits, mix(key)));
+        flips::are_independent(|digits, key| scramble(digits, mix(key).down::<32>()));
+    }
+
+    /// The digits before decide, and none after: what makes it a scrambling of nets.
+    #[test]
+    fn scrambling_keeps_what_leading_digits_share() {
+        for key in 0..1000 {
+            for level in 0..32 {
+                let (one, other) = (mix(key + 1), mix(key + 2));
+                let shared = (1_u64 << level) - 1;
+                let joined = one & shared | other & !shared;
+                let seed = mix(key);
+                assert_eq!((scramble(one, seed) ^ scramble(joined, seed)) & shared, 0, "key {key}, {level} digits");
+            }
+        }
+    }
+}
