@@ -201,6 +201,7 @@ mod tests {
     use crate::scene::Standpoint;
     use crate::scene::{SCENES, load};
     use crate::simd::{Work, levels, on_level};
+    use std::sync::Arc;
 
     /// Compares with the scalar search, and returns how many rays are left to it.
     struct Compare<'a>(&'a Scene, &'a Wide, &'a [Start]);
@@ -232,14 +233,15 @@ mod tests {
     /// The scene with everything in it twice, so that every hit is a tie.
     fn twice(scene: &Scene) -> Scene {
         let mut twice = scene.clone();
-        let primitives = &mut twice.primitives;
+        let primitives = Arc::make_mut(&mut twice.primitives);
         let (spheres, planes) = (primitives.spheres.len(), primitives.planes.len());
         primitives.spheres.extend_from_within(..);
         primitives.planes.extend_from_within(..);
         primitives.triangles.extend_from_within(..);
         let owners = |range: std::ops::Range<usize>| scene.owners[range].repeat(2);
         let [first, second] = [spheres, spheres + planes];
-        twice.owners = [owners(0..first), owners(first..second), owners(second..scene.owners.len())].concat();
+        let owners = [owners(0..first), owners(first..second), owners(second..scene.owners.len())];
+        twice.owners = Arc::new(owners.concat());
         twice
     }
 
