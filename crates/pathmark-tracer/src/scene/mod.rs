@@ -296,7 +296,7 @@ impl Scene {
 
     /// The same scene with the search structure of that name; `None` if it is to have none.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
-        let hierarchy = accelerator(Some(name), 0, Scan::OneByOne)?.build(&self.primitives.bounds())?;
+        let hierarchy = accelerator(Some(name), 0, Scan::OneByOne)?.build(self.primitives.bounds())?;
         Some(Self { hierarchy: Some(Arc::new(hierarchy)), ..self.clone() })
     }
 }

@@ -74,17 +74,47 @@ impl Table {
 
 /// Numbers that stand side by side, in the format in which they will be loaded.
 pub struct Numbers {
+    precision: Precision,
     doubles: Vec<f64>,
     singles: Vec<f32>,
 }
 
 impl Numbers {
+    /// None yet, with room for so many.
+    pub fn with_capacity(count: usize, precision: Precision) -> Self {
+        let (doubles, singles) = match precision {
+            Precision::F64 => (Vec::with_capacity(count), Vec::new()),
+            Precision::F32 => (Vec::new(), Vec::with_capacity(count)),
+        };
+        Self { precision, doubles, singles }
+    }
+
+    /// Appends numbers, rounded if need be.
+    pub fn extend(&mut self, numbers: impl IntoIterator<Item = f64>) {
+        match self.precision {
+            Precision::F64 => self.doubles.extend(numbers),
+            Precision::F32 => self.singles.extend(numbers.into_iter().map(|number| number as f32)),
+        }
+    }
+
+    /// Their format.
+    pub fn precision(&self) -> Precision {
+        self.precision
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.doubles.len() + self.singles.len()
+    }
+
     /// Numbers, rounded if need be.
     pub fn new(numbers: Vec<f64>, precision: Precision) -> Self {
         match precision {
-            Precision::F64 => Self { doubles: numbers, singles: Vec::new() },
+            Precision::F64 => Self { precision, doubles: numbers, singles: Vec::new() },
             Precision::F32 => {
-                Self { doubles: Vec::new(), singles: numbers.into_iter().map(|number| number as f32).collect() }
+                let mut all = Self::with_capacity(numbers.len(), precision);
+                all.extend(numbers);
+                all
             }
         }
     }

@@ -43,16 +43,16 @@ enum Top {
 }
 
 /// The tree over the primitives that have a box; `None` if none has.
-pub(super) fn build(boxes: &[Option<Bounds>], rule: &impl Split) -> Option<Hierarchy> {
+pub(super) fn build(boxes: Vec<Option<Bounds>>, rule: &impl Split) -> Option<Hierarchy> {
     let threads = if boxes.len() > SORTED { available_parallelism().map_or(1, std::num::NonZero::get) } else { 1 };
     build_with(boxes, rule, SORTED, threads)
 }
 
-fn build_with(boxes: &[Option<Bounds>], rule: &impl Split, most: usize, threads: usize) -> Option<Hierarchy> {
-    let bounds: Vec<Bounds> =
-        boxes.iter().map(|bounds| bounds.map_or(Bounds::EMPTY, |bounds| bounds.padded())).collect();
+fn build_with(boxes: Vec<Option<Bounds>>, rule: &impl Split, most: usize, threads: usize) -> Option<Hierarchy> {
     let mut order: Vec<u32> =
-        (0u32..).zip(boxes).filter(|(_, bounds)| bounds.is_some()).map(|(index, _)| index).collect();
+        (0u32..).zip(&boxes).filter(|(_, bounds)| bounds.is_some()).map(|(index, _)| index).collect();
+    let bounds: Vec<Bounds> =
+        boxes.into_iter().map(|bounds| bounds.map_or(Bounds::EMPTY, |bounds| bounds.padded())).collect();
     if order.is_empty() {
         return None;
     }
@@ -198,18 +198,18 @@ mod tests {
     #[test]
     fn dividing_at_the_median_is_sorting() {
         let boxes = boxes(3000);
-        let sorted = build_with(&boxes, &Median, usize::MAX, 1).unwrap();
+        let sorted = build_with(boxes.clone(), &Median, usize::MAX, 1).unwrap();
         for most in [1, 2, 10, 700] {
-            assert!(build_with(&boxes, &Median, most, 2).unwrap() == sorted, "{most}");
+            assert!(build_with(boxes.clone(), &Median, most, 2).unwrap() == sorted, "{most}");
         }
     }
 
     #[test]
     fn threads_do_not_change_the_tree() {
         let boxes = boxes(20_000);
-        let alone = build_with(&boxes, &Sah::new(), 500, 1).unwrap();
+        let alone = build_with(boxes.clone(), &Sah::new(), 500, 1).unwrap();
         for threads in [2, 3, 8] {
-            assert!(build_with(&boxes, &Sah::new(), 500, threads).unwrap() == alone, "{threads} threads");
+            assert!(build_with(boxes.clone(), &Sah::new(), 500, threads).unwrap() == alone, "{threads} threads");
         }
         let mut order = alone.order.clone();
         order.sort_unstable();
@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn dividing_by_bins_costs_little() {
         let boxes = boxes(20_000);
-        let tree = |most| build_with(&boxes, &Sah::new(), most, 2).unwrap();
+        let tree = |most| build_with(boxes.clone(), &Sah::new(), most, 2).unwrap();
         let ratio = cost(&tree(500)) / cost(&tree(usize::MAX));
         println!("cost of the tree by bins over that by sorting: {ratio:.4}");
         assert!((0.9..1.05).contains(&ratio), "{ratio}");
@@ -233,11 +233,11 @@ mod tests {
     #[test]
     fn boxes_in_one_place_are_all_kept() {
         let same = vec![Some(Bounds { low: [0.0; 3], high: [1.0; 3] }); 5000];
-        for tree in [build_with(&same, &Sah::new(), 100, 2), build_with(&same, &Median, 100, 2)] {
+        for tree in [build_with(same.clone(), &Sah::new(), 100, 2), build_with(same.clone(), &Median, 100, 2)] {
             let tree = tree.unwrap();
             assert_eq!(tree.order.len(), 5000);
             assert!(tree.depth() <= DEEPEST);
         }
-        assert!(build_with(&[None, None], &Median, 1, 2).is_none());
+        assert!(build_with(vec![None, None], &Median, 1, 2).is_none());
     }
 }

@@ -21,103 +21,128 @@ pub enum Content {
     Primitives(Vec<u32>),
 }
 
-/// What rays are expected to cost below a node, in looks at the root. A look at a leaf costs as much as one at a node, for each time that it has `width`
-/// primitives.
-struct Costs {
-    /// Of each node of the binary tree, when one, two and so on up to `width - 1` children of a wide node stand for it, at most.
-    by_children: Vec<f32>,
-    /// When it is a wide node itself.
-    as_node: Vec<f32>,
+/// The most children that a node may have.
+const MOST_CHILDREN: usize = 16;
+
+/// What rays are expected to cost below a node of the binary tree, in looks at the root, when one, two and so on up to one less than the width of a
+/// node stand for it, at most. A look at a leaf costs as much as one at a node, for each time that it has as many primitives as a node has children.
+type Costs = [f32; MOST_CHILDREN - 1];
+
+/// How the tree of least cost is made of the binary one. Only the choices are kept for each node: costs would take four times as much memory.
+struct Choices {
+    /// Of each node: at 0 whether it is a wide node itself where one stands for it, and at k - 1, where k stand for it, how many of them stand for its
+    /// first child: 0 if fewer than k stand for it at the same cost. The last place is that of the node as a wide one.
+    of: Vec<[u8; MOST_CHILDREN]>,
     width: usize,
 }
 
-impl Costs {
+impl Choices {
     /// From the leaves up, since children stand behind their parents (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs
     /// Through Compressed Wide BVHs", 2017, who find the tree of least cost in this way).
     fn of(hierarchy: &Hierarchy, width: usize) -> Self {
+        debug_assert!((2..=MOST_CHILDREN).contains(&width));
         let nodes = &hierarchy.nodes;
         let sizes = hierarchy.sizes();
         let whole = hierarchy.bounds(0).half_area();
-        let mut costs = Self {
-            by_children: vec![0.0; nodes.len() * (width - 1)],
-            as_node: vec![f32::INFINITY; nodes.len()],
-            width,
-        };
+        let mut choices = Self { of: vec![[0; MOST_CHILDREN]; nodes.len()], width };
+        // Costs of nodes whose parents are still to come, which are few, and where those of each node are.
+        let (mut costs, mut free): (Vec<Costs>, Vec<u32>) = (Vec::new(), Vec::new());
+        let mut place = vec![0_u32; nodes.len()];
         for (index, node) in nodes.iter().enumerate().rev() {
             let area = if whole > 0.0 { (hierarchy.bounds(index).half_area() / whole) as f32 } else { 0.0 };
-            let is_inner = node.count == 0;
-            let as_leaf = match (sizes[index] <= width, is_inner) {
-                (false, true) => f32::INFINITY,
-                _ => area * sizes[index].div_ceil(width) as f32,
+            let as_leaf = if node.count > 0 || sizes[index] as usize <= width {
+                area * (sizes[index] as usize).div_ceil(width) as f32
+            } else {
+                f32::INFINITY
             };
-            if is_inner {
-                costs.as_node[index] = area + costs.divided(node.at as usize, width).0;
-            }
-            let mut least = as_leaf.min(costs.as_node[index]);
-            for children in 1..width {
-                if is_inner && children > 1 {
-                    least = least.min(costs.divided(node.at as usize, children).0);
+            let mut own = [as_leaf; MOST_CHILDREN - 1];
+            let of = &mut choices.of[index];
+            if node.count == 0 {
+                let places = [0, 1].map(|child| place[node.at as usize + child]);
+                let children = places.map(|place| &costs[place as usize]);
+                let (divided, to_first) = least(children, width);
+                let as_node = area + divided;
+                of[0] = u8::from(as_node <= as_leaf);
+                of[width - 1] = to_first;
+                own[0] = as_leaf.min(as_node);
+                for count in 2..width {
+                    let (divided, to_first) = least(children, count);
+                    own[count - 1] = own[count - 2].min(divided);
+                    of[count - 1] = if own[count - 1] < own[count - 2] { to_first } else { 0 };
                 }
-                costs.by_children[index * (width - 1) + children - 1] = least;
+                free.extend(places);
+            }
+            place[index] = free.pop().unwrap_or(costs.len() as u32);
+            match costs.get_mut(place[index] as usize) {
+                Some(costs) => *costs = own,
+                None => costs.push(own),
             }
         }
-        costs
+        choices
     }
 
-    fn with(&self, index: usize, children: usize) -> f32 {
-        self.by_children[index * (self.width - 1) + children - 1]
+    fn is_node(&self, index: usize) -> bool {
+        self.of[index][0] == 1
     }
 
-    /// The least cost of a node whose first child in the binary tree is `first`, with so many children at most, and how many of them stand for `first`.
-    fn divided(&self, first: usize, children: usize) -> (f32, usize) {
-        (1..children)
-            .map(|to_first| (self.with(first, to_first) + self.with(first + 1, children - to_first), to_first))
-            .min_by(|a, b| a.0.total_cmp(&b.0))
-            .expect("two children or more")
+    /// How many of so many nodes that stand for this one stand for its first child; `None` if fewer nodes do as well.
+    fn to_first(&self, index: usize, count: usize) -> Option<usize> {
+        Some(usize::from(self.of[index][count - 1])).filter(|count| *count > 0)
     }
+}
+
+/// The least cost of two siblings for which so many nodes stand at most, and how many of those stand for the first.
+fn least([first, second]: [&Costs; 2], count: usize) -> (f32, u8) {
+    let mut least = (f32::INFINITY, 1);
+    for to_first in 1..count {
+        let cost = first[to_first - 1] + second[count - to_first - 1];
+        if cost < least.0 {
+            least = (cost, to_first as u8);
+        }
+    }
+    least
 }
 
 impl Hierarchy {
     /// Nodes of at most `width` children, which must be 2 or more; the first is the root. Of all such trees over this one it is the one that rays are
     /// expected to go through at the least cost.
     pub fn gathered(&self, width: usize) -> Vec<Vec<Child>> {
-        let costs = Costs::of(self, width);
-        let is_node = |index: usize| costs.as_node[index] <= costs.with(index, 1);
+        let choices = Choices::of(self, width);
         let mut gathered = vec![Vec::new()];
         let mut waiting = vec![(0, 0)];
         while let Some((root, place)) = waiting.pop() {
-            let mut parts = vec![(root, if is_node(root) { width } else { 1 })];
-            while let Some((index, children)) = parts.pop() {
-                let is_same_with_fewer =
-                    || index != root && costs.with(index, children) == costs.with(index, children - 1);
-                if children > 1 && is_same_with_fewer() {
-                    parts.push((index, children - 1));
-                } else if children > 1 {
-                    let first = self.nodes[index].at as usize;
-                    let (_, to_first) = costs.divided(first, children);
-                    parts.extend([(first + 1, children - to_first), (first, to_first)]);
-                } else {
-                    let content = if is_node(index) {
-                        gathered.push(Vec::new());
-                        waiting.push((index, gathered.len() - 1));
-                        Content::Node(gathered.len() - 1)
-                    } else {
-                        Content::Primitives(self.primitives(index))
-                    };
-                    gathered[place].push(Child { bounds: self.bounds(index), content });
+            let mut parts = vec![(root, if choices.is_node(root) { choices.width } else { 1 })];
+            while let Some((index, count)) = parts.pop() {
+                if count > 1 {
+                    match choices.to_first(index, count) {
+                        Some(to_first) => {
+                            let first = self.nodes[index].at as usize;
+                            parts.extend([(first + 1, count - to_first), (first, to_first)]);
+                        }
+                        None => parts.push((index, count - 1)),
+                    }
+                    continue;
                 }
+                let content = if choices.is_node(index) {
+                    gathered.push(Vec::new());
+                    waiting.push((index, gathered.len() - 1));
+                    Content::Node(gathered.len() - 1)
+                } else {
+                    Content::Primitives(self.primitives(index))
+                };
+                gathered[place].push(Child { bounds: self.bounds(index), content });
             }
         }
         gathered
     }
 
     /// The primitives below each node.
-    fn sizes(&self) -> Vec<usize> {
+    fn sizes(&self) -> Vec<u32> {
         let mut sizes = vec![0; self.nodes.len()];
         // Children stand behind their parents.
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let at = node.at as usize;
-            sizes[index] = if node.count == 0 { sizes[at] + sizes[at + 1] } else { node.count as usize };
+            sizes[index] = if node.count == 0 { sizes[at] + sizes[at + 1] } else { node.count };
         }
         sizes
     }
@@ -163,13 +188,15 @@ mod tests {
     }
 
     /// The least cost of a node by trying all trees.
-    fn least(tree: &Hierarchy, sizes: &[usize], index: usize, width: usize) -> f64 {
+    fn least_of_all(tree: &Hierarchy, sizes: &[u32], index: usize, width: usize) -> f64 {
         let area = tree.bounds(index).half_area();
         let is_leaf = tree.nodes[index].count > 0;
-        let is_whole = is_leaf || sizes[index] <= width;
-        let as_leaf = if is_whole { area * sizes[index].div_ceil(width) as f64 } else { f64::INFINITY };
+        let size = sizes[index] as usize;
+        let is_whole = is_leaf || size <= width;
+        let as_leaf = if is_whole { area * size.div_ceil(width) as f64 } else { f64::INFINITY };
         let children = stand_ins(tree, index, width).into_iter().skip(1);
-        let costs = children.map(|nodes| nodes.into_iter().map(|node| least(tree, sizes, node, width)).sum::<f64>());
+        let costs =
+            children.map(|nodes| nodes.into_iter().map(|node| least_of_all(tree, sizes, node, width)).sum::<f64>());
         as_leaf.min(area + costs.fold(f64::INFINITY, f64::min))
     }
 
@@ -191,7 +218,7 @@ mod tests {
             for accelerator in ["median", "sah"] {
                 let tree = load(name).unwrap().accelerated(accelerator).unwrap().hierarchy.unwrap();
                 let found = cost(&tree.gathered(width), 0, tree.bounds(0).half_area(), width);
-                let expected = least(&tree, &tree.sizes(), 0, width);
+                let expected = least_of_all(&tree, &tree.sizes(), 0, width);
                 assert!((found / expected - 1.0).abs() < 1e-5, "{name}, {accelerator}: {found} instead of {expected}");
             }
         }

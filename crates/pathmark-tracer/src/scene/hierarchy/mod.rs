@@ -60,7 +60,7 @@ trait Split: Clone + Send + Sync {
 }
 
 /// From the boxes of primitives to a tree, if any has a box.
-type Build = fn(&[Option<Bounds>]) -> Option<Hierarchy>;
+type Build = fn(Vec<Option<Bounds>>) -> Option<Hierarchy>;
 
 /// One line of the table of accelerators.
 pub struct Entry {
@@ -114,7 +114,7 @@ impl Entry {
     }
 
     /// Builds the structure over primitives with these boxes; `None` if there is nothing to build.
-    pub fn build(&self, bounds: &[Option<Bounds>]) -> Option<Hierarchy> {
+    pub fn build(&self, bounds: Vec<Option<Bounds>>) -> Option<Hierarchy> {
         self.build?(bounds)
     }
 }

@@ -10,6 +10,8 @@ use crate::simd::{Float, Mask, Number, Numbers, Precision};
 
 /// Numbers of a sphere: its centre, a radius and its number.
 const OF_SPHERE: usize = 5;
+/// Numbers of it as it is: its centre and its radius.
+const OF_EXACT: usize = 4;
 /// Numbers of a triangle: its three corners and its number.
 const OF_TRIANGLE: usize = 10;
 /// The number of a place without a primitive; others are not below -1.
@@ -49,8 +51,8 @@ pub(super) struct Making<'a> {
     /// Spheres in a block, and triangles in one.
     widths: [usize; 2],
     spheres: Vec<f32>,
-    exact: Vec<[f64; 4]>,
-    triangles: Vec<f64>,
+    exact: Numbers,
+    triangles: Numbers,
 }
 
 impl<'a> Making<'a> {
@@ -60,8 +62,29 @@ impl<'a> Making<'a> {
         scale: Scale,
         large: Option<&'a Singles>,
         widths: [usize; 2],
+        precision: Precision,
     ) -> Self {
-        Self { primitives, bounds, scale, large, widths, spheres: Vec::new(), exact: Vec::new(), triangles: Vec::new() }
+        let none = || Numbers::with_capacity(0, precision);
+        Self { primitives, bounds, scale, large, widths, spheres: Vec::new(), exact: none(), triangles: none() }
+    }
+
+    /// Makes room for the primitives of leaves with so many primitives: growing by and by would take half as much memory again.
+    pub(super) fn make_room(&mut self, leaves: impl Iterator<Item = usize>) {
+        let precision = self.triangles.precision();
+        let [of_spheres, of_triangles] = self.widths;
+        let (mut spheres, mut triangles) = (0, 0);
+        for primitives in leaves {
+            spheres += primitives.next_multiple_of(of_spheres);
+            triangles += primitives.next_multiple_of(of_triangles);
+        }
+        // Where both kinds are there, each leaf counts for both, and what is not used is never touched.
+        if !self.primitives.spheres.is_empty() {
+            self.spheres = Vec::with_capacity(OF_SPHERE * spheres);
+            self.exact = Numbers::with_capacity(OF_EXACT * spheres, precision);
+        }
+        if !self.primitives.triangles.is_empty() {
+            self.triangles = Numbers::with_capacity(OF_TRIANGLE * triangles, precision);
+        }
     }
 
     /// Puts the primitives with these numbers into blocks of their own, but for planes and for what is tested elsewhere.
@@ -90,22 +113,25 @@ impl<'a> Making<'a> {
     /// Appends spheres in blocks, the last of which is filled up. The first block, and the one behind the last.
     fn add_spheres(&mut self, numbers: &[u32]) -> [u32; 2] {
         let width = self.widths[0];
-        let first = self.exact.len() / width;
+        let count = |exact: &Numbers| (exact.len() / (OF_EXACT * width)) as u32;
+        let first = count(&self.exact);
         for block in numbers.chunks(width) {
-            let mut columns = [const { Vec::new() }; OF_SPHERE];
-            for lane in 0..width {
-                let number = block.get(lane);
-                let (outline, exact) = number.map_or(NO_SPHERE, |number| self.sphere(*number));
-                self.exact.push(exact);
-                let number = number.map_or(NO_NUMBER, |number| f64::from(*number));
-                let [x, y, z, radius] = outline;
-                for (column, value) in columns.iter_mut().zip([x, y, z, radius, number]) {
-                    column.push(value as f32);
+            let of_lane = |lane: usize| block.get(lane).map_or(NO_SPHERE, |number| self.sphere(*number));
+            let spheres: Vec<([f64; 4], [f64; 4])> = (0..width).map(of_lane).collect();
+            for k in 0..4 {
+                self.spheres.extend(spheres.iter().map(|(outline, _)| outline[k] as f32));
+            }
+            let number = |lane: usize| block.get(lane).map_or(NO_NUMBER, |number| f64::from(*number)) as f32;
+            self.spheres.extend((0..width).map(number));
+            match self.exact.precision() {
+                Precision::F64 => self.exact.extend(spheres.iter().flat_map(|(_, exact)| *exact)),
+                Precision::F32 => {
+                    let column = |k: usize| spheres.iter().map(move |(_, exact)| exact[k]);
+                    self.exact.extend((0..OF_EXACT).flat_map(column));
                 }
             }
-            self.spheres.extend(columns.into_iter().flatten());
         }
-        [first as u32, (self.exact.len() / width) as u32]
+        [first, count(&self.exact)]
     }
 
     /// A sphere as single precision has it, and as it is.
@@ -119,7 +145,7 @@ impl<'a> Making<'a> {
     /// Likewise, triangles.
     fn add_triangles(&mut self, triangles: &[[f64; OF_TRIANGLE]]) -> [u32; 2] {
         let width = self.widths[1];
-        let count = |blocks: &[f64]| (blocks.len() / (OF_TRIANGLE * width)) as u32;
+        let count = |blocks: &Numbers| (blocks.len() / (OF_TRIANGLE * width)) as u32;
         let first = count(&self.triangles);
         for block in triangles.chunks(width) {
             for k in 0..OF_TRIANGLE {
@@ -130,19 +156,12 @@ impl<'a> Making<'a> {
         [first, count(&self.triangles)]
     }
 
-    pub(super) fn made(self, precision: Precision) -> Blocks {
+    pub(super) fn made(self) -> Blocks {
         Blocks {
-            has_triangles: !self.triangles.is_empty(),
+            has_triangles: self.triangles.len() > 0,
             spheres: self.spheres,
-            exact: match precision {
-                Precision::F64 => Numbers::new(self.exact.concat(), precision),
-                Precision::F32 => {
-                    let columns = |block: &[[f64; 4]]| [0, 1, 2, 3].map(|k| block.iter().map(|row| row[k]).collect());
-                    let blocks = self.exact.chunks(self.widths[0]).flat_map(columns).collect::<Vec<Vec<f64>>>();
-                    Numbers::new(blocks.concat(), precision)
-                }
-            },
-            triangles: Numbers::new(self.triangles, precision),
+            exact: self.exact,
+            triangles: self.triangles,
             scale: self.scale,
         }
     }

@@ -80,10 +80,10 @@ impl Wide {
         let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
         let bounds = scene.primitives.bounds();
         let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
-        let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, register]);
+        let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, register], precision);
         let nodes = scene.hierarchy.as_ref().map(|hierarchy| hierarchy.gathered(width));
         let search = Search::of(nodes.as_deref(), scene.owners.len(), width, scale, &mut making);
-        let blocks = making.made(precision);
+        let blocks = making.made();
         let first_plane = scene.primitives.spheres.len() as u32;
         let planes = (first_plane..).map(f64::from).zip(scene.primitives.planes.iter().copied()).collect();
         Self { large, planes, blocks, search }

@@ -22,7 +22,15 @@ const IS_LEAF: u32 = 1 << 31;
 
 impl Tree {
     pub(super) fn of(nodes: &[Vec<Child>], width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
-        let (mut faces, mut children, mut leaves) = (Vec::new(), Vec::new(), Vec::new());
+        let of_leaf = |child: &Child| match &child.content {
+            Content::Node(_) => None,
+            Content::Primitives(primitives) => Some(primitives.len()),
+        };
+        let in_leaves = || nodes.iter().flatten().filter_map(of_leaf);
+        making.make_room(in_leaves());
+        let mut faces = Vec::with_capacity(6 * width * nodes.len());
+        let mut children = Vec::with_capacity(width * nodes.len());
+        let mut leaves = Vec::with_capacity(in_leaves().count());
         for node in nodes {
             let bounds: Vec<Bounds> = node.iter().map(|child| scale.padded(&child.bounds)).collect();
             for k in 0..6 {
@@ -203,9 +211,9 @@ mod tests {
                 let bounds: Vec<Option<Bounds>> = spheres.iter().map(Primitive::bounds).collect();
                 let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
                 let primitives = Primitives { spheres, ..Primitives::default() };
-                let mut making = Making::new(&primitives, &bounds, scale, None, [width, register]);
+                let mut making = Making::new(&primitives, &bounds, scale, None, [width, register], precision);
                 let search = Search::of(Some(&nodes), primitives.spheres.len(), width, scale, &mut making);
-                let blocks = making.made(precision);
+                let blocks = making.made();
                 let wide = Wide { large: None, planes: Vec::new(), blocks, search };
                 let last = primitives.spheres.len() - 1;
                 let (distance, number) = on_level(level, precision, Along(&wide));
