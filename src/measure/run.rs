@@ -188,7 +188,11 @@ impl Account {
         if setup.is_by_cost() {
             self.pilot_s += before_pilot.elapsed().as_secs_f64();
         }
-        let output = setup.new_output(Delivery { plan: Arc::clone(&plan), films })?;
+        let output = setup.new_output(Delivery {
+            plan: Arc::clone(&plan),
+            films,
+            threads: setup.settings().threads.min(available_threads()),
+        })?;
         let run = Arc::new(Run { kernel: Arc::clone(&kernel), ledger: Ledger::new(plan.len()), output });
         let strategy = match &mut self.strategy {
             Some(strategy) => strategy,

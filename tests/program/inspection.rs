@@ -266,6 +266,42 @@ fn what_cannot_be_replayed_is_refused() {
     assert!(error.contains("spp = 3"), "{error}");
 }
 
+/// Every kernel meets what the paths met; the file for other programs has the triangles and the rays, all of them finite.
+#[test]
+fn rays_are_searched_alone_and_exported() {
+    let folder = tempfile::tempdir().unwrap();
+    let size = ["--size", "24x16", "--estimator", "bsdf", "--spp", "2", "--repetitions", "2", "--json"];
+    let json = |more: &[&str]| -> Value {
+        let arguments = [&["rays", "bumpy-ball:500"][..], &size, more].concat();
+        serde_json::from_str(&finish(pathmark(folder.path(), &arguments)).with_code(0).out).unwrap()
+    };
+    let scalar = json(&["--kernel", "scalar", "--export", "rays"]);
+    let rays = scalar["rays"].as_u64().unwrap();
+    assert!(rays > 1000 && scalar["met"] == scalar["rays"], "{scalar}");
+    for accelerator in ["none", "median", "sah"] {
+        let lanes = json(&["--kernel", "lanes", "--accelerator", accelerator]);
+        assert_eq!((&lanes["met"], &lanes["distance"]), (&scalar["met"], &scalar["distance"]), "{accelerator}");
+        assert_eq!(lanes["rays_per_s"].as_array().unwrap().len(), 2);
+    }
+    let file = fs::read(folder.path().join("rays")).unwrap();
+    let triangles = scalar["primitives"].as_u64().unwrap();
+    let head = format!("pathmark-rays 1 {triangles} {rays}\n");
+    let numbers = file.strip_prefix(head.as_bytes()).unwrap();
+    assert_eq!(numbers.len() as u64, 8 * (9 * triangles + 7 * rays));
+    let numbers = numbers.as_chunks::<8>().0.iter().map(|number| f64::from_le_bytes(*number));
+    assert!(numbers.into_iter().all(f64::is_finite));
+
+    let refused = |arguments: &[&str], told: &str| {
+        let error = finish(pathmark(folder.path(), &[&["rays"][..], arguments].concat())).with_code(2).err;
+        assert!(error.contains(told), "{error}");
+    };
+    refused(&["cornell", "--estimator", "bsdf", "--export", "spheres"], "spheres or planes");
+    refused(&["cornell", "--estimator", "smallpt"], "estimator = smallpt");
+    refused(&["cornell-fog", "--estimator", "bsdf"], "fog");
+    refused(&["mandelbrot"], "workload");
+    assert!(!folder.path().join("spheres").exists());
+}
+
 /// A lamp too bright for f32, whose samples are invalid there. Whatever else the image is rendered with, the command that is told for one of them
 /// shows it again.
 #[test]

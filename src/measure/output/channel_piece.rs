@@ -33,7 +33,7 @@ impl Output for ChannelPiece {
     }
 
     fn films(self: Box<Self>) -> Vec<Film> {
-        let Delivery { plan, mut films } = self.delivery;
+        let Delivery { plan, mut films, .. } = self.delivery;
         for (index, tile) in self.receiver.try_iter() {
             films.add(&plan.pieces()[index].samples, tile);
         }

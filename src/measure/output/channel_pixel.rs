@@ -47,7 +47,7 @@ impl Output for ChannelPixel {
     }
 
     fn films(self: Box<Self>) -> Vec<Film> {
-        let Delivery { plan, mut films } = self.delivery;
+        let Delivery { plan, mut films, .. } = self.delivery;
         let mut tiles: Vec<TileBuffer> = plan.pieces().iter().map(|piece| TileBuffer::new(piece.bounds)).collect();
         for Pixel { job, x, y, sum } in self.receiver.try_iter() {
             let left = tiles[job].bounds().x0;

@@ -31,6 +31,8 @@ pub(super) struct Delivery {
     pub(super) plan: Arc<Plan>,
     /// Empty films for them: made before the run, so that the system's refusal comes before the work.
     pub(super) films: Sections,
+    /// Threads that may put them together.
+    pub(super) threads: usize,
 }
 
 /// One line of the table of outputs.

@@ -42,12 +42,10 @@ impl Output for Slots {
     }
 
     fn films(self: Box<Self>) -> Vec<Film> {
-        let Delivery { plan, mut films } = self.delivery;
-        for (piece, cell) in plan.pieces().iter().zip(self.cells) {
-            if let Some(tile) = cell.take() {
-                films.add(&piece.samples, *tile);
-            }
-        }
+        let Delivery { plan, mut films, threads } = self.delivery;
+        let tiles = plan.pieces().iter().zip(self.cells);
+        let tiles = tiles.filter_map(|(piece, cell)| Some((piece.samples.clone(), *cell.take()?)));
+        films.add_all(tiles, threads);
         films.finish()
     }
 }

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 /// A film that is being put together.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Assembly {
     film: Film,
     samples: Range<u32>,
@@ -42,6 +42,16 @@ impl Assembly {
             length *= 2;
         }
         parts.insert(start, (length, tile));
+    }
+
+    /// Adds many pieces, those with all samples of their pixels by up to so many threads.
+    pub fn add_all(&mut self, pieces: Vec<(Range<u32>, TileBuffer)>, threads: usize) {
+        let (whole, parts): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|(samples, _)| *samples == self.samples);
+        let whole: Vec<TileBuffer> = whole.into_iter().map(|(_, tile)| tile).collect();
+        self.film.place_all(&whole, threads);
+        for (samples, tile) in parts {
+            self.add(&samples, tile);
+        }
     }
 
     /// The film, when all pieces have come.
@@ -92,8 +102,39 @@ mod tests {
                     for samples in &order {
                         assembly.add(samples, part(samples.clone()));
                     }
+                    let mut at_once = Assembly::new(1, 1, 0..spp).unwrap();
+                    at_once.add_all(order.iter().map(|samples| (samples.clone(), part(samples.clone()))).collect(), 2);
+                    assert_eq!(at_once.finish(), assembly.clone().finish(), "{spp} spp in {order:?}");
                     assert_eq!(assembly.finish().pixels(), [sum(0..spp)], "{spp} spp in {order:?}");
                 }
+            }
+        }
+    }
+
+    /// Tiles of any size, some of which cross the bands of the threads.
+    #[test]
+    fn threads_place_what_one_places() {
+        let (width, height) = (37, 29);
+        let mut tiles = Vec::new();
+        for y0 in (0..height).step_by(6) {
+            for x0 in (0..width).step_by(5) {
+                let bounds = Bounds { x0, y0, x1: (x0 + 5).min(width), y1: (y0 + 6).min(height) };
+                let mut tile = TileBuffer::new(bounds);
+                for y in bounds.y0..bounds.y1 {
+                    for (x, pixel) in (x0..).zip(tile.row_mut(y)) {
+                        pixel.count = 1;
+                        pixel.sum = [f64::from(x), f64::from(y), 1.0];
+                    }
+                }
+                tiles.push((0..1, tile));
+            }
+        }
+        for threads in [1, 2, 3, 8, 29, 100] {
+            let mut assembly = Assembly::new(width, height, 0..1).unwrap();
+            assembly.add_all(tiles.clone(), threads);
+            for (index, pixel) in (0..).zip(assembly.finish().pixels()) {
+                let [x, y] = [index % width, index / width].map(f64::from);
+                assert_eq!((pixel.sum, pixel.count), ([x, y, 1.0], 1), "{threads} threads");
             }
         }
     }

@@ -49,6 +49,17 @@ impl Sections {
         self.assemblies[section].add(samples, tile);
     }
 
+    /// Adds many pieces, by up to so many threads; what is left of the work to one is to add up pieces that share pixels.
+    pub fn add_all(&mut self, pieces: impl IntoIterator<Item = (Range<u32>, TileBuffer)>, threads: usize) {
+        let mut by_section: Vec<Vec<_>> = self.ends.iter().map(|_| Vec::new()).collect();
+        for (samples, tile) in pieces {
+            by_section[self.ends.partition_point(|end| *end <= samples.start)].push((samples, tile));
+        }
+        for (assembly, pieces) in self.assemblies.iter_mut().zip(by_section) {
+            assembly.add_all(pieces, threads);
+        }
+    }
+
     /// The films, one for each section, when all pieces have come.
     pub fn finish(self) -> Vec<Film> {
         self.assemblies.into_iter().map(Assembly::finish).collect()

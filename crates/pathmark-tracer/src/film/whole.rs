@@ -4,6 +4,8 @@ use super::{Image, PixelSum, TileBuffer};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
 use std::io;
+use std::sync::{Mutex, PoisonError};
+use std::thread::{Builder, scope};
 
 /// Largest width and height.
 pub const LARGEST_SIDE: u32 = 1 << 16;
@@ -96,6 +98,44 @@ impl Film {
             let start = y as usize * self.width as usize + bounds.x0 as usize;
             self.pixels[start..start + row.len()].copy_from_slice(row);
         }
+    }
+
+    /// Likewise, the pixels of many rectangles, none of which overlap, by up to so many threads: each has some rows of the film.
+    pub(super) fn place_all(&mut self, tiles: &[TileBuffer], threads: usize) {
+        let width = self.width as usize;
+        let rows = self.height.div_ceil(threads.max(1) as u32).max(1);
+        let bands = (0..self.height).step_by(rows as usize).zip(self.pixels.chunks_mut(rows as usize * width));
+        let fill = |(first, band): (u32, &mut [PixelSum])| {
+            for tile in tiles {
+                let bounds = tile.bounds();
+                for (y, row) in
+                    (bounds.y0..bounds.y1).zip(tile.rows()).filter(|(y, _)| (first..first + rows).contains(y))
+                {
+                    let start = (y - first) as usize * width + bounds.x0 as usize;
+                    band[start..start + row.len()].copy_from_slice(row);
+                }
+            }
+        };
+        if threads < 2 {
+            return bands.for_each(fill);
+        }
+        let waiting = Mutex::new(bands);
+        let work = || {
+            loop {
+                let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
+                let Some(band) = next else { return };
+                fill(band);
+            }
+        };
+        scope(|scope| {
+            // Where the system gives no thread, this one does what is left.
+            for _ in 1..threads {
+                if Builder::new().spawn_scoped(scope, work).is_err() {
+                    break;
+                }
+            }
+            work();
+        });
     }
 
     /// Takes the pixels that `owns` tells of, by column and row, from another film of the same size.

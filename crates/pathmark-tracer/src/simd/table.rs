@@ -102,6 +102,11 @@ impl Numbers {
         self.precision
     }
 
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         self.doubles.len() + self.singles.len()

@@ -23,10 +23,14 @@ fn numbers(scene: &Scene, (Ray { origin, direction }, from): &Start) -> [f64; OF
 pub(super) fn in_packets(scene: &Scene, rays: &[Start], lanes: usize) -> Vec<f64> {
     let mut all = Vec::with_capacity(rays.len().next_multiple_of(lanes) * OF_RAY);
     for packet in rays.chunks(lanes) {
-        let rows: Vec<[f64; OF_RAY]> = packet.iter().map(|start| numbers(scene, start)).collect();
-        for k in 0..OF_RAY {
-            all.extend((0..lanes).map(|lane| rows[lane.min(rows.len() - 1)][k]));
+        let mut columns = [const { Vec::new() }; OF_RAY];
+        for lane in 0..lanes {
+            let row = numbers(scene, &packet[lane.min(packet.len() - 1)]);
+            for (column, number) in columns.iter_mut().zip(row) {
+                column.push(number);
+            }
         }
+        all.extend(columns.into_iter().flatten());
     }
     all
 }

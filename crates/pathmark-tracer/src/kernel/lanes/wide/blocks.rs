@@ -158,7 +158,7 @@ impl<'a> Making<'a> {
 
     pub(super) fn made(self) -> Blocks {
         Blocks {
-            has_triangles: self.triangles.len() > 0,
+            has_triangles: !self.triangles.is_empty(),
             spheres: self.spheres,
             exact: self.exact,
             triangles: self.triangles,

@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# A mesh against two other programs, on one thread, in interleaved pairs: ours, theirs, theirs, ours, ...
+#
+#   experiments/peers/compare_mesh.sh embree [PAIRS] [TRIANGLES] [-- options of `pathmark rays`]
+#   experiments/peers/compare_mesh.sh mitsuba [PAIRS] [TRIANGLES] [-- options of `pathmark render`]
+#
+# `embree`: rays per second of rtcIntersect1 with RTC_SCENE_FLAG_ROBUST, along the rays of our paths. Needs g++ and Debian's libembree-dev.
+# `mitsuba`: time to equal RMSE, from the variance between two seeds. Needs Mitsuba 3 and LLVM (mitsuba_ball.py).
+# Prints each pair's ratio, larger than 1 where we are ahead, and their median.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+peer=${1:?embree or mitsuba}
+pairs=${2:-7}
+triangles=${3:-20000}
+options=("${@:5}")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+scene=bumpy-ball:$triangles
+spp=64
+
+cargo build --release --quiet
+program=${CARGO_TARGET_DIR:-target}/release/pathmark
+value() { sed -E "s/.*\"$1\":([0-9.e+-]+).*/\1/"; }
+
+# Each prints seconds for a fixed error: of a ray, or of an image times its mean squared error between two seeds.
+ours_embree() {
+  "$program" rays "$scene" --size 256x256 --estimator bsdf --repetitions 5 --json --quiet "${options[@]}" |
+    value median_rays_per_s | awk '{ print 1 / $1 }'
+}
+theirs_embree() { "$work/peer" "$work/rays" 5 robust | awk '/rays\/s/ { print $1 }' | sort -n | sed -n 3p | awk '{ print 1 / $1 }'; }
+
+ours_mitsuba() {
+  local seconds=0
+  for half in 0 1; do
+    seconds=$("$program" render "$scene" --size 256x256 --spp $spp --filter box --strategy serial --seed $((2 * $1 + half)) \
+      --json --quiet -o "$work/ours$half.pfm" "${options[@]}" | value makespan_s)
+  done
+  cost ours "$seconds"
+}
+theirs_mitsuba() {
+  local seconds=0
+  for half in 0 1; do
+    seconds=$(python3 experiments/peers/mitsuba_ball.py "$triangles" 256 $spp $((100 * (2 * $1 + half))) "$work/theirs$half.pfm")
+  done
+  cost theirs "$seconds"
+}
+cost() { "$program" compare "$work/${1}0.pfm" "$work/${1}1.pfm" --json | value mse | awk -v seconds="$2" '{ print $1 * seconds }'; }
+
+if [[ $peer == embree ]]; then
+  g++ -O3 -march=native experiments/peers/embree.cpp -lembree3 -o "$work/peer"
+  "$program" rays "$scene" --size 256x256 --estimator bsdf --repetitions 1 --export "$work/rays" --quiet >/dev/null
+fi
+for ((pair = 1; pair <= pairs; pair++)); do
+  if ((pair % 2)); then a=$("ours_$peer" $pair) b=$("theirs_$peer" $pair); else b=$("theirs_$peer" $pair) a=$("ours_$peer" $pair); fi
+  awk -v a="$a" -v b="$b" 'BEGIN { printf "%.3f\n", b / a }'
+done | tee "$work/pairs"
+sort -n "$work/pairs" | awk -v what="$scene against $peer, ${options[*]:-defaults}" '{ r[NR] = $1 } END {
+  m = NR % 2 ? r[(NR + 1) / 2] : (r[NR / 2] + r[NR / 2 + 1]) / 2
+  printf "%s: median of %d pairs %.3f (%.3f to %.3f)\n", what, NR, m, r[1], r[NR] }'
