@@ -6,8 +6,8 @@ use crate::scene::{ACCELERATORS, AllEffects, Hit, Primitives, Scene, Sphere, Sta
 /// A scene of these primitives, all of one object; its camera is of no interest.
 pub fn scene_of(primitives: Primitives) -> Scene {
     let mut scene = load("furnace").expect("a shipped scene");
-    scene.owners = vec![0; primitives.counts().iter().sum()].into();
-    scene.primitives = primitives.into();
+    scene.owners = vec![0; primitives.counts().iter().sum()];
+    scene.primitives = primitives;
     scene
 }
 

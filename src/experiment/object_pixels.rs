@@ -7,7 +7,7 @@ use crate::scene::{AllEffects, Filter, Scene, Tests};
 
 /// The index of the object of that name.
 fn index(scene: &Scene, object: &str) -> Result<u32> {
-    if let Some((index, _)) = (0..).zip(scene.objects.iter()).find(|(_, own)| own.name == object) {
+    if let Some((index, _)) = (0..).zip(&scene.objects).find(|(_, own)| own.name == object) {
         return Ok(index);
     }
     let names: Vec<&str> = scene.objects.iter().map(|own| own.name.as_str()).collect();

@@ -46,23 +46,23 @@ fn an_unreachable_object_changes_nothing() {
     let cornell = load("cornell").unwrap();
     let mut larger = cornell.clone();
     // Beyond the left wall, whose sphere encloses the box.
-    Arc::make_mut(&mut larger.primitives).spheres.push(Sphere { center: [-500.0, 40.0, 80.0].into(), radius: 30.0 });
-    Arc::make_mut(&mut larger.objects).push(Object { name: "unreachable".into(), ..cornell.objects[0].clone() });
-    Arc::make_mut(&mut larger.owners).push(cornell.objects.len() as u32);
+    larger.primitives.spheres.push(Sphere { center: [-500.0, 40.0, 80.0].into(), radius: 30.0 });
+    larger.objects.push(Object { name: "unreachable".into(), ..cornell.objects[0].clone() });
+    larger.owners.push(cornell.objects.len() as u32);
     for estimator in ["smallpt", "bsdf"] {
         assert_eq!(checksum(&larger, spec(estimator)), checksum(&cornell, spec(estimator)), "{estimator}");
     }
     // Through a hierarchy, too, and if it is a triangle.
     let mut another = larger.clone();
     let corners = [[-500.0, 0.0, 0.0], [-500.0, 90.0, 0.0], [-500.0, 0.0, 90.0]].map(Vec3::from);
-    Arc::make_mut(&mut another.primitives).triangles.push(Triangle { corners });
-    Arc::make_mut(&mut another.owners).push(cornell.objects.len() as u32);
+    another.primitives.triangles.push(Triangle { corners });
+    another.owners.push(cornell.objects.len() as u32);
     for accelerator in ["none", "median", "sah"] {
         let spec = Spec { accelerator: Some(accelerator.into()), ..spec("bsdf") };
         assert_eq!(checksum(&another, spec.clone()), checksum(&cornell, spec), "{accelerator}");
     }
     // And the checksum does see an object that can be reached.
-    Arc::make_mut(&mut larger.primitives).spheres.last_mut().unwrap().center = [50.0, 30.0, 60.0].into();
+    larger.primitives.spheres.last_mut().unwrap().center = [50.0, 30.0, 60.0].into();
     assert_ne!(checksum(&larger, spec("bsdf")), checksum(&cornell, spec("bsdf")));
 }
 

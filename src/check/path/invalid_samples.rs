@@ -123,8 +123,7 @@ fn injected(trials: &mut Trials) {
 /// A lamp that shines NaN, which the reader of scenes would refuse: every kernel leaves out the samples that meet it.
 fn spoilt_lamp(kernel: &str, trials: &mut Trials) {
     let mut scene = load("cornell").expect("a shipped scene");
-    let lamp =
-        Arc::make_mut(&mut scene.objects).iter_mut().find(|object| object.emission != Rgb::BLACK).expect("a lamp");
+    let lamp = scene.objects.iter_mut().find(|object| object.emission != Rgb::BLACK).expect("a lamp");
     lamp.emission = Rgb { r: f64::NAN, g: f64::NAN, b: f64::NAN };
     let spec =
         Spec { width: WIDTH, height: HEIGHT, estimator: "bsdf".into(), kernel: kernel.into(), ..Spec::default() };

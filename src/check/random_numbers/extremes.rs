@@ -113,7 +113,7 @@ fn aimed(scene: &Scene, ray: &Ray, u: [f64; 2]) -> (u64, u64) {
 /// Every material of every scene, from above to along the surface, from both sides.
 fn materials(trials: &mut Trials) {
     let (mut tried, mut wrong) = (0, 0);
-    for object in scenes().flat_map(|scene| scene.objects.iter().take(100).cloned().collect::<Vec<_>>()) {
+    for object in scenes().flat_map(|scene| scene.objects.into_iter().take(100)) {
         for cos in [1.0, 0.5, 1e-8, 0.0] {
             let wo = crate::math::Vec3::new(f64::sqrt(1.0 - cos * cos), 0.0, cos);
             for (u, inside) in PAIRS.into_iter().flat_map(|u| [(u, false), (u, true)]) {

@@ -41,7 +41,7 @@ fn powers_of_two(trials: &mut Trials) {
     }
     // Triangles through every hierarchy, out of the equilibrium in which every pixel is 1: boxes have a padding in proportion.
     let mut furnace = load("furnace:0.6").expect("a shipped scene");
-    for (index, object) in Arc::make_mut(&mut furnace.objects).iter_mut().enumerate() {
+    for (index, object) in furnace.objects.iter_mut().enumerate() {
         object.emission = if index % 3 == 0 { Rgb::WHITE } else { Rgb::BLACK };
     }
     let furnace = Arc::new(furnace);

@@ -8,7 +8,6 @@ use crate::check::stage::{ANY_CAMERA, DIFFUSE, named, try_scene};
 use crate::check::{Case, Trials};
 use crate::math::{Frame, Ray, Vec3, dot};
 use crate::scene::{Plane, Primitive, Primitives, Scene, Standpoint};
-use std::sync::Arc;
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "T16", tries: "planes met at cosines down to 1e-90, from both sides", run: flat_angles },
@@ -105,7 +104,7 @@ fn starting_on_it(trials: &mut Trials) {
     let mut scene = scene(floor(UP));
     let (mut again, mut started) = (0, 0);
     while started < rays {
-        Arc::make_mut(&mut scene.primitives).planes[0].normal = random.direction();
+        scene.primitives.planes[0].normal = random.direction();
         let seen = Ray { origin: random.direction() * random.scale(-3.0, 3.0), direction: random.direction() };
         let Some(hit) = intersect(&scene, &seen, None) else { continue };
         let direction = random.direction();

@@ -138,8 +138,8 @@ fn under_a_sky(triangles: &[Triangle], target: Vec3, from: Vec3) -> Scene {
         camera([from.x, from.y, from.z], [target.x, target.y, target.z]),
         object(&anything, &diffuse(0.75), [0.0; 3]),
     ]);
-    scene.primitives = Primitives { triangles: triangles.to_vec(), ..Primitives::default() }.into();
-    scene.owners = vec![0; triangles.len()].into();
+    scene.primitives = Primitives { triangles: triangles.to_vec(), ..Primitives::default() };
+    scene.owners = vec![0; triangles.len()];
     scene
 }
 

@@ -140,9 +140,8 @@ fn same_images(trials: &mut Trials) {
             object(&anything, &diffuse(0.5), [1.0; 3]),
         ]);
         let height = -13.0 - 4.0 * random.unit();
-        scene.primitives = among_others(&mut random, height).into();
-        let count = scene.primitives.counts().iter().sum::<usize>() as u32;
-        scene.owners = (0..count).map(|k| k % 2).collect::<Vec<_>>().into();
+        scene.primitives = among_others(&mut random, height);
+        scene.owners = (0..scene.primitives.counts().iter().sum::<usize>() as u32).map(|k| k % 2).collect();
         let spec = Spec { width: 12, height: 12, seed: 22, estimator: "nee".into(), ..Spec::default() };
         for precision in Precision::ALL {
             let mut checksums = Vec::new();

@@ -59,8 +59,8 @@ fn scene(content: Content, primitives: usize) -> Arc<Scene> {
     let mut scene = BOX.clone();
     let (low, high) = (Vec3::new(10.0, 5.0, 30.0), Vec3::new(90.0, 60.0, 110.0));
     if content == Content::Triangles || primitives < scene.owners.len() {
-        Arc::make_mut(&mut scene.primitives).spheres.clear();
-        Arc::make_mut(&mut scene.objects).clear();
+        scene.primitives.spheres.clear();
+        scene.objects.clear();
         scene.background = Some(Rgb::WHITE);
     }
     while scene.objects.len() < primitives {
@@ -75,15 +75,15 @@ fn scene(content: Content, primitives: usize) -> Arc<Scene> {
             let radius = 2.0 + 6.0 * random.unit();
             let twin = last.filter(|last| content == Content::Twins && last.radius < 8.0 && random.unit() < 0.5);
             let at = scene.primitives.spheres.len();
-            Arc::make_mut(&mut scene.primitives).spheres.push(twin.unwrap_or(Sphere { center, radius }));
-            Arc::make_mut(&mut scene.objects).insert(at, random.object());
+            scene.primitives.spheres.push(twin.unwrap_or(Sphere { center, radius }));
+            scene.objects.insert(at, random.object());
         } else {
             let mut corner = || center + random.point(Vec3::new(-20.0, -20.0, -20.0), Vec3::new(20.0, 20.0, 20.0));
-            Arc::make_mut(&mut scene.primitives).triangles.push(Triangle { corners: [corner(), corner(), corner()] });
-            Arc::make_mut(&mut scene.objects).push(random.object());
+            scene.primitives.triangles.push(Triangle { corners: [corner(), corner(), corner()] });
+            scene.objects.push(random.object());
         }
     }
-    scene.owners = Arc::new((0..scene.objects.len() as u32).collect());
+    scene.owners = (0..scene.objects.len() as u32).collect();
     scene.name = format!("{content:?} {primitives}");
     Arc::new(scene)
 }

@@ -96,10 +96,10 @@ const SCALAR: &str = "scalar";
 fn prepared(scene: &Arc<Scene>, choice: &Choice) -> Arc<Scene> {
     let mut prepared = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
     if choice.estimator.aims {
-        prepared = Arc::new(prepared.lit(&choice.view(scene)));
+        Arc::make_mut(&mut prepared).add_lights(&choice.view(scene));
     }
     if choice.epsilon.is_some() {
-        prepared = Arc::new(Scene { epsilon: choice.epsilon, ..Scene::clone(&prepared) });
+        Arc::make_mut(&mut prepared).epsilon = choice.epsilon;
     }
     prepared
 }

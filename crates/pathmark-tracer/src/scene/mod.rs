@@ -39,7 +39,6 @@ use crate::effect::{EffectSet, Effects};
 use crate::material::Material;
 use crate::math::{Frame, Ray, Rgb, Vec3, dot};
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// What is known of a thing in the scene besides its surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -120,11 +119,11 @@ pub struct Scene {
     /// Where it is seen from.
     pub camera: Camera,
     /// The surfaces, apart from the objects, so that the search for the nearest touches nothing else.
-    pub primitives: Arc<Primitives>,
+    pub primitives: Primitives,
     /// What is in it.
-    pub objects: Arc<Vec<Object>>,
+    pub objects: Vec<Object>,
     /// The object of each primitive.
-    pub owners: Arc<Vec<u32>>,
+    pub owners: Vec<u32>,
     /// Lights without a size.
     pub point_lights: Vec<PointLight>,
     /// The radiance of rays that meet nothing; `None` if none should, because the scene is closed.
@@ -132,7 +131,7 @@ pub struct Scene {
     /// What is between the surfaces.
     pub fog: Option<Fog>,
     /// What the search for the nearest primitive goes by; every primitive is tested if `None`.
-    pub hierarchy: Option<Arc<Hierarchy>>,
+    pub hierarchy: Option<Hierarchy>,
     /// What estimators that ask for it aim at.
     pub lights: Option<Lights>,
     /// Nearer than this nothing is hit; `None` tells exactly where a ray starts. Scene files have none: it belongs to the render.
@@ -157,7 +156,7 @@ impl Scene {
             .and(called(self.point_lights.iter().any(|light| light.reach.is_some()), REACH))
             .and(called(self.epsilon.is_some(), EPSILON))
             .and(called(self.fog.is_some(), FOG))
-            .and(called((0..).zip(self.owners.iter()).any(|(primitive, owner)| primitive != *owner), COMPOUND))
+            .and(called((0..).zip(&self.owners).any(|(primitive, owner)| primitive != *owner), COMPOUND))
             .and(called(self.objects.iter().any(|object| object.angular_emission.is_some()), ANGULAR_EMISSION))
             .and(called(self.hierarchy.is_some(), HIERARCHY))
     }
@@ -191,7 +190,7 @@ impl Scene {
         limit: f64,
         tests: &mut Tests,
     ) -> Option<Hit> {
-        let hierarchy = self.hierarchy.as_deref();
+        let hierarchy = self.hierarchy.as_ref();
         let hit = self.hit::<X>(ray, self.primitives.nearest::<X>(hierarchy, ray, from, limit, tests))?;
         if X::EFFECTS.cover(Triangle::EFFECT) && self.primitives.is_doubtful(ray, &hit) {
             return self.hit::<X>(
@@ -216,7 +215,7 @@ impl Scene {
     /// The distance and the number of the first primitive along a ray, which is as exact as numbers of so many digits. [`Scene::intersect`]
     /// finds the same with those of double precision, sooner.
     pub fn nearest(&self, ray: &Ray, from: Option<Standpoint>, digits: u32, tests: &mut Tests) -> Nearest {
-        let hierarchy = self.hierarchy.as_deref();
+        let hierarchy = self.hierarchy.as_ref();
         if self.primitives.triangles.is_empty() {
             return self.primitives.nearest::<AllEffects>(hierarchy, ray, from, f64::INFINITY, tests);
         }
@@ -265,7 +264,7 @@ impl Scene {
     pub fn in_equilibrium(&self) -> Self {
         let rest = |share: Rgb| Rgb { r: 1.0 - share.r, g: 1.0 - share.g, b: 1.0 - share.b };
         let mut scene = self.clone();
-        for object in Arc::make_mut(&mut scene.objects) {
+        for object in &mut scene.objects {
             object.emission = rest(object.material.albedo::<AllEffects>());
             object.angular_emission = AngularEmission::tabulate(|cos| object.material.albedo_at(cos).map(rest));
         }
@@ -281,7 +280,7 @@ impl Scene {
     pub fn scaled(&self, factor: f64) -> Self {
         let mut scene = self.clone();
         scene.camera = scene.camera.scaled(factor);
-        scene.primitives = Arc::new(scene.primitives.scaled(factor));
+        scene.primitives = scene.primitives.scaled(factor);
         scene.point_lights = scene.point_lights.iter().map(|light| light.scaled(factor)).collect();
         scene.fog = scene.fog.map(|fog| fog.scaled(factor));
         scene.lights = None;
@@ -291,12 +290,19 @@ impl Scene {
     /// The same scene with its lights to aim at, as they are reached from that view.
     #[must_use]
     pub fn lit(&self, view: &View) -> Self {
-        Self { lights: Some(Lights::of(self, &view.origins())), ..self.clone() }
+        let mut lit = self.clone();
+        lit.add_lights(view);
+        lit
+    }
+
+    /// Adds what estimators aim at, as seen by that view.
+    pub(crate) fn add_lights(&mut self, view: &View) {
+        self.lights = Some(Lights::of(self, &view.origins()));
     }
 
     /// The same scene with the search structure of that name; `None` if it is to have none.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
         let hierarchy = accelerator(Some(name), 0, Scan::OneByOne)?.build(self.primitives.bounds())?;
-        Some(Self { hierarchy: Some(Arc::new(hierarchy)), ..self.clone() })
+        Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 }

@@ -36,7 +36,6 @@ use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::rc::Rc;
-use std::sync::Arc;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
@@ -136,9 +135,9 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         remarks: Vec::new(),
         default_estimator: draft.estimator,
         camera,
-        primitives: Arc::default(),
-        objects: Arc::default(),
-        owners: Arc::default(),
+        primitives: Primitives::default(),
+        objects: Vec::new(),
+        owners: Vec::new(),
         point_lights: draft.point_lights,
         background: draft.background,
         fog: draft.fog,
@@ -153,26 +152,23 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
 
 /// Turns parts into objects and primitives, which are numbered kind by kind.
 fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Result<()> {
-    let (mut primitives, mut objects) = (Primitives::default(), Vec::with_capacity(parts.len()));
-    let mut owners: Vec<Vec<u32>> = vec![Vec::new(); primitives.counts().len()];
+    let mut owners: Vec<Vec<u32>> = vec![Vec::new(); scene.primitives.counts().len()];
     for (index, part) in (0u32..).zip(parts) {
-        let before = primitives.counts();
+        let before = scene.primitives.counts();
         let mut files =
             Files { folder: &part.source.folder, hash, read: &mut scene.files, remarks: &mut scene.remarks };
         for shape in part.shapes {
             shape
-                .add_to(&mut primitives, &mut files)
+                .add_to(&mut scene.primitives, &mut files)
                 .map_err(|problem| at_object(&part.source, &part.name, problem))?;
         }
-        for ((owners, before), now) in owners.iter_mut().zip(before).zip(primitives.counts()) {
+        for ((owners, before), now) in owners.iter_mut().zip(before).zip(scene.primitives.counts()) {
             owners.extend(std::iter::repeat_n(index, now - before));
         }
         let Part { name, material, emission, .. } = part;
-        objects.push(Object { name, material, emission, angular_emission: None });
+        scene.objects.push(Object { name, material, emission, angular_emission: None });
     }
-    scene.primitives = Arc::new(primitives);
-    scene.objects = Arc::new(objects);
-    scene.owners = Arc::new(owners.concat());
+    scene.owners = owners.concat();
     Ok(())
 }
 

@@ -107,7 +107,7 @@ impl Lights {
             let object = &scene.objects[*owner as usize];
             !object.emission.is_black() || object.angular_emission.is_some()
         };
-        let primitives = (0_u32..).zip(scene.owners.iter()).filter(|(_, owner)| is_light(owner));
+        let primitives = (0_u32..).zip(&scene.owners).filter(|(_, owner)| is_light(owner));
         let mut walls = Walls::of(scene, origins);
         if walls.len().saturating_mul(primitives.clone().count()) > MOST_PAIRS {
             walls = Walls::default();
@@ -214,7 +214,7 @@ mod tests {
     fn what_cannot_be_reached_is_no_target() {
         let mut scene = load("cornell").unwrap();
         let light = scene.objects.iter().position(|object| object.name == "light").unwrap();
-        std::sync::Arc::make_mut(&mut scene.primitives).spheres[light].center.y += 1.0;
+        scene.primitives.spheres[light].center.y += 1.0;
         let lights = scene.lit(&scene.camera.view(64, 48)).lights.unwrap();
         assert!(lights.lights.is_empty());
     }

@@ -226,7 +226,7 @@ impl Blocks {
             let is_met = crossing.is_met & !is_own;
             if is_met.any() {
                 let root = crossing.root();
-                best.take(numbers, V::Register::select(is_met, root, V::Register::splat(f64::NAN)));
+                best.take_few(numbers, V::Register::select(is_met, root, V::Register::splat(f64::NAN)));
             }
         }
     }

@@ -180,13 +180,27 @@ impl Best {
         }
     }
 
-    /// Distances to the primitives with these numbers, in the order of the lanes.
+    /// Distances to the primitives with these numbers, in the order of the lanes, where most rays meet one of them or none.
+    #[inline(always)]
+    fn take_few<V: Float>(&mut self, numbers: &[V::One], distance: V) {
+        let ahead = V::splat(0.0).lt(distance) & distance.le(V::splat(self.nearest));
+        for lane in LanesOf(ahead.bits()) {
+            self.take_one(distance.lane(lane), numbers[lane].into());
+        }
+    }
+
+    /// Likewise, where many rays meet several.
     #[inline(always)]
     fn take<V: Float>(&mut self, numbers: &[V::One], distance: V) {
         let ahead = V::splat(0.0).lt(distance) & distance.le(V::splat(self.nearest));
-        // Of a block most rays meet one primitive or none.
-        for lane in LanesOf(ahead.bits()) {
-            self.take_one(distance.lane(lane), numbers[lane].into());
+        if ahead.any() {
+            let nearest = V::select(ahead, distance, V::splat(f64::INFINITY)).least();
+            for lane in LanesOf((ahead & distance.equal(V::splat(nearest))).bits()) {
+                let primitive = numbers[lane].into();
+                if nearest < self.nearest || primitive < self.primitive {
+                    *self = Self { nearest, primitive };
+                }
+            }
         }
     }
 }
@@ -201,7 +215,6 @@ mod tests {
     use crate::scene::Standpoint;
     use crate::scene::{SCENES, load};
     use crate::simd::{Work, levels, on_level};
-    use std::sync::Arc;
 
     /// Compares with the scalar search, and returns how many rays are left to it.
     struct Compare<'a>(&'a Scene, &'a Wide, &'a [Start]);
@@ -233,15 +246,14 @@ mod tests {
     /// The scene with everything in it twice, so that every hit is a tie.
     fn twice(scene: &Scene) -> Scene {
         let mut twice = scene.clone();
-        let primitives = Arc::make_mut(&mut twice.primitives);
+        let primitives = &mut twice.primitives;
         let (spheres, planes) = (primitives.spheres.len(), primitives.planes.len());
         primitives.spheres.extend_from_within(..);
         primitives.planes.extend_from_within(..);
         primitives.triangles.extend_from_within(..);
         let owners = |range: std::ops::Range<usize>| scene.owners[range].repeat(2);
         let [first, second] = [spheres, spheres + planes];
-        let owners = [owners(0..first), owners(first..second), owners(second..scene.owners.len())];
-        twice.owners = Arc::new(owners.concat());
+        twice.owners = [owners(0..first), owners(first..second), owners(second..scene.owners.len())].concat();
         twice
     }
 
