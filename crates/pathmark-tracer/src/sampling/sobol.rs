@@ -158,19 +158,29 @@ pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
     [scramble(place, first).reversed(), scramble(pascal(place), second).reversed()]
 }
 
+/// The pair of an address, whose place in an order of its own and whose two fractions follow from its key by some way to scramble.
+#[inline(always)]
+pub(super) fn pair_by(
+    at: Address,
+    own_place: impl Fn(u64, u64) -> u64,
+    fractions: impl Fn(u64, u64) -> [u64; 2],
+) -> [f64; 2] {
+    let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
+    // The same for a whole path, so a compiler takes it out of the loop over bounces.
+    let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
+    let key = mix(pixel ^ dimension);
+    let place = match (at.bounce, at.branch, at.purpose) {
+        (0, 0, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
+        (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
+        _ => own_place(key, u64::from(at.key.sample)),
+    };
+    fractions(key, place).map(unit)
+}
+
 impl Sampler for Sobol {
     #[inline(always)]
     fn pair(&self, at: Address) -> [f64; 2] {
-        let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
-        // The same for a whole path, so a compiler takes it out of the loop over bounces.
-        let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
-        let key = mix(pixel ^ dimension);
-        let place = match (at.bounce, at.branch, at.purpose) {
-            (0, 0, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
-            (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
-            _ => own_place(key, u64::from(at.key.sample)),
-        };
-        fractions(key, place).map(unit)
+        pair_by(at, own_place, fractions)
     }
 }
 

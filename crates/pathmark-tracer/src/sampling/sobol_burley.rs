@@ -6,9 +6,9 @@
 //! products of 64 bits and 12 of 32, where `sobol` takes 23 of 64 bits. Digits beyond the 32nd are no part of the net.
 
 use super::independent::mix;
-use super::sobol::{joined, pascal, pixel};
-use super::{Address, Purpose, Sampler};
-use crate::math::{Bits, unit};
+use super::sobol::{pair_by, pascal};
+use super::{Address, Sampler};
+use crate::math::Bits;
 
 /// The sampler; it has no state.
 #[derive(Debug, Clone, Copy, Default)]
@@ -44,15 +44,7 @@ pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
 impl Sampler for SobolBurley {
     #[inline(always)]
     fn pair(&self, at: Address) -> [f64; 2] {
-        let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
-        let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
-        let key = mix(pixel ^ dimension);
-        let place = match (at.bounce, at.branch, at.purpose) {
-            (0, 0, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
-            (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
-            _ => own_place(key, digits(u64::from(at.key.sample))),
-        };
-        fractions(key, place).map(unit)
+        pair_by(at, |key, sample| own_place(key, digits(sample)), fractions)
     }
 }
 

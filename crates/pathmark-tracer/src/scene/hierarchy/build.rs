@@ -73,11 +73,14 @@ fn divided<'a>(
     threads: usize,
 ) -> (Top, Vec<Task<'a>>) {
     let Task { own, first, depth } = task;
-    let is_divided = own.len() > most && depth < UNBALANCED;
-    let Some(left) = is_divided.then(|| rule.divide(bounds, own)).flatten() else {
+    if own.len() <= most || depth >= UNBALANCED {
+        return (Top::Part, vec![Task { own, first, depth }]);
+    }
+    let whole = own.iter().fold(Bounds::EMPTY, |whole, k| whole.and(&bounds[*k as usize]));
+    let Some(left) = rule.divide(bounds, &whole, own) else {
         return (Top::Part, vec![Task { own, first, depth }]);
     };
-    let faces = own.iter().fold(Bounds::EMPTY, |whole, k| whole.and(&bounds[*k as usize])).faces();
+    let faces = whole.faces();
     let (own, others) = own.split_at_mut(left);
     let half = |own, first, threads| divided(bounds, Task { own, first, depth: depth + 1 }, rule, most, threads);
     let ((a, mut tasks), (b, more)) =

@@ -16,7 +16,7 @@ impl Split for Median {
         Some((axis, sorted[axis].len() / 2))
     }
 
-    fn divide(&self, bounds: &[Bounds], own: &mut [u32]) -> Option<usize> {
+    fn divide(&self, bounds: &[Bounds], _node: &Bounds, own: &mut [u32]) -> Option<usize> {
         let middles = own.iter().fold(Bounds::EMPTY, |middles, k| {
             let middle = [0, 1, 2].map(|axis| bounds[*k as usize].middle(axis));
             middles.and(&Bounds { low: middle, high: middle })

@@ -56,7 +56,7 @@ trait Split: Clone + Send + Sync {
 
     /// Of many, which nobody has sorted: puts those of the first child to the front and says how many they are, at least one and not all; `None` if
     /// they have to be sorted.
-    fn divide(&self, bounds: &[Bounds], own: &mut [u32]) -> Option<usize>;
+    fn divide(&self, bounds: &[Bounds], node: &Bounds, own: &mut [u32]) -> Option<usize>;
 }
 
 /// From the boxes of primitives to a tree, if any has a box.

@@ -55,12 +55,11 @@ impl Split for Sah {
         best
     }
 
-    fn divide(&self, bounds: &[Bounds], own: &mut [u32]) -> Option<usize> {
-        let (mut whole, mut middles) = (Bounds::EMPTY, Bounds::EMPTY);
+    fn divide(&self, bounds: &[Bounds], node: &Bounds, own: &mut [u32]) -> Option<usize> {
+        let mut middles = Bounds::EMPTY;
         for k in own.iter() {
             let bounds = &bounds[*k as usize];
             let middle = [0, 1, 2].map(|axis| bounds.middle(axis));
-            whole = whole.and(bounds);
             middles = middles.and(&Bounds { low: middle, high: middle });
         }
         // A conversion to an integer takes what is no number for 0.
@@ -76,7 +75,7 @@ impl Split for Sah {
                 *bin = (bin.0.and(bounds), bin.1 + 1);
             }
         }
-        let least = (own.len() as f64 - TRAVERSAL) * whole.half_area();
+        let least = (own.len() as f64 - TRAVERSAL) * node.half_area();
         let best = bins.iter().enumerate().fold((least, None), |best, (axis, bins)| cheaper(best, axis, bins));
         let (axis, place) = best.1?;
         Some(to_front(own, |k| bin_of(&bounds[k as usize], axis) < place))
