@@ -10,9 +10,12 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 peer=${1:?embree or mitsuba}
-pairs=${2:-7}
-triangles=${3:-20000}
-options=("${@:5}")
+shift
+numbers=()
+while (($#)) && [[ $1 != -- ]]; do numbers+=("$1") && shift; done
+pairs=${numbers[0]:-7}
+triangles=${numbers[1]:-20000}
+options=("${@:2}")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 scene=bumpy-ball:$triangles

@@ -3,8 +3,8 @@
 
     experiments/peers/mitsuba_ball.py N SIZE SPP SEED OUT.pfm
 
-N triangles at least, as in experiments/scenes/bumpy-ball.toml; needs `pip install mitsuba numpy` and LLVM (Debian's libllvm15). One thread renders, with
-the variant llvm_ad_rgb and the integrator `path`. Prints the seconds of a second rendering, after the first has compiled its kernels, and writes that
+N triangles at least, as in experiments/scenes/bumpy-ball.toml; needs `pip install mitsuba numpy` and LLVM (Debian's libllvm19, named by
+DRJIT_LIBLLVM_PATH; 15 cannot compile it). One thread renders, with the variant llvm_ad_rgb and the integrator `path`. Prints the seconds of a second rendering, after the first has compiled its kernels, and writes that
 image, of SEED + 1.
 """
 

@@ -28,6 +28,28 @@ pub(super) struct Axes {
     pub(super) clamp: Option<String>,
 }
 
+/// The samples of an image whose paths a verb looks into.
+#[derive(Args)]
+pub(super) struct Samples {
+    /// A scene of `pathmark list scenes`, or the path of a .toml file
+    pub(super) scene: String,
+    /// Samples per pixel
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    pub(super) spp: u32,
+    /// Seed of the image
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    what: What,
+}
+
+impl Samples {
+    /// Settings under which they are rendered, by nobody in particular.
+    pub(super) fn settings(&self, lab: &Lab) -> Result<Settings> {
+        self.what.settings(lab, &self.scene, self.spp, self.seed)
+    }
+}
+
 /// What clap refuses before the program looks at a value.
 fn parser(axis: &Axis) -> ValueParser {
     match (axis.field)(&mut Settings::default()) {

@@ -1,6 +1,6 @@
 //! `pathmark bounces SCENE`: the light of an image by the bounces that it made, and how long its paths are.
 
-use super::axes::{What, no_paths};
+use super::axes::{Samples, no_paths};
 use super::output::{number, print, print_json};
 use super::progress::Talk;
 use crate::atomic_file;
@@ -19,16 +19,8 @@ use std::sync::Arc;
 /// `pathmark bounces cornell --size 128x96 --spp 16`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A scene of `pathmark list scenes`, or the path of a .toml file
-    scene: String,
-    /// Samples per pixel
-    #[arg(long, value_name = "N", default_value_t = 4)]
-    spp: u32,
-    /// Seed of the image
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
     #[command(flatten)]
-    what: What,
+    samples: Samples,
     /// Write all rows
     #[arg(long, value_name = "FILE.csv")]
     csv: Option<PathBuf>,
@@ -44,18 +36,18 @@ const SHOWN: usize = 16;
 const REPORTED: usize = 6;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
-    let settings = arguments.what.settings(lab, &arguments.scene, arguments.spp, arguments.seed)?;
+    let settings = arguments.samples.settings(lab)?;
     let setup = lab.prepare(settings)?;
-    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.scene)) };
+    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     let spec = &setup.settings().spec;
     let mut files = Files::default();
     files.reads_scene(setup.files());
     arguments.csv.as_ref().map_or(Ok(()), |path| files.writes("csv", path))?;
     let inspector = Inspector::new(scene, choice)?;
-    talk.begin(&format!("{} at {} spp", scene.name, arguments.spp), u64::from(spec.height));
+    talk.begin(&format!("{} at {} spp", scene.name, arguments.samples.spp), u64::from(spec.height));
     let mut found = LightByBounce::default();
     for y in 0..spec.height {
-        found.add(&LightByBounce::of(&inspector, spec.width, y..y + 1, &(0..arguments.spp)));
+        found.add(&LightByBounce::of(&inspector, spec.width, y..y + 1, &(0..arguments.samples.spp)));
         talk.advance(u64::from(y) + 1);
     }
     talk.end();
@@ -76,14 +68,14 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     if arguments.json {
         return print_json(&json!({
-            "scene": scene.name, "width": spec.width, "height": spec.height, "spp": arguments.spp, "seed": spec.seed,
+            "scene": scene.name, "width": spec.width, "height": spec.height, "spp": arguments.samples.spp, "seed": spec.seed,
             "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
             "mean": total(&found).map(number), "samples": found.samples, "rays": found.rays, "invalid_samples": found.invalid,
             "parts": found.parts(), "mean_length": found.mean_length().map(number), "longest": found.longest(),
             "bounces": rows.iter().map(object).collect::<Vec<Value>>(),
         }));
     }
-    print(&text(&scene.name, spec, arguments.spp, &found, &rows))
+    print(&text(&scene.name, spec, arguments.samples.spp, &found, &rows))
 }
 
 /// One number of bounces.

@@ -1,6 +1,6 @@
 //! `pathmark rays SCENE`: rays per second of the search for what a ray meets first, along the rays of paths.
 
-use super::axes::{What, no_paths};
+use super::axes::{Samples, no_paths};
 use super::output::{number, print, print_json};
 use super::progress::Talk;
 use crate::analysis::quantile::{median, median_interval};
@@ -23,34 +23,26 @@ use std::time::Instant;
 /// `pathmark rays bumpy-ball:20000 --precision f32`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A scene of `pathmark list scenes`, or the path of a .toml file
-    scene: String,
-    /// Samples per pixel whose paths give the rays
-    #[arg(long, value_name = "N", default_value_t = 4)]
-    spp: u32,
-    /// Seed of the paths
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    #[command(flatten)]
+    samples: Samples,
     /// Search so many times along all rays, on one thread
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = value_parser!(u32).range(1..))]
     repetitions: u32,
     /// Write the triangles and the rays for another program: a line of text, then numbers of 64 bits
     #[arg(long, value_name = "FILE")]
     export: Option<PathBuf>,
-    #[command(flatten)]
-    what: What,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
 }
 
-/// Confidence of the interval around the median.
+/// Confidence of the interval around the median, if there are repetitions enough.
 const LEVEL: f64 = 0.95;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
-    let settings = arguments.what.settings(lab, &arguments.scene, arguments.spp, arguments.seed)?;
+    let settings = arguments.samples.settings(lab)?;
     let setup = lab.prepare(settings)?;
-    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.scene)) };
+    let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     let mut files = Files::default();
     files.reads_scene(setup.files());
     if let Some(path) = &arguments.export {
@@ -61,7 +53,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         }
     }
     talk.begin(&format!("paths of {}", scene.name), 1);
-    let rays = path_rays(scene, choice, &(0..arguments.spp))?;
+    let rays = path_rays(scene, choice, &(0..arguments.samples.spp))?;
     talk.end();
     if let Some(path) = &arguments.export {
         atomic_file::write(path, |file| export(scene, &rays, file))?;
@@ -93,7 +85,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     let spread = interval.map_or_else(String::new, |interval| {
         let [low, high] = [interval.low, interval.high].map(|rate| short(1e-6 * rate, 3));
-        format!(", 95 % interval {low} to {high}")
+        format!(", {} % interval {low} to {high}", short(100.0 * interval.level, 3))
     });
     print(&format!(
         "{}, {} primitives: {} rays from vertex to vertex of {} paths\n\

@@ -1,4 +1,5 @@
-//! Primitives of a kind side by side: as many spheres as a register has numbers in single precision, as many triangles as there are lanes.
+//! Primitives of a kind side by side: as many spheres as a register has numbers in single precision, as many triangles as one has
+//! numbers in the precision of the lanes.
 
 use super::coarse::Scale;
 use super::{Best, Single, Turned};
