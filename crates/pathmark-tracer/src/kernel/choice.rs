@@ -201,8 +201,11 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         Err(_) => Scan::OneByOne,
         Ok(chosen) => {
             let Sizes { lanes, single, .. } = sizes_of(chosen.level, chosen.precision);
-            let are_spheres = scene.primitives.effects() == Sphere::EFFECT;
-            if are_spheres { Scan::SideBySide(single) } else { Scan::Blocks(lanes) }
+            match chosen.precision {
+                _ if scene.primitives.effects() == Sphere::EFFECT => Scan::Spheres(single),
+                Precision::F64 => Scan::Doubles(lanes),
+                Precision::F32 => Scan::Singles(lanes),
+            }
         }
     };
     let Some(accelerator) = accelerator(spec.accelerator.as_deref(), scene.owners.len(), scan) else {

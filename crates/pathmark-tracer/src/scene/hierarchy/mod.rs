@@ -92,19 +92,24 @@ const WORTH_A_HIERARCHY: usize = 12;
 /// one and `spheres:200` with, with registers of 8 `spheres:50` as fast and `spheres:100` 1.4 times as fast with.
 const REGISTERS_WORTH_A_HIERARCHY: usize = 8;
 
-/// Likewise, in as many primitives as there are lanes, where lanes test a ray against a block at a time, which was of that size when this was measured: a block of 14 triangles and
-/// spheres is 1.3 times as fast without one, three blocks of 38 triangles 1.06 times with.
-const BLOCKS_WORTH_A_HIERARCHY: usize = 2;
+/// Likewise, in as many primitives as there are lanes, where lanes of double precision test any primitives side by side: testing all triangles of
+/// `bumpy-ball:N` is as fast at some 100 triangles in 16 lanes, and at 45 in 8.
+const DOUBLES_WORTH_A_HIERARCHY: usize = 6;
+
+/// Likewise, in single precision: at some 130 triangles in 32 lanes, and at 60 in 16.
+const SINGLES_WORTH_A_HIERARCHY: usize = 4;
 
 /// How primitives are tested where there is no hierarchy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scan {
     /// One after the other.
     OneByOne,
-    /// Each against the rays of many lanes, whose registers hold so many numbers of single precision.
-    SideBySide(usize),
-    /// So many at a time against one ray.
-    Blocks(usize),
+    /// Spheres, each against the rays of many lanes, whose registers hold so many numbers of single precision.
+    Spheres(usize),
+    /// Any primitives, each against the rays of so many lanes of double precision.
+    Doubles(usize),
+    /// Likewise, of single precision.
+    Singles(usize),
 }
 
 impl Entry {
@@ -123,8 +128,9 @@ impl Entry {
 pub fn accelerator(name: Option<&str>, primitives: usize, scan: Scan) -> Option<&'static Entry> {
     let worth = match scan {
         Scan::OneByOne => WORTH_A_HIERARCHY,
-        Scan::SideBySide(width) => REGISTERS_WORTH_A_HIERARCHY * width,
-        Scan::Blocks(lanes) => BLOCKS_WORTH_A_HIERARCHY * lanes,
+        Scan::Spheres(width) => REGISTERS_WORTH_A_HIERARCHY * width,
+        Scan::Doubles(lanes) => DOUBLES_WORTH_A_HIERARCHY * lanes,
+        Scan::Singles(lanes) => SINGLES_WORTH_A_HIERARCHY * lanes,
     };
     let fitting = if primitives < worth { "none" } else { "sah" };
     let wanted = name.unwrap_or(fitting);

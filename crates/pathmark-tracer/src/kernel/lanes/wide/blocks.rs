@@ -1,6 +1,7 @@
 //! Primitives of a kind side by side: as many spheres as a register has numbers in single precision, as many triangles as one has
 //! numbers in the precision of the lanes.
 
+use super::all::All;
 use super::coarse::Scale;
 use super::{Best, Single, Turned};
 use crate::kernel::lanes::packet::LanesOf;
@@ -157,9 +158,14 @@ impl<'a> Making<'a> {
         [first, count(&self.triangles)]
     }
 
+    /// All of the primitives, to be tested without blocks.
+    pub(super) fn all(&self) -> All {
+        All::of(self.primitives, self.large)
+    }
+
     pub(super) fn made(self) -> Blocks {
         Blocks {
-            has_triangles: !self.triangles.is_empty(),
+            has_triangles: !self.primitives.triangles.is_empty(),
             spheres: self.spheres,
             exact: self.exact,
             triangles: self.triangles,

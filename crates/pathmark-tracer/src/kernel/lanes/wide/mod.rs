@@ -5,6 +5,7 @@
 //! and among equally near primitives the lowest number wins. In double precision it is what the scalar search finds, to the bit; in single precision
 //! each primitive is tested by one formula, in a tree and without one: spheres by those of [`Singles`].
 
+mod all;
 mod blocks;
 mod coarse;
 mod doubt;
@@ -18,7 +19,8 @@ use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
 use crate::scene::{Bounds, Child, Plane, Scene, Tests};
 use crate::simd::{Apart, Float, Level, MOST_LANES, Mask, Precision, Sizes, sizes_of};
-use blocks::{Blocks, Leaf, Making};
+use all::All;
+use blocks::{Blocks, Making};
 use coarse::{AllCoarse, Coarse, Scale};
 use doubt::are_doubtful;
 use tree::{Tree, Waiting, is_shallow};
@@ -33,20 +35,19 @@ pub(in crate::kernel::lanes) struct Wide {
     search: Search,
 }
 
-/// How the blocks are searched.
+/// How primitives are searched that are no planes and are not large.
 enum Search {
-    /// All of them, or none if there are none.
-    All(Leaf),
+    All(All),
     Tree(Tree),
 }
 
 impl Search {
     /// A search of so many primitives by a tree of these nodes. One so deep that a ray may leave more for later than there is place for is not used:
     /// to ask for place at each node costs every search a tenth of its time, and such trees are of scenes made for it.
-    fn of(nodes: Option<&[Vec<Child>]>, count: usize, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
+    fn of(nodes: Option<&[Vec<Child>]>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
         match nodes.filter(|nodes| is_shallow(nodes)) {
             Some(nodes) => Self::Tree(Tree::of(nodes, width, scale, making)),
-            None => Self::All(making.add(0..count as u32)),
+            None => Self::All(making.all()),
         }
     }
 }
@@ -82,7 +83,7 @@ impl Wide {
         let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
         let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, register], precision);
         let nodes = scene.hierarchy.as_ref().map(|hierarchy| hierarchy.gathered(width));
-        let search = Search::of(nodes.as_deref(), scene.owners.len(), width, scale, &mut making);
+        let search = Search::of(nodes.as_deref(), width, scale, &mut making);
         let blocks = making.made();
         let first_plane = scene.primitives.spheres.len() as u32;
         let planes = (first_plane..).map(f64::from).zip(scene.primitives.planes.iter().copied()).collect();
@@ -104,6 +105,13 @@ impl Wide {
             let (point, normal) = (Vec3::splat(plane.point), Vec3::splat(plane.normal));
             found.take(rays, V::splat(*number), plane_root(point - origin, direction, normal));
         }
+        let tree = match &self.search {
+            Search::All(all) => {
+                all.nearest(rays, &mut found);
+                return found;
+            }
+            Search::Tree(tree) => tree,
+        };
         let all = AllCoarse::of(&rays.ray, self.blocks.scale);
         let mut rows = [[V::One::default(); MOST_LANES]; 9];
         let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
@@ -121,10 +129,7 @@ impl Wide {
                 if self.blocks.has_triangles { Some(Turned::<V::Register>::of(origin, direction)) } else { None };
             let ray = Single::<V> { origin, direction, from, coarse: all.of_lane::<V::Single>(lane), turned };
             let mut best = Best { nearest, primitive };
-            match &self.search {
-                Search::All(leaf) => self.blocks.test(leaf, &ray, &mut best),
-                Search::Tree(tree) => tree.search(&self.blocks, &ray, &mut best, &mut waiting, &mut tests),
-            }
+            tree.search(&self.blocks, &ray, &mut best, &mut waiting, &mut tests);
             rows[7][lane] = V::one(best.nearest);
             rows[8][lane] = V::one(best.primitive);
         }

@@ -212,7 +212,7 @@ mod tests {
                 let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
                 let primitives = Primitives { spheres, ..Primitives::default() };
                 let mut making = Making::new(&primitives, &bounds, scale, None, [width, register], precision);
-                let search = Search::of(Some(&nodes), primitives.spheres.len(), width, scale, &mut making);
+                let search = Search::of(Some(&nodes), width, scale, &mut making);
                 let blocks = making.made();
                 let wide = Wide { large: None, planes: Vec::new(), blocks, search };
                 let last = primitives.spheres.len() - 1;
