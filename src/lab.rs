@@ -206,6 +206,11 @@ impl Lab {
         self.scenes.load(name_or_path)
     }
 
+    /// The estimator that the scene asks for, or the usual one. Only the scene's own text is read for that.
+    pub fn scene_estimator(&self, name_or_path: &str) -> Result<String> {
+        self.scenes.estimator_of(name_or_path)
+    }
+
     /// Name and text of the experiments that a program added.
     pub fn own_experiments(&self) -> &[(String, String)] {
         &self.experiments

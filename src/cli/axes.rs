@@ -109,7 +109,7 @@ pub(super) fn no_paths(workload: &str) -> Error {
 
 /// The estimator that a scene names; `scene` itself is a layer below estimators and cannot know whether there is one.
 fn default_estimator(lab: &Lab, scene: &str) -> Result<String> {
-    let name = lab.load_scene(scene)?.estimator().to_string();
+    let name = lab.scene_estimator(scene)?;
     if lab.estimators().any(|entry| entry.name == name) {
         return Ok(name);
     }

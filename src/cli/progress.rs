@@ -5,10 +5,15 @@ use crate::experiment::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 /// The time left by the pace of the bar, and by what the work says itself.
 const BY_PACE: &str = "{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {eta} left";
 const BY_WORK: &str = "{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {prefix} left";
+
+/// Without an end that is known.
+const BUSY: &str = "{spinner} {msg}  {elapsed}";
+const TICK: Duration = Duration::from_millis(100);
 
 /// Talks on standard error.
 pub(super) struct Talk {
@@ -48,6 +53,19 @@ impl Talk {
 }
 
 impl Talk {
+    /// Does work of unknown length: on a terminal its title and the time so far are seen meanwhile.
+    pub(super) fn busy<T>(&self, title: &str, work: impl FnOnce() -> T) -> T {
+        if self.quiet || !self.terminal {
+            return work();
+        }
+        let style = ProgressStyle::with_template(BUSY).unwrap_or_else(|_| ProgressStyle::default_spinner());
+        let bar = ProgressBar::new_spinner().with_message(title.to_string()).with_style(style);
+        bar.enable_steady_tick(TICK);
+        let done = work();
+        bar.finish_and_clear();
+        done
+    }
+
     fn start(&self, title: &str, total: u64, template: &str) {
         if self.quiet {
             return;

@@ -59,7 +59,9 @@ const DEFAULT_SPP: u32 = 16;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let spp = arguments.spp.unwrap_or(DEFAULT_SPP);
-    let setup = lab.prepare(arguments.axes.settings(lab, &arguments.scene, spp, arguments.seed)?)?;
+    let setup = talk.busy(&format!("reading {}", arguments.scene), || {
+        lab.prepare(arguments.axes.settings(lab, &arguments.scene, spp, arguments.seed)?)
+    })?;
     if arguments.adaptive {
         setup.check_adaptive()?;
     }
@@ -79,8 +81,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         path.map_or(Ok(()), |path| files.writes(option, path))?;
     }
 
+    let rule = arguments.ranks.rule(lab)?;
+    if rule.is_none() {
+        talk.busy(&format!("building {}", setup.name()), || setup.build())?;
+    }
     let mut clustered = None;
-    let (setup, outcome) = if let Some(rule) = arguments.ranks.rule(lab)? {
+    let (setup, outcome) = if let Some(rule) = rule {
         let rendered = arguments.ranks.render(&rule, setup, &arguments.rounds, spp, talk)?;
         let Some((setup, outcome, told)) = rendered else { return Ok(()) };
         clustered = Some(told);

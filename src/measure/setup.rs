@@ -220,6 +220,11 @@ impl Setup {
         self.subject.spp_multiple()
     }
 
+    /// Builds the kernel now and not with the first run.
+    pub fn build(&self) -> Result<()> {
+        self.kernel().map(drop)
+    }
+
     /// The kernel, which the first to ask has to wait for, and how many seconds that took.
     pub(super) fn kernel(&self) -> Result<(Arc<dyn Kernel>, f64)> {
         let built = if let Some(built) = self.built.get() {

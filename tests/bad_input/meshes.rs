@@ -108,3 +108,60 @@ fn what_is_not_used_is_not_judged() {
                 vt 0 0\r\nusemtl none\r\ns off\r\nf 1/-5/7 2/9/9 3//3 4\r\n";
     finish(pathmark(folder(SCENE, Some(full.as_bytes())).path(), &ARGUMENTS)).with_code(0);
 }
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
+                   property list uchar int vertex_indices\nend_header\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n3 0 1 2\n3 0 2 3\n";
+
+/// Likewise, in the text of a PLY file.
+const WRONG_PLY: &[(&str, &str, usize, &[&str])] = &[
+    ("ply\n", "plx\n", 1, &["header = plx", "none of a PLY file"]),
+    ("ascii 1.0", "morse 1.0", 2, &["header = format morse 1.0", "not understood"]),
+    ("vertex 4", "vertex four", 3, &["header = element vertex four", "not understood"]),
+    ("property float z\n", "", 8, &["property = z", "x, y and z"]),
+    ("float z", "list uchar float z", 9, &["property = z", "x, y and z"]),
+    ("vertex_indices", "corners", 9, &["property = vertex_indices", "vertex_index"]),
+    ("uchar int", "uchar float", 9, &["property = vertex_indices", "whole numbers"]),
+    ("1 1 0", "1 nan 0", 12, &["vertex = 2", "not what the header tells"]),
+    ("1 1 0", "1 1e39 0", 12, &["vertex = inf", "vertex 2", "-1e100 to 1e100"]),
+    ("1 1 0", "1 one 0", 12, &["vertex = 2", "not what the header tells"]),
+    ("1 1 0", "1 1", 12, &["vertex = 2", "not what the header tells"]),
+    ("3 0 1 2", "3 0 1 4", 14, &["face = 0 1 4", "0 to 3"]),
+    ("3 0 1 2", "3 0 1 -1", 14, &["corners of face 0", "0 to 3"]),
+    ("3 0 1 2", "2 0 1", 14, &["face = 0 1", "three or more"]),
+    ("3 0 1 2", "9 0 1 2", 14, &["face = 0", "not what the header tells"]),
+    ("face 2", "face 3", 16, &["face = 2", "ends before the 3"]),
+];
+
+fn ply_folder(scene: &str, ply: &[u8]) -> tempfile::TempDir {
+    let folder = folder(&scene.replace("thing.obj", "thing.ply"), None);
+    fs::write(folder.path().join("thing.ply"), ply).unwrap();
+    folder
+}
+
+#[test]
+fn each_wrong_line_of_a_ply_file_is_named() {
+    finish(pathmark(ply_folder(SCENE, PLY.as_bytes()).path(), &ARGUMENTS)).with_code(0);
+    for (right, wrong, line, said) in WRONG_PLY {
+        assert!(PLY.contains(right), "{right:?}");
+        let folder = ply_folder(SCENE, PLY.replacen(right, wrong, 1).as_bytes());
+        let message = refused(folder.path(), &ARGUMENTS, 2, said);
+        assert_eq!(place(&message, "thing.ply").map(|at| at.0), Some(*line), "{wrong}: {message}");
+    }
+}
+
+#[test]
+fn ply_files_that_are_no_meshes_are_refused() {
+    let faces_first = PLY.replacen("vertex 4", "face 0\nproperty list uchar int vertex_indices\nelement vertex 4", 1);
+    refused(ply_folder(SCENE, faces_first.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply"]);
+    let points = PLY.replace("element face 2\nproperty list uchar int vertex_indices\n", "");
+    refused(ply_folder(SCENE, points.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "face", "no such list"]);
+    let endless = "ply\n".to_string() + &"comment none\n".repeat(90_000);
+    refused(ply_folder(SCENE, endless.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "longer than 1 MiB"]);
+    // Nobody reserves room for as many vertices as a header tells of.
+    let binary = PLY.replace("ascii", "binary_little_endian").replace("vertex 4", "vertex 9999999999");
+    refused(ply_folder(SCENE, binary.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "ends before the 9999999999"]);
+    let small = SCENE.replace("\"thing.obj\"", "\"thing.obj\", largest-mib = 1");
+    refused(ply_folder(&small, &vec![b'\n'; 2 << 20]).path(), &ARGUMENTS, 2, &["thing.ply", "1 MiB"]);
+    let object = SCENE.replace("\"thing.obj\"", "\"thing.obj\", object = \"circle\"");
+    refused(ply_folder(&object, PLY.as_bytes()).path(), &ARGUMENTS, 2, &["object = circle", "no objects"]);
+}

@@ -59,6 +59,7 @@ pub(crate) const TARGETS: &[Target] = &[
         ..TARGET
     },
     Target { name: "mesh", file: "thing.obj", prepare: scene_with_a_mesh, read: mesh, words: MESH_WORDS, ..TARGET },
+    Target { name: "ply", file: "thing.ply", prepare: scene_with_a_ply_mesh, read: mesh, words: PLY_WORDS, ..TARGET },
     Target {
         name: "experiment",
         file: "tiny.toml",
@@ -160,6 +161,16 @@ const SCENE_WORDS: &[&str] = &[
 ];
 const MESH_WORDS: &[&str] =
     &["v ", "f ", "o ", "vn ", "vt ", "/", "//", "-1", "\\\n", "g ", "usemtl ", "mtllib ", "s off\n"];
+const PLY_WORDS: &[&str] = &[
+    "format ascii 1.0\n",
+    "format binary_big_endian 1.0\n",
+    "element vertex 9999999999\n",
+    "element face 3\n",
+    "property list uint char vertex_index\n",
+    "property double x\n",
+    "end_header\n",
+    "\0\0\0\0",
+];
 const EXPERIMENT_WORDS: &[&str] = &[
     "\"all\"",
     "\"default\"",
@@ -231,10 +242,18 @@ fn scene(path: &Path) -> bool {
 }
 
 fn scene_with_a_mesh(folder: &Path) {
+    write_scene_of(folder, "thing.obj");
+}
+
+fn scene_with_a_ply_mesh(folder: &Path) {
+    write_scene_of(folder, "thing.ply");
+}
+
+fn write_scene_of(folder: &Path, mesh: &str) {
     let scene = "about = 'a mesh'\nbackground = [1.0, 1.0, 1.0]\n\n[camera.pinhole]\nposition = [0.0, 0.0, 5.0]\nlook-at = [0.0, 0.0, 0.0]\n\
                  field-of-view = 40.0\n\n[[objects]]\nname = 'thing'\nshape = { mesh = { file = 'thing.obj' } }\n\
                  material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }\n";
-    fs::write(folder.join("mesh.toml"), scene).unwrap();
+    fs::write(folder.join("mesh.toml"), scene.replace("thing.obj", mesh)).unwrap();
 }
 
 fn mesh(path: &Path) -> bool {

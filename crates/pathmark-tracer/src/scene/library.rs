@@ -3,7 +3,7 @@
 //! To add one, write `experiments/scenes/NAME.toml`: the build embeds every file there. A program of one's own brings scenes along as text.
 
 use super::Scene;
-use super::reader::scene_from_text;
+use super::reader::{estimator_of_text, scene_from_text};
 use super::source::{Folder, OwnScene, SCENES, Source, source};
 use crate::error::Result;
 use std::path::PathBuf;
@@ -27,15 +27,21 @@ impl Library {
 
     /// The scene of that name, or the one in the file of that path. A number behind a colon is for the scene's generator: `spheres:1000`.
     pub fn load(&self, name_or_path: &str) -> Result<Scene> {
-        let (base, number) = match name_or_path.rsplit_once(':') {
-            Some((base, number)) => match number.parse::<f64>() {
-                Ok(value) => (base, Some((value, number))),
-                Err(_) => (name_or_path, None),
-            },
-            None => (name_or_path, None),
-        };
+        let (base, number) = split(name_or_path);
         scene_from_text(source(base, &Folder::Disk(PathBuf::new()), &self.own)?, number, &self.own)
     }
+
+    /// [`Scene::estimator`] of that scene, which needs no more than its text: no mesh is read and nothing is generated.
+    pub fn estimator_of(&self, name_or_path: &str) -> Result<String> {
+        estimator_of_text(source(split(name_or_path).0, &Folder::Disk(PathBuf::new()), &self.own)?, &self.own)
+    }
+}
+
+/// A scene's name or path, and the number behind a colon with its text.
+fn split(name_or_path: &str) -> (&str, Option<(f64, &str)>) {
+    let parts = name_or_path.rsplit_once(':');
+    let found = parts.and_then(|(base, number)| Some((base, Some((number.parse().ok()?, number)))));
+    found.unwrap_or((name_or_path, None))
 }
 
 /// The scene in the binary of that name, or the one in the file of that path, as [`Library::load`] says.

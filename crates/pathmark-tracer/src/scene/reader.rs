@@ -25,7 +25,7 @@
 use super::generator::{Generator, Made};
 use super::shape::{AnyShape, Primitives};
 use super::source::{Files, Folder, OwnScene, Source, source};
-use super::{Camera, Fog, Object, PointLight, Scene};
+use super::{Camera, Fog, Object, PointLight, Scene, USUAL_ESTIMATOR};
 use crate::digest::Fingerprint;
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, parse, radiance};
@@ -148,6 +148,12 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
     add_parts(&mut scene, draft.parts, &mut draft.hash)?;
     scene.hash = draft.hash.finish();
     Ok(scene)
+}
+
+/// [`Scene::estimator`] of a scene that is not read any further.
+pub(super) fn estimator_of_text(source: Source, own: &[OwnScene]) -> Result<String> {
+    let (draft, _) = draft(&Rc::new(source), 0, own)?;
+    Ok(draft.estimator.unwrap_or_else(|| USUAL_ESTIMATOR.to_string()))
 }
 
 /// Turns parts into objects and primitives, which are numbered kind by kind.

@@ -21,9 +21,6 @@ pub struct OwnScene {
 /// Name and text of the meshes that they use.
 const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"));
 
-/// No line of a mesh comes near this.
-const LONGEST_LINE: u64 = 1 << 20;
-
 /// Where a scene's other files are looked for.
 #[derive(Debug, Clone)]
 pub(super) enum Folder {
@@ -47,9 +44,9 @@ impl Folder {
         }
     }
 
-    fn open(&self, name: &str, bytes: u64) -> Result<Opened> {
+    fn open(&self, name: &str, limits: Limits) -> Result<Opened> {
         match self {
-            Self::Disk(folder) => open_text(&folder.join(name), Limits { bytes, line: LONGEST_LINE }).map(Opened::Disk),
+            Self::Disk(folder) => open_text(&folder.join(name), limits).map(Opened::Disk),
             Self::Embedded => match MESHES.iter().find(|(known, _)| *known == name) {
                 Some((_, text)) => Ok(Opened::Embedded(text.as_bytes())),
                 None => Err(InputError::new("file", name, "there is no such file in the program").into()),
@@ -80,9 +77,9 @@ impl Files<'_> {
         }
     }
 
-    /// Opens a file of so many bytes at most. Whoever reads it puts what is read into the hash.
-    pub(super) fn open(&mut self, name: &str, bytes: u64) -> Result<Box<dyn BufRead>> {
-        let opened = self.folder.open(name, bytes)?;
+    /// Opens a file of so many bytes at most, and in each of its lines. Whoever reads it puts what is read into the hash.
+    pub(super) fn open(&mut self, name: &str, bytes: u64, line: u64) -> Result<Box<dyn BufRead>> {
+        let opened = self.folder.open(name, Limits { bytes, line })?;
         self.read.extend(self.folder.path_of(name));
         Ok(match opened {
             Opened::Embedded(text) => Box::new(text),

@@ -1,5 +1,6 @@
-//! The triangles of a Wavefront OBJ file beside the scene, or of one of its objects (`o` or `g` lines). Polygons are cut into triangles;
-//! normals, texture coordinates and materials in the file are not used. Triangles without an area are left out.
+//! The triangles of a file beside the scene: a PLY file if its name ends in `.ply`, otherwise a Wavefront OBJ file or one of its objects (`o` or
+//! `g` lines). Polygons are cut into triangles; normals, texture coordinates and materials in the file are not used. Triangles without an area
+//! are left out.
 //!
 //! ```toml
 //! shape = { mesh = { file = "box.obj", object = "tall-block" } }
@@ -8,12 +9,16 @@
 //! A mistaken path may lead to a file without an end, so one of more than a gibibyte is refused unless the scene says `largest-mib = 4096`.
 
 use super::obj::Essence;
-use super::{Primitives, Shape, Triangle};
+use super::{Primitives, Shape, Triangle, ply};
 use crate::error::{InputError, Result};
 use crate::math::Vec3;
 use crate::scene::source::{Files, Folder};
 use serde::Deserialize;
 use std::io::BufReader;
+use std::path::Path;
+
+/// No line of a text comes near this.
+const LONGEST_LINE: u64 = 1 << 20;
 
 /// A file of some ten million triangles.
 const fn largest() -> u32 {
@@ -39,14 +44,19 @@ impl Mesh {
     }
 }
 
-impl Shape for Mesh {
-    fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
-        let file = files.open(&self.file, u64::from(self.largest_mib) << 20)?;
+impl Mesh {
+    fn is_ply(&self) -> bool {
+        Path::new(&self.file).extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ply"))
+    }
+
+    /// Adds the triangles of an OBJ file.
+    fn add_obj(&self, files: &mut Files<'_>, mut add: impl FnMut([Vec3; 3])) -> Result<()> {
+        let file = files.open(&self.file, u64::from(self.largest_mib) << 20, LONGEST_LINE)?;
         let folder = files.folder;
         let name = folder.place_of(&self.file);
         let mut text = BufReader::new(Essence::new(file, &name, files.hash));
         let options = tobj::LoadOptions { triangulate: true, single_index: true, ..tobj::LoadOptions::default() };
-        let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
+        let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
         let models = tobj::load_obj_buf(&mut text, &options, no_materials);
         let Essence { unused, error, .. } = text.into_inner();
         if let Some(error) = error {
@@ -61,7 +71,6 @@ impl Shape for Mesh {
             let error = self.error(folder, "object", object, "there is no object of that name");
             return Err(error.allowed(names.join(", ")).into());
         }
-        let before = primitives.triangles.len();
         for model in models.iter().filter(|model| self.object.as_ref().is_none_or(|object| model.name == *object)) {
             let corner = |index: u32| {
                 let at = 3 * index as usize;
@@ -74,16 +83,41 @@ impl Shape for Mesh {
                         .error(folder, "f", &face[0].to_string(), "names a vertex that is not there")
                         .into());
                 };
-                let triangle = Triangle { corners: [a, b, c] };
-                if triangle.is_degenerate() {
-                    primitives.degenerate += 1;
-                } else {
-                    primitives.triangles.push(triangle);
-                }
+                add([a, b, c]);
             }
         }
+        Ok(())
+    }
+
+    /// Adds the triangles of a PLY file.
+    fn add_ply(&self, files: &mut Files<'_>, add: impl FnMut([Vec3; 3])) -> Result<()> {
+        if let Some(object) = &self.object {
+            return Err(self.error(files.folder, "object", object, "a PLY file has no objects").into());
+        }
+        // What is binary has no lines.
+        let file = files.open(&self.file, u64::from(self.largest_mib) << 20, u64::MAX)?;
+        ply::read(file, &files.folder.place_of(&self.file), files.hash, add)
+    }
+}
+
+impl Shape for Mesh {
+    fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
+        let before = primitives.triangles.len();
+        let add = |corners: [Vec3; 3]| {
+            let triangle = Triangle { corners };
+            if triangle.is_degenerate() {
+                primitives.degenerate += 1;
+            } else {
+                primitives.triangles.push(triangle);
+            }
+        };
+        if self.is_ply() {
+            self.add_ply(files, add)?
+        } else {
+            self.add_obj(files, add)?
+        }
         if primitives.triangles.len() == before {
-            return Err(self.error(folder, "mesh", "", "has no triangle with an area").into());
+            return Err(self.error(files.folder, "mesh", "", "has no triangle with an area").into());
         }
         Ok(())
     }

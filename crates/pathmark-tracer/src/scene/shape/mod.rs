@@ -11,6 +11,7 @@ mod doubt;
 mod mesh;
 mod obj;
 mod plane;
+mod ply;
 mod quad;
 mod sphere;
 mod triangle;
