@@ -15,6 +15,16 @@ const REVERSED: [[i8; 16]; 3] = [
     [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8],
 ];
 
+/// Whether the processor counts bits by an instruction, as all do that have AVX2. It does not follow from AVX2 for the compiler, and lanes of a mask are
+/// counted often.
+#[cfg(target_arch = "x86_64")]
+fn has_bit_counts() -> bool {
+    is_x86_feature_detected!("popcnt")
+        && is_x86_feature_detected!("lzcnt")
+        && is_x86_feature_detected!("bmi1")
+        && is_x86_feature_detected!("bmi2")
+}
+
 #[cfg(target_arch = "x86_64")]
 #[macro_use]
 mod register;
@@ -89,6 +99,18 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     /// `self`, but where the mask holds the next of the numbers, in order; there must be as many as there are lanes.
     #[must_use]
     fn fill(self, mask: Self::Mask, from: &[Self::One]) -> Self;
+    /// Stores the numbers where the mask holds, in order. There must be room for as many as there are lanes; what is behind them may change.
+    #[inline(always)]
+    fn pack(self, mask: Self::Mask, to: &mut [Self::One]) {
+        let mut all = [Self::One::default(); MOST_LANES];
+        self.store(&mut all);
+        let bits = mask.bits();
+        let mut next = 0;
+        for (lane, number) in all.iter().enumerate().take(Self::LANES) {
+            to[next] = *number;
+            next += (bits >> lane & 1) as usize;
+        }
+    }
     /// A number, rounded if need be.
     fn one(value: f64) -> Self::One;
     /// The number in a lane.
@@ -152,12 +174,27 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     fn number(bits: Self::Bits) -> Self;
     /// The leading bits of a word as a number in [0, 1), as many as a number has digits: exact, and never 1.
     fn unit(bits: Self::Bits) -> Self;
+    /// Asks for the memory at an address, which need not be one.
+    #[inline(always)]
+    fn ask_for(_address: *const i8) {}
     /// Does some work in a function of its own, which is compiled once for all that call it: what takes so long that a call is nothing beside it
     /// need not be part of each of them.
     fn apart<W: Apart>(work: W) -> W::Output;
     /// Rows of a table by their numbers, turned so that lane k of result j is `table[rows[k]][j]`. Numbers must be whole and in the table.
     fn rows(table: &Table, rows: Self) -> [Self; 4];
 }
+
+/// Asks for what will soon be loaded, so many from a place on; what is not there is not asked for. It changes nothing but the time.
+#[inline(always)]
+pub fn prefetch<V: Float, T>(from: &[T], place: usize, count: usize) {
+    let start = from.as_ptr().wrapping_add(place).cast::<i8>();
+    for line in 0..(count * size_of::<T>()).div_ceil(LINE) {
+        V::ask_for(start.wrapping_add(LINE * line));
+    }
+}
+
+/// Bytes that come from memory together.
+const LINE: usize = 64;
 
 /// The most lanes that any level has: masks are words of 32 bits.
 pub const MOST_LANES: usize = 32;

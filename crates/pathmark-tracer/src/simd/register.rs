@@ -136,6 +136,10 @@ macro_rules! register {
                 Self(op!(x86::$fused(self.0, factor.0, addend.0)))
             }
             #[inline(always)]
+            fn ask_for(address: *const i8) {
+                op!(x86::_mm_prefetch::<{ x86::_MM_HINT_T0 }>(address));
+            }
+            #[inline(always)]
             fn apart<W: crate::simd::Apart>(work: W) -> W::Output {
                 op!(super::apart(work))
             }

@@ -112,6 +112,11 @@ impl Numbers {
         self.doubles.len() + self.singles.len()
     }
 
+    /// How many bytes they have.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.doubles) + size_of_val(&*self.singles)
+    }
+
     /// Numbers, rounded if need be.
     pub fn new(numbers: Vec<f64>, precision: Precision) -> Self {
         match precision {

@@ -234,6 +234,10 @@ impl<V: Float<Mask: HalfMask>> Float for Two<V> {
         Self(V::unit(bits.0), V::unit(bits.1))
     }
     #[inline(always)]
+    fn ask_for(address: *const i8) {
+        V::ask_for(address);
+    }
+    #[inline(always)]
     fn apart<W: Apart>(work: W) -> W::Output {
         V::apart(work)
     }

@@ -26,13 +26,13 @@ use crate::sampling::InLanes as Sampler;
 use crate::scene::{Scene, View};
 use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level, sizes_of};
 use filter::Filter;
-use packet::{EMPTY_STACK, LanesOf, NextPart, Packet, Stack};
+use packet::{LanesOf, NO_PARTS, NextPart, Packet, Parts};
 use singles::Singles;
 use std::sync::Arc;
 use supply::Supply;
 use tables::Tables;
 use targets::Targets;
-use wide::Wide;
+use wide::{Stack, Wide};
 use window::Window;
 
 /// The kernel.
@@ -91,6 +91,14 @@ impl Lanes {
         }
     }
 
+    /// Room for searches.
+    fn stacks(&self) -> Vec<Stack> {
+        match &self.search {
+            Search::Wide(wide) if wide.has_tree() => vec![Stack::EMPTY; sizes_of(self.level, self.precision).lanes],
+            _ => Vec::new(),
+        }
+    }
+
     /// Gives back the samples whose paths have ended; paths that have another part go on with that.
     #[inline(always)]
     fn retire<V: Float, const MATT: bool>(&self, packet: &mut Packet<'_, V>, ended: u32, window: &mut Window<'_>) {
@@ -111,12 +119,13 @@ impl Lanes {
     fn follow<V: Float, const AIMS: bool, const MATT: bool>(
         &self,
         piece: &Piece,
-        waiting: &mut [Stack],
+        waiting: &mut [Parts],
+        stacks: &mut [Stack],
         out: &mut TileBuffer,
     ) -> Counts {
         let mut counts = Counts::default();
         let mut window = Window::over(piece, out);
-        let mut packet = Packet::<V>::new(waiting);
+        let mut packet = Packet::<V>::new(waiting, stacks);
         let mut supply = Supply::<V>::new();
         // Lanes whose part of a path has ended, and that still hold it.
         let mut ended = 0_u32;
@@ -147,7 +156,8 @@ const fn held<V: Float>() -> u32 {
 struct Render<'a, const AIMS: bool, const MATT: bool> {
     kernel: &'a Lanes,
     piece: &'a Piece,
-    waiting: &'a mut [Stack],
+    waiting: &'a mut [Parts],
+    stacks: &'a mut [Stack],
     out: &'a mut TileBuffer,
 }
 
@@ -157,15 +167,16 @@ impl<const AIMS: bool, const MATT: bool> Work for Render<'_, AIMS, MATT> {
 
     #[inline(always)]
     fn run<V: Float>(self) -> Counts {
-        self.kernel.follow::<V, AIMS, MATT>(self.piece, self.waiting, self.out)
+        self.kernel.follow::<V, AIMS, MATT>(self.piece, self.waiting, self.stacks, self.out)
     }
 }
 
 impl Lanes {
     fn render_by<const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
         let splitting = if self.course.splits > 0 { sizes_of(self.level, self.precision).lanes } else { 0 };
-        let mut waiting = vec![EMPTY_STACK; splitting];
-        let work = Render::<AIMS, MATT> { kernel: self, piece, waiting: &mut waiting, out };
+        let mut waiting = vec![NO_PARTS; splitting];
+        let mut stacks = self.stacks();
+        let work = Render::<AIMS, MATT> { kernel: self, piece, waiting: &mut waiting, stacks: &mut stacks, out };
         on_level(self.level, self.precision, work)
     }
 }

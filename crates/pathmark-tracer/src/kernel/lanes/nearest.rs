@@ -1,7 +1,7 @@
 //! The first thing that each ray meets.
 
 use super::packet::{LanesOf, Rays};
-use super::wide::Nearest;
+use super::wide::{Nearest, Stack};
 use super::{Lanes, Search};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3};
@@ -12,14 +12,20 @@ impl Lanes {
     /// Distance and number of the first primitive along each ray; the number is -1 where there is none. What is in lanes that are not `wanted`
     /// is not looked at. Ties go to the lowest number, as with one path at a time.
     #[inline(always)]
-    pub(super) fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> (V, V) {
+    pub(super) fn nearest<V: Float>(
+        &self,
+        rays: &Rays<V>,
+        wanted: u32,
+        stacks: &mut [Stack],
+        counts: &mut Counts,
+    ) -> (V, V) {
         let (mut found, left) = match &self.search {
             Search::Filter(filter) if V::IS_DOUBLE => {
                 let (found, is_sure) = filter.nearest(&self.tables, rays);
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
-            Search::Wide(wide) => Nearest { wide, tables: &self.tables, rays, wanted, counts }.run(),
+            Search::Wide(wide) => Nearest { wide, tables: &self.tables, rays, wanted, stacks, counts }.run(),
             // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };

@@ -1,5 +1,6 @@
 //! Paths side by side: what of each is between two vertices.
 
+use super::wide::Stack;
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::PathWords;
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
@@ -40,10 +41,10 @@ const NO_PART: Part = Part {
 };
 
 /// The parts of a path that wait.
-pub(super) type Stack = [Part; LARGEST_STACK];
+pub(super) type Parts = [Part; LARGEST_STACK];
 
 /// None of them.
-pub(super) const EMPTY_STACK: Stack = [NO_PART; LARGEST_STACK];
+pub(super) const NO_PARTS: Parts = [NO_PART; LARGEST_STACK];
 
 /// The paths.
 pub(super) struct Packet<'a, V: Float> {
@@ -61,13 +62,15 @@ pub(super) struct Packet<'a, V: Float> {
     pub(super) slots: [u64; MOST_LANES],
     /// None where no path splits: they take more room than everything else here. Borrowed, because every call in the scope of what has to be dropped
     /// ends a block for the compiler.
-    waiting: &'a mut [Stack],
+    waiting: &'a mut [Parts],
     depth: [u8; MOST_LANES],
+    /// For searches.
+    pub(super) stacks: &'a mut [Stack],
 }
 
 impl<'a, V: Float> Packet<'a, V> {
     #[inline(always)]
-    pub(super) fn new(waiting: &'a mut [Stack]) -> Self {
+    pub(super) fn new(waiting: &'a mut [Parts], stacks: &'a mut [Stack]) -> Self {
         let zero = V::splat(0.0);
         let (vector, colour) = (Vec3::new(zero, zero, zero), Rgb { r: zero, g: zero, b: zero });
         let none = V::Bits::splat(0);
@@ -87,6 +90,7 @@ impl<'a, V: Float> Packet<'a, V> {
             slots: [0; MOST_LANES],
             waiting,
             depth: [0; MOST_LANES],
+            stacks,
         }
     }
 

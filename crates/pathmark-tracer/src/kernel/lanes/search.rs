@@ -2,6 +2,7 @@
 
 use super::Lanes;
 use super::packet::Rays;
+use super::wide::Stack;
 use crate::kernel::Counts;
 use crate::kernel::rays::{FoundRays, Start};
 use crate::math::{Ray, Vec3, other_root};
@@ -52,7 +53,7 @@ impl Lanes {
 
     /// Searches along so many rays, made by [`Self::side_by_side`].
     pub(in crate::kernel) fn search(&self, rays: &Numbers, count: usize) -> FoundRays {
-        on_level(self.level, self.precision, Searching { lanes: self, rays, count })
+        on_level(self.level, self.precision, Searching { lanes: self, rays, count, stacks: &mut self.stacks() })
     }
 }
 
@@ -60,6 +61,7 @@ struct Searching<'a> {
     lanes: &'a Lanes,
     rays: &'a Numbers,
     count: usize,
+    stacks: &'a mut [Stack],
 }
 
 impl Work for Searching<'_> {
@@ -75,7 +77,8 @@ impl Work for Searching<'_> {
             let here = left.min(V::LANES);
             left -= here;
             let wanted = u32::MAX >> (u32::BITS - here as u32);
-            let (distance, primitive) = self.lanes.nearest(&packet::<V>(numbers), wanted, &mut found.counts);
+            let (distance, primitive) =
+                self.lanes.nearest(&packet::<V>(numbers), wanted, self.stacks, &mut found.counts);
             for lane in (0..here).filter(|lane| primitive.lane(*lane) >= 0.0) {
                 found.met += 1;
                 found.distance += distance.lane(lane);

@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::two::{HalfMask, PairMask, Two};
-use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
+use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work, has_bit_counts};
 use crate::math::Bits;
 use double::F64x4;
 use single::F32x8;
@@ -18,7 +18,7 @@ use std::ops::Not;
 
 /// Whether this processor has what is used here.
 pub(super) fn is_available() -> bool {
-    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
+    is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") && has_bit_counts()
 }
 
 /// Does the work.
@@ -32,12 +32,12 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     }
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,popcnt,lzcnt,bmi1,bmi2")]
 fn enter<V: Float, W: Work>(work: W) -> W::Output {
     work.run::<V>()
 }
 
-#[target_feature(enable = "avx2,fma")]
+#[target_feature(enable = "avx2,fma,popcnt,lzcnt,bmi1,bmi2")]
 #[inline(never)]
 fn apart<W: Apart>(work: W) -> W::Output {
     work.run()

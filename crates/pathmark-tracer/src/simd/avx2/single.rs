@@ -26,6 +26,18 @@ register! {
             Self::select(mask, Self(next), self)
         }
         #[inline(always)]
+        fn pack(self, mask: Mask8, to: &mut [f32]) {
+            let order = PACKED[mask.bits() as usize & 255].as_ptr();
+            Self(op!(x86::_mm256_permutevar8x32_ps(self.0, x86::_mm256_loadu_si256(order.cast())))).store(to);
+        }
+        #[inline(always)]
+        fn least(self) -> f64 {
+            let halves = op!(x86::_mm_min_ps(x86::_mm256_castps256_ps128(self.0), x86::_mm256_extractf128_ps::<1>(self.0)));
+            let pairs = op!(x86::_mm_min_ps(halves, x86::_mm_movehl_ps(halves, halves)));
+            let both = op!(x86::_mm_min_ss(pairs, x86::_mm_shuffle_ps::<1>(pairs, pairs)));
+            f64::from(op!(x86::_mm_cvtss_f32(both)))
+        }
+        #[inline(always)]
         fn set_lane(&mut self, lane: usize, value: f64) {
             let mut all = [0.0; 8];
             self.store(&mut all);
@@ -76,6 +88,23 @@ fn pair(table: &Table, lower: i32, upper: i32) -> x86::__m256 {
         x86::_mm256_insertf128_ps::<1>(lower, x86::_mm_loadu_ps(table.single_row_start(upper)))
     })
 }
+
+/// For each mask, the lanes that it holds, in order.
+static PACKED: [[i32; 8]; 256] = {
+    let (mut table, mut mask) = ([[0; 8]; 256], 0);
+    while mask < 256 {
+        let (mut lane, mut next) = (0, 0);
+        while lane < 8 {
+            if mask >> lane & 1 == 1 {
+                table[mask][next] = lane;
+                next += 1;
+            }
+            lane += 1;
+        }
+        mask += 1;
+    }
+    table
+};
 
 /// For each mask, the numbers that its lanes take: the first lane that it holds the first number, and so on.
 static SPREAD: [[i32; 8]; 256] = {

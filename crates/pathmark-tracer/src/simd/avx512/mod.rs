@@ -9,7 +9,7 @@ mod double;
 mod single;
 
 use super::two::{HalfMask, PairMask, Two};
-use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work};
+use super::{Apart, Float, Mask, Precision, REVERSED, Words, Work, has_bit_counts};
 use crate::math::Bits;
 use double::F64x8;
 use single::F32x16;
@@ -22,6 +22,7 @@ pub(super) fn is_available() -> bool {
         && is_x86_feature_detected!("avx512dq")
         && is_x86_feature_detected!("avx512vl")
         && is_x86_feature_detected!("avx512bw")
+        && has_bit_counts()
 }
 
 /// Does the work.
@@ -35,12 +36,12 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     }
 }
 
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,popcnt,lzcnt,bmi1,bmi2")]
 fn enter<V: Float, W: Work>(work: W) -> W::Output {
     work.run::<V>()
 }
 
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw")]
+#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx512bw,popcnt,lzcnt,bmi1,bmi2")]
 #[inline(never)]
 fn apart<W: Apart>(work: W) -> W::Output {
     work.run()

@@ -25,6 +25,11 @@ register! {
             Self(op!(x86::_mm512_mask_expand_ps(self.0, mask.0, Self::load(from).0)))
         }
         #[inline(always)]
+        fn pack(self, mask: Mask16, to: &mut [f32]) {
+            // Stored as a whole: some processors take a hundred cycles to store what a mask holds.
+            Self(op!(x86::_mm512_maskz_compress_ps(mask.0, self.0))).store(to);
+        }
+        #[inline(always)]
         fn set_lane(&mut self, lane: usize, value: f64) {
             self.0 = op!(x86::_mm512_mask_mov_ps(self.0, 1 << lane, x86::_mm512_set1_ps(value as f32)));
         }

@@ -76,7 +76,7 @@ impl All {
             let root = first_root(offset, rays.ray.direction, V::splat(1.0), V::splat(*radius));
             found.take_in_any_order(number, V::select(rays.from.equal(number), never, root));
         }
-        let turned = Turned::of(rays);
+        let turned = AllTurned::of(rays);
         let mut corners = [three([0.0; 3]); MOST_CORNERS];
         for group in &self.groups {
             for (corner, place) in group.corners.iter().zip(&mut corners) {
@@ -97,16 +97,16 @@ impl All {
 }
 
 /// Rays by their own axes: [`crate::math::Shear`] in lanes.
-struct Turned<V: Float> {
+pub(super) struct AllTurned<V: Float> {
     origin: Vec3<V>,
     /// Whether the direction's longest component is x, or y.
-    is_long: [V::Mask; 2],
-    by: [V; 3],
+    pub(super) is_long: [V::Mask; 2],
+    pub(super) by: [V; 3],
 }
 
-impl<V: Float> Turned<V> {
+impl<V: Float> AllTurned<V> {
     #[inline(always)]
-    fn of(rays: &Rays<V>) -> Self {
+    pub(super) fn of(rays: &Rays<V>) -> Self {
         let Vec3 { x, y, z } = rays.ray.direction;
         let is_x = y.abs().lt(x.abs()) & z.abs().lt(x.abs());
         let is_y = !is_x & z.abs().lt(y.abs());
@@ -123,7 +123,7 @@ impl<V: Float> Turned<V> {
 
     /// The components of a vector by the ray's axes.
     #[inline(always)]
-    fn axes(&self, Vec3 { x, y, z }: Vec3<V>) -> [V; 3] {
+    pub(super) fn axes(&self, Vec3 { x, y, z }: Vec3<V>) -> [V; 3] {
         let [is_x, is_y] = self.is_long;
         [
             V::select(is_x, y, V::select(is_y, z, x)),

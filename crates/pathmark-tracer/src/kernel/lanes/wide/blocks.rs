@@ -8,7 +8,7 @@ use crate::kernel::lanes::packet::LanesOf;
 use crate::kernel::lanes::singles::Singles;
 use crate::math::{Crossing, Real, Vec3, first_root, sheared};
 use crate::scene::{Bounds, Primitives};
-use crate::simd::{Float, Mask, Number, Numbers, Precision};
+use crate::simd::{Float, Mask, Number, Numbers, Precision, prefetch};
 
 /// Numbers of a sphere: its centre, a radius and its number.
 const OF_SPHERE: usize = 5;
@@ -36,8 +36,8 @@ pub(super) struct Blocks {
 /// Some of the blocks.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Leaf {
-    /// From the first block of spheres to before the last, likewise of triangles.
-    spheres: [u32; 2],
+    /// From the first block of spheres to behind the last, likewise of triangles.
+    pub(super) spheres: [u32; 2],
     triangles: [u32; 2],
     /// The primitives that are in them.
     pub(super) primitives: u32,
@@ -191,6 +191,14 @@ fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Turned
     sheared([x, y, z], ray.shear.by)
 }
 
+impl Leaf {
+    /// Whether it holds more than a block of spheres.
+    #[inline(always)]
+    pub(super) fn has_rest(&self) -> bool {
+        self.spheres[0] + 1 < self.spheres[1] || self.triangles[0] < self.triangles[1]
+    }
+}
+
 impl Blocks {
     /// Distances to the spheres of a block, by the formula of [`Singles`] and with its bits.
     #[inline(always)]
@@ -201,26 +209,62 @@ impl Blocks {
         first_root(Vec3::splat(origin) - Vec3 { x, y, z }, Vec3::splat(direction), W::splat(1.0), radius)
     }
 
-    /// Tests a ray against all primitives of a leaf.
     #[inline(always)]
-    pub(super) fn test<V: Float>(&self, leaf: &Leaf, ray: &Single<V>, best: &mut Best) {
+    pub(super) fn has_spheres(&self) -> bool {
+        !self.spheres.is_empty()
+    }
+
+    /// How large they are.
+    #[inline(always)]
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&*self.spheres) + self.exact.bytes() + self.triangles.bytes()
+    }
+
+    /// Asks for the first triangles of a leaf.
+    #[inline(always)]
+    pub(super) fn prefetch<V: Float>(&self, leaf: &Leaf) {
+        let of_block = OF_TRIANGLE * V::Register::LANES;
+        prefetch::<V, _>(V::One::all(&self.triangles), leaf.triangles[0] as usize * of_block, of_block);
+    }
+
+    /// The spheres of a block that a ray comes near, as bits.
+    #[inline(always)]
+    pub(super) fn near<V: Float>(&self, block: u32, ray: &Single<V>, nearest: f64) -> u32 {
         let lanes = V::Single::LANES;
-        for block in leaf.spheres[0] as usize..leaf.spheres[1] as usize {
-            let spheres = &self.spheres[block * OF_SPHERE * lanes..(block + 1) * OF_SPHERE * lanes];
-            let numbers = &spheres[(OF_SPHERE - 1) * lanes..];
-            let is_own = V::Single::splat(ray.from).equal(V::Single::load(numbers));
-            let is_near = !(ray.coarse.passes(spheres) | is_own);
-            if V::IS_DOUBLE {
-                // Of a block most rays come near one sphere or none.
-                let exact = f64::all(&self.exact).as_chunks().0;
-                for lane in LanesOf(is_near.bits()) {
-                    let [x, y, z, radius] = exact[block * lanes + lane];
-                    let root = first_root(ray.origin - Vec3::new(x, y, z), ray.direction, 1.0, radius);
-                    best.take_one(root, numbers[lane].into());
-                }
-            } else if is_near.any() {
-                let roots = self.roots_in_block::<V::Single>(block, ray.origin, ray.direction);
-                best.take(numbers, V::Single::select(is_near, roots, V::Single::splat(f64::NAN)));
+        let spheres = &self.spheres[block as usize * OF_SPHERE * lanes..][..OF_SPHERE * lanes];
+        let numbers = V::Single::load(&spheres[(OF_SPHERE - 1) * lanes..]);
+        let is_own = V::Single::splat(ray.from).equal(numbers);
+        (!(ray.coarse.passes(spheres, nearest * self.scale.0) | is_own)).bits()
+    }
+
+    /// Tests a ray against those spheres of a block.
+    #[inline(always)]
+    pub(super) fn test_near<V: Float>(&self, block: u32, near: u32, ray: &Single<V>, best: &mut Best) {
+        let lanes = V::Single::LANES;
+        let block = block as usize;
+        let numbers = &self.spheres[(block * OF_SPHERE + OF_SPHERE - 1) * lanes..][..lanes];
+        if V::IS_DOUBLE {
+            // Of a block most rays come near one sphere or none.
+            let exact = f64::all(&self.exact).as_chunks().0;
+            for lane in LanesOf(near) {
+                let [x, y, z, radius] = exact[block * lanes + lane];
+                let root = first_root(ray.origin - Vec3::new(x, y, z), ray.direction, 1.0, radius);
+                best.take_one(root, numbers[lane].into());
+            }
+        } else {
+            let roots = self.roots_in_block::<V::Single>(block, ray.origin, ray.direction);
+            let is_near = <V::Single as Real>::Mask::from_bits(near);
+            best.take(numbers, V::Single::select(is_near, roots, V::Single::splat(f64::NAN)));
+        }
+    }
+
+    /// Tests a ray against all primitives of a leaf but for the first block of spheres.
+    #[inline(always)]
+    pub(super) fn test_rest<V: Float>(&self, leaf: &Leaf, ray: &Single<V>, best: &mut Best) {
+        for block in leaf.spheres[0] + 1..leaf.spheres[1] {
+            let near = self.near(block, ray, best.nearest);
+            if near != 0 {
+                self.test_near(block, near, ray, best);
             }
         }
         let Some(turned) = &ray.turned else { return };

@@ -151,18 +151,19 @@ impl<W: Float<One = f32>> Coarse<W> {
         (enter, enter.le(leave))
     }
 
-    /// Whether the ray's line passes all of the spheres with these centres and radii, one row of numbers after the other; `false` for a sphere where NaN
-    /// came up.
+    /// Whether the ray passes the spheres with these centres and radii, one row of numbers after the other: its line passes them, or they are behind its
+    /// start, or beyond `limit`. `false` for a sphere where NaN came up.
     #[inline(always)]
-    pub(super) fn passes(&self, spheres: &[f32]) -> W::Mask {
+    pub(super) fn passes(&self, spheres: &[f32], limit: f64) -> W::Mask {
         let [dx, dy, dz] = self.direction;
         let x = self.origin[0] - W::load(spheres);
         let y = self.origin[1] - W::load(&spheres[W::LANES..]);
         let z = self.origin[2] - W::load(&spheres[2 * W::LANES..]);
         let radius = W::load(&spheres[3 * W::LANES..]) + self.padding;
         let back = -x.about_times_plus(dx, y.about_times_plus(dy, z * dz));
+        let is_off = back.lt(-radius) | W::splat(limit).lt(back - radius);
         let (x, y, z) = (dx.about_times_plus(back, x), dy.about_times_plus(back, y), dz.about_times_plus(back, z));
-        (radius * radius).lt(x.about_times_plus(x, y.about_times_plus(y, z * z)))
+        is_off | (radius * radius).lt(x.about_times_plus(x, y.about_times_plus(y, z * z)))
     }
 }
 
@@ -240,7 +241,7 @@ mod tests {
                 wrong += usize::from(!met.any());
                 let sphere = scale.sphere(&bounds, center, radius);
                 let meets = line_meets(ray.origin - center, ray.direction, 1.0, radius);
-                wrong += usize::from(meets && coarse.passes(&rows(&sphere)).any());
+                wrong += usize::from(meets && coarse.passes(&rows(&sphere), distance * scale.0).any());
             }
             wrong
         }

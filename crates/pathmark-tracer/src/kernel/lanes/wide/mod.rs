@@ -19,11 +19,12 @@ use crate::kernel::Counts;
 use crate::math::{Ray, Shear, Vec3, plane_root};
 use crate::scene::{Bounds, Child, Plane, Scene, Tests};
 use crate::simd::{Apart, Float, Level, MOST_LANES, Mask, Precision, Sizes, sizes_of};
-use all::All;
+use all::{All, AllTurned};
 use blocks::{Blocks, Making};
 use coarse::{AllCoarse, Coarse, Scale};
 use doubt::are_doubtful;
-use tree::{Tree, Waiting, is_shallow};
+pub(in crate::kernel::lanes) use tree::Stack;
+use tree::{Descent, Tree, is_shallow};
 
 /// The primitives of a scene.
 pub(in crate::kernel::lanes) struct Wide {
@@ -58,6 +59,8 @@ pub(in crate::kernel::lanes) struct Nearest<'a, V: Float> {
     pub(in crate::kernel::lanes) tables: &'a Tables,
     pub(in crate::kernel::lanes) rays: &'a Rays<V>,
     pub(in crate::kernel::lanes) wanted: u32,
+    /// As many as there are lanes, where there is a tree.
+    pub(in crate::kernel::lanes) stacks: &'a mut [Stack],
     pub(in crate::kernel::lanes) counts: &'a mut Counts,
 }
 
@@ -67,8 +70,8 @@ impl<V: Float> Apart for Nearest<'_, V> {
 
     #[inline(always)]
     fn run(self) -> (Found<V>, u32) {
-        let Self { wide, tables, rays, wanted, counts } = self;
-        let found = wide.nearest(rays, wanted, counts);
+        let Self { wide, tables, rays, wanted, stacks, counts } = self;
+        let found = wide.nearest(rays, wanted, stacks, counts);
         let has_triangles = wide.blocks.has_triangles;
         let left = if has_triangles { wanted & are_doubtful(tables, &rays.ray, &found).bits() } else { 0 };
         (found, left)
@@ -90,10 +93,14 @@ impl Wide {
         Self { large, planes, blocks, search }
     }
 
+    /// Whether searches need [`Stack`]s.
+    pub(in crate::kernel::lanes) fn has_tree(&self) -> bool {
+        matches!(self.search, Search::Tree(_))
+    }
+
     /// The first thing along each of the `wanted` rays.
     #[inline(always)]
-    fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, counts: &mut Counts) -> Found<V> {
-        let Ray { origin, direction } = rays.ray;
+    fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, stacks: &mut [Stack], counts: &mut Counts) -> Found<V> {
         let mut found = match &self.large {
             Some(large) => large.scan(rays),
             None => Found::nothing(),
@@ -103,7 +110,7 @@ impl Wide {
         found.take_in_any_order(rays.from, V::select(V::splat(0.0).le(rays.from), rays.own_root, nowhere));
         for (number, plane) in &self.planes {
             let (point, normal) = (Vec3::splat(plane.point), Vec3::splat(plane.normal));
-            found.take(rays, V::splat(*number), plane_root(point - origin, direction, normal));
+            found.take(rays, V::splat(*number), plane_root(point - rays.ray.origin, rays.ray.direction, normal));
         }
         let tree = match &self.search {
             Search::All(all) => {
@@ -112,32 +119,85 @@ impl Wide {
             }
             Search::Tree(tree) => tree,
         };
-        let all = AllCoarse::of(&rays.ray, self.blocks.scale);
-        let mut rows = [[V::One::default(); MOST_LANES]; 9];
-        let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
-        for (row, vector) in rows.iter_mut().zip(&vectors) {
-            vector.store(row);
-        }
-        found.nearest.store(&mut rows[7]);
-        found.primitive.store(&mut rows[8]);
+        let bundle = Bundle::of(rays, self.blocks.scale, self.blocks.has_triangles);
+        let [mut nearest, mut primitive] = [[V::One::default(); MOST_LANES]; 2];
+        found.nearest.store(&mut nearest);
+        found.primitive.store(&mut primitive);
         let mut tests = Tests::default();
-        let mut waiting = Waiting::new();
-        for lane in LanesOf(wanted) {
-            let [ox, oy, oz, dx, dy, dz, from, nearest, primitive] = rows.each_ref().map(|row| row[lane].into());
-            let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-            let turned =
-                if self.blocks.has_triangles { Some(Turned::<V::Register>::of(origin, direction)) } else { None };
-            let ray = Single::<V> { origin, direction, from, coarse: all.of_lane::<V::Single>(lane), turned };
-            let mut best = Best { nearest, primitive };
-            tree.search(&self.blocks, &ray, &mut best, &mut waiting, &mut tests);
-            rows[7][lane] = V::one(best.nearest);
-            rows[8][lane] = V::one(best.primitive);
-        }
+        V::apart(Descent {
+            tree,
+            blocks: &self.blocks,
+            rays: &bundle,
+            wanted,
+            nearest: &mut nearest,
+            primitive: &mut primitive,
+            stacks,
+            tests: &mut tests,
+        });
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
-        Found { nearest: V::load(&rows[7]), primitive: V::load(&rows[8]) }
+        Found { nearest: V::load(&nearest), primitive: V::load(&primitive) }
     }
 }
+
+/// The rays of all lanes, out of their registers.
+struct Bundle<V: Float> {
+    /// Origins, directions, and the primitives that rays start on.
+    rows: [[V::One; MOST_LANES]; 7],
+    coarse: AllCoarse,
+    /// By the rays' own axes, origins and [`Shear::by`]; of no use in a scene without triangles.
+    turned: [[V::One; MOST_LANES]; 6],
+    /// [`Shear::axes`].
+    axes: [[usize; 3]; MOST_LANES],
+    has_triangles: bool,
+}
+
+impl<V: Float> Bundle<V> {
+    #[inline(always)]
+    fn of(rays: &Rays<V>, scale: Scale, has_triangles: bool) -> Self {
+        let Ray { origin, direction } = rays.ray;
+        let mut bundle = Self {
+            rows: [[V::One::default(); MOST_LANES]; 7],
+            coarse: AllCoarse::of(&rays.ray, scale),
+            turned: [[V::One::default(); MOST_LANES]; 6],
+            axes: [[0; 3]; MOST_LANES],
+            has_triangles,
+        };
+        let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
+        for (row, vector) in bundle.rows.iter_mut().zip(&vectors) {
+            vector.store(row);
+        }
+        if has_triangles {
+            let turned = AllTurned::of(rays);
+            let [x, y, z] = turned.axes(origin);
+            for (row, vector) in bundle.turned.iter_mut().zip([x, y, z].iter().chain(&turned.by)) {
+                vector.store(row);
+            }
+            let [is_x, is_y] = [turned.is_long[0].bits(), turned.is_long[1].bits()];
+            for (lane, axes) in bundle.axes.iter_mut().enumerate().take(V::LANES) {
+                *axes = AXES[(is_x >> lane & 1 | (is_y >> lane & 1) << 1) as usize];
+            }
+        }
+        bundle
+    }
+
+    #[inline(always)]
+    fn of_lane(&self, lane: usize) -> Single<V> {
+        let [ox, oy, oz, dx, dy, dz, from] = self.rows.each_ref().map(|row| row[lane].into());
+        let turned = if self.has_triangles {
+            let [x, y, z, by_x, by_y, by_z] = self.turned.each_ref().map(|row| row[lane].into());
+            let shear = Shear { axes: self.axes[lane], by: three([by_x, by_y, by_z]) };
+            Some(Turned { origin: three([x, y, z]), shear })
+        } else {
+            None
+        };
+        let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
+        Single { origin, direction, from, coarse: self.coarse.of_lane(lane), turned }
+    }
+}
+
+/// Axes of a ray whose longest component is z, x or y.
+const AXES: [[usize; 3]; 3] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
 
 /// One ray.
 struct Single<V: Float> {
@@ -156,14 +216,6 @@ struct Turned<V> {
     shear: Shear<V>,
 }
 
-impl<V: Float> Turned<V> {
-    #[inline(always)]
-    fn of(origin: Vec3, direction: Vec3) -> Self {
-        let shear = Shear::of(direction);
-        Self { origin: three(shear.turned(origin)), shear: Shear { axes: shear.axes, by: three(shear.by) } }
-    }
-}
-
 #[inline(always)]
 fn three<V: Float>([x, y, z]: [f64; 3]) -> [V; 3] {
     [V::splat(x), V::splat(y), V::splat(z)]
@@ -180,9 +232,9 @@ impl Best {
     #[inline(always)]
     fn take_one(&mut self, distance: f64, primitive: f64) {
         let is_lower = distance == self.nearest && primitive < self.primitive;
-        if distance > 0.0 && (distance < self.nearest || is_lower) {
-            *self = Self { nearest: distance, primitive };
-        }
+        let is_first = distance > 0.0 && (distance < self.nearest || is_lower);
+        self.nearest = if is_first { distance } else { self.nearest };
+        self.primitive = if is_first { primitive } else { self.primitive };
     }
 
     /// Distances to the primitives with these numbers, in the order of the lanes, where most rays meet one of them or none.
@@ -236,7 +288,15 @@ mod tests {
                 let wanted = u32::MAX >> (MOST_LANES - V::LANES);
                 let rays = side_by_side::<V>(scene, starts);
                 let counts = &mut Counts::default();
-                let (found, left) = Nearest { wide, tables: &tables, rays: &rays, wanted, counts }.run();
+                let (found, left) = Nearest {
+                    wide,
+                    tables: &tables,
+                    rays: &rays,
+                    wanted,
+                    stacks: &mut vec![Stack::EMPTY; V::LANES],
+                    counts,
+                }
+                .run();
                 all_left += left.count_ones() as usize;
                 for (lane, start) in starts.iter().enumerate().filter(|(lane, _)| left >> lane & 1 == 0) {
                     let (t, primitive) = nearest(scene, start);

@@ -2,23 +2,28 @@
 
 use super::blocks::{Blocks, Leaf, Making};
 use super::coarse::Scale;
-use super::{Best, Single};
+use super::{Best, Bundle};
 use crate::kernel::lanes::packet::LanesOf;
 use crate::scene::{Bounds, Child, Content, Tests};
-use crate::simd::{Float, MOST_LANES, Mask};
+use crate::simd::{Apart, Float, MOST_LANES, Mask, prefetch};
 
 /// The tree; its root is the first node.
 pub(super) struct Tree {
     /// Of each node the lowest x, y and z of all children, then the highest.
     faces: Vec<f32>,
-    /// Of each node as many as there are lanes: numbers of nodes, or with [`IS_LEAF`] of leaves.
-    children: Vec<u32>,
+    /// Of each node as many as there are lanes, as bits of a number: numbers of nodes, or with [`IS_LEAF`] of leaves.
+    children: Vec<f32>,
     /// How many of them there are.
     counts: Vec<u32>,
     leaves: Vec<Leaf>,
 }
 
+/// Bytes of primitives that a processor keeps near: where there are no more, to ask for the next ones costs more than to wait for them.
+const CACHED: usize = 16 << 20;
+
 const IS_LEAF: u32 = 1 << 31;
+/// No leaf has this number.
+const NOTHING: u32 = u32::MAX;
 
 impl Tree {
     pub(super) fn of(nodes: &[Vec<Child>], width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
@@ -39,49 +44,171 @@ impl Tree {
                 let nothing = face(&Bounds::EMPTY);
                 faces.extend((0..width).map(|lane| bounds.get(lane).map_or(nothing, face) as f32));
             }
-            children.extend((0..width).map(|lane| match node.get(lane).map(|child| &child.content) {
-                None => 0,
-                Some(Content::Node(node)) => *node as u32,
-                Some(Content::Primitives(primitives)) => {
-                    leaves.push(making.add(primitives.iter().copied()));
-                    (leaves.len() - 1) as u32 | IS_LEAF
-                }
+            children.extend((0..width).map(|lane| {
+                f32::from_bits(match node.get(lane).map(|child| &child.content) {
+                    None => 0,
+                    Some(Content::Node(node)) => *node as u32,
+                    Some(Content::Primitives(primitives)) => {
+                        leaves.push(making.add(primitives.iter().copied()));
+                        (leaves.len() - 1) as u32 | IS_LEAF
+                    }
+                })
             }));
         }
         let counts = nodes.iter().map(|node| node.len() as u32).collect();
         Self { faces, children, counts, leaves }
     }
+}
 
-    /// Tests a ray against what is in the boxes on its way.
+/// The search along all rays of a packet. A function of its own, because it needs all registers for itself.
+///
+/// The rays go down the tree in turns. Which boxes a ray meets takes as long to compute as it would take to compute it for some others, too, and no
+/// processor foresees which way a ray goes on: so the boxes of all rays are tested first, and then all rays go on. What one ray waits for in memory,
+/// the others wait for meanwhile.
+pub(super) struct Descent<'a, V: Float> {
+    pub(super) tree: &'a Tree,
+    pub(super) blocks: &'a Blocks,
+    pub(super) rays: &'a Bundle<V>,
+    pub(super) wanted: u32,
+    /// Of each ray the distance and the number of the first primitive so far.
+    pub(super) nearest: &'a mut [V::One; MOST_LANES],
+    pub(super) primitive: &'a mut [V::One; MOST_LANES],
+    pub(super) stacks: &'a mut [Stack],
+    pub(super) tests: &'a mut Tests,
+}
+
+impl<V: Float> Apart for Descent<'_, V> {
+    type Output = ();
+
     #[inline(always)]
-    pub(super) fn search<V: Float>(
-        &self,
-        blocks: &Blocks,
-        ray: &Single<V>,
-        best: &mut Best,
-        waiting: &mut Waiting,
-        tests: &mut Tests,
-    ) {
-        let lanes = V::Single::LANES;
-        waiting.count = 0;
-        let mut next = Some(0);
-        while let Some(child) = next {
-            if child & IS_LEAF != 0 {
-                let leaf = &self.leaves[(child & !IS_LEAF) as usize];
-                tests.primitives += u64::from(leaf.primitives);
-                blocks.test(leaf, ray, best);
-            } else {
-                let node = child as usize;
-                tests.boxes += u64::from(self.counts[node]);
-                let (enter, met) = ray.coarse.enter(&self.faces[node * 6 * lanes..], best.nearest * blocks.scale.0);
-                let met = met.bits();
-                if met != 0 {
-                    enter.store(&mut waiting.met);
-                    next = Some(waiting.push(&self.children[node * lanes..(node + 1) * lanes], met));
-                    continue;
+    fn run(mut self) {
+        let is_large = self.blocks.bytes() > CACHED;
+        for lane in LanesOf(self.wanted) {
+            (self.stacks[lane].count, self.stacks[lane].next) = (0, 0);
+        }
+        let mut at_nodes = self.wanted;
+        while at_nodes != 0 {
+            self.enter_nodes(at_nodes);
+            let mut at_leaves = 0;
+            for lane in LanesOf(std::mem::take(&mut at_nodes)) {
+                self.go_on(lane, is_large);
+                at_nodes |= u32::from(self.stacks[lane].is_at_node()) << lane;
+                at_leaves |= u32::from(self.stacks[lane].is_at_leaf()) << lane;
+            }
+            while at_leaves != 0 {
+                if self.blocks.has_spheres() {
+                    self.meet_spheres(at_leaves);
+                }
+                if is_large {
+                    self.prefetch_triangles(at_leaves);
+                }
+                for lane in LanesOf(std::mem::take(&mut at_leaves)) {
+                    self.meet_rest(lane);
+                    self.go_on(lane, is_large);
+                    at_nodes |= u32::from(self.stacks[lane].is_at_node()) << lane;
+                    at_leaves |= u32::from(self.stacks[lane].is_at_leaf()) << lane;
                 }
             }
-            next = waiting.pop((best.nearest * blocks.scale.0) as f32);
+        }
+    }
+}
+
+impl<V: Float> Descent<'_, V> {
+    /// How far the boxes may begin that are still of interest to a ray.
+    #[inline(always)]
+    fn limit(&self, lane: usize) -> f64 {
+        self.nearest[lane].into() * self.blocks.scale.0
+    }
+
+    #[inline(always)]
+    fn leaf(&self, lane: usize) -> &Leaf {
+        &self.tree.leaves[(self.stacks[lane].next & !IS_LEAF) as usize]
+    }
+
+    #[inline(always)]
+    fn best(&self, lane: usize) -> Best {
+        Best { nearest: self.nearest[lane].into(), primitive: self.primitive[lane].into() }
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, lane: usize, best: &Best) {
+        self.nearest[lane] = V::one(best.nearest);
+        self.primitive[lane] = V::one(best.primitive);
+    }
+
+    /// Tests rays against the boxes of the nodes that they are at, and keeps the children that they meet.
+    #[inline(always)]
+    fn enter_nodes(&mut self, at_nodes: u32) {
+        let (tree, lanes) = (self.tree, V::Single::LANES);
+        for lane in LanesOf(at_nodes) {
+            let node = self.stacks[lane].next as usize;
+            self.tests.boxes += u64::from(tree.counts[node]);
+            let coarse = self.rays.coarse.of_lane::<V::Single>(lane);
+            let (enter, met) = coarse.enter(&tree.faces[node * 6 * lanes..], self.limit(lane));
+            self.stacks[lane].push(V::Single::load(&tree.children[node * lanes..]), enter, met);
+        }
+    }
+
+    /// A ray goes on to what comes next.
+    #[inline(always)]
+    fn go_on(&mut self, lane: usize, is_large: bool) {
+        let limit = self.limit(lane) as f32;
+        self.stacks[lane].pop(limit);
+        if is_large {
+            self.tree.prefetch::<V>(&self.stacks[lane]);
+        }
+    }
+
+    /// Tests rays against the first spheres of the leaves that they are at: quickly along all rays, and then those that they come near.
+    #[inline(always)]
+    fn meet_spheres(&mut self, at_leaves: u32) {
+        let mut near = 0_u32;
+        for lane in LanesOf(at_leaves) {
+            let block = self.leaf(lane).spheres;
+            if block[0] < block[1] {
+                let of_block = self.blocks.near(block[0], &self.rays.of_lane(lane), self.nearest[lane].into());
+                self.stacks[lane].near = of_block;
+                near |= u32::from(of_block != 0) << lane;
+            }
+        }
+        for lane in LanesOf(near) {
+            let mut best = self.best(lane);
+            let (block, near) = (self.leaf(lane).spheres[0], self.stacks[lane].near);
+            self.blocks.test_near(block, near, &self.rays.of_lane(lane), &mut best);
+            self.keep(lane, &best);
+        }
+    }
+
+    #[inline(always)]
+    fn prefetch_triangles(&self, at_leaves: u32) {
+        for lane in LanesOf(at_leaves) {
+            self.blocks.prefetch::<V>(self.leaf(lane));
+        }
+    }
+
+    /// Tests a ray against what else is in the leaf that it is at.
+    #[inline(always)]
+    fn meet_rest(&mut self, lane: usize) {
+        let leaf = *self.leaf(lane);
+        self.tests.primitives += u64::from(leaf.primitives);
+        if leaf.has_rest() {
+            let mut best = self.best(lane);
+            self.blocks.test_rest(&leaf, &self.rays.of_lane(lane), &mut best);
+            self.keep(lane, &best);
+        }
+    }
+}
+
+impl Tree {
+    /// Asks for what a ray comes to next.
+    #[inline(always)]
+    fn prefetch<V: Float>(&self, stack: &Stack) {
+        let (lanes, next) = (V::Single::LANES, stack.next as usize);
+        if stack.is_at_node() {
+            prefetch::<V, _>(&self.faces, next * 6 * lanes, 6 * lanes);
+            prefetch::<V, _>(&self.children, next * lanes, lanes);
+        } else if stack.is_at_leaf() {
+            prefetch::<V, _>(&self.leaves, next & !(IS_LEAF as usize), 1);
         }
     }
 }
@@ -102,49 +229,64 @@ pub(super) fn is_shallow(nodes: &[Vec<Child>]) -> bool {
     below[0] <= MOST_WAITING
 }
 
-/// Children to come back to.
-pub(super) struct Waiting {
-    children: [u32; MOST_WAITING],
-    distances: [f32; MOST_WAITING],
+/// What a ray has before it.
+#[derive(Clone)]
+pub(in crate::kernel::lanes) struct Stack {
+    /// What comes next: the number of a node, of a leaf with [`IS_LEAF`], or [`NOTHING`].
+    next: u32,
+    /// Children to come back to, as bits of numbers, and where the ray enters their boxes.
+    children: [f32; PLACES],
+    distances: [f32; PLACES],
     count: usize,
-    /// Where the ray enters the boxes of one node.
-    met: [f32; MOST_LANES],
+    /// The spheres of a block that the ray comes near, as bits.
+    near: u32,
 }
 
-impl Waiting {
+/// The children of one node come on top of those that wait, all together.
+const PLACES: usize = MOST_WAITING + 2 * MOST_LANES;
+
+impl Stack {
+    /// Nothing.
+    pub(in crate::kernel::lanes) const EMPTY: Self =
+        Self { next: NOTHING, children: [0.0; PLACES], distances: [0.0; PLACES], count: 0, near: 0 };
+
     #[inline(always)]
-    pub(super) fn new() -> Self {
-        Self { children: [0; MOST_WAITING], distances: [0.0; MOST_WAITING], count: 0, met: [0.0; MOST_LANES] }
+    fn is_at_node(&self) -> bool {
+        self.next < IS_LEAF
     }
 
-    /// Keeps those of a node's children that are met, which must be one or more, but for the nearest, which is returned. The others are not sorted: to
-    /// look at them in the wrong order costs less.
     #[inline(always)]
-    fn push(&mut self, children: &[u32], met: u32) -> u32 {
-        let lane = met.trailing_zeros() as usize;
-        let (mut nearest, mut distance) = (children[lane], self.met[lane]);
-        for lane in LanesOf(met & (met - 1)) {
-            let (child, other) = (children[lane], self.met[lane]);
-            let is_nearer = other < distance;
-            self.children[self.count] = if is_nearer { nearest } else { child };
-            self.distances[self.count] = if is_nearer { distance } else { other };
-            self.count += 1;
-            nearest = if is_nearer { child } else { nearest };
-            distance = if is_nearer { other } else { distance };
-        }
-        nearest
+    fn is_at_leaf(&self) -> bool {
+        self.next >= IS_LEAF && self.next != NOTHING
     }
 
-    /// The last one whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
+    /// Keeps a node's children that are met, the nearest of them last. The others are not sorted: to look at them in the wrong order costs less.
     #[inline(always)]
-    fn pop(&mut self, limit: f32) -> Option<u32> {
+    fn push<W: Float<One = f32>>(&mut self, children: W, enter: W, met: W::Mask) {
+        children.pack(met, &mut self.children[self.count..]);
+        enter.pack(met, &mut self.distances[self.count..]);
+        let nearest = W::splat(W::select(met, enter, W::splat(f64::INFINITY)).least());
+        let (met, is_first) = (met.bits(), (met & enter.equal(nearest)).bits());
+        // The lanes below the nearest; all of them if there is none.
+        let before = is_first.wrapping_sub(1) & !is_first;
+        let place = self.count + (met & before).count_ones() as usize;
+        let last = self.count + (met.count_ones().max(1) - 1) as usize;
+        self.children.swap(place, last);
+        self.distances.swap(place, last);
+        self.count += met.count_ones() as usize;
+    }
+
+    /// Goes on with the last child whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
+    #[inline(always)]
+    fn pop(&mut self, limit: f32) {
         while self.count > 0 {
             self.count -= 1;
             if self.distances[self.count] <= limit {
-                return Some(self.children[self.count]);
+                self.next = self.children[self.count].to_bits();
+                return;
             }
         }
-        None
+        self.next = NOTHING;
     }
 }
 
@@ -194,7 +336,7 @@ mod tests {
             let ray =
                 Ray { origin: Vec3::splat(Vec3::new(0.0, 0.0, 0.0)), direction: Vec3::splat(Vec3::new(1.0, 0.0, 0.0)) };
             let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
-            let found = self.0.nearest(&rays, 1, &mut Counts::default());
+            let found = self.0.nearest(&rays, 1, &mut [], &mut Counts::default());
             (found.nearest.lane(0), found.primitive.lane(0))
         }
     }
