@@ -92,7 +92,7 @@ impl Lanes {
         }
         let own_root = own_root(at, wi, aims.direction);
         let rays = Rays { ray: Ray { origin: at.point, direction: aims.direction }, from: at.primitive, own_root };
-        let (_, met) = self.nearest(&rays, lit.lanes.bits(), packet.stacks, counts);
+        let (_, met) = self.nearest(&rays, lit.lanes.bits(), &mut packet.scratch, counts);
         counts.rays += u64::from(lit.lanes.bits().count_ones());
         let [r, g, b, _] = V::rows(&self.tables.emissions, aims.primitive);
         let weight = match self.course.aims {

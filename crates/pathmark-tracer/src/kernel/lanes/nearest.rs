@@ -1,7 +1,7 @@
 //! The first thing that each ray meets.
 
 use super::packet::{LanesOf, Rays};
-use super::wide::{Nearest, Stack};
+use super::wide::{Nearest, Scratch};
 use super::{Lanes, Search};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3};
@@ -16,7 +16,7 @@ impl Lanes {
         &self,
         rays: &Rays<V>,
         wanted: u32,
-        stacks: &mut [Stack],
+        scratch: &mut Scratch<'_, V>,
         counts: &mut Counts,
     ) -> (V, V) {
         let (mut found, left) = match &self.search {
@@ -25,7 +25,7 @@ impl Lanes {
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
-            Search::Wide(wide) => Nearest { wide, tables: &self.tables, rays, wanted, stacks, counts }.run(),
+            Search::Wide(wide) => Nearest { wide, tables: &self.tables, rays, wanted, scratch, counts }.run(),
             // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };

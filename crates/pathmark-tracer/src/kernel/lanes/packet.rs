@@ -1,6 +1,6 @@
 //! Paths side by side: what of each is between two vertices.
 
-use super::wide::Stack;
+use super::wide::{Scratch, Stack};
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::PathWords;
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
@@ -65,7 +65,7 @@ pub(super) struct Packet<'a, V: Float> {
     waiting: &'a mut [Parts],
     depth: [u8; MOST_LANES],
     /// For searches.
-    pub(super) stacks: &'a mut [Stack],
+    pub(super) scratch: Scratch<'a, V>,
 }
 
 impl<'a, V: Float> Packet<'a, V> {
@@ -90,7 +90,7 @@ impl<'a, V: Float> Packet<'a, V> {
             slots: [0; MOST_LANES],
             waiting,
             depth: [0; MOST_LANES],
-            stacks,
+            scratch: Scratch::new(stacks),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::Lanes;
 use super::packet::Rays;
-use super::wide::Stack;
+use super::wide::{Scratch, Stack};
 use crate::kernel::Counts;
 use crate::kernel::rays::{FoundRays, Start};
 use crate::math::{Ray, Vec3, other_root};
@@ -73,12 +73,13 @@ impl Work for Searching<'_> {
             FoundRays { counts: Counts { rays: self.count as u64, ..Counts::default() }, ..FoundRays::default() };
         let numbers = <V::One as Number>::all(self.rays);
         let mut left = self.count;
+        let mut scratch = Scratch::new(self.stacks);
         for numbers in numbers.chunks_exact(OF_RAY * V::LANES) {
             let here = left.min(V::LANES);
             left -= here;
             let wanted = u32::MAX >> (u32::BITS - here as u32);
             let (distance, primitive) =
-                self.lanes.nearest(&packet::<V>(numbers), wanted, self.stacks, &mut found.counts);
+                self.lanes.nearest(&packet::<V>(numbers), wanted, &mut scratch, &mut found.counts);
             for lane in (0..here).filter(|lane| primitive.lane(*lane) >= 0.0) {
                 found.met += 1;
                 found.distance += distance.lane(lane);

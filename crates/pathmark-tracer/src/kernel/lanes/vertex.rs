@@ -70,7 +70,7 @@ impl Lanes {
     ) -> u32 {
         let number = packet.vertices.plus(V::Bits::splat(1));
         let numbers = self.sampler.pair::<V>(&packet.words, number, packet.branch, Purpose::Bsdf);
-        let (t, primitive) = self.nearest(&packet.rays, packet.alive, packet.stacks, counts);
+        let (t, primitive) = self.nearest(&packet.rays, packet.alive, &mut packet.scratch, counts);
         counts.rays += u64::from(packet.alive.count_ones());
         let alive = V::Mask::from_bits(packet.alive);
         let met = alive & V::splat(0.0).le(primitive);

@@ -64,25 +64,27 @@ pub(super) struct AllCoarse {
 const ROWS: usize = 16;
 
 impl AllCoarse {
+    pub(super) const fn empty() -> Self {
+        Self { rows: [[0.0; MOST_LANES]; ROWS] }
+    }
+
     #[inline(always)]
-    pub(super) fn of<V: Float>(ray: &Ray<V>, scale: Scale) -> Self {
+    pub(super) fn fill<V: Float>(&mut self, ray: &Ray<V>, scale: Scale) {
         let scale = V::splat(scale.0);
         let (x, y, z) = (ray.origin.x * scale, ray.origin.y * scale, ray.origin.z * scale);
         let padding = V::splat(padding(f32::MANTISSA_DIGITS)) * x.abs().larger(y.abs()).larger(z.abs());
-        let mut all = Self { rows: [[0.0; MOST_LANES]; ROWS] };
         let axes = [(x, ray.direction.x), (y, ray.direction.y), (z, ray.direction.z)];
         for (axis, &(origin, direction)) in axes.iter().enumerate() {
             let outwards = V::select(direction.lt(V::splat(0.0)), -padding, padding);
             // Adding zero turns minus zero into zero, or the near and far faces would change places.
             let inverse = V::splat(1.0) / (direction + V::splat(0.0));
-            all.put(axis, direction);
-            all.put(3 + axis, inverse);
-            all.put(6 + axis, -((origin + outwards) * inverse));
-            all.put(9 + axis, -((origin - outwards) * inverse));
-            all.put(12 + axis, origin);
+            self.put(axis, direction);
+            self.put(3 + axis, inverse);
+            self.put(6 + axis, -((origin + outwards) * inverse));
+            self.put(9 + axis, -((origin - outwards) * inverse));
+            self.put(12 + axis, origin);
         }
-        all.put(15, padding);
-        all
+        self.put(15, padding);
     }
 
     #[inline(always)]
@@ -228,10 +230,9 @@ mod tests {
                 };
                 // A scene has the origin in it.
                 let scale = Scale::of(&bounds.and(&Bounds { low: [-factor; 3], high: [factor; 3] }));
-                let all = AllCoarse::of(
-                    &Ray::<V> { origin: Vec3::splat(ray.origin), direction: Vec3::splat(ray.direction) },
-                    scale,
-                );
+                let mut all = AllCoarse::empty();
+                let side_by_side = Ray::<V> { origin: Vec3::splat(ray.origin), direction: Vec3::splat(ray.direction) };
+                all.fill(&side_by_side, scale);
                 let coarse = all.of_lane::<V::Single>(V::LANES - 1);
                 let padded = scale.padded(&bounds);
                 let rows = |numbers: &[f64]| -> Vec<f32> {

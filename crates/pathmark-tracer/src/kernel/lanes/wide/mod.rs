@@ -54,24 +54,23 @@ impl Search {
 }
 
 /// A search, which takes so long that it need not be part of the loop over vertices.
-pub(in crate::kernel::lanes) struct Nearest<'a, V: Float> {
+pub(in crate::kernel::lanes) struct Nearest<'a, 's, V: Float> {
     pub(in crate::kernel::lanes) wide: &'a Wide,
     pub(in crate::kernel::lanes) tables: &'a Tables,
     pub(in crate::kernel::lanes) rays: &'a Rays<V>,
     pub(in crate::kernel::lanes) wanted: u32,
-    /// As many as there are lanes, where there is a tree.
-    pub(in crate::kernel::lanes) stacks: &'a mut [Stack],
+    pub(in crate::kernel::lanes) scratch: &'a mut Scratch<'s, V>,
     pub(in crate::kernel::lanes) counts: &'a mut Counts,
 }
 
-impl<V: Float> Apart for Nearest<'_, V> {
+impl<V: Float> Apart for Nearest<'_, '_, V> {
     /// And the lanes that are to be searched again, because they may not surely meet what was found.
     type Output = (Found<V>, u32);
 
     #[inline(always)]
     fn run(self) -> (Found<V>, u32) {
-        let Self { wide, tables, rays, wanted, stacks, counts } = self;
-        let found = wide.nearest(rays, wanted, stacks, counts);
+        let Self { wide, tables, rays, wanted, scratch, counts } = self;
+        let found = wide.nearest(rays, wanted, scratch, counts);
         let has_triangles = wide.blocks.has_triangles;
         let left = if has_triangles { wanted & are_doubtful(tables, &rays.ray, &found).bits() } else { 0 };
         (found, left)
@@ -100,7 +99,13 @@ impl Wide {
 
     /// The first thing along each of the `wanted` rays.
     #[inline(always)]
-    fn nearest<V: Float>(&self, rays: &Rays<V>, wanted: u32, stacks: &mut [Stack], counts: &mut Counts) -> Found<V> {
+    fn nearest<V: Float>(
+        &self,
+        rays: &Rays<V>,
+        wanted: u32,
+        scratch: &mut Scratch<'_, V>,
+        counts: &mut Counts,
+    ) -> Found<V> {
         let mut found = match &self.large {
             Some(large) => large.scan(rays),
             None => Found::nothing(),
@@ -119,24 +124,27 @@ impl Wide {
             }
             Search::Tree(tree) => tree,
         };
-        let bundle = Bundle::of(rays, self.blocks.scale, self.blocks.has_triangles);
-        let [mut nearest, mut primitive] = [[V::One::default(); MOST_LANES]; 2];
-        found.nearest.store(&mut nearest);
-        found.primitive.store(&mut primitive);
+        let Scratch { stacks, bundle } = scratch;
+        bundle.fill(rays, &found, self.blocks.scale, self.blocks.has_triangles);
         let mut tests = Tests::default();
-        V::apart(Descent {
-            tree,
-            blocks: &self.blocks,
-            rays: &bundle,
-            wanted,
-            nearest: &mut nearest,
-            primitive: &mut primitive,
-            stacks,
-            tests: &mut tests,
-        });
+        V::apart(Descent { tree, blocks: &self.blocks, rays: bundle, wanted, stacks, tests: &mut tests });
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
-        Found { nearest: V::load(&nearest), primitive: V::load(&primitive) }
+        Found { nearest: V::load(&bundle.nearest), primitive: V::load(&bundle.primitive) }
+    }
+}
+
+/// What searches write to and leave behind.
+pub(in crate::kernel::lanes) struct Scratch<'a, V: Float> {
+    /// As many as there are lanes, where there is a tree.
+    stacks: &'a mut [Stack],
+    bundle: Bundle<V>,
+}
+
+impl<'a, V: Float> Scratch<'a, V> {
+    #[inline(always)]
+    pub(in crate::kernel::lanes) fn new(stacks: &'a mut [Stack]) -> Self {
+        Self { stacks, bundle: Bundle::empty() }
     }
 }
 
@@ -150,35 +158,48 @@ struct Bundle<V: Float> {
     /// [`Shear::axes`].
     axes: [[usize; 3]; MOST_LANES],
     has_triangles: bool,
+    /// Distances and numbers of the first primitives so far.
+    nearest: [V::One; MOST_LANES],
+    primitive: [V::One; MOST_LANES],
 }
 
 impl<V: Float> Bundle<V> {
     #[inline(always)]
-    fn of(rays: &Rays<V>, scale: Scale, has_triangles: bool) -> Self {
-        let Ray { origin, direction } = rays.ray;
-        let mut bundle = Self {
-            rows: [[V::One::default(); MOST_LANES]; 7],
-            coarse: AllCoarse::of(&rays.ray, scale),
-            turned: [[V::One::default(); MOST_LANES]; 6],
+    fn empty() -> Self {
+        let none = [V::One::default(); MOST_LANES];
+        Self {
+            rows: [none; 7],
+            coarse: AllCoarse::empty(),
+            turned: [none; 6],
             axes: [[0; 3]; MOST_LANES],
-            has_triangles,
-        };
+            has_triangles: false,
+            nearest: none,
+            primitive: none,
+        }
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, rays: &Rays<V>, found: &Found<V>, scale: Scale, has_triangles: bool) {
+        let Ray { origin, direction } = rays.ray;
         let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
-        for (row, vector) in bundle.rows.iter_mut().zip(&vectors) {
+        for (row, vector) in self.rows.iter_mut().zip(&vectors) {
             vector.store(row);
         }
+        found.nearest.store(&mut self.nearest);
+        found.primitive.store(&mut self.primitive);
+        self.coarse.fill(&rays.ray, scale);
+        self.has_triangles = has_triangles;
         if has_triangles {
             let turned = AllTurned::of(rays);
             let [x, y, z] = turned.axes(origin);
-            for (row, vector) in bundle.turned.iter_mut().zip([x, y, z].iter().chain(&turned.by)) {
+            for (row, vector) in self.turned.iter_mut().zip([x, y, z].iter().chain(&turned.by)) {
                 vector.store(row);
             }
             let [is_x, is_y] = [turned.is_long[0].bits(), turned.is_long[1].bits()];
-            for (lane, axes) in bundle.axes.iter_mut().enumerate().take(V::LANES) {
+            for (lane, axes) in self.axes.iter_mut().enumerate().take(V::LANES) {
                 *axes = AXES[(is_x >> lane & 1 | (is_y >> lane & 1) << 1) as usize];
             }
         }
-        bundle
     }
 
     #[inline(always)]
@@ -284,19 +305,13 @@ mod tests {
             let Self(scene, wide, starts) = self;
             let tables = Tables::of(scene, Precision::F64);
             let mut all_left = 0;
+            let mut stacks = vec![Stack::EMPTY; V::LANES];
             for starts in starts.chunks_exact(V::LANES) {
                 let wanted = u32::MAX >> (MOST_LANES - V::LANES);
                 let rays = side_by_side::<V>(scene, starts);
                 let counts = &mut Counts::default();
-                let (found, left) = Nearest {
-                    wide,
-                    tables: &tables,
-                    rays: &rays,
-                    wanted,
-                    stacks: &mut vec![Stack::EMPTY; V::LANES],
-                    counts,
-                }
-                .run();
+                let scratch = &mut Scratch::new(&mut stacks);
+                let (found, left) = Nearest { wide, tables: &tables, rays: &rays, wanted, scratch, counts }.run();
                 all_left += left.count_ones() as usize;
                 for (lane, start) in starts.iter().enumerate().filter(|(lane, _)| left >> lane & 1 == 0) {
                     let (t, primitive) = nearest(scene, start);

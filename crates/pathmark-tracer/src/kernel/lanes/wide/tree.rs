@@ -68,11 +68,8 @@ impl Tree {
 pub(super) struct Descent<'a, V: Float> {
     pub(super) tree: &'a Tree,
     pub(super) blocks: &'a Blocks,
-    pub(super) rays: &'a Bundle<V>,
+    pub(super) rays: &'a mut Bundle<V>,
     pub(super) wanted: u32,
-    /// Of each ray the distance and the number of the first primitive so far.
-    pub(super) nearest: &'a mut [V::One; MOST_LANES],
-    pub(super) primitive: &'a mut [V::One; MOST_LANES],
     pub(super) stacks: &'a mut [Stack],
     pub(super) tests: &'a mut Tests,
 }
@@ -117,7 +114,7 @@ impl<V: Float> Descent<'_, V> {
     /// How far the boxes may begin that are still of interest to a ray.
     #[inline(always)]
     fn limit(&self, lane: usize) -> f64 {
-        self.nearest[lane].into() * self.blocks.scale.0
+        self.rays.nearest[lane].into() * self.blocks.scale.0
     }
 
     #[inline(always)]
@@ -127,13 +124,13 @@ impl<V: Float> Descent<'_, V> {
 
     #[inline(always)]
     fn best(&self, lane: usize) -> Best {
-        Best { nearest: self.nearest[lane].into(), primitive: self.primitive[lane].into() }
+        Best { nearest: self.rays.nearest[lane].into(), primitive: self.rays.primitive[lane].into() }
     }
 
     #[inline(always)]
     fn keep(&mut self, lane: usize, best: &Best) {
-        self.nearest[lane] = V::one(best.nearest);
-        self.primitive[lane] = V::one(best.primitive);
+        self.rays.nearest[lane] = V::one(best.nearest);
+        self.rays.primitive[lane] = V::one(best.primitive);
     }
 
     /// Tests rays against the boxes of the nodes that they are at, and keeps the children that they meet.
@@ -166,7 +163,7 @@ impl<V: Float> Descent<'_, V> {
         for lane in LanesOf(at_leaves) {
             let block = self.leaf(lane).spheres;
             if block[0] < block[1] {
-                let of_block = self.blocks.near(block[0], &self.rays.of_lane(lane), self.nearest[lane].into());
+                let of_block = self.blocks.near(block[0], &self.rays.of_lane(lane), self.rays.nearest[lane].into());
                 self.stacks[lane].near = of_block;
                 near |= u32::from(of_block != 0) << lane;
             }
@@ -295,7 +292,7 @@ mod tests {
     use super::*;
     use crate::kernel::Counts;
     use crate::kernel::lanes::packet::Rays;
-    use crate::kernel::lanes::wide::{Search, Wide};
+    use crate::kernel::lanes::wide::{Scratch, Search, Wide};
     use crate::math::{Ray, Vec3};
     use crate::scene::{Content, Primitive, Primitives, Sphere};
     use crate::simd::{Precision, Sizes, Work, levels, on_level, sizes_of};
@@ -336,7 +333,7 @@ mod tests {
             let ray =
                 Ray { origin: Vec3::splat(Vec3::new(0.0, 0.0, 0.0)), direction: Vec3::splat(Vec3::new(1.0, 0.0, 0.0)) };
             let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
-            let found = self.0.nearest(&rays, 1, &mut [], &mut Counts::default());
+            let found = self.0.nearest(&rays, 1, &mut Scratch::new(&mut []), &mut Counts::default());
             (found.nearest.lane(0), found.primitive.lane(0))
         }
     }
