@@ -133,6 +133,8 @@ impl Work for Operations {
             }
         }
         lanes_move::<V>();
+        lanes_are_packed::<V>();
+        lanes_are_packed::<V::Single>();
     }
 }
 
@@ -213,6 +215,22 @@ fn lanes_move<V: Float>() {
         w.set_word(lane, lane as u64);
     }
     assert!((0..V::LANES).all(|lane| v.lane(lane) == lane as f64 && w.word(lane) == lane as u64));
+}
+
+/// What a mask holds comes out in order.
+#[inline(always)]
+fn lanes_are_packed<V: Float>() {
+    let counted = of::<V>(std::array::from_fn(|k| k as f64 + 0.5));
+    let all = u32::MAX >> (MOST_LANES - V::LANES);
+    for mask in (0..=all).step_by(if V::LANES > 8 { (all / 691) as usize } else { 1 }) {
+        let mut packed = [V::One::default(); MOST_LANES];
+        counted.pack(V::Mask::from_bits(mask), &mut packed);
+        let expected = (0..V::LANES).filter(|lane| mask >> lane & 1 == 1).map(|lane| lane as f64 + 0.5);
+        for (found, expected) in packed.into_iter().zip(expected) {
+            let found: f64 = found.into();
+            assert_eq!(found, expected, "{mask:b}");
+        }
+    }
 }
 
 #[test]

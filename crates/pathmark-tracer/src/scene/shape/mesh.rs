@@ -112,9 +112,9 @@ impl Shape for Mesh {
             }
         };
         if self.is_ply() {
-            self.add_ply(files, add)?
+            self.add_ply(files, add)?;
         } else {
-            self.add_obj(files, add)?
+            self.add_obj(files, add)?;
         }
         if primitives.triangles.len() == before {
             return Err(self.error(files.folder, "mesh", "", "has no triangle with an area").into());

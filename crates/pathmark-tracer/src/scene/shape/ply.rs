@@ -300,7 +300,9 @@ mod tests {
         }
         for face in FACES {
             push(vec![face.len() as u8]);
-            face.iter().for_each(|corner| push(corner.to_le_bytes().to_vec()));
+            for corner in face {
+                push(corner.to_le_bytes().to_vec());
+            }
             push((-1_i32).to_le_bytes().to_vec());
         }
         file

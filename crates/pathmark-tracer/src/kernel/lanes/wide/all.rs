@@ -1,13 +1,13 @@
 //! Every primitive against the rays of all lanes at a time: for scenes with too few primitives for a hierarchy. One ray at a time would have a
 //! branch for each primitive that it meets; here a primitive has one for all rays together.
 
-use super::three;
+use super::bundle::{AllTurned, three};
 use crate::kernel::lanes::nearest::Found;
 use crate::kernel::lanes::packet::Rays;
 use crate::kernel::lanes::singles::Singles;
-use crate::math::{Crossing, Vec3, first_root, sheared};
+use crate::math::{Crossing, Vec3, first_root};
 use crate::scene::Primitives;
-use crate::simd::{Float, MOST_LANES, Mask};
+use crate::simd::{Float, Mask};
 
 /// The corners that triangles of a group share at most: those of a box.
 const MOST_CORNERS: usize = 8;
@@ -94,61 +94,4 @@ impl All {
             }
         }
     }
-}
-
-/// Rays by their own axes: [`crate::math::Shear`] in lanes.
-pub(super) struct AllTurned<V: Float> {
-    origin: Vec3<V>,
-    /// Whether the direction's longest component is x, or y.
-    pub(super) is_long: [V::Mask; 2],
-    pub(super) by: [V; 3],
-}
-
-impl<V: Float> AllTurned<V> {
-    #[inline(always)]
-    pub(super) fn of(rays: &Rays<V>) -> Self {
-        let Vec3 { x, y, z } = rays.ray.direction;
-        let is_x = y.abs().lt(x.abs()) & z.abs().lt(x.abs());
-        let is_y = !is_x & z.abs().lt(y.abs());
-        let mut turned = Self { origin: rays.ray.origin, is_long: [is_x, is_y], by: three([0.0; 3]) };
-        let [x, y, z] = turned.axes(rays.ray.direction);
-        turned.by = if V::IS_DOUBLE {
-            let inverse = V::splat(1.0) / z;
-            [x * inverse, y * inverse, inverse]
-        } else {
-            in_double([x, y, z])
-        };
-        turned
-    }
-
-    /// The components of a vector by the ray's axes.
-    #[inline(always)]
-    pub(super) fn axes(&self, Vec3 { x, y, z }: Vec3<V>) -> [V; 3] {
-        let [is_x, is_y] = self.is_long;
-        [
-            V::select(is_x, y, V::select(is_y, z, x)),
-            V::select(is_x, z, V::select(is_y, x, y)),
-            V::select(is_x, x, V::select(is_y, y, z)),
-        ]
-    }
-
-    #[inline(always)]
-    fn corner(&self, corner: Vec3) -> [V; 3] {
-        sheared(self.axes(Vec3::splat(corner) - self.origin), self.by)
-    }
-}
-
-/// [`crate::math::Shear::by`] of directions by their own axes, rounded to single precision once, as it is for one ray.
-#[inline(always)]
-fn in_double<V: Float>(direction: [V; 3]) -> [V; 3] {
-    let mut rows = [[V::One::default(); MOST_LANES]; 3];
-    for (row, vector) in rows.iter_mut().zip(direction) {
-        vector.store(row);
-    }
-    for lane in 0..V::LANES {
-        let inverse = 1.0 / rows[2][lane].into();
-        let by = |row: &[V::One; MOST_LANES]| V::one(row[lane].into() * inverse);
-        [rows[0][lane], rows[1][lane], rows[2][lane]] = [by(&rows[0]), by(&rows[1]), V::one(inverse)];
-    }
-    [V::load(&rows[0]), V::load(&rows[1]), V::load(&rows[2])]
 }

@@ -1,9 +1,10 @@
 //! Primitives of a kind side by side: as many spheres as a register has numbers in single precision, as many triangles as one has
 //! numbers in the precision of the lanes.
 
+use super::Best;
 use super::all::All;
+use super::bundle::{Single, Turned};
 use super::coarse::Scale;
-use super::{Best, Single, Turned};
 use crate::kernel::lanes::packet::LanesOf;
 use crate::kernel::lanes::singles::Singles;
 use crate::math::{Crossing, Real, Vec3, first_root, sheared};

@@ -7,6 +7,7 @@
 
 mod all;
 mod blocks;
+mod bundle;
 mod coarse;
 mod doubt;
 mod tree;
@@ -16,12 +17,13 @@ use super::packet::{LanesOf, Rays};
 use super::singles::Singles;
 use super::tables::Tables;
 use crate::kernel::Counts;
-use crate::math::{Ray, Shear, Vec3, plane_root};
+use crate::math::{Vec3, plane_root};
 use crate::scene::{Bounds, Child, Plane, Scene, Tests};
-use crate::simd::{Apart, Float, Level, MOST_LANES, Mask, Precision, Sizes, sizes_of};
-use all::{All, AllTurned};
+use crate::simd::{Apart, Float, Level, Mask, Precision, Sizes, sizes_of};
+use all::All;
 use blocks::{Blocks, Making};
-use coarse::{AllCoarse, Coarse, Scale};
+use bundle::Bundle;
+use coarse::Scale;
 use doubt::are_doubtful;
 pub(in crate::kernel::lanes) use tree::Stack;
 use tree::{Descent, Tree, is_shallow};
@@ -148,100 +150,6 @@ impl<'a, V: Float> Scratch<'a, V> {
     }
 }
 
-/// The rays of all lanes, out of their registers.
-struct Bundle<V: Float> {
-    /// Origins, directions, and the primitives that rays start on.
-    rows: [[V::One; MOST_LANES]; 7],
-    coarse: AllCoarse,
-    /// By the rays' own axes, origins and [`Shear::by`]; of no use in a scene without triangles.
-    turned: [[V::One; MOST_LANES]; 6],
-    /// [`Shear::axes`].
-    axes: [[usize; 3]; MOST_LANES],
-    has_triangles: bool,
-    /// Distances and numbers of the first primitives so far.
-    nearest: [V::One; MOST_LANES],
-    primitive: [V::One; MOST_LANES],
-}
-
-impl<V: Float> Bundle<V> {
-    #[inline(always)]
-    fn empty() -> Self {
-        let none = [V::One::default(); MOST_LANES];
-        Self {
-            rows: [none; 7],
-            coarse: AllCoarse::empty(),
-            turned: [none; 6],
-            axes: [[0; 3]; MOST_LANES],
-            has_triangles: false,
-            nearest: none,
-            primitive: none,
-        }
-    }
-
-    #[inline(always)]
-    fn fill(&mut self, rays: &Rays<V>, found: &Found<V>, scale: Scale, has_triangles: bool) {
-        let Ray { origin, direction } = rays.ray;
-        let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
-        for (row, vector) in self.rows.iter_mut().zip(&vectors) {
-            vector.store(row);
-        }
-        found.nearest.store(&mut self.nearest);
-        found.primitive.store(&mut self.primitive);
-        self.coarse.fill(&rays.ray, scale);
-        self.has_triangles = has_triangles;
-        if has_triangles {
-            let turned = AllTurned::of(rays);
-            let [x, y, z] = turned.axes(origin);
-            for (row, vector) in self.turned.iter_mut().zip([x, y, z].iter().chain(&turned.by)) {
-                vector.store(row);
-            }
-            let [is_x, is_y] = [turned.is_long[0].bits(), turned.is_long[1].bits()];
-            for (lane, axes) in self.axes.iter_mut().enumerate().take(V::LANES) {
-                *axes = AXES[(is_x >> lane & 1 | (is_y >> lane & 1) << 1) as usize];
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn of_lane(&self, lane: usize) -> Single<V> {
-        let [ox, oy, oz, dx, dy, dz, from] = self.rows.each_ref().map(|row| row[lane].into());
-        let turned = if self.has_triangles {
-            let [x, y, z, by_x, by_y, by_z] = self.turned.each_ref().map(|row| row[lane].into());
-            let shear = Shear { axes: self.axes[lane], by: three([by_x, by_y, by_z]) };
-            Some(Turned { origin: three([x, y, z]), shear })
-        } else {
-            None
-        };
-        let (origin, direction) = (Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
-        Single { origin, direction, from, coarse: self.coarse.of_lane(lane), turned }
-    }
-}
-
-/// Axes of a ray whose longest component is z, x or y.
-const AXES: [[usize; 3]; 3] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
-
-/// One ray.
-struct Single<V: Float> {
-    origin: Vec3,
-    direction: Vec3,
-    /// Number of the primitive that it starts on, as in [`Rays`].
-    from: f64,
-    coarse: Coarse<V::Single>,
-    /// `None` in a scene without triangles.
-    turned: Option<Turned<V::Register>>,
-}
-
-/// A ray by its own axes, the same in every lane.
-struct Turned<V> {
-    origin: [V; 3],
-    shear: Shear<V>,
-}
-
-#[inline(always)]
-fn three<V: Float>([x, y, z]: [f64; 3]) -> [V; 3] {
-    [V::splat(x), V::splat(y), V::splat(z)]
-}
-
 /// What a ray met so far: a distance and a number, -1 for nothing.
 struct Best {
     nearest: f64,
@@ -288,11 +196,11 @@ mod tests {
     use super::*;
     use crate::kernel::lanes::walks::{nearest, side_by_side, walks};
     use crate::kernel::rays::Start;
-    use crate::math::{Frame, line_meets};
+    use crate::math::{Frame, Ray, line_meets};
     use crate::sampling::uniform_sphere;
     use crate::scene::Standpoint;
     use crate::scene::{SCENES, load};
-    use crate::simd::{Work, levels, on_level};
+    use crate::simd::{MOST_LANES, Work, levels, on_level};
 
     /// Compares with the scalar search, and returns how many rays are left to it.
     struct Compare<'a>(&'a Scene, &'a Wide, &'a [Start]);

@@ -1,8 +1,9 @@
 //! A hierarchy whose nodes have as many children as a register has numbers in single precision, all of whose boxes are tested at a time.
 
+use super::Best;
 use super::blocks::{Blocks, Leaf, Making};
+use super::bundle::Bundle;
 use super::coarse::Scale;
-use super::{Best, Bundle};
 use crate::kernel::lanes::packet::LanesOf;
 use crate::scene::{Bounds, Child, Content, Tests};
 use crate::simd::{Apart, Float, MOST_LANES, Mask, prefetch};
