@@ -32,7 +32,7 @@ use std::sync::Arc;
 use supply::Supply;
 use tables::Tables;
 use targets::Targets;
-use wide::{Stack, Wide};
+use wide::{Stack, Stacks, Wide};
 use window::Window;
 
 /// The kernel.
@@ -91,12 +91,9 @@ impl Lanes {
         }
     }
 
-    /// Room for searches.
-    fn stacks(&self) -> Vec<Stack> {
-        match &self.search {
-            Search::Wide(wide) if wide.has_tree() => vec![Stack::EMPTY; sizes_of(self.level, self.precision).lanes],
-            _ => Vec::new(),
-        }
+    /// Room for searches, where there is a tree.
+    fn stacks(&self) -> Option<Box<Stacks>> {
+        matches!(&self.search, Search::Wide(wide) if wide.has_tree()).then(Stacks::new)
     }
 
     /// Gives back the samples whose paths have ended; paths that have another part go on with that.
@@ -176,7 +173,8 @@ impl Lanes {
         let splitting = if self.course.splits > 0 { sizes_of(self.level, self.precision).lanes } else { 0 };
         let mut waiting = vec![NO_PARTS; splitting];
         let mut stacks = self.stacks();
-        let work = Render::<AIMS, MATT> { kernel: self, piece, waiting: &mut waiting, stacks: &mut stacks, out };
+        let stacks = stacks.as_mut().map_or(&mut [][..], |stacks| &mut stacks.0[..]);
+        let work = Render::<AIMS, MATT> { kernel: self, piece, waiting: &mut waiting, stacks, out };
         on_level(self.level, self.precision, work)
     }
 }

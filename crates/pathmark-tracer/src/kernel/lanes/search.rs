@@ -53,7 +53,9 @@ impl Lanes {
 
     /// Searches along so many rays, made by [`Self::side_by_side`].
     pub(in crate::kernel) fn search(&self, rays: &Numbers, count: usize) -> FoundRays {
-        on_level(self.level, self.precision, Searching { lanes: self, rays, count, stacks: &mut self.stacks() })
+        let mut stacks = self.stacks();
+        let stacks = stacks.as_mut().map_or(&mut [][..], |stacks| &mut stacks.0[..]);
+        on_level(self.level, self.precision, Searching { lanes: self, rays, count, stacks })
     }
 }
 

@@ -6,7 +6,9 @@ use crate::kernel::lanes::packet::Rays;
 use crate::math::{Ray, Shear, Vec3, sheared};
 use crate::simd::{Float, MOST_LANES, Mask};
 
-/// The rays of all lanes, out of their registers.
+/// The rays of all lanes, out of their registers. Page by page, as [`super::Stacks`] are: a processor takes a load for one of what was just stored where both
+/// stand at the same place of a page, so how fast searches were depended on where memory happened to be.
+#[repr(align(4096))]
 pub(super) struct Bundle<V: Float> {
     /// Origins, directions, and the primitives that rays start on.
     rows: [[V::One; MOST_LANES]; 7],

@@ -25,8 +25,8 @@ use blocks::{Blocks, Making};
 use bundle::Bundle;
 use coarse::Scale;
 use doubt::are_doubtful;
-pub(in crate::kernel::lanes) use tree::Stack;
 use tree::{Descent, Tree, is_shallow};
+pub(in crate::kernel::lanes) use tree::{Stack, Stacks};
 
 /// The primitives of a scene.
 pub(in crate::kernel::lanes) struct Wide {
@@ -213,12 +213,12 @@ mod tests {
             let Self(scene, wide, starts) = self;
             let tables = Tables::of(scene, Precision::F64);
             let mut all_left = 0;
-            let mut stacks = vec![Stack::EMPTY; V::LANES];
+            let mut stacks = Stacks::new();
             for starts in starts.chunks_exact(V::LANES) {
                 let wanted = u32::MAX >> (MOST_LANES - V::LANES);
                 let rays = side_by_side::<V>(scene, starts);
                 let counts = &mut Counts::default();
-                let scratch = &mut Scratch::new(&mut stacks);
+                let scratch = &mut Scratch::new(&mut stacks.0);
                 let (found, left) = Nearest { wide, tables: &tables, rays: &rays, wanted, scratch, counts }.run();
                 all_left += left.count_ones() as usize;
                 for (lane, start) in starts.iter().enumerate().filter(|(lane, _)| left >> lane & 1 == 0) {

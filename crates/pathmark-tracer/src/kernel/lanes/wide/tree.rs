@@ -240,6 +240,16 @@ pub(in crate::kernel::lanes) struct Stack {
     near: u32,
 }
 
+/// Those of all lanes, from the beginning of a page on.
+#[repr(align(4096))]
+pub(in crate::kernel::lanes) struct Stacks(pub(in crate::kernel::lanes) [Stack; MOST_LANES]);
+
+impl Stacks {
+    pub(in crate::kernel::lanes) fn new() -> Box<Self> {
+        Box::new(Self([Stack::EMPTY; MOST_LANES]))
+    }
+}
+
 /// The children of one node come on top of those that wait, all together.
 const PLACES: usize = MOST_WAITING + 2 * MOST_LANES;
 
