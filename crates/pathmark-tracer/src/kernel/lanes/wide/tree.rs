@@ -241,12 +241,14 @@ pub(in crate::kernel::lanes) struct Stack {
 }
 
 /// Those of all lanes, from the beginning of a page on.
+#[derive(Clone)]
 #[repr(align(4096))]
 pub(in crate::kernel::lanes) struct Stacks(pub(in crate::kernel::lanes) [Stack; MOST_LANES]);
 
 impl Stacks {
     pub(in crate::kernel::lanes) fn new() -> Box<Self> {
-        Box::new(Self([Stack::EMPTY; MOST_LANES]))
+        static EMPTY: Stacks = Stacks([Stack::EMPTY; MOST_LANES]);
+        Box::new(EMPTY.clone())
     }
 }
 
