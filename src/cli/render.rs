@@ -81,12 +81,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         path.map_or(Ok(()), |path| files.writes(option, path))?;
     }
 
-    let rule = arguments.ranks.rule(lab)?;
-    if rule.is_none() {
-        talk.busy(&format!("building {}", setup.name()), || setup.build())?;
-    }
     let mut clustered = None;
-    let (setup, outcome) = if let Some(rule) = rule {
+    let (setup, outcome) = if let Some(rule) = arguments.ranks.rule(lab)? {
         let rendered = arguments.ranks.render(&rule, setup, &arguments.rounds, spp, talk)?;
         let Some((setup, outcome, told)) = rendered else { return Ok(()) };
         clustered = Some(told);
@@ -94,6 +90,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     } else if arguments.rounds.is_multi_round() {
         rounds::render(&arguments.rounds, setup, spp, talk, &mut |rounds, spp| rounds.extend_to(spp, None))?
     } else {
+        talk.busy(&format!("building {}", setup.name()), || setup.build())?;
         talk.begin(&format!("{} at {spp} spp", setup.name()), setup.jobs() as u64);
         let watch = |done| talk.advance(done);
         let outcome = if arguments.adaptive { setup.run_adaptive(Some(&watch)) } else { setup.run(Some(&watch)) }?;

@@ -75,6 +75,7 @@ pub(super) fn render(
         pause_s: checkpoint.as_ref().map(|_| PAUSE_S),
     };
     goal.check(&rounds)?;
+    talk.busy(&format!("building {}", rounds.setup().name()), || rounds.setup().build())?;
 
     let (resumed, name) = (rounds.spp(), rounds.setup().name().to_string());
     let title = match (spp, goal.target_error, goal.time_limit_s) {

@@ -49,14 +49,26 @@ fn folder(scene: &str, obj: Option<&[u8]>) -> tempfile::TempDir {
     folder
 }
 
+/// Puts each wrong line into a text that is right, writes it to the file and asks whether its place is told.
+fn each_is_named(
+    text: &str,
+    wrong: &[(&str, &str, usize, &[&str])],
+    file: &str,
+    folder: impl Fn(&[u8]) -> tempfile::TempDir,
+) {
+    finish(pathmark(folder(text.as_bytes()).path(), &ARGUMENTS)).with_code(0);
+    for (right, wrong, line, said) in wrong {
+        assert!(text.contains(right), "{right:?}");
+        let folder = folder(text.replacen(right, wrong, 1).as_bytes());
+        let message = refused(folder.path(), &ARGUMENTS, 2, said);
+        assert_eq!(place(&message, file).map(|at| at.0), Some(*line), "{wrong}: {message}");
+    }
+}
+
 #[test]
 fn each_wrong_line_is_named() {
-    for (right, wrong, line, said) in WRONG {
-        assert!(OBJ.contains(right), "{right:?}");
-        let folder = folder(SCENE, Some(OBJ.replacen(right, wrong, 1).as_bytes()));
-        let message = refused(folder.path(), &ARGUMENTS, 2, said);
-        assert_eq!(place(&message, "thing.obj").map(|at| at.0), Some(*line), "{wrong}: {message}");
-    }
+    each_is_named(OBJ, WRONG, "thing.obj", |obj| folder(SCENE, Some(obj)));
+    each_is_named(PLY, WRONG_PLY, "thing.ply", |ply| ply_folder(SCENE, ply));
 }
 
 /// T05: corners on a line are left out; if that is all there is, the mesh is none.
@@ -136,17 +148,6 @@ fn ply_folder(scene: &str, ply: &[u8]) -> tempfile::TempDir {
     let folder = folder(&scene.replace("thing.obj", "thing.ply"), None);
     fs::write(folder.path().join("thing.ply"), ply).unwrap();
     folder
-}
-
-#[test]
-fn each_wrong_line_of_a_ply_file_is_named() {
-    finish(pathmark(ply_folder(SCENE, PLY.as_bytes()).path(), &ARGUMENTS)).with_code(0);
-    for (right, wrong, line, said) in WRONG_PLY {
-        assert!(PLY.contains(right), "{right:?}");
-        let folder = ply_folder(SCENE, PLY.replacen(right, wrong, 1).as_bytes());
-        let message = refused(folder.path(), &ARGUMENTS, 2, said);
-        assert_eq!(place(&message, "thing.ply").map(|at| at.0), Some(*line), "{wrong}: {message}");
-    }
 }
 
 #[test]

@@ -65,3 +65,17 @@ impl Scene {
         scene_from_text(Source { name, file, text: text.to_string(), folder: Folder::Disk(PathBuf::new()) }, None, &[])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_alone_tells_the_estimator() {
+        let library = Library::default();
+        for name in library.names().chain(["spheres:100"]) {
+            assert_eq!(library.estimator_of(name).unwrap(), library.load(name).unwrap().estimator(), "{name}");
+        }
+        assert_eq!(library.estimator_of("cornell").unwrap(), "smallpt");
+    }
+}

@@ -173,8 +173,13 @@ impl Lanes {
         let splitting = if self.course.splits > 0 { sizes_of(self.level, self.precision).lanes } else { 0 };
         let mut waiting = vec![NO_PARTS; splitting];
         let mut stacks = self.stacks();
-        let stacks = stacks.as_mut().map_or(&mut [][..], |stacks| &mut stacks.0[..]);
-        let work = Render::<AIMS, MATT> { kernel: self, piece, waiting: &mut waiting, stacks, out };
+        let work = Render::<AIMS, MATT> {
+            kernel: self,
+            piece,
+            waiting: &mut waiting,
+            stacks: Stacks::of_lanes(&mut stacks),
+            out,
+        };
         on_level(self.level, self.precision, work)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Lanes;
 use super::packet::Rays;
-use super::wide::{Scratch, Stack};
+use super::wide::{Scratch, Stack, Stacks};
 use crate::kernel::Counts;
 use crate::kernel::rays::{FoundRays, Start};
 use crate::math::{Ray, Vec3, other_root};
@@ -54,8 +54,8 @@ impl Lanes {
     /// Searches along so many rays, made by [`Self::side_by_side`].
     pub(in crate::kernel) fn search(&self, rays: &Numbers, count: usize) -> FoundRays {
         let mut stacks = self.stacks();
-        let stacks = stacks.as_mut().map_or(&mut [][..], |stacks| &mut stacks.0[..]);
-        on_level(self.level, self.precision, Searching { lanes: self, rays, count, stacks })
+        let work = Searching { lanes: self, rays, count, stacks: Stacks::of_lanes(&mut stacks) };
+        on_level(self.level, self.precision, work)
     }
 }
 

@@ -90,30 +90,22 @@ fn pair(table: &Table, lower: i32, upper: i32) -> x86::__m256 {
 }
 
 /// For each mask, the lanes that it holds, in order.
-static PACKED: [[i32; 8]; 256] = {
-    let (mut table, mut mask) = ([[0; 8]; 256], 0);
-    while mask < 256 {
-        let (mut lane, mut next) = (0, 0);
-        while lane < 8 {
-            if mask >> lane & 1 == 1 {
-                table[mask][next] = lane;
-                next += 1;
-            }
-            lane += 1;
-        }
-        mask += 1;
-    }
-    table
-};
+static PACKED: [[i32; 8]; 256] = orders(true);
 
 /// For each mask, the numbers that its lanes take: the first lane that it holds the first number, and so on.
-static SPREAD: [[i32; 8]; 256] = {
+static SPREAD: [[i32; 8]; 256] = orders(false);
+
+const fn orders(are_packed: bool) -> [[i32; 8]; 256] {
     let (mut table, mut mask) = ([[0; 8]; 256], 0);
     while mask < 256 {
         let (mut lane, mut next) = (0, 0);
         while lane < 8 {
             if mask >> lane & 1 == 1 {
-                table[mask][lane] = next;
+                if are_packed {
+                    table[mask][next] = lane as i32;
+                } else {
+                    table[mask][lane] = next as i32;
+                }
                 next += 1;
             }
             lane += 1;
@@ -121,4 +113,4 @@ static SPREAD: [[i32; 8]; 256] = {
         mask += 1;
     }
     table
-};
+}

@@ -250,6 +250,11 @@ impl Stacks {
         static EMPTY: Stacks = Stacks([Stack::EMPTY; MOST_LANES]);
         Box::new(EMPTY.clone())
     }
+
+    /// Each of them; none where there is no tree.
+    pub(in crate::kernel::lanes) fn of_lanes(stacks: &mut Option<Box<Self>>) -> &mut [Stack] {
+        stacks.as_mut().map_or(&mut [], |stacks| &mut stacks.0)
+    }
 }
 
 /// The children of one node come on top of those that wait, all together.
