@@ -9,7 +9,7 @@ use crate::scene::{Hit, POINT_LIGHT, PointLight, REACH, Scene, Standpoint, Tests
 
 /// The part of the way to a light on which something can hide it. A light that lies in a surface is not hidden by it: what remains is more
 /// than rounding makes of a distance, and relative, so that it is the same in scenes of any size.
-const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
+pub(crate) const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 
 /// The straight way to a light.
 struct Way {

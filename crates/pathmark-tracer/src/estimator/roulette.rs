@@ -10,7 +10,7 @@ use std::fmt;
 
 /// What the chance to survive follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum By {
+pub(crate) enum By {
     /// The largest channel of what the vertex lets on.
     Albedo,
     /// The largest channel of what the path still carries behind the vertex, at most 1.
@@ -22,7 +22,7 @@ enum By {
 /// When and how paths are ended by chance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Roulette {
-    by: By,
+    pub(crate) by: By,
     after: u16,
 }
 

@@ -78,6 +78,14 @@ impl SampleSum {
         }
     }
 
+    /// Adds the sums of the next blocks, which were added up elsewhere. Every part but the last is of equally many blocks, a power of two.
+    pub(crate) fn add_part(&mut self, part: PixelSum, is_last: bool) {
+        self.block = part;
+        if !is_last {
+            self.carry();
+        }
+    }
+
     fn carry(&mut self) {
         let mut carried = std::mem::take(&mut self.block);
         let mut level = 0;
@@ -139,6 +147,20 @@ mod tests {
         let whole = sum_of((0..256).map(value));
         let parts = sum_of((0..128).map(value)).plus(&sum_of((128..256).map(value)));
         assert_eq!(whole, parts);
+    }
+
+    /// Parts of a power of two of blocks, the last of which may be short, are added up to the same bits.
+    #[test]
+    fn parts_are_subtrees() {
+        let value = |k: u32| 1.0 / f64::from(k % 97 + 1);
+        for (part, n) in [(16, 100), (32, 100), (64, 64), (64, 1000), (256, 777), (4096, 10)] {
+            let mut sum = SampleSum::default();
+            for start in (0..n).step_by(part) {
+                let end = n.min(start + part as u32);
+                sum.add_part(sum_of((start..end).map(value)), end == n);
+            }
+            assert_eq!(sum.total(), sum_of((0..n).map(value)), "{n} samples in parts of {part}");
+        }
     }
 
     #[test]

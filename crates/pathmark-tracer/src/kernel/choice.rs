@@ -1,6 +1,6 @@
 //! What the names of a [`Spec`] come to for a scene: everything that a user could have got wrong is found here.
 
-use super::in_lanes::{InLanes, lanes_for};
+use super::way::{Way, way_for};
 use super::{Clamp, Clamped, LANES, OwnEstimator, SCALAR, Spec};
 use crate::effect::Effects;
 use crate::error::{InputError, Result};
@@ -34,8 +34,7 @@ pub struct Choice {
     pub(super) sampler: &'static SamplerEntry,
     pub(super) profile: &'static ProfileEntry,
     accelerator: &'static Accelerator,
-    /// How lanes go about it, or why they do not.
-    pub(super) lanes: std::result::Result<InLanes, &'static str>,
+    pub(super) way: Way,
 }
 
 impl Choice {
@@ -106,24 +105,28 @@ impl Choice {
         }
     }
 
-    /// Name of the kernel that renders.
-    pub fn kernel(&self) -> &'static str {
-        if self.lanes.is_ok() { LANES } else { SCALAR }
+    /// Name of the kernel that renders; of a device with the device's own: `device:cuda:0`.
+    pub fn kernel(&self) -> &str {
+        match &self.way {
+            Way::Lanes(_) => LANES,
+            Way::Device(device) => &device.kernel,
+            Way::Scalar { .. } => SCALAR,
+        }
     }
 
     /// Instruction set of its lanes; empty if it has none.
     pub fn simd(&self) -> &'static str {
-        self.lanes.as_ref().map_or("", |lanes| lanes.level.name())
+        self.way.lanes().map_or("", |lanes| lanes.level.name())
     }
 
     /// Floating-point format of what it computes with.
     pub fn precision(&self) -> Precision {
-        self.lanes.as_ref().map_or(Precision::F64, |lanes| lanes.precision)
+        self.way.lanes().map_or(Precision::F64, |lanes| lanes.precision)
     }
 
     /// Why it is not the kernel that was asked for; empty if it is.
     pub fn fallback(&self) -> &'static str {
-        self.lanes.err().filter(|reason| *reason != SCALAR).unwrap_or_default()
+        if let Way::Scalar { instead_because } = self.way { instead_because } else { "" }
     }
 
     /// Name of the smallest effect profile that covers the scene, or of the one that was asked for.
@@ -133,10 +136,10 @@ impl Choice {
 
     /// The effects that the kernel was compiled for: a profile's name (of lanes, whose primitives are no part of it), or that it asks at run time.
     pub fn effects(&self) -> &'static str {
-        match self.lanes {
-            Ok(lanes) if lanes.is_matt => DiffuseOnly::NAME,
-            Ok(_) => AT_RUN_TIME,
-            Err(_) => self.profile.name,
+        match &self.way {
+            Way::Lanes(lanes) if lanes.is_matt => DiffuseOnly::NAME,
+            Way::Lanes(_) => AT_RUN_TIME,
+            Way::Device(_) | Way::Scalar { .. } => self.profile.name,
         }
     }
 
@@ -196,10 +199,10 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         None => any_estimator(estimator.name, options).and_then(|estimator| estimator.any_course()),
     };
     let epsilon = epsilon(spec)?;
-    let lanes = lanes_for(scene, spec, course, epsilon)?;
-    let scan = match &lanes {
-        Err(_) => Scan::OneByOne,
-        Ok(chosen) => {
+    let way = way_for(scene, spec, course, epsilon)?;
+    let scan = match way.lanes() {
+        None => Scan::OneByOne,
+        Some(chosen) => {
             let Sizes { lanes, single, .. } = sizes_of(chosen.level, chosen.precision);
             match chosen.precision {
                 _ if scene.primitives.effects() == Sphere::EFFECT => Scan::Spheres(single),
@@ -232,7 +235,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         options,
         sampler,
         accelerator,
-        lanes,
+        way,
     })
 }
 

@@ -1,7 +1,7 @@
 //! Whether lanes render a scene with some settings, and on which level.
 
 use super::choice::unknown;
-use super::{KERNELS, SCALAR, Spec};
+use super::{LANES, Spec};
 use crate::error::{InputError, Result};
 use crate::estimator::PathRules;
 use crate::material::Diffuse;
@@ -43,14 +43,8 @@ pub(super) fn lanes_for(
     course: Option<PathRules>,
     epsilon: Option<f64>,
 ) -> Result<std::result::Result<InLanes, &'static str>> {
-    if !KERNELS.iter().any(|entry| entry.name == spec.kernel) {
-        return Err(unknown("kernel", &spec.kernel, KERNELS.iter().map(|entry| entry.name)).into());
-    }
     let level = level(LEVELS, spec.simd.as_deref())?;
     let precision = precision(spec)?;
-    if spec.kernel == SCALAR {
-        return Ok(Err(SCALAR));
-    }
     Ok(Err(match (obstacle(scene, spec, epsilon), course, LaneSampler::find(&spec.sampler)) {
         (None, Some(course), Some(sampler)) => {
             let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
@@ -65,7 +59,7 @@ pub(super) fn lanes_for(
 }
 
 /// The level of that name, or the fastest that this processor has.
-fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Result<Level> {
+pub(super) fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Result<Level> {
     let available = || levels.iter().filter_map(LevelEntry::here);
     if let Some(level) = available().find(|level| wanted.is_none_or(|name| level.name() == name)) {
         return Ok(level);
@@ -79,14 +73,15 @@ fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Result<Level> {
     Err(unknown("simd", name, available().map(Level::name)).into())
 }
 
-/// The format that the spec names; the scalar kernel has but one.
-fn precision(spec: &Spec) -> Result<Precision> {
+/// The format that the spec names; only lanes have another than double precision.
+pub(super) fn precision(spec: &Spec) -> Result<Precision> {
     let name = &spec.precision;
     let Some(precision) = Precision::ALL.into_iter().find(|precision| precision.name() == name) else {
         return Err(unknown("precision", name, Precision::ALL.into_iter().map(Precision::name)).into());
     };
-    if spec.kernel == SCALAR && precision != Precision::F64 {
-        let problem = "is nothing for the scalar kernel";
+    if spec.kernel != LANES && precision != Precision::F64 {
+        let kernel = spec.kernel.split(':').next().unwrap_or_default();
+        let problem = format!("is nothing for the {kernel} kernel");
         return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
     }
     Ok(precision)

@@ -2,6 +2,7 @@
 
 mod choice;
 mod clamp;
+mod device;
 mod in_lanes;
 mod inspect;
 mod lanes;
@@ -10,10 +11,11 @@ mod rays;
 mod recursion_clamp;
 mod scalar;
 mod spec;
+mod way;
 pub mod workload;
 
 use crate::effect::EffectSet;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::estimator::{Compiled, Estimator, EstimatorVisitor, with_estimator};
 use crate::film::{Bounds, Piece, TileBuffer};
 use crate::sampling::{
@@ -24,6 +26,7 @@ pub use choice::{Choice, choose, choose_among};
 use choice::{INDEPENDENT, unknown};
 pub use clamp::{Clamp, Clamped};
 pub use inspect::{BounceRow, Event, Inspector, LightByBounce, PathLog};
+use device::OnDevice;
 use lanes::Lanes;
 pub use own::OwnEstimator;
 pub use rays::{FoundRays, RaySearch, Start, path_rays};
@@ -31,6 +34,7 @@ use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
 pub use spec::Spec;
+use way::Way;
 use std::marker::PhantomData;
 use std::sync::Arc;
 
@@ -73,6 +77,11 @@ impl Counts {
 pub trait Kernel: Send + Sync {
     /// Renders the samples of the piece into the buffer, which has the piece's columns and at least its rows.
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts;
+
+    /// Why pieces were not rendered, if the system refused; what is in their buffers then counts for nothing.
+    fn failure(&self) -> Option<Error> {
+        None
+    }
 }
 
 /// One line of the table of kernels.
@@ -89,6 +98,11 @@ pub const KERNELS: &[Entry] = &[
     Entry { name: SCALAR, about: "one path at a time" },
 ];
 
+/// The kernel for devices: `device` for the first GPU, `device:ID` for the device of that name.
+pub const DEVICE_KERNEL: Entry =
+    Entry { name: DEVICE, about: "on a GPU, or on the device that `device:ID` names (`pathmark list devices`); in f64, with the bits of the others" };
+
+const DEVICE: &str = "device";
 const LANES: &str = "lanes";
 const SCALAR: &str = "scalar";
 
@@ -116,8 +130,10 @@ pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Inspector> {
 
 /// Builds the kernel for a scene, and what accelerates it.
 pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>> {
-    if let Ok(chosen) = choice.lanes {
-        return Ok(Box::new(Lanes::new(prepared(scene, choice), choice, chosen)));
+    match &choice.way {
+        Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(prepared(scene, choice), choice, *chosen))),
+        Way::Device(chosen) => return Ok(Box::new(OnDevice::new(&prepared(scene, choice), choice, chosen)?)),
+        Way::Scalar { .. } => {}
     }
     if let Some(Clamp { what: Clamped::Recursion, limit }) = choice.clamp {
         return Ok(Box::new(RecursionClamp { inspector: Inspector::new(scene, choice)?, limit }));

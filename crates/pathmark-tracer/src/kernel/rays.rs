@@ -85,13 +85,13 @@ impl RaySearch {
     pub fn new(scene: &Arc<Scene>, choice: &Choice, rays: Vec<Start>) -> Self {
         let prepared = prepared(scene, choice);
         let count = rays.len();
-        let way = match choice.lanes {
-            Ok(chosen) => {
+        let way = match choice.way.lanes().copied() {
+            Some(chosen) => {
                 let lanes = Box::new(Lanes::new(prepared, choice, chosen));
                 let rays = lanes.side_by_side(&rays);
                 Way::Lanes { lanes, rays }
             }
-            Err(_) => Way::Scalar { scene: prepared, rays },
+            None => Way::Scalar { scene: prepared, rays },
         };
         Self { way, count }
     }
@@ -129,7 +129,7 @@ impl RaySearch {
 impl Choice {
     /// The same paths as the scalar kernel has them.
     fn in_double_precision(mut self) -> Self {
-        if let Ok(lanes) = &mut self.lanes {
+        if let super::way::Way::Lanes(lanes) = &mut self.way {
             lanes.precision = Precision::F64;
         }
         self

@@ -27,4 +27,5 @@ pub use sphere::{
 };
 pub use triangle::{Crossing, Shear, sheared, triangle_root};
 pub use trig::sin_cos_turns;
+pub(crate) use trig::{COS, SIN};
 pub use vector::{Vec3, dot};

@@ -3,7 +3,7 @@
 use super::Real;
 
 /// Coefficients of sin(x)/x in x², from the Taylor series: on |x| <= π/4 the first term left out is below 1e-19.
-const SIN: [f64; 9] = [
+pub(crate) const SIN: [f64; 9] = [
     1.0,
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -16,7 +16,7 @@ const SIN: [f64; 9] = [
 ];
 
 /// Coefficients of cos(x) in x², likewise.
-const COS: [f64; 9] = [
+pub(crate) const COS: [f64; 9] = [
     1.0,
     -1.0 / 2.0,
     1.0 / 24.0,

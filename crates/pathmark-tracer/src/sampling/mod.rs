@@ -23,6 +23,7 @@ pub use libc_rand::LibcRand;
 pub use locked::Locked;
 pub use per_thread::PerThread;
 pub use sobol::Sobol;
+pub(crate) use sobol::{ORDERS, SUBPIXEL, each_third};
 pub use sobol_burley::SobolBurley;
 pub use stratified::Stratified;
 pub use warp::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, tent, uniform_sphere};

@@ -40,7 +40,7 @@ const fn times_omega(elements: u32) -> u32 {
 const LOWER: u32 = 0x5555_5555;
 
 /// Both bits of the elements `place`, `place + 3`, ...
-const fn each_third(place: u32) -> u32 {
+pub(crate) const fn each_third(place: u32) -> u32 {
     let (mut mask, mut bit) = (0, 2 * place);
     while bit < u32::BITS {
         mask |= 3 << bit;
@@ -87,7 +87,7 @@ fn pascal_to_omega(index: u32) -> u32 {
 
 /// The coefficients of the fifth dimension's first digit, a bit of each product at a time. They follow the recurrence of x² + ω²x + 1, a
 /// polynomial without roots in the field, and so repeat themselves after five.
-const SUBPIXEL: [u32; 2] = {
+pub(crate) const SUBPIXEL: [u32; 2] = {
     let coefficients = [1, 2, 0, 2, 1];
     let (mut masks, mut place) = ([0; 2], 0);
     while place < 16 {
@@ -105,7 +105,7 @@ const SUBPIXEL: [u32; 2] = {
 };
 
 /// The orders of four, two bits for each.
-const ORDERS: [u8; 24] = {
+pub(crate) const ORDERS: [u8; 24] = {
     let mut orders = [0; 24];
     let (mut place, mut code) = (0, 0);
     while place < orders.len() {

@@ -116,10 +116,10 @@ cameras! {
 /// A camera set up for an image size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    camera: Camera,
-    filter: Filter,
-    right: Vec3,
-    up: Vec3,
+    pub(crate) camera: Camera,
+    pub(crate) filter: Filter,
+    pub(crate) right: Vec3,
+    pub(crate) up: Vec3,
     width: f64,
     height: f64,
     rows: u32,

@@ -83,7 +83,7 @@ pub const fn padding(digits: u32) -> f64 {
 }
 
 /// The smallest and the largest coordinates of a box: an array, so that a direction's sign can choose without a branch.
-pub(super) type Faces = [[f64; 3]; 2];
+pub(crate) type Faces = [[f64; 3]; 2];
 
 /// A ray, made ready for boxes.
 #[derive(Clone, Copy)]

@@ -15,7 +15,7 @@ use std::thread::{Builder, available_parallelism, scope};
 pub(super) const UNBALANCED: usize = 32;
 
 /// The deepest level: halving 2^32 primitives after [`UNBALANCED`] levels.
-pub(super) const DEEPEST: usize = UNBALANCED + 32;
+pub(crate) const DEEPEST: usize = UNBALANCED + 32;
 
 /// Up to so many primitives of a node are sorted and every place between two of them tried. Of a million triangles the tree that is divided by bins
 /// above that has within a few percent the cost of the one that is sorted throughout.

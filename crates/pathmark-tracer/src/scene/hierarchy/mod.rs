@@ -17,6 +17,7 @@ mod sorted;
 mod traverse;
 
 pub use bounds::{Bounds, padding};
+pub(crate) use build::DEEPEST;
 pub use gather::{Child, Content};
 
 use bounds::Faces;
@@ -138,6 +139,17 @@ pub fn accelerator(name: Option<&str>, primitives: usize, scan: Scan) -> Option<
 }
 
 impl Hierarchy {
+    /// The nodes in their order: the faces of their boxes, of an inner node the first child and 0, of a leaf the first entry and how many it has in
+    /// [`Hierarchy::order`].
+    pub(crate) fn nodes(&self) -> impl ExactSizeIterator<Item = (Faces, u32, u32)> {
+        self.nodes.iter().map(|node| (node.faces, node.at, node.count))
+    }
+
+    /// Primitives in the order of the leaves.
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
     /// Levels below the root.
     pub fn depth(&self) -> usize {
         let mut deepest = 0;

@@ -1,0 +1,404 @@
+//! GPUs by CUDA: `libcuda`, which comes with the driver, runs what `libnvrtc` compiles.
+#![expect(unsafe_code, reason = "calls of the driver; each has the arguments that CUDA's documentation asks for")]
+
+use super::library::{functions, open};
+use super::{Device, DeviceError, Dialect, Listed, Loaded, Result};
+use std::collections::HashMap;
+use std::env;
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::ptr::{null, null_mut};
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+
+type Handle = *mut c_void;
+/// An address on the device.
+type Address = u64;
+
+functions! { Driver;
+    init = c"cuInit" (u32) -> c_int;
+    count = c"cuDeviceGetCount" (*mut c_int) -> c_int;
+    get = c"cuDeviceGet" (*mut c_int, c_int) -> c_int;
+    name = c"cuDeviceGetName" (*mut c_char, c_int, c_int) -> c_int;
+    attribute = c"cuDeviceGetAttribute" (*mut c_int, c_int, c_int) -> c_int;
+    retain = c"cuDevicePrimaryCtxRetain" (*mut Handle, c_int) -> c_int;
+    set_current = c"cuCtxSetCurrent" (Handle) -> c_int;
+    load = c"cuModuleLoadData" (*mut Handle, *const c_void) -> c_int;
+    function = c"cuModuleGetFunction" (*mut Handle, Handle, *const c_char) -> c_int;
+    allocate = c"cuMemAlloc_v2" (*mut Address, usize) -> c_int;
+    free = c"cuMemFree_v2" (Address) -> c_int;
+    to_device = c"cuMemcpyHtoD_v2" (Address, *const c_void, usize) -> c_int;
+    from_device = c"cuMemcpyDtoH_v2" (*mut c_void, Address, usize) -> c_int;
+    launch = c"cuLaunchKernel" (Handle, u32, u32, u32, u32, u32, u32, u32, Handle, *mut *mut c_void, *mut *mut c_void) -> c_int;
+    error_text = c"cuGetErrorString" (c_int, *mut *const c_char) -> c_int;
+}
+
+functions! { Compiler;
+    create = c"nvrtcCreateProgram" (*mut Handle, *const c_char, *const c_char, c_int, *const *const c_char, *const *const c_char) -> c_int;
+    compile = c"nvrtcCompileProgram" (Handle, c_int, *const *const c_char) -> c_int;
+    ptx_size = c"nvrtcGetPTXSize" (Handle, *mut usize) -> c_int;
+    ptx = c"nvrtcGetPTX" (Handle, *mut c_char) -> c_int;
+    log_size = c"nvrtcGetProgramLogSize" (Handle, *mut usize) -> c_int;
+    log = c"nvrtcGetProgramLog" (Handle, *mut c_char) -> c_int;
+    destroy = c"nvrtcDestroyProgram" (*mut Handle) -> c_int;
+    architecture_count = c"nvrtcGetNumSupportedArchs" (*mut c_int) -> c_int;
+    architectures = c"nvrtcGetSupportedArchs" (*mut c_int) -> c_int;
+}
+
+// Numbers of CUDA's header.
+const SUCCESS: c_int = 0;
+const MULTIPROCESSORS: c_int = 16;
+const CAPABILITY_MAJOR: c_int = 75;
+const CAPABILITY_MINOR: c_int = 76;
+
+/// Items of a group: enough for two groups of a multiprocessor to hide each other's waits, few enough to leave each item its registers.
+const GROUP: u32 = 128;
+/// Items that keep a multiprocessor busy.
+const ITEMS_PER_MULTIPROCESSOR: u32 = 2048;
+
+static DRIVER: LazyLock<std::result::Result<Driver, String>> = LazyLock::new(|| {
+    let driver = open(&["libcuda.so.1", "libcuda.so"]).and_then(Driver::of)?;
+    // SAFETY: the flags must be zero.
+    let code = unsafe { (driver.init)(0) };
+    if code == SUCCESS { Ok(driver) } else { Err(format!("cuInit: {}", text_of(&driver, code))) }
+});
+
+/// The compiler of the library that `PATHMARK_NVRTC` names, or of the first that there is.
+static COMPILER: LazyLock<std::result::Result<Compiler, String>> = LazyLock::new(|| {
+    let named = env::var("PATHMARK_NVRTC").unwrap_or_default();
+    let usual = ["libnvrtc.so", "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2"];
+    let names: &[&str] = if named.is_empty() { &usual } else { &[&named] };
+    open(names).and_then(Compiler::of)
+});
+
+/// The driver's words for an error.
+fn text_of(driver: &Driver, code: c_int) -> String {
+    let mut text = null();
+    // SAFETY: the driver gives a text of its own, which stays, or leaves null.
+    unsafe { (driver.error_text)(code, &raw mut text) };
+    if text.is_null() {
+        return format!("error {code}");
+    }
+    // SAFETY: it ends with a zero.
+    format!("{} (error {code})", unsafe { CStr::from_ptr(text) }.to_string_lossy())
+}
+
+fn attribute(driver: &Driver, device: c_int, what: c_int) -> u32 {
+    let mut value = 0;
+    // SAFETY: a device that the driver has shown.
+    let code = unsafe { (driver.attribute)(&raw mut value, what, device) };
+    if code == SUCCESS { value as u32 } else { 0 }
+}
+
+fn name_of(driver: &Driver, device: c_int) -> String {
+    let mut text = [0_u8; 256];
+    // SAFETY: the driver writes no more than there is room for.
+    unsafe { (driver.name)(text.as_mut_ptr().cast(), text.len() as c_int, device) };
+    let end = text.iter().position(|byte| *byte == 0).unwrap_or(text.len());
+    String::from_utf8_lossy(&text[..end]).into_owned()
+}
+
+fn devices(driver: &Driver) -> Vec<c_int> {
+    let mut count = 0;
+    // SAFETY: the driver is initialised.
+    let code = unsafe { (driver.count)(&raw mut count) };
+    let numbers = 0..if code == SUCCESS { count } else { 0 };
+    let device = |number| {
+        let mut device = 0;
+        // SAFETY: the number is below the count.
+        let code = unsafe { (driver.get)(&raw mut device, number) };
+        (code == SUCCESS).then_some(device)
+    };
+    numbers.filter_map(device).collect()
+}
+
+pub(crate) fn list() -> Vec<Listed> {
+    let nothing =
+        |about: String| vec![Listed { id: "cuda".to_string(), about, is_there: false, is_accelerator: true }];
+    let driver = match &*DRIVER {
+        Ok(driver) => driver,
+        Err(why) => return nothing(why.clone()),
+    };
+    let devices = devices(driver);
+    if devices.is_empty() {
+        return nothing("the driver shows no device".to_string());
+    }
+    let compiler = COMPILER.as_ref().err();
+    let listed = devices.into_iter().enumerate().map(|(number, device)| Listed {
+        id: format!("cuda:{number}"),
+        about: match compiler {
+            None => name_of(driver, device),
+            Some(why) => format!("{}: no compiler (install libnvrtc): {why}", name_of(driver, device)),
+        },
+        is_there: compiler.is_none(),
+        is_accelerator: true,
+    });
+    listed.collect()
+}
+
+/// The newest architecture that the compiler knows and a device of that capability can run.
+fn architecture(compiler: &Compiler, capability: u32) -> u32 {
+    let mut count = 0;
+    // SAFETY: it writes one number.
+    unsafe { (compiler.architecture_count)(&raw mut count) };
+    let mut known = vec![0; count.max(0) as usize];
+    // SAFETY: there is room for as many as it has said.
+    unsafe { (compiler.architectures)(known.as_mut_ptr()) };
+    known.into_iter().map(|known| known as u32).filter(|known| *known <= capability).max().unwrap_or(capability)
+}
+
+/// The code for GPUs of at least that compute capability (80 for 8.0), as `libnvrtc` makes it of a program; needs no GPU.
+pub fn ptx_of(program: &str, capability: u32) -> Result<String> {
+    let missing = |why: &String| DeviceError::Missing { id: "libnvrtc".to_string(), why: why.clone() };
+    let compiler = COMPILER.as_ref().map_err(missing)?;
+    let refused = |log: String| DeviceError::Compiler { compiler: "libnvrtc".to_string(), log };
+    let text = CString::new(Dialect::Cuda.whole(program)).map_err(|e| refused(e.to_string()))?;
+    let mut handle = null_mut();
+    // SAFETY: texts end with zeros; there are no headers.
+    let code =
+        unsafe { (compiler.create)(&raw mut handle, text.as_ptr(), c"pathmark.cu".as_ptr(), 0, null(), null()) };
+    if code != SUCCESS {
+        return Err(refused(format!("nvrtcCreateProgram: error {code}")));
+    }
+    let target = format!("--gpu-architecture=compute_{}", architecture(compiler, capability));
+    let target = CString::new(target).map_err(|e| refused(e.to_string()))?;
+    let options = [target.as_ptr(), c"--fmad=false".as_ptr(), c"--ftz=false".as_ptr(), c"--prec-div=true".as_ptr(), c"--prec-sqrt=true".as_ptr()];
+    // SAFETY: so many options, each of which ends with a zero.
+    let code = unsafe { (compiler.compile)(handle, options.len() as c_int, options.as_ptr()) };
+    let made = if code == SUCCESS {
+        Ok(text_by(compiler.ptx_size, compiler.ptx, handle))
+    } else {
+        Err(refused(text_by(compiler.log_size, compiler.log, handle)))
+    };
+    // SAFETY: the handle is this function's own.
+    unsafe { (compiler.destroy)(&raw mut handle) };
+    made
+}
+
+/// A text whose length one function tells and which another one writes.
+fn text_by(
+    size: unsafe extern "C" fn(Handle, *mut usize) -> c_int,
+    write: unsafe extern "C" fn(Handle, *mut c_char) -> c_int,
+    program: Handle,
+) -> String {
+    let mut length = 0;
+    // SAFETY: it writes one number.
+    unsafe { size(program, &raw mut length) };
+    let mut text = vec![0_u8; length];
+    // SAFETY: there is room for as much as it has said.
+    unsafe { write(program, text.as_mut_ptr().cast()) };
+    String::from_utf8_lossy(&text).trim_end_matches('\0').to_string()
+}
+
+/// A handle that may go from thread to thread.
+#[derive(Clone, Copy)]
+struct Shared(Handle);
+
+// SAFETY: the driver's functions may be called by any thread that has made the context its own, which each call here does first.
+unsafe impl Send for Shared {}
+// SAFETY: as above.
+unsafe impl Sync for Shared {}
+
+/// A device and its context.
+struct Context {
+    id: String,
+    driver: &'static Driver,
+    handle: Shared,
+}
+
+impl Context {
+    fn checked(&self, call: &'static str, code: c_int) -> Result<()> {
+        if code == SUCCESS {
+            return Ok(());
+        }
+        Err(DeviceError::Call { id: self.id.clone(), call, why: text_of(self.driver, code) })
+    }
+
+    /// Makes the context the calling thread's.
+    fn enter(&self) -> Result<()> {
+        // SAFETY: the context stays to the end of the process.
+        self.checked("cuCtxSetCurrent", unsafe { (self.driver.set_current)(self.handle.0) })
+    }
+}
+
+/// Memory of the device.
+struct Buffer {
+    address: Address,
+    bytes: usize,
+    context: Arc<Context>,
+}
+
+impl Buffer {
+    fn new(context: &Arc<Context>, bytes: usize) -> Result<Self> {
+        let mut address = 0;
+        // SAFETY: it writes one address.
+        context.checked("cuMemAlloc", unsafe { (context.driver.allocate)(&raw mut address, bytes.max(8)) })?;
+        Ok(Self { address, bytes, context: Arc::clone(context) })
+    }
+
+    fn of<T>(context: &Arc<Context>, content: &[T]) -> Result<Self> {
+        let buffer = Self::new(context, size_of_val(content))?;
+        buffer.write(content)?;
+        Ok(buffer)
+    }
+
+    fn write<T>(&self, content: &[T]) -> Result<()> {
+        debug_assert!(size_of_val(content) <= self.bytes);
+        // SAFETY: the buffer has at least this size.
+        let code =
+            unsafe { (self.context.driver.to_device)(self.address, content.as_ptr().cast(), size_of_val(content)) };
+        self.context.checked("cuMemcpyHtoD", code)
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // A context that is lost has no memory to give back.
+        if self.context.enter().is_ok() {
+            // SAFETY: the address is this one's own.
+            unsafe { (self.context.driver.free)(self.address) };
+        }
+    }
+}
+
+/// A GPU by CUDA.
+pub(crate) struct Cuda {
+    about: String,
+    width: u32,
+    capability: u32,
+    context: Arc<Context>,
+    functions: Mutex<HashMap<String, Shared>>,
+}
+
+impl Cuda {
+    pub(crate) fn open(number: usize) -> Result<Self> {
+        let id = format!("cuda:{number}");
+        let missing = |why: &str| DeviceError::Missing { id: id.clone(), why: why.to_string() };
+        let driver = DRIVER.as_ref().map_err(|why| missing(why))?;
+        let all = devices(driver);
+        let device = *all.get(number).ok_or_else(|| missing(&format!("the driver shows {} devices", all.len())))?;
+        let mut handle = null_mut();
+        // SAFETY: a device that the driver has shown; its context is never given back.
+        let code = unsafe { (driver.retain)(&raw mut handle, device) };
+        let context = Arc::new(Context { id, driver, handle: Shared(handle) });
+        context.checked("cuDevicePrimaryCtxRetain", code)?;
+        let of = |what| attribute(driver, device, what);
+        Ok(Self {
+            about: name_of(driver, device),
+            width: of(MULTIPROCESSORS).max(1) * ITEMS_PER_MULTIPROCESSOR,
+            capability: 10 * of(CAPABILITY_MAJOR) + of(CAPABILITY_MINOR),
+            context,
+            functions: Mutex::default(),
+        })
+    }
+
+    fn compile(&self, text: &str) -> Result<Shared> {
+        let ptx = ptx_of(text, self.capability)?;
+        let refused = |log: String| DeviceError::Compiler { compiler: self.context.id.clone(), log };
+        let ptx = CString::new(ptx).map_err(|e| refused(e.to_string()))?;
+        let (mut module, mut function) = (null_mut(), null_mut());
+        // SAFETY: the text ends with a zero.
+        let code = unsafe { (self.context.driver.load)(&raw mut module, ptx.as_ptr().cast()) };
+        self.context.checked("cuModuleLoadData", code)?;
+        // SAFETY: the module is open, and stays so; the name ends with a zero.
+        let code = unsafe { (self.context.driver.function)(&raw mut function, module, c"pathmark_run".as_ptr()) };
+        self.context.checked("cuModuleGetFunction", code)?;
+        Ok(Shared(function))
+    }
+}
+
+impl Device for Cuda {
+    fn id(&self) -> &str {
+        &self.context.id
+    }
+
+    fn about(&self) -> &str {
+        &self.about
+    }
+
+    fn width(&self) -> u32 {
+        self.width
+    }
+
+    fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
+        self.context.enter()?;
+        let mut functions = self.functions.lock().unwrap_or_else(PoisonError::into_inner);
+        let function = match functions.get(text) {
+            Some(function) => *function,
+            None => {
+                let function = self.compile(text)?;
+                functions.insert(text.to_string(), function);
+                function
+            }
+        };
+        Ok(Box::new(Bound {
+            function,
+            numbers: Buffer::of(&self.context, numbers)?,
+            words: Buffer::of(&self.context, words)?,
+            kept: Mutex::default(),
+            context: Arc::clone(&self.context),
+        }))
+    }
+}
+
+/// A function with its inputs.
+struct Bound {
+    context: Arc<Context>,
+    function: Shared,
+    numbers: Buffer,
+    words: Buffer,
+    /// Room for a task and its results, kept from run to run.
+    kept: Mutex<[Option<Buffer>; 2]>,
+}
+
+/// The address of a buffer of at least that size, made anew if the one there is is smaller.
+fn kept<'a>(context: &Arc<Context>, place: &'a mut Option<Buffer>, bytes: usize) -> Result<&'a Buffer> {
+    if place.as_ref().is_none_or(|buffer| buffer.bytes < bytes) {
+        *place = None;
+        *place = Some(Buffer::new(context, bytes)?);
+    }
+    place.as_ref().ok_or(DeviceError::Missing { id: context.id.clone(), why: "no buffer".to_string() })
+}
+
+impl Loaded for Bound {
+    fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
+        // One run at a time: they share the room for their results.
+        let mut room = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let context = &self.context;
+        context.enter()?;
+        let [task_room, out_room] = &mut *room;
+        let task_buffer = kept(context, task_room, size_of_val(task))?;
+        let out_buffer = kept(context, out_room, size_of_val(out))?;
+        task_buffer.write(task)?;
+        let (numbers, words, task_address, out_address) =
+            (self.numbers.address, self.words.address, task_buffer.address, out_buffer.address);
+        let mut arguments = [
+            (&raw const numbers).cast::<c_void>().cast_mut(),
+            (&raw const words).cast::<c_void>().cast_mut(),
+            (&raw const task_address).cast::<c_void>().cast_mut(),
+            (&raw const items).cast::<c_void>().cast_mut(),
+            (&raw const out_address).cast::<c_void>().cast_mut(),
+        ];
+        let groups = items.div_ceil(GROUP);
+        // SAFETY: the function has these five arguments; it writes to no item beyond the last.
+        let code = unsafe {
+            (context.driver.launch)(
+                self.function.0,
+                groups,
+                1,
+                1,
+                GROUP,
+                1,
+                1,
+                0,
+                null_mut(),
+                arguments.as_mut_ptr(),
+                null_mut(),
+            )
+        };
+        context.checked("cuLaunchKernel", code)?;
+        // SAFETY: `out` has this size. The copy waits for the launch before it, whose failure it tells.
+        let code = unsafe {
+            (context.driver.from_device)(out.as_mut_ptr().cast(), out_buffer.address, size_of_val(out))
+        };
+        context.checked("cuMemcpyDtoH", code)
+    }
+}

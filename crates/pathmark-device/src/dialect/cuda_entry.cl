@@ -1,0 +1,5 @@
+
+extern "C" __global__ void pathmark_run(const real *numbers, const u32 *words, const u32 *task, u32 items, u64 *out) {
+    u32 item = blockIdx.x * blockDim.x + threadIdx.x;
+    if (item < items) run_item(item, numbers, words, task, out);
+}

@@ -1,0 +1,44 @@
+//! A driver's library that is opened at run time, and the functions in it.
+
+use libloading::Library;
+use std::path::Path;
+
+/// Opens the first library that there is of some names; what the system said of each otherwise.
+pub(crate) fn open(names: &[&str]) -> Result<Library, String> {
+    let mut tried = Vec::new();
+    for name in names {
+        #[expect(unsafe_code, reason = "a library may run code of its own when it is loaded; drivers expect that")]
+        // SAFETY: the libraries that are named here are drivers and compilers of GPUs, made to be opened by any program.
+        match unsafe { Library::new(Path::new(name)) } {
+            Ok(library) => return Ok(library),
+            Err(error) => tried.push(error.to_string()),
+        }
+    }
+    Err(tried.join("; "))
+}
+
+/// Declares functions of a library with their types in C, and finds all of them when it is opened.
+macro_rules! functions {
+    ($Functions:ident; $($field:ident = $symbol:literal ($($argument:ty),*) -> $result:ty;)*) => {
+        pub(crate) struct $Functions {
+            $(pub(crate) $field: unsafe extern "C" fn($($argument),*) -> $result,)*
+            /// Where they live.
+            _library: libloading::Library,
+        }
+
+        impl $Functions {
+            pub(crate) fn of(library: libloading::Library) -> std::result::Result<Self, String> {
+                Ok(Self {
+                    $($field: {
+                        #[expect(unsafe_code, reason = "functions that are found at run time have the types that their interface documents")]
+                        // SAFETY: the interface gives the function of that name this type, and the library stays open as long as it.
+                        let found = unsafe { library.get::<unsafe extern "C" fn($($argument),*) -> $result>($symbol) };
+                        *found.map_err(|e| e.to_string())?
+                    },)*
+                    _library: library,
+                })
+            }
+        }
+    };
+}
+pub(crate) use functions;

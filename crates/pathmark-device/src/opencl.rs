@@ -1,0 +1,402 @@
+//! Devices by OpenCL 1.2, whose loader is `libOpenCL.so.1`.
+#![expect(unsafe_code, reason = "calls of the driver; each has the arguments that OpenCL's specification asks for")]
+
+use super::library::{functions, open};
+use super::{Device, DeviceError, Dialect, Listed, Loaded, Result};
+use std::collections::HashMap;
+use std::ffi::{c_char, c_void};
+use std::ptr::{null, null_mut};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard, PoisonError};
+
+/// A handle of the driver.
+type Handle = *mut c_void;
+
+functions! { Functions;
+    platforms = c"clGetPlatformIDs" (u32, *mut Handle, *mut u32) -> i32;
+    devices = c"clGetDeviceIDs" (Handle, u64, u32, *mut Handle, *mut u32) -> i32;
+    device_info = c"clGetDeviceInfo" (Handle, u32, usize, *mut c_void, *mut usize) -> i32;
+    create_context = c"clCreateContext" (*const isize, u32, *const Handle, *const c_void, *mut c_void, *mut i32) -> Handle;
+    create_queue = c"clCreateCommandQueue" (Handle, Handle, u64, *mut i32) -> Handle;
+    create_program = c"clCreateProgramWithSource" (Handle, u32, *const *const c_char, *const usize, *mut i32) -> Handle;
+    build = c"clBuildProgram" (Handle, u32, *const Handle, *const c_char, *const c_void, *mut c_void) -> i32;
+    build_info = c"clGetProgramBuildInfo" (Handle, Handle, u32, usize, *mut c_void, *mut usize) -> i32;
+    create_kernel = c"clCreateKernel" (Handle, *const c_char, *mut i32) -> Handle;
+    create_buffer = c"clCreateBuffer" (Handle, u64, usize, *mut c_void, *mut i32) -> Handle;
+    set_argument = c"clSetKernelArg" (Handle, u32, usize, *const c_void) -> i32;
+    launch = c"clEnqueueNDRangeKernel" (Handle, Handle, u32, *const usize, *const usize, *const usize, u32, *const Handle, *mut Handle) -> i32;
+    write = c"clEnqueueWriteBuffer" (Handle, Handle, u32, usize, usize, *const c_void, u32, *const Handle, *mut Handle) -> i32;
+    read = c"clEnqueueReadBuffer" (Handle, Handle, u32, usize, usize, *mut c_void, u32, *const Handle, *mut Handle) -> i32;
+    release_buffer = c"clReleaseMemObject" (Handle) -> i32;
+    release_kernel = c"clReleaseKernel" (Handle) -> i32;
+}
+
+// Numbers of OpenCL's header.
+const SUCCESS: i32 = 0;
+const ALL_DEVICES: u64 = 0xFFFF_FFFF;
+const DEVICE_TYPE: u32 = 0x1000;
+const COMPUTE_UNITS: u32 = 0x1002;
+const DEVICE_NAME: u32 = 0x102B;
+const DOUBLE_CONFIG: u32 = 0x1032;
+const BUILD_LOG: u32 = 0x1183;
+const TYPE_CPU: u64 = 2;
+/// Small numbers are kept, infinities and NaN exist, results are rounded to the nearest.
+const EXACT_ENOUGH: u64 = 1 | 2 | 4;
+const READ_WRITE: u64 = 1;
+const READ_ONLY_COPY: u64 = 4 | 32;
+
+/// Items that keep a processing unit busy.
+const ITEMS_PER_UNIT: u32 = 1024;
+/// Of one that is a processor.
+const ITEMS_PER_CORE: u32 = 16;
+
+/// The loader's functions, or why there are none; it stays open.
+static LOADER: LazyLock<std::result::Result<Functions, String>> =
+    LazyLock::new(|| open(&["libOpenCL.so.1", "libOpenCL.so"]).and_then(Functions::of));
+
+/// A code of OpenCL's header in words, where it is one that users meet.
+fn meaning(code: i32) -> String {
+    let name = match code {
+        -1 => "device not found",
+        -2 => "device not available",
+        -4 => "no memory for an object on the device",
+        -5 => "out of resources",
+        -6 => "out of memory on the host",
+        -11 => "the program was not built",
+        -36 => "the queue is gone: the device may be lost",
+        -54 => "the group of items is too large",
+        -61 => "a buffer is too large",
+        -1001 => "no driver is installed",
+        _ => return format!("error {code}"),
+    };
+    format!("{name} (error {code})")
+}
+
+/// A device that a platform shows.
+struct Found {
+    handle: Handle,
+    name: String,
+    is_processor: bool,
+    units: u32,
+    is_exact: bool,
+}
+
+/// A number that a device tells of itself; 0 if it does not.
+fn number_of(functions: &Functions, device: Handle, what: u32) -> u64 {
+    let mut number = 0_u64;
+    // SAFETY: no answer that is asked for here is longer than eight bytes.
+    let code = unsafe { (functions.device_info)(device, what, 8, (&raw mut number).cast(), null_mut()) };
+    if code == SUCCESS { number } else { 0 }
+}
+
+fn name_of(functions: &Functions, device: Handle) -> String {
+    let mut text = [0_u8; 256];
+    // SAFETY: the driver writes no more than there is room for.
+    unsafe { (functions.device_info)(device, DEVICE_NAME, text.len(), text.as_mut_ptr().cast(), null_mut()) };
+    let end = text.iter().position(|byte| *byte == 0).unwrap_or(text.len());
+    String::from_utf8_lossy(&text[..end]).trim().to_string()
+}
+
+/// Every device of every platform, in the driver's order.
+fn found(functions: &Functions) -> Vec<Found> {
+    const MOST: usize = 64;
+    let (mut platforms, mut count) = ([null_mut(); MOST], 0);
+    // SAFETY: there is room for as many handles as it is told.
+    let code = unsafe { (functions.platforms)(MOST as u32, platforms.as_mut_ptr(), &raw mut count) };
+    let mut all = Vec::new();
+    for platform in platforms.into_iter().take(if code == SUCCESS { count as usize } else { 0 }) {
+        let (mut devices, mut count) = ([null_mut(); MOST], 0);
+        // SAFETY: as above.
+        let code =
+            unsafe { (functions.devices)(platform, ALL_DEVICES, MOST as u32, devices.as_mut_ptr(), &raw mut count) };
+        for handle in devices.into_iter().take(if code == SUCCESS { count as usize } else { 0 }) {
+            all.push(Found {
+                handle,
+                name: name_of(functions, handle),
+                is_processor: number_of(functions, handle, DEVICE_TYPE) & TYPE_CPU != 0,
+                units: number_of(functions, handle, COMPUTE_UNITS) as u32,
+                is_exact: number_of(functions, handle, DOUBLE_CONFIG) & EXACT_ENOUGH == EXACT_ENOUGH,
+            });
+        }
+    }
+    all
+}
+
+const INEXACT: &str = "it has no double precision by IEEE 754";
+
+pub(crate) fn list() -> Vec<Listed> {
+    let nothing = |why: &str| Listed {
+        id: "opencl".to_string(),
+        about: why.to_string(),
+        is_there: false,
+        is_accelerator: false,
+    };
+    match &*LOADER {
+        Err(why) => vec![nothing(why)],
+        Ok(functions) => {
+            let all = found(functions);
+            if all.is_empty() {
+                return vec![nothing("no driver shows a device")];
+            }
+            let listed = all.into_iter().enumerate().map(|(number, device)| Listed {
+                id: format!("opencl:{number}"),
+                about: if device.is_exact { device.name } else { format!("{}: {INEXACT}", device.name) },
+                is_there: device.is_exact,
+                is_accelerator: !device.is_processor,
+            });
+            listed.collect()
+        }
+    }
+}
+
+/// A handle that may go from thread to thread: the driver's functions may be called by any, but a kernel's arguments by one at a time.
+#[derive(Clone, Copy)]
+struct Shared(Handle);
+
+// SAFETY: OpenCL 1.2, appendix A.2: all calls are safe from any thread but those that set a kernel's arguments, which are made under a lock.
+unsafe impl Send for Shared {}
+// SAFETY: as above.
+unsafe impl Sync for Shared {}
+
+/// A device, a context and a queue on it.
+struct Queue {
+    id: String,
+    functions: &'static Functions,
+    device: Shared,
+    context: Shared,
+    queue: Shared,
+}
+
+impl Queue {
+    fn checked(&self, call: &'static str, code: i32) -> Result<()> {
+        if code == SUCCESS {
+            return Ok(());
+        }
+        Err(DeviceError::Call { id: self.id.clone(), call, why: meaning(code) })
+    }
+
+    /// Room for so many bytes, of which there is at least one.
+    fn buffer<T>(&self, flags: u64, content: *const T, bytes: usize) -> Result<Buffer> {
+        let mut code = SUCCESS;
+        // SAFETY: with the flag to copy `content` has so many bytes, without it is null.
+        let handle = unsafe {
+            (self.functions.create_buffer)(self.context.0, flags, bytes.max(8), content.cast_mut().cast(), &raw mut code)
+        };
+        self.checked("clCreateBuffer", code)?;
+        Ok(Buffer { handle: Shared(handle), functions: self.functions })
+    }
+
+    fn log(&self, program: Handle) -> String {
+        let mut text = vec![0_u8; 16 << 10];
+        let mut length = 0;
+        // SAFETY: the driver writes no more than there is room for.
+        unsafe {
+            (self.functions.build_info)(
+                program,
+                self.device.0,
+                BUILD_LOG,
+                text.len(),
+                text.as_mut_ptr().cast(),
+                &raw mut length,
+            )
+        };
+        text.truncate(length.min(text.len()));
+        String::from_utf8_lossy(&text).trim_matches(['\0', '\n', ' ']).to_string()
+    }
+
+    fn compile(&self, text: &str) -> Result<Shared> {
+        let whole = Dialect::OpenCl.whole(text);
+        let (pointer, length, mut code) = (whole.as_ptr().cast::<c_char>(), whole.len(), SUCCESS);
+        // SAFETY: one text of that length.
+        let program = unsafe {
+            (self.functions.create_program)(self.context.0, 1, &raw const pointer, &raw const length, &raw mut code)
+        };
+        self.checked("clCreateProgramWithSource", code)?;
+        // SAFETY: the options end with a zero.
+        let code = unsafe {
+            (self.functions.build)(program, 1, &raw const self.device.0, c"-cl-std=CL1.2".as_ptr(), null(), null_mut())
+        };
+        if code != SUCCESS {
+            let log = format!("{}\n{}", meaning(code), self.log(program));
+            return Err(DeviceError::Compiler { compiler: self.id.clone(), log });
+        }
+        Ok(Shared(program))
+    }
+
+    fn kernel(&self, program: Shared) -> Result<Shared> {
+        let mut code = SUCCESS;
+        // SAFETY: the name ends with a zero.
+        let kernel = unsafe { (self.functions.create_kernel)(program.0, c"pathmark_run".as_ptr(), &raw mut code) };
+        self.checked("clCreateKernel", code)?;
+        Ok(Shared(kernel))
+    }
+}
+
+/// Memory of the device.
+struct Buffer {
+    handle: Shared,
+    functions: &'static Functions,
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: the handle is this one's own.
+        unsafe { (self.functions.release_buffer)(self.handle.0) };
+    }
+}
+
+/// A device by OpenCL.
+pub(crate) struct OpenCl {
+    about: String,
+    width: u32,
+    queue: Arc<Queue>,
+    programs: Mutex<HashMap<String, Shared>>,
+}
+
+impl OpenCl {
+    pub(crate) fn open(number: usize) -> Result<Self> {
+        let id = format!("opencl:{number}");
+        let missing = |why: &str| DeviceError::Missing { id: id.clone(), why: why.to_string() };
+        let functions = LOADER.as_ref().map_err(|why| missing(why))?;
+        let all = found(functions);
+        let count = format!("drivers show {} devices", all.len());
+        let Found { handle, name, is_processor, units, is_exact } =
+            all.into_iter().nth(number).ok_or_else(|| missing(&count))?;
+        if !is_exact {
+            return Err(missing(INEXACT));
+        }
+        let mut code = SUCCESS;
+        let checked = |call, code| match code {
+            SUCCESS => Ok(()),
+            _ => Err(DeviceError::Call { id: id.clone(), call, why: meaning(code) }),
+        };
+        // SAFETY: one device, no properties, nobody to be told of errors.
+        let context = unsafe {
+            (functions.create_context)(null(), 1, &raw const handle, null(), null_mut(), &raw mut code)
+        };
+        checked("clCreateContext", code)?;
+        // SAFETY: context and device belong together.
+        let queue = unsafe { (functions.create_queue)(context, handle, 0, &raw mut code) };
+        checked("clCreateCommandQueue", code)?;
+        let (device, context, queue) = (Shared(handle), Shared(context), Shared(queue));
+        let width = units.max(1) * if is_processor { ITEMS_PER_CORE } else { ITEMS_PER_UNIT };
+        let queue = Arc::new(Queue { id, functions, device, context, queue });
+        Ok(Self { about: name, width, queue, programs: Mutex::default() })
+    }
+}
+
+impl Device for OpenCl {
+    fn id(&self) -> &str {
+        &self.queue.id
+    }
+
+    fn about(&self) -> &str {
+        &self.about
+    }
+
+    fn width(&self) -> u32 {
+        self.width
+    }
+
+    fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
+        let queue = &self.queue;
+        let mut programs = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
+        let program = match programs.get(text) {
+            Some(program) => *program,
+            None => {
+                let program = queue.compile(text)?;
+                programs.insert(text.to_string(), program);
+                program
+            }
+        };
+        let kernel = queue.kernel(program)?;
+        let inputs = [
+            queue.buffer(READ_ONLY_COPY, numbers.as_ptr(), size_of_val(numbers))?,
+            queue.buffer(READ_ONLY_COPY, words.as_ptr(), size_of_val(words))?,
+        ];
+        let kernel = Mutex::new(Kernel { kernel, task: None, out: None });
+        Ok(Box::new(Bound { queue: Arc::clone(queue), inputs, kernel }))
+    }
+}
+
+/// A kernel, and the buffers that are kept from run to run, with their sizes.
+struct Kernel {
+    kernel: Shared,
+    task: Option<(Buffer, usize)>,
+    out: Option<(Buffer, usize)>,
+}
+
+/// A kernel with its inputs.
+struct Bound {
+    queue: Arc<Queue>,
+    inputs: [Buffer; 2],
+    kernel: Mutex<Kernel>,
+}
+
+/// A buffer of at least that size, made anew if the one there is is smaller.
+fn kept(queue: &Queue, place: &mut Option<(Buffer, usize)>, bytes: usize) -> Result<Handle> {
+    match place {
+        Some((buffer, size)) if *size >= bytes => Ok(buffer.handle.0),
+        _ => {
+            *place = None;
+            let (buffer, _) = place.insert((queue.buffer::<u8>(READ_WRITE, null(), bytes)?, bytes));
+            Ok(buffer.handle.0)
+        }
+    }
+}
+
+impl Loaded for Bound {
+    fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
+        let Queue { functions, queue: Shared(queue), .. } = *self.queue;
+        let mut guard: MutexGuard<'_, Kernel> = self.kernel.lock().unwrap_or_else(PoisonError::into_inner);
+        let Kernel { kernel: Shared(kernel), task: task_buffer, out: out_buffer } = &mut *guard;
+        let task_handle = kept(&self.queue, task_buffer, size_of_val(task))?;
+        let out_handle = kept(&self.queue, out_buffer, size_of_val(out))?;
+        // SAFETY: the buffer has this size, and the call returns when it has been read.
+        let code = unsafe {
+            (functions.write)(queue, task_handle, 1, 0, size_of_val(task), task.as_ptr().cast(), 0, null(), null_mut())
+        };
+        self.queue.checked("clEnqueueWriteBuffer", code)?;
+        let handles = [self.inputs[0].handle.0, self.inputs[1].handle.0, task_handle, null_mut(), out_handle];
+        for (number, handle) in (0_u32..).zip(&handles) {
+            // SAFETY: the kernel's fourth argument is a word of 32 bits, the others are buffers.
+            let code = unsafe {
+                if handle.is_null() {
+                    (functions.set_argument)(*kernel, number, size_of::<u32>(), (&raw const items).cast())
+                } else {
+                    (functions.set_argument)(*kernel, number, size_of::<Handle>(), (&raw const *handle).cast())
+                }
+            };
+            self.queue.checked("clSetKernelArg", code)?;
+        }
+        let global = items as usize;
+        // SAFETY: one dimension; the driver chooses the groups.
+        let code = unsafe {
+            (functions.launch)(queue, *kernel, 1, null(), &raw const global, null(), 0, null(), null_mut())
+        };
+        self.queue.checked("clEnqueueNDRangeKernel", code)?;
+        // SAFETY: `out` has this size, and the call returns when it has been written.
+        let code = unsafe {
+            (functions.read)(queue, out_handle, 1, 0, size_of_val(out), out.as_mut_ptr().cast(), 0, null(), null_mut())
+        };
+        self.queue.checked("clEnqueueReadBuffer", code)
+    }
+}
+
+impl Drop for Bound {
+    fn drop(&mut self) {
+        let kernel = self.kernel.get_mut().unwrap_or_else(PoisonError::into_inner).kernel;
+        // SAFETY: the handle is this one's own.
+        unsafe { (self.queue.functions.release_kernel)(kernel.0) };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_told_in_words() {
+        assert_eq!(meaning(-4), "no memory for an object on the device (error -4)");
+        assert_eq!(meaning(-77), "error -77");
+    }
+}

@@ -1,0 +1,39 @@
+//! What the code for a GPU may not have: operations that are rounded once where two were meant, and those whose rounding nobody said.
+
+/// The instructions of a PTX text that fuse a multiplication and an addition in floating point, approximate, flush small numbers to zero, or do not
+/// say how they are rounded. (Without a suffix `add`, `sub` and `mul` may be fused by the assembler.)
+pub fn inexact_instructions(ptx: &str) -> Vec<&str> {
+    let instructions = ptx.lines().map(str::trim).filter(|line| line.ends_with(';'));
+    let is_inexact = |line: &&str| {
+        // A predicate may stand before the instruction.
+        let instruction = line.split_whitespace().find(|word| !word.starts_with('@')).unwrap_or_default();
+        let parts: Vec<&str> = instruction.split('.').collect();
+        let is_real = parts.iter().any(|part| matches!(part.trim_end_matches(';'), "f64" | "f32" | "f16" | "bf16"));
+        let has = |wanted: &str| parts.contains(&wanted);
+        is_real
+            && match parts[0] {
+                "fma" | "mad" => true,
+                "add" | "sub" | "mul" | "div" | "sqrt" | "rcp" => !has("rn") || has("ftz"),
+                "rsqrt" | "sin" | "cos" | "ex2" | "lg2" | "tanh" => true,
+                _ => has("approx") || has("ftz"),
+            }
+    };
+    instructions.filter(is_inexact).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_what_is_fused_or_not_said() {
+        let ptx = "\tadd.rn.f64 %fd1, %fd2, %fd3;\n\tadd.f64 \t%fd1, %fd2, %fd3;\n\t@%p1 fma.rn.f64 %fd1, %fd2, %fd3, %fd4;\n\
+                   \tadd.s64 %rd1, %rd2, %rd3;\n\tmad.lo.s32 %r1, %r2, %r3, %r4;\n\tsqrt.rn.f64 %fd1, %fd2;\n\
+                   \tmul.rn.ftz.f32 %f1, %f2, %f3;\n\tld.global.f64 %fd1, [%rd1];\n\trsqrt.approx.ftz.f64 %fd1, %fd2;\n\
+                   // add.f64 in a comment\n\tcvt.rn.f64.u64 %fd1, %rd1;\n\tdiv.rn.f64 %fd1, %fd2, %fd3;";
+        let found = inexact_instructions(ptx);
+        assert_eq!(found.len(), 4, "{found:?}");
+        assert!(found[0].starts_with("add.f64") && found[1].contains("fma") && found[2].contains("ftz"), "{found:?}");
+        assert!(found[3].starts_with("rsqrt"), "{found:?}");
+    }
+}

@@ -1,0 +1,175 @@
+//! Whether a device computes as IEEE 754 demands: a table of operations on chosen and on random operands, against the processor's bits.
+
+use super::{Device, DeviceError, Result};
+use std::collections::HashSet;
+use std::sync::{LazyLock, Mutex, PoisonError};
+
+/// An operation: its name, and its result on two numbers and a word.
+struct Operation {
+    name: &'static str,
+    of: fn(f64, f64, u64) -> u64,
+}
+
+/// The operations in the order in which `self_test.cl` numbers them.
+const OPERATIONS: &[Operation] = &[
+    Operation { name: "a + b", of: |a, b, _| (a + b).to_bits() },
+    Operation { name: "a - b", of: |a, b, _| (a - b).to_bits() },
+    Operation { name: "a * b", of: |a, b, _| (a * b).to_bits() },
+    Operation { name: "a / b", of: |a, b, _| (a / b).to_bits() },
+    Operation { name: "sqrt(a)", of: |a, _, _| a.sqrt().to_bits() },
+    Operation { name: "a * b + a, rounded twice", of: |a, b, _| (a * b + a).to_bits() },
+    Operation { name: "a * b - b * a, rounded three times", of: |a, b, _| (a * b - b * a).to_bits() },
+    Operation { name: "a with the sign of b", of: |a, b, _| a.copysign(b).to_bits() },
+    Operation { name: "|a| < b", of: |a, b, _| if a.abs() < b { a } else { b }.to_bits() },
+    Operation { name: "an integer as a number", of: |_, _, bits| ((bits >> 11) as f64).to_bits() },
+    Operation { name: "200 times x * b + a", of: |a, b, _| (0..200).fold(a, |x, _| x * b + a).to_bits() },
+    Operation {
+        name: "an integer product",
+        of: |_, _, bits| bits.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(bits >> 31),
+    },
+    Operation {
+        name: "ones and shifts of an integer",
+        of: |_, _, bits| u64::from((bits as u32).count_ones()) | ((bits << 13) ^ (bits >> 51)) << 6,
+    },
+];
+
+/// Numbers whose results are rounded or out of range: halves, ends of the range, numbers below the normal ones, zeros, infinities.
+const EDGES: [f64; 14] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0 / 3.0,
+    1.0 + f64::EPSILON,
+    1.0 - f64::EPSILON / 2.0,
+    f64::MIN_POSITIVE,
+    -5e-324,
+    3e-310,
+    f64::MAX,
+    1e154,
+    -1e-160,
+    f64::INFINITY,
+    9_007_199_254_740_993.0,
+];
+
+/// Random operands beside those of the edges.
+const RANDOM: usize = 4096;
+
+/// The next word of Marsaglia's xorshift (2003).
+fn next(state: &mut u64) -> u64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    *state
+}
+
+/// Pairs of operands, and a word for each.
+fn operands() -> (Vec<f64>, Vec<u64>) {
+    let edges = EDGES.into_iter().flat_map(|a| EDGES.into_iter().flat_map(move |b| [a, b]));
+    let mut numbers: Vec<f64> = edges.collect();
+    let mut state = 0x2545_F491_4F6C_DD1D;
+    // From 1/16 to 16, of either sign.
+    let mut random = || {
+        let bits = next(&mut state);
+        let exponent = 1019 + (bits >> 52) % 8;
+        f64::from_bits(bits & 0x800F_FFFF_FFFF_FFFF | exponent << 52)
+    };
+    numbers.extend((0..2 * RANDOM).map(|_| random()));
+    let words = (0..numbers.len() / 2).map(|_| next(&mut state)).collect();
+    (numbers, words)
+}
+
+/// Two results are the same if their bits are, or if both are no number.
+fn is_same(found: u64, expected: u64, is_integer: bool) -> bool {
+    let is_nan = |bits: u64| f64::from_bits(bits).is_nan();
+    found == expected || !is_integer && is_nan(found) && is_nan(expected)
+}
+
+/// Runs the table on a device, whatever it has shown before.
+fn check(device: &dyn Device) -> Result<()> {
+    let (numbers, words) = operands();
+    let halves: Vec<u32> = words.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
+    let loaded = device.bind(include_str!("self_test.cl"), &numbers, &halves)?;
+    let mut out = vec![0; words.len()];
+    for (number, operation) in (0_u32..).zip(OPERATIONS) {
+        loaded.run(&[number], words.len() as u32, &mut out)?;
+        let is_integer = operation.name.contains("integer p") || operation.name.contains("ones");
+        for ((pair, word), found) in numbers.chunks_exact(2).zip(&words).zip(&out) {
+            let (a, b) = (pair[0], pair[1]);
+            let expected = (operation.of)(a, b, *word);
+            if !is_same(*found, expected, is_integer) {
+                let operation = format!(
+                    "{} of {a:e}, {b:e} and {word:#018x} is {found:#018x} instead of {expected:#018x}",
+                    operation.name
+                );
+                return Err(DeviceError::Inexact { id: device.id().to_string(), operation });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a device that computes otherwise. Each is asked once.
+pub(crate) fn passed(device: &dyn Device) -> Result<()> {
+    static PASSED: LazyLock<Mutex<HashSet<String>>> = LazyLock::new(Mutex::default);
+    let mut passed = PASSED.lock().unwrap_or_else(PoisonError::into_inner);
+    if !passed.contains(device.id()) {
+        check(device)?;
+        passed.insert(device.id().to_string());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Loaded, open};
+
+    /// A device that changes one result of one operation.
+    struct Wrong(u32);
+
+    impl Device for Wrong {
+        fn id(&self) -> &'static str {
+            "wrong:0"
+        }
+        fn about(&self) -> &'static str {
+            "a device that rounds otherwise"
+        }
+        fn width(&self) -> u32 {
+            1
+        }
+        fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
+            Ok(Box::new(Wrongly(self.0, open("host")?.bind(text, numbers, words)?)))
+        }
+    }
+
+    struct Wrongly(u32, Box<dyn Loaded>);
+
+    impl Loaded for Wrongly {
+        fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
+            self.1.run(task, items, out)?;
+            if task[0] == self.0 {
+                out[300] ^= 1;
+            }
+            Ok(())
+        }
+    }
+
+    /// Every device here; the host always, others where a driver is installed.
+    #[test]
+    fn devices_compute_as_they_should() {
+        let there: Vec<String> = crate::list().into_iter().filter(|listed| listed.is_there).map(|listed| listed.id).collect();
+        assert!(there.contains(&"host".to_string()), "{:?}", crate::list());
+        for id in there {
+            check(&*open(&id).unwrap()).unwrap();
+        }
+    }
+
+    /// One bit of any operation is enough, and the message names it.
+    #[test]
+    fn a_device_that_rounds_otherwise_is_refused() {
+        for (number, operation) in (0..).zip(OPERATIONS) {
+            let error = check(&Wrong(number)).unwrap_err().to_string();
+            assert!(error.contains(operation.name) && error.contains("wrong:0"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Whether a device renders a scene with some settings, and which one.
+
+use super::super::in_lanes::precision;
+use super::super::{DEVICE, Spec};
+use super::tables::{SAMPLERS, is_known};
+use crate::error::{InputError, Result};
+use crate::estimator::PathRules;
+use crate::scene::{ANGULAR_EMISSION, FOG, Scene};
+use pathmark_device::Listed;
+
+/// What the kernel is made with.
+#[derive(Debug, Clone)]
+pub(in crate::kernel) struct ForDevice {
+    /// The kernel's name with the device's: `device:opencl:0`.
+    pub(in crate::kernel) kernel: String,
+    /// The device's own name.
+    pub(super) id: String,
+    pub(super) course: PathRules,
+    /// The sampler's place among [`SAMPLERS`].
+    pub(super) sampler: u32,
+}
+
+/// What of a scene or of its settings the program has no code for.
+fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static str> {
+    let is_unknown = |index: usize| !is_known(&scene.objects[index].material);
+    let obstacles = [
+        (scene.effects().cover(FOG), "fog"),
+        (scene.effects().cover(ANGULAR_EMISSION), "angular-emission"),
+        ((0..scene.objects.len()).any(is_unknown), "material"),
+        (spec.clamp.is_some(), "clamp"),
+        (epsilon.is_some(), "epsilon"),
+    ];
+    obstacles.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name)
+}
+
+/// The device that was asked for: the one that is named, or else the first GPU.
+fn chosen(kernel: &str) -> Result<String> {
+    let all = pathmark_device::list();
+    let there = |wanted: &dyn Fn(&Listed) -> bool| all.iter().find(|listed| listed.is_there && wanted(listed));
+    let named = kernel.split_once(':').map(|(_, id)| id);
+    let found = match named {
+        Some(id) => there(&|listed| listed.id == id),
+        None => there(&|listed| listed.is_accelerator),
+    };
+    if let Some(found) = found {
+        return Ok(found.id.clone());
+    }
+    let missing = all.iter().filter(|listed| !listed.is_there);
+    let why: Vec<String> = missing.map(|listed| format!("{}: {}", listed.id, listed.about)).collect();
+    let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
+    let problem = match named {
+        Some(id) => format!("there is no device {id} here{why}"),
+        None => format!("there is no GPU here{why}"),
+    };
+    let ids = all.iter().filter(|listed| listed.is_there).map(|listed| format!("{DEVICE}:{}", listed.id));
+    let allowed: Vec<String> = ids.collect();
+    Err(InputError::new("kernel", kernel, problem).allowed(allowed.join(", ")).into())
+}
+
+/// The device that renders a scene with these settings, or why none does.
+pub(in crate::kernel) fn device_for(
+    scene: &Scene,
+    spec: &Spec,
+    course: Option<PathRules>,
+    epsilon: Option<f64>,
+) -> Result<std::result::Result<ForDevice, &'static str>> {
+    if let Some(level) = &spec.simd {
+        let problem = "is for lanes, and a device has none";
+        return Err(InputError::new("simd", level, problem).allowed("none").into());
+    }
+    precision(spec)?;
+    let id = chosen(&spec.kernel)?;
+    let sampler = (0..).zip(SAMPLERS).find(|(_, (name, _))| *name == spec.sampler).map(|(number, _)| number);
+    Ok(match (obstacle(scene, spec, epsilon), course, sampler) {
+        (None, Some(course), Some(sampler)) => {
+            Ok(ForDevice { kernel: format!("{DEVICE}:{id}"), id, course, sampler })
+        }
+        (Some(reason), ..) => Err(reason),
+        (None, None, _) => Err("estimator"),
+        (None, Some(_), None) => Err("sampler"),
+    })
+}

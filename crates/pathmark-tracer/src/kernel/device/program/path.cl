@@ -1,0 +1,205 @@
+// The path that `bsdf`, `smallpt`, `nee` and `mis` share: `estimator/path.rs`. SPLITS and AIMS are constants of the program.
+
+typedef struct { u64 rays, invalid, escaped, truncated; tests tested; } events;
+
+typedef struct {
+    ray way;
+    standpoint from;
+    int is_rival;  // whether light was aimed at from the start of the ray, whose direction had this density
+    real density;
+    rgb throughput;
+    u32 vertices, branch;
+} part;
+
+typedef struct {
+    const scene *s;
+    const sample_key *key;
+    u32 max_depth, roulette_by, roulette_after;
+    real roulette_chance;
+    int is_weighted;
+} walk;
+
+FN int is_spent(rgb t) { return t.r < SMALLEST_NORMAL && t.g < SMALLEST_NORMAL && t.b < SMALLEST_NORMAL; }
+
+FN pair draw(const walk *w, const part *p, u32 purpose) {
+    return numbers_of(w->s->words, w->key, p->vertices + 1U, p->branch, purpose);
+}
+
+#if HAS_POINT_LIGHT
+// What point lights cause at a surface.
+FN rgb point_light(const walk *w, const surface *of, const surface_hit *hit, const frame *around, vec wo, events *e) {
+    const scene *s = w->s;
+    rgb radiance = grey(0.0);
+    u32 count = s->words[AT_POINT_LIGHT_COUNT];
+    for (u32 k = 0; k < count; k++) {
+        GLOBAL const real *light = s->numbers + s->words[AT_POINT_LIGHTS] + POINT_LIGHT_NUMBERS * k;
+        vec towards = minus(vec_at(light), hit->point);
+        real far = SQUARE_ROOT(inner(towards, towards));
+        if (far > light[6] || !(far > 0.0)) continue;
+        ray way;
+        way.origin = hit->point;
+        way.direction = times(towards, 1.0 / far);
+        vec wi = to_local(around, way.direction);
+        rgb share = dimmed(bsdf_value(of, wo, wi), MAGNITUDE(wi.z));
+        if (is_black(share)) continue;
+        standpoint from;
+        from.primitive = hit->primitive;
+        from.inside = (wi.z < 0.0) != hit->inside;
+        e->rays += 1;
+        if (first_hit(s, way, from, far * HIDING, &e->tested).primitive != NOTHING) continue;
+        radiance = mixed(radiance, filtered(share, dimmed(rgb_at(light + 3), 1.0 / (far * far))));
+    }
+    return radiance;
+}
+#endif
+
+FN part left_by(const walk *w, const part *p, const surface_hit *hit, const frame *around, rgb throughput,
+    bsdf_sample sample, u32 branch) {
+    part next = *p;
+    vec towards = to_world(around, sample.wi);
+    next.way.direction = sample.is_delta ? unit_vector(towards) : towards;
+    next.way.origin = hit->point;
+    next.from.primitive = hit->primitive;
+    next.from.inside = (sample.wi.z < 0.0) != hit->inside;
+    next.is_rival = AIMS && !sample.is_delta;
+    next.density = sample.density;
+    next.throughput = filtered(throughput, sample.weight);
+    next.vertices = p->vertices + 1U;
+    next.branch = branch;
+    return next;
+}
+
+FN rgb light_at(const walk *w, const part *p, rgb emission, const surface_hit *hit) {
+#if AIMS
+    if (p->is_rival && !is_black(emission)) {
+        real aimed = aimed_density(w->s, p->way, p->from, hit);
+        real share = w->is_weighted ? power_heuristic(p->density, aimed) : aimed > 0.0 ? 0.0 : 1.0;
+        return dimmed(emission, share);
+    }
+#endif
+    return emission;
+}
+
+#if AIMS
+// What a shadow ray to a light adds, in parts of what the path carries.
+FN rgb aimed_light(const walk *w, const part *p, const surface *of, const surface_hit *hit, const frame *around, vec wo,
+    events *e, int *found) {
+    standpoint from;
+    ray way;
+    *found = 0;
+    from.primitive = hit->primitive;
+    from.inside = hit->inside;
+    aim at = aim_at(w->s, hit->point, from, w->key, p->vertices + 1U, p->branch);
+    if (!at.found) return grey(0.0);
+    vec wi = to_local(around, at.direction);
+    rgb share = dimmed(bsdf_value(of, wo, wi), MAGNITUDE(wi.z));
+    if (is_black(share)) return grey(0.0);
+    from.inside = (wi.z < 0.0) != hit->inside;
+    way.origin = hit->point;
+    way.direction = at.direction;
+    e->rays += 1;
+    surface_hit end = first_hit(w->s, way, from, INFINITE, &e->tested);
+    if (end.primitive == NOTHING || end.primitive != at.primitive) return grey(0.0);
+    surface light = surface_of(w->s, end.object);
+    real weight = w->is_weighted ? power_heuristic(at.density, bsdf_density(of, wo, wi)) : 1.0;
+    *found = 1;
+    return dimmed(filtered(share, light.emission), weight / at.density);
+}
+#endif
+
+FN rgb sample_radiance(const walk *w, ray start, events *e) {
+    const scene *s = w->s;
+    rgb collected = grey(0.0);
+    part waiting[3];
+    int depth = 0;
+    part p;
+    p.way = start;
+    p.from.primitive = NOTHING;
+    p.from.inside = 0;
+    p.is_rival = 0;
+    p.density = 0.0;
+    p.throughput = grey(1.0);
+    p.vertices = p.branch = 0;
+    for (;;) {
+        int goes_on = 0;
+        e->rays += 1;
+        surface_hit hit = first_hit(s, p.way, p.from, INFINITE, &e->tested);
+        if (hit.primitive == NOTHING) {
+#if HAS_BACKGROUND
+            rgb background = rgb_at(s->numbers + VIEW_BACKGROUND);
+            if (!is_black(background)) collected = mixed(collected, filtered(p.throughput, background));
+#endif
+            e->escaped += 1;
+        } else {
+            surface of = surface_of(s, hit.object);
+            collected = mixed(collected, filtered(p.throughput, light_at(w, &p, of.emission, &hit)));
+            if (p.vertices == w->max_depth) {
+                e->truncated += 1;
+            } else {
+                u32 vertices = p.vertices + 1U;
+                frame around = frame_around(hit.inside ? negated(hit.normal) : hit.normal);
+                vec wo = to_local(&around, negated(p.way.direction));
+#if HAS_POINT_LIGHT
+                if (s->words[AT_POINT_LIGHT_COUNT] > 0U)
+                    collected = mixed(collected, filtered(p.throughput, point_light(w, &of, &hit, &around, wo, e)));
+#endif
+#if AIMS
+                int found;
+                rgb aimed = aimed_light(w, &p, &of, &hit, &around, wo, e, &found);
+                if (found) collected = mixed(collected, filtered(p.throughput, aimed));
+#endif
+                rgb throughput = p.throughput;
+                int lives = 1;
+                if (vertices > w->roulette_after) {
+                    real chance = w->roulette_chance;
+                    if (w->roulette_by == ROULETTE_ALBEDO) {
+                        chance = largest_channel(of.albedo);
+                    } else if (w->roulette_by == ROULETTE_THROUGHPUT) {
+                        real carried = largest_channel(filtered(throughput, of.albedo));
+                        chance = carried < 1.0 ? carried : 1.0;
+                    }
+                    lives = !(draw(w, &p, PURPOSE_ROULETTE).u >= chance);
+                    if (lives) throughput = dimmed(throughput, 1.0 / chance);
+                }
+                if (lives) {
+                    bsdf_sample first, second;
+#if SPLITS > 0
+                    if (vertices <= SPLITS && two_lobes(&of, wo, hit.inside, &first, &second)) {
+                        waiting[depth] = left_by(w, &p, &hit, &around, throughput, second,
+                            p.branch | (1U << (vertices - 1U)));
+                        depth++;
+                        p = left_by(w, &p, &hit, &around, throughput, first, p.branch);
+                        continue;
+                    }
+#endif
+                    pair numbers = draw(w, &p, PURPOSE_BSDF);
+#if AIMS
+                    if (two_lobes(&of, wo, hit.inside, &first, &second)) {
+                        real one = max_channel(first.weight), other = max_channel(second.weight);
+                        real both = one + other;
+                        real chance = both > 0.0 ? one / both : 0.5;
+                        if (!(numbers.u < chance)) {
+                            first = second;
+                            chance = 1.0 - chance;
+                        }
+                        first.weight = dimmed(first.weight, 1.0 / chance);
+                    } else {
+                        first = sample_bsdf(&of, wo, hit.inside, numbers);
+                    }
+#else
+                    first = sample_bsdf(&of, wo, hit.inside, numbers);
+#endif
+                    if (first.found) {
+                        p = left_by(w, &p, &hit, &around, throughput, first, p.branch);
+                        goes_on = !is_spent(p.throughput);
+                    }
+                }
+            }
+        }
+        if (!goes_on) {
+            if (depth == 0) return collected;
+            depth--;
+            p = waiting[depth];
+        }
+    }
+}

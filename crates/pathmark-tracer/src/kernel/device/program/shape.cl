@@ -1,0 +1,354 @@
+// Rays against spheres, planes and triangles, and the search for the first of them: `scene/shape/`.
+
+#define NOTHING 0xFFFFFFFFU
+
+typedef struct {
+    GLOBAL const real *numbers;
+    GLOBAL const u32 *words;
+    GLOBAL const real *spheres, *planes, *triangles, *boxes;
+    GLOBAL const u32 *nodes, *order;
+    u32 sphere_count, plane_count, triangle_count, is_tree;
+} scene;
+
+typedef struct { u32 primitive; int inside; } standpoint;  // `primitive` is NOTHING where a ray starts on none
+typedef struct { real t; u32 primitive; } nearest;
+typedef struct { u64 boxes, primitives; } tests;
+typedef struct {
+    real t;
+    u32 primitive, object;
+    vec point, normal;
+    int inside;
+} surface_hit;
+
+// The ray's own axes.
+typedef struct { int x, y, z; real sx, sy, sz; } shear;
+
+FN nearest nothing_nearer_than(real t) { nearest n; n.t = t; n.primitive = NOTHING; return n; }
+
+// For primitives in the order of their numbers. No number above zero is no hit.
+FN nearest nearer(nearest so_far, real distance, u32 primitive) {
+    real ahead = distance > 0.0 ? distance : INFINITE;
+    if (ahead < so_far.t) {
+        so_far.t = ahead;
+        so_far.primitive = primitive;
+    }
+    return so_far;
+}
+FN nearest nearer_in_any_order(nearest so_far, real distance, u32 primitive) {
+    real ahead = distance > 0.0 ? distance : INFINITE;
+    int comes_first = primitive < so_far.primitive && so_far.primitive != NOTHING;
+    if (ahead < so_far.t || (ahead == so_far.t && comes_first)) {
+        so_far.t = ahead;
+        so_far.primitive = primitive;
+    }
+    return so_far;
+}
+
+FN real sphere_first_root(GLOBAL const real *sphere, ray way) {
+    vec f = minus(way.origin, vec_at(sphere));
+    real r = sphere[3];
+    real b = -inner(f, way.direction);
+    vec closest = times_plus(way.direction, b / 1.0, f);
+    real discriminant = r * r - inner(closest, closest);
+    real q = b + WITH_SIGN(SQUARE_ROOT(discriminant), b);
+    real c = inner(f, f) - r * r;
+    return (0.0 < q && c <= 0.0) ? q / 1.0 : c / q;
+}
+FN real sphere_leave(GLOBAL const real *sphere, ray way, int inside) {
+    return inside ? 2.0 * MAGNITUDE(inner(minus(vec_at(sphere), way.origin), way.direction)) : -1.0;
+}
+
+FN real plane_meet(GLOBAL const real *plane, ray way) {
+    vec normal = vec_at(plane + 3);
+    real t = inner(minus(vec_at(plane), way.origin), normal) / inner(way.direction, normal);
+    return t < INFINITE ? t : -1.0;
+}
+
+FN real component(vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+FN shear shear_of(vec d) {
+    shear by;
+    real x = MAGNITUDE(d.x), y = MAGNITUDE(d.y), z = MAGNITUDE(d.z), inverse;
+    if (x > y && x > z) {
+        by.x = 1; by.y = 2; by.z = 0;
+    } else if (y > z) {
+        by.x = 2; by.y = 0; by.z = 1;
+    } else {
+        by.x = 0; by.y = 1; by.z = 2;
+    }
+    inverse = 1.0 / component(d, by.z);
+    by.sx = component(d, by.x) * inverse;
+    by.sy = component(d, by.y) * inverse;
+    by.sz = inverse;
+    return by;
+}
+FN vec sheared(vec v, const shear *by) {
+    real x = component(v, by->x), y = component(v, by->y), z = component(v, by->z);
+    return vec_of(x - by->sx * z, y - by->sy * z, by->sz * z);
+}
+FN real across(vec p, vec q) { return p.x * q.y - p.y * q.x; }
+FN real triangle_meet(GLOBAL const real *corners, ray way, const shear *by) {
+    vec a = sheared(minus(vec_at(corners), way.origin), by);
+    vec b = sheared(minus(vec_at(corners + 3), way.origin), by);
+    vec c = sheared(minus(vec_at(corners + 6), way.origin), by);
+    real u = across(c, b), v = across(a, c), w = across(b, a);
+    int front = 0.0 <= u && 0.0 <= v && 0.0 <= w;
+    int back = u <= 0.0 && v <= 0.0 && w <= 0.0;
+    real determinant = u + v + w;
+    real t = (u * a.z + v * b.z + w * c.z) / determinant;
+    int has_area = determinant < 0.0 || 0.0 < determinant;
+    return (front || back) && has_area ? t : -1.0;
+}
+FN vec triangle_normal(GLOBAL const real *corners) {
+    vec a = vec_at(corners);
+    vec e = minus(vec_at(corners + 3), a), f = minus(vec_at(corners + 6), a);
+    return unit_vector(outer(times(e, 1.0 / largest_of(e)), times(f, 1.0 / largest_of(f))));
+}
+
+FN vec normal_of(const scene *s, u32 primitive, vec point) {
+    if (primitive < s->sphere_count) return unit_vector(minus(point, vec_at(s->spheres + 4 * primitive)));
+    primitive -= s->sphere_count;
+#if HAS_PLANE
+    if (primitive < s->plane_count) return vec_at(s->planes + 6 * primitive + 3);
+#endif
+    primitive -= s->plane_count;
+#if HAS_TRIANGLE
+    return triangle_normal(s->triangles + 9 * primitive);
+#else
+    return vec_of(0.0, 0.0, 0.0);
+#endif
+}
+
+// Distance to one primitive, from elsewhere or, if the ray starts on it, from there.
+FN real distance_to(const scene *s, u32 primitive, ray way, const shear *by, standpoint from) {
+    int own = from.primitive == primitive;
+    u32 index = primitive;
+    if (index < s->sphere_count) {
+        GLOBAL const real *sphere = s->spheres + 4 * index;
+        return own ? sphere_leave(sphere, way, from.inside) : sphere_first_root(sphere, way);
+    }
+    index -= s->sphere_count;
+    if (own) return -1.0;
+#if HAS_PLANE
+    if (index < s->plane_count) return plane_meet(s->planes + 6 * index, way);
+#endif
+    index -= s->plane_count;
+#if HAS_TRIANGLE
+    return triangle_meet(s->triangles + 9 * index, way, by);
+#else
+    return -1.0;
+#endif
+}
+
+#if HAS_TRIANGLE
+typedef struct { int near, inside; } looks;
+
+FN void extend(real *low, real *high, real x) {
+    if (x < *low) *low = x;
+    if (x > *high) *high = x;
+}
+// The largest coordinate of a triangle's box, and the box.
+FN real triangle_box(GLOBAL const real *corners, real *low, real *high) {
+    real largest = 0.0;
+    for (int axis = 0; axis < 3; axis++) {
+        low[axis] = INFINITE;
+        high[axis] = -INFINITE;
+        for (int corner = 0; corner < 3; corner++) extend(low + axis, high + axis, corners[3 * corner + axis]);
+        largest = larger(larger(largest, MAGNITUDE(low[axis])), MAGNITUDE(high[axis]));
+    }
+    return largest;
+}
+FN looks looks_of(GLOBAL const real *corners, ray way, real t, vec normal, real nearness) {
+    looks of;
+    real low[3], high[3];
+    real reach = triangle_box(corners, low, high) + largest_of(way.origin);
+    real by = HALF_PADDING * reach;
+    vec point = along(way, t);
+    of.near = t * MAGNITUDE(inner(normal, way.direction)) <= nearness * reach;
+    of.inside = low[0] - by <= point.x && point.x <= high[0] + by && low[1] - by <= point.y
+        && point.y <= high[1] + by && low[2] - by <= point.z && point.z <= high[2] + by;
+    return of;
+}
+FN int can_reach(GLOBAL const real *own, GLOBAL const real *other, vec direction) {
+    real low[3], high[3];
+    vec own_normal = triangle_normal(own), normal = triangle_normal(other);
+    real largest = triangle_box(own, low, high);
+    real slack = HALF_PADDING * (largest + triangle_box(other, low, high));
+    vec ahead = inner(direction, own_normal) < 0.0 ? negated(own_normal) : own_normal;
+    int rises = 0, above = 0, below = 0;
+    for (int corner = 0; corner < 3; corner++) {
+        real height = inner(minus(vec_at(other + 3 * corner), vec_at(own)), ahead);
+        if (height > slack) rises = 1;
+        height = inner(minus(vec_at(own + 3 * corner), vec_at(other)), normal);
+        if (height > slack) above = 1;
+        if (height < -slack) below = 1;
+    }
+    real towards = inner(direction, normal);
+    return rises && ((above && (below || towards < 0.0)) || (below && towards > 0.0));
+}
+FN GLOBAL const real *triangle_of(const scene *s, u32 primitive) {
+    return s->triangles + 9 * (primitive - s->sphere_count - s->plane_count);
+}
+FN int is_triangle(const scene *s, u32 primitive) {
+    return primitive != NOTHING && primitive >= s->sphere_count + s->plane_count;
+}
+#endif
+
+// Distance to one primitive if it is surely hit, where `only_sure`.
+FN real wanted_distance(const scene *s, u32 primitive, ray way, const shear *by, standpoint from, int only_sure) {
+    real t = distance_to(s, primitive, way, by, from);
+#if HAS_TRIANGLE
+    if (only_sure && is_triangle(s, primitive)) {
+        GLOBAL const real *corners = triangle_of(s, primitive);
+        looks of = looks_of(corners, way, t, triangle_normal(corners), NEARNESS);
+        int is_sure = of.inside
+            && (!of.near || !is_triangle(s, from.primitive)
+                || can_reach(triangle_of(s, from.primitive), corners, way.direction));
+        if (!is_sure) return -1.0;
+    }
+#endif
+    return t;
+}
+
+#if HAS_HIERARCHY
+typedef struct { real near[3], far[3], inverse[3]; int backward[3]; } slabs;
+
+FN slabs slabs_of(ray way) {
+    slabs of;
+    real origin[3], direction[3];
+    origin[0] = way.origin.x; origin[1] = way.origin.y; origin[2] = way.origin.z;
+    direction[0] = way.direction.x; direction[1] = way.direction.y; direction[2] = way.direction.z;
+    real padding = PADDING * largest_of(way.origin);
+    for (int axis = 0; axis < 3; axis++) {
+        of.backward[axis] = direction[axis] < 0.0;
+        real outwards = of.backward[axis] ? -padding : padding;
+        of.near[axis] = origin[axis] + outwards;
+        of.far[axis] = origin[axis] - outwards;
+        of.inverse[axis] = 1.0 / (direction[axis] + 0.0);
+    }
+    return of;
+}
+// Where the ray enters a box; below zero if it does not, or only beyond `limit`.
+FN real enter(const slabs *of, GLOBAL const real *faces, real limit) {
+    real first_in = 0.0, last_in = limit;
+    for (int axis = 0; axis < 3; axis++) {
+        int backward = of->backward[axis];
+        real first = (faces[3 * backward + axis] - of->near[axis]) * of->inverse[axis];
+        real last = (faces[3 * (1 - backward) + axis] - of->far[axis]) * of->inverse[axis];
+        first_in = first > first_in ? first : first_in;
+        last_in = last < last_in ? last : last_in;
+    }
+    return first_in <= last_in ? first_in : -1.0;
+}
+FN nearest through_tree(const scene *s, ray way, standpoint from, nearest so_far, int only_sure, tests *t) {
+    slabs of = slabs_of(way);
+    shear by;
+#if HAS_TRIANGLE
+    by = shear_of(way.direction);
+#endif
+    u32 waiting[DEEPEST];
+    real distances[DEEPEST];
+    int count = 0;
+    u32 index = 0;
+    t->boxes += 1;
+    if (enter(&of, s->boxes, so_far.t) < 0.0) return so_far;
+    for (;;) {
+        u32 at = s->nodes[2 * index], entries = s->nodes[2 * index + 1];
+        if (entries == 0U) {
+            t->boxes += 2;
+            real a = enter(&of, s->boxes + 6 * at, so_far.t);
+            real b = enter(&of, s->boxes + 6 * (at + 1), so_far.t);
+            if (a >= 0.0 && b >= 0.0) {
+                int second_first = b < a;
+                waiting[count] = second_first ? at : at + 1;
+                distances[count] = second_first ? a : b;
+                count++;
+                index = second_first ? at + 1 : at;
+                continue;
+            }
+            if (a >= 0.0) { index = at; continue; }
+            if (b >= 0.0) { index = at + 1; continue; }
+        } else {
+            t->primitives += (u64)entries;
+            for (u32 entry = at; entry < at + entries; entry++) {
+                u32 primitive = s->order[entry];
+                real distance = wanted_distance(s, primitive, way, &by, from, only_sure);
+                so_far = nearer_in_any_order(so_far, distance, primitive);
+            }
+        }
+        do {
+            if (count == 0) return so_far;
+            count--;
+        } while (!(distances[count] <= so_far.t));
+        index = waiting[count];
+    }
+}
+#endif
+
+// Tests planes, which are in no tree.
+FN nearest all_planes(const scene *s, ray way, standpoint from, nearest so_far) {
+#if HAS_PLANE
+    for (u32 k = 0; k < s->plane_count; k++) {
+        u32 primitive = s->sphere_count + k;
+        real t = from.primitive == primitive ? -1.0 : plane_meet(s->planes + 6 * k, way);
+        so_far = nearer(so_far, t, primitive);
+    }
+#endif
+    return so_far;
+}
+
+FN nearest search(const scene *s, ray way, standpoint from, real limit, int only_sure, tests *t) {
+    nearest so_far = nothing_nearer_than(limit);
+#if HAS_HIERARCHY
+    if (s->is_tree) return through_tree(s, way, from, all_planes(s, way, from, so_far), only_sure, t);
+#endif
+    if (only_sure) {
+        u32 all = s->sphere_count + s->plane_count + s->triangle_count;
+        shear by = shear_of(way.direction);
+        for (u32 primitive = 0; primitive < all; primitive++) {
+            real distance = wanted_distance(s, primitive, way, &by, from, 1);
+            so_far = nearer_in_any_order(so_far, distance, primitive);
+        }
+        return so_far;
+    }
+    for (u32 k = 0; k < s->sphere_count; k++) {
+        GLOBAL const real *sphere = s->spheres + 4 * k;
+        real distance = from.primitive == k ? sphere_leave(sphere, way, from.inside) : sphere_first_root(sphere, way);
+        so_far = nearer(so_far, distance, k);
+    }
+    so_far = all_planes(s, way, from, so_far);
+#if HAS_TRIANGLE
+    {
+        shear by = shear_of(way.direction);
+        u32 first = s->sphere_count + s->plane_count;
+        for (u32 k = 0; k < s->triangle_count; k++) {
+            real distance = from.primitive == first + k ? -1.0 : triangle_meet(s->triangles + 9 * k, way, &by);
+            so_far = nearer(so_far, distance, first + k);
+        }
+    }
+#endif
+    return so_far;
+}
+
+FN surface_hit hit_of(const scene *s, ray way, nearest found) {
+    surface_hit hit;
+    hit.t = found.t;
+    hit.primitive = found.primitive;
+    if (found.primitive == NOTHING) return hit;
+    hit.object = s->words[s->words[AT_OWNERS] + found.primitive];
+    hit.point = along(way, found.t);
+    hit.normal = normal_of(s, found.primitive, hit.point);
+    hit.inside = inner(hit.normal, way.direction) > 0.0;
+    return hit;
+}
+
+// The first primitive along a ray; its number is NOTHING if there is none nearer than `limit`.
+FN surface_hit first_hit(const scene *s, ray way, standpoint from, real limit, tests *t) {
+    surface_hit hit = hit_of(s, way, search(s, way, from, limit, 0, t));
+#if HAS_TRIANGLE
+    if (is_triangle(s, hit.primitive)) {
+        looks of = looks_of(triangle_of(s, hit.primitive), way, hit.t, hit.normal, NEARNESS);
+        if (of.near || !of.inside) return hit_of(s, way, search(s, way, from, limit, 1, t));
+    }
+#endif
+    return hit;
+}
