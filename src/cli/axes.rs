@@ -6,6 +6,8 @@ use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{AXES, Axis, Field, LARGEST_SEED, Settings, THREAD_PER_ROW};
 use clap::builder::ValueParser;
+use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
 use std::path::Path;
 
@@ -50,6 +52,14 @@ impl Samples {
     }
 }
 
+/// The kernel for devices, and the option that says which.
+const DEVICE: &str = "device";
+
+fn device_option() -> Arg {
+    let about = "Device of the kernel `device`: one of `pathmark list devices`, cuda:N, opencl:N or host [default: the first GPU]";
+    Arg::new(DEVICE).long(DEVICE).value_name("ID").help(about).help_heading("Image")
+}
+
 /// What clap refuses before the program looks at a value.
 fn parser(axis: &Axis) -> ValueParser {
     match (axis.field)(&mut Settings::default()) {
@@ -77,6 +87,7 @@ impl<const WHAT: bool> Options<WHAT> {
 
 impl<const WHAT: bool> Args for Options<WHAT> {
     fn augment_args(command: Command) -> Command {
+        let command = if WHAT { command.arg(device_option()) } else { command };
         command.args(Self::axes().map(|axis| {
             let option = Arg::new(axis.name).long(axis.name).value_name(axis.value_name).help(axis.about);
             let option = option.help_heading(if WHAT { "Image" } else { "Schedule" });
@@ -92,8 +103,26 @@ impl<const WHAT: bool> Args for Options<WHAT> {
 
 impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
     fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
-        let given = |axis: &'static Axis| Some((axis, matches.get_raw(axis.name)?.next()?.to_str()?.to_string()));
-        Ok(Self(Self::axes().filter_map(given).collect()))
+        let device = if WHAT { matches.get_one::<String>(DEVICE) } else { None };
+        let given = |axis: &'static Axis| {
+            let value = matches.get_raw(axis.name)?.next()?.to_str()?.to_string();
+            let is_chosen = matches.value_source(axis.name) == Some(ValueSource::CommandLine);
+            match device {
+                // `--kernel device --device ID`, or `--device ID` alone, is the kernel `device:ID`.
+                Some(id) if axis.name == "kernel" && (value == DEVICE || !is_chosen) => {
+                    Some((axis, format!("{DEVICE}:{id}")))
+                }
+                _ => Some((axis, value)),
+            }
+        };
+        let options = Self(Self::axes().filter_map(given).collect());
+        match (device, options.value("kernel")) {
+            (Some(id), Some(kernel)) if !kernel.starts_with(DEVICE) => {
+                let problem = format!("--device {id} is for the kernel {DEVICE}, and --kernel is {kernel}\n");
+                Err(clap::Error::raw(ErrorKind::ArgumentConflict, problem))
+            }
+            _ => Ok(options),
+        }
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {

@@ -5,7 +5,7 @@ use crate::error::Result;
 use crate::experiment::{Definition, keys};
 use crate::film::DECOMPOSITIONS;
 use crate::image_io::FORMATS;
-use crate::kernel::{KERNELS, Spec, choose};
+use crate::kernel::{DEVICE_KERNEL, Device, KERNELS, Spec, choose, devices};
 use crate::lab::Lab;
 use crate::material::MATERIALS;
 use crate::measure::{COLUMNS, Column, OUTPUTS, WARNINGS};
@@ -39,6 +39,7 @@ enum Kind {
     Samplers,
     Kernels,
     Simd,
+    Devices,
     Effects,
     Accelerators,
     Cameras,
@@ -86,6 +87,11 @@ fn about_column(column: &Column) -> String {
     format!("{} [{}{unit}{empty}; since schema {}]", column.about.trim(), column.values(), column.since())
 }
 
+/// What a driver calls a device, or why it shows none.
+fn about_device(device: &Device) -> String {
+    if device.is_there { device.about.clone() } else { format!("none: {}", device.about) }
+}
+
 fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
     let scene = lab.load_scene(name)?;
     let choice = choose(&scene, &Spec::default())?;
@@ -107,8 +113,9 @@ fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
         Kind::Outputs => OUTPUTS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Estimators => lab.estimators().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Kernels => KERNELS.iter().map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Kernels => KERNELS.iter().chain([&DEVICE_KERNEL]).map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Simd => LEVELS.iter().map(|level| item(level.name, level.about)).collect(),
+        Kind::Devices => devices().iter().map(|device| item(&device.id, &about_device(device))).collect(),
         Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Accelerators => ACCELERATORS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Filters => FILTERS.iter().map(|entry| item(entry.name, entry.about)).collect(),

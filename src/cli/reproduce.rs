@@ -59,8 +59,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let left_out = known - definitions.len();
     definitions.retain(|definition| match definition.missing_feature() {
         None => true,
-        Some(feature) => {
-            talk.note(&format!("{} is left out: it needs the feature {feature}", definition.name));
+        Some((_, takes)) => {
+            talk.note(&format!("{} is left out: it needs {takes}", definition.name));
             false
         }
     });

@@ -51,6 +51,7 @@ use super::until::Until;
 use super::{Chapter, External, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
+use crate::kernel::devices;
 use crate::lab::Lab;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -67,8 +68,29 @@ pub(super) const REFERENCE_SPP: &str = "reference-spp";
 /// What else there is in a folder of results.
 const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
 
-/// The features that an experiment may require, and whether this program was built with them.
-pub(super) const FEATURES: &[(&str, bool)] = &[("openmp", cfg!(feature = "openmp"))];
+/// Something that not every build or machine has.
+pub(super) struct Feature {
+    /// What an experiment calls it.
+    pub(super) name: &'static str,
+    /// Whether it is there.
+    pub(super) is_there: fn() -> bool,
+    /// What it takes to have it.
+    pub(super) takes: &'static str,
+}
+
+/// What an experiment may require.
+pub(super) const FEATURES: &[Feature] = &[
+    Feature {
+        name: "openmp",
+        is_there: || cfg!(feature = "openmp"),
+        takes: "a program built by `cargo run --release --features openmp -- ...`",
+    },
+    Feature {
+        name: "gpu",
+        is_there: || devices().iter().any(|device| device.is_there && device.is_accelerator),
+        takes: "a GPU in `pathmark list devices`",
+    },
+];
 
 /// What a sweep may keep beside its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -130,7 +152,7 @@ pub struct Definition {
     /// Whether samplers may be used that give other numbers in each run, so that no checksum can be expected.
     #[serde(default)]
     pub unverified: bool,
-    /// Features that the program must have been built with; without them the experiment is left out.
+    /// What not every build or machine has; without it the experiment is left out.
     #[serde(default)]
     pub requires: Vec<String>,
     #[serde(deserialize_with = "one_or_many")]
@@ -219,10 +241,11 @@ impl Definition {
         names
     }
 
-    /// The first feature that it needs and that this program was built without.
-    pub fn missing_feature(&self) -> Option<&str> {
-        let built_with = |feature: &str| FEATURES.iter().any(|(name, there)| *name == feature && *there);
-        self.requires.iter().map(String::as_str).find(|feature| !built_with(feature))
+    /// The first feature that it needs and that this program or machine has not, and what it takes to have it.
+    pub fn missing_feature(&self) -> Option<(&str, &'static str)> {
+        let required = |feature: &&Feature| self.requires.iter().any(|name| name == feature.name);
+        let missing = FEATURES.iter().filter(required).find(|feature| !(feature.is_there)());
+        missing.map(|feature| (feature.name, feature.takes))
     }
 
     /// Whether that is kept beside the rows.

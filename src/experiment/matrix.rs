@@ -44,16 +44,16 @@ impl Definition {
         if self.repetitions(profile)? == 0 {
             return Err(self.located(profile, InputError::new("repetitions", "0", "must be at least 1")));
         }
-        if let Some(unknown) = self.requires.iter().find(|name| !FEATURES.iter().any(|(known, _)| known == name)) {
-            let names: Vec<&str> = FEATURES.iter().map(|(name, _)| *name).collect();
+        if let Some(unknown) =
+            self.requires.iter().find(|name| !FEATURES.iter().any(|feature| feature.name == name.as_str()))
+        {
+            let names: Vec<&str> = FEATURES.iter().map(|feature| feature.name).collect();
             let error = InputError::new("requires", unknown, "there is no feature of that name");
             return Err(self.located(profile, error.allowed(names.join(", "))));
         }
-        if let Some(feature) = self.missing_feature() {
-            let error = InputError::new("requires", feature, "is a feature that this program was built without");
-            return Err(
-                self.located(profile, error.allowed(format!("cargo run --release --features {feature} -- ...")))
-            );
+        if let Some((feature, takes)) = self.missing_feature() {
+            let error = InputError::new("requires", feature, "is not there");
+            return Err(self.located(profile, error.allowed(takes)));
         }
         let mut cells = Cells::default();
         for matrix in self.matrices(profile) {

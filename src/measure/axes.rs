@@ -160,7 +160,7 @@ pub static AXES: [Axis; 22] = [
     Axis::new("clamp", |s| Fitting(&mut s.spec.clamp)).image().light(),
     Axis::new("filter", |s| Fitting(&mut s.spec.filter)).image().light().all(all_filters).option("NAME", "Pixel filter: tent, box or center [default: the camera's own]"),
     Axis::new("epsilon", |s| Fitting(&mut s.spec.epsilon)).image().light().option("DISTANCE", "Drop hits nearer than this, as programs do that cannot tell where a ray starts: biased, and for the scalar kernel alone [default: no such distance is needed]"),
-    Axis::new("kernel", |s| Name(&mut s.spec.kernel)).light().option("NAME", "Kernel").default("lanes"),
+    Axis::new("kernel", |s| Name(&mut s.spec.kernel)).light().option("NAME", "Kernel: lanes, scalar, device, or device:ID for a device of `pathmark list devices`").default("lanes"),
     Axis::new("simd", |s| Fitting(&mut s.spec.simd)).light().all(all_levels).option("LEVEL", "Instruction set of lanes: one of `pathmark list simd` [default: the fastest of this processor]"),
     Axis::new("precision", |s| Name(&mut s.spec.precision)).image().light().option("FORMAT", "Floating-point format: f64, or f32, which lanes alone have and which gives other bits").default("f64"),
     Axis::new("effects", |s| Fitting(&mut s.spec.effects)).light().option("PROFILE", "Effect profile [default: the smallest that covers the scene]"),

@@ -148,8 +148,8 @@ fn part_of(rounds: &Rounds) -> Option<Part> {
 pub(super) fn difference(found: &Header, mine: &Header) -> Option<String> {
     let fields = |header: &Header| {
         let part = header.part.map(|Part { shard, spp }| format!("{shard} by {} of {spp} spp", shard.cut()));
-        let mut fields = vec![("kernel".to_string(), serde_json::Value::from(header.kernel.as_str()))];
-        fields.push(("shard".to_string(), part.into()));
+        // Whichever kernel: in the same precision all give the same bits.
+        let mut fields = vec![("shard".to_string(), serde_json::Value::from(part))];
         if let Ok(serde_json::Value::Object(film)) = serde_json::to_value(&header.film) {
             fields.extend(film);
         }

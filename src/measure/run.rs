@@ -204,6 +204,9 @@ impl Account {
             }
         };
         let timed = watched(&run, watch, || run.timed(setup, strategy.as_mut(), plan.len()))?;
+        if let Some(failure) = kernel.failure() {
+            return Err(failure);
+        }
 
         let broken = |problem: &str| {
             Error::Check(format!("strategy {} broke its contract: {problem}", setup.settings().strategy))

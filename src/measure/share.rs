@@ -118,6 +118,9 @@ impl Share<'_> {
             });
         });
         self.strategy.run(count, job).map_err(|error| self.setup.strategy_error(error))?;
+        if let Some(failure) = self.kernel.failure() {
+            return Err(failure);
+        }
         let broken = |problem: &str| {
             Error::Check(format!("strategy {} broke its contract: {problem}", self.setup.settings().strategy))
         };

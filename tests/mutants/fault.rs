@@ -55,7 +55,7 @@ impl Sources {
     /// The sources of the package at `root` and of those in its `crates`.
     pub(crate) fn read(root: &Path) -> Self {
         let text = |file: PathBuf| (file.strip_prefix(root).unwrap().to_path_buf(), fs::read_to_string(&file).unwrap());
-        packages(root).iter().flat_map(|package| rust_files(&package.join("src"))).map(text).collect()
+        packages(root).iter().flat_map(|package| source_files(&package.join("src"))).map(text).collect()
     }
 
     pub(crate) fn text(&self, file: &Path) -> &str {
@@ -69,14 +69,14 @@ pub(crate) fn packages(root: &Path) -> Vec<PathBuf> {
     std::iter::once(root.to_path_buf()).chain(members).collect()
 }
 
-/// The Rust files below a folder; none if there is no such folder.
-pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
+/// The files of code below a folder, in Rust and for devices; none if there is no such folder.
+pub(crate) fn source_files(folder: &Path) -> Vec<PathBuf> {
     let (mut files, mut folders) = (Vec::new(), vec![folder.to_path_buf()]);
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(folder).into_iter().flatten().map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
+            } else if path.extension().is_some_and(|extension| extension == "rs" || extension == "cl") {
                 files.push(path);
             }
         }

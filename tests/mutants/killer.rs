@@ -22,12 +22,13 @@ pub(crate) struct Killers {
 
 impl Killers {
     pub(crate) fn read(root: &Path) -> Self {
-        let cases = rust_files(&root.join("src/check")).iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+        let cases =
+            source_files(&root.join("src/check")).iter().map(|file| fs::read_to_string(file).unwrap()).collect();
         let mut tests = Vec::new();
         for package in packages(root) {
             for (folder, program) in [("src", Some("lib")), ("tests", None)] {
                 let folder = package.join(folder);
-                for file in rust_files(&folder) {
+                for file in source_files(&folder) {
                     let inner = file.strip_prefix(&folder).unwrap().with_extension("");
                     let parts = inner.iter().filter_map(|part| part.to_str());
                     let modules = parts.filter(|part| !["mod", "main"].contains(part));

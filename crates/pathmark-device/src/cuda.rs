@@ -111,8 +111,7 @@ fn devices(driver: &Driver) -> Vec<c_int> {
 }
 
 pub(crate) fn list() -> Vec<Listed> {
-    let nothing =
-        |about: String| vec![Listed { id: "cuda".to_string(), about, is_there: false, is_accelerator: true }];
+    let nothing = |about: String| vec![Listed { id: "cuda".to_string(), about, is_there: false, is_accelerator: true }];
     let driver = match &*DRIVER {
         Ok(driver) => driver,
         Err(why) => return nothing(why.clone()),
@@ -153,14 +152,19 @@ pub fn ptx_of(program: &str, capability: u32) -> Result<String> {
     let text = CString::new(Dialect::Cuda.whole(program)).map_err(|e| refused(e.to_string()))?;
     let mut handle = null_mut();
     // SAFETY: texts end with zeros; there are no headers.
-    let code =
-        unsafe { (compiler.create)(&raw mut handle, text.as_ptr(), c"pathmark.cu".as_ptr(), 0, null(), null()) };
+    let code = unsafe { (compiler.create)(&raw mut handle, text.as_ptr(), c"pathmark.cu".as_ptr(), 0, null(), null()) };
     if code != SUCCESS {
         return Err(refused(format!("nvrtcCreateProgram: error {code}")));
     }
     let target = format!("--gpu-architecture=compute_{}", architecture(compiler, capability));
     let target = CString::new(target).map_err(|e| refused(e.to_string()))?;
-    let options = [target.as_ptr(), c"--fmad=false".as_ptr(), c"--ftz=false".as_ptr(), c"--prec-div=true".as_ptr(), c"--prec-sqrt=true".as_ptr()];
+    let options = [
+        target.as_ptr(),
+        c"--fmad=false".as_ptr(),
+        c"--ftz=false".as_ptr(),
+        c"--prec-div=true".as_ptr(),
+        c"--prec-sqrt=true".as_ptr(),
+    ];
     // SAFETY: so many options, each of which ends with a zero.
     let code = unsafe { (compiler.compile)(handle, options.len() as c_int, options.as_ptr()) };
     let made = if code == SUCCESS {
@@ -209,7 +213,7 @@ impl Context {
         if code == SUCCESS {
             return Ok(());
         }
-        Err(DeviceError::Call { id: self.id.clone(), call, why: text_of(self.driver, code) })
+        Err(DeviceError::Call { call, why: text_of(self.driver, code) })
     }
 
     /// Makes the context the calling thread's.
@@ -321,13 +325,12 @@ impl Device for Cuda {
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
         self.context.enter()?;
         let mut functions = self.functions.lock().unwrap_or_else(PoisonError::into_inner);
-        let function = match functions.get(text) {
-            Some(function) => *function,
-            None => {
-                let function = self.compile(text)?;
-                functions.insert(text.to_string(), function);
-                function
-            }
+        let function = if let Some(function) = functions.get(text) {
+            *function
+        } else {
+            let function = self.compile(text)?;
+            functions.insert(text.to_string(), function);
+            function
         };
         Ok(Box::new(Bound {
             function,
@@ -396,9 +399,8 @@ impl Loaded for Bound {
         };
         context.checked("cuLaunchKernel", code)?;
         // SAFETY: `out` has this size. The copy waits for the launch before it, whose failure it tells.
-        let code = unsafe {
-            (context.driver.from_device)(out.as_mut_ptr().cast(), out_buffer.address, size_of_val(out))
-        };
+        let code =
+            unsafe { (context.driver.from_device)(out.as_mut_ptr().cast(), out_buffer.address, size_of_val(out)) };
         context.checked("cuMemcpyDtoH", code)
     }
 }

@@ -27,21 +27,17 @@ pub enum DeviceError {
         /// What it said.
         log: String,
     },
-    /// A call of the driver failed.
-    #[error("{id}: {call} failed: {why}")]
+    /// A call of the device's driver failed.
+    #[error("{call} failed: {why}")]
     Call {
-        /// The device.
-        id: String,
         /// The function.
         call: &'static str,
         /// What the driver says of it.
         why: String,
     },
     /// It does not round as IEEE 754 demands.
-    #[error("{id} does not compute as IEEE 754 demands: {operation}")]
+    #[error("it does not compute as IEEE 754 demands: {operation}")]
     Inexact {
-        /// The device.
-        id: String,
         /// The operation and its operands.
         operation: String,
     },

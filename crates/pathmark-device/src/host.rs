@@ -1,6 +1,7 @@
 //! The host's C compiler as a device: `cc`, or what `CC` names. Every thread that runs items computes them itself.
 #![expect(unsafe_code, reason = "a function that was compiled a moment ago is called; its text is in this crate")]
 
+use super::library::in_full;
 use super::{Device, DeviceError, Dialect, HOST, Listed, Loaded, Result};
 use libloading::Library;
 use std::collections::HashMap;
@@ -14,7 +15,18 @@ use std::sync::{Arc, Mutex, PoisonError};
 type Run = unsafe extern "C" fn(*const *const c_void, *const u32, u32, *mut u64);
 
 /// No operation is fused with another or put in another order; nobody asks for `errno`.
-const OPTIONS: &[&str] = &["-x", "c", "-std=gnu99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fno-strict-aliasing", "-fPIC", "-shared", "-w"];
+const OPTIONS: &[&str] = &[
+    "-x",
+    "c",
+    "-std=gnu99",
+    "-O2",
+    "-ffp-contract=off",
+    "-fno-math-errno",
+    "-fno-strict-aliasing",
+    "-fPIC",
+    "-shared",
+    "-w",
+];
 
 fn compiler() -> OsString {
     env::var_os("CC").filter(|name| !name.is_empty()).unwrap_or_else(|| "cc".into())
@@ -55,13 +67,19 @@ impl Host {
         let folder = tempfile::Builder::new().prefix("pathmark-device-").tempdir().map_err(failed)?;
         let [source, library] = ["program.c", "program.so"].map(|name| folder.path().join(name));
         fs::write(&source, Dialect::C.whole(text)).map_err(failed)?;
-        let said =
-            Command::new(compiler()).args(OPTIONS).arg("-o").arg(&library).arg(&source).output().map_err(failed)?;
+        let said = Command::new(compiler())
+            .args(OPTIONS)
+            .arg("-o")
+            .arg(&library)
+            .arg(&source)
+            .arg("-lm")
+            .output()
+            .map_err(failed)?;
         if !said.status.success() {
             return Err(refused(String::from_utf8_lossy(&said.stderr).into_owned()));
         }
         // SAFETY: the library has no code that runs when it is loaded. Its file may go: it is mapped.
-        unsafe { Library::new(&library) }.map_err(|e| refused(e.to_string()))
+        unsafe { Library::new(&library) }.map_err(|e| refused(in_full(&e)))
     }
 }
 
@@ -80,17 +98,16 @@ impl Device for Host {
 
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
         let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-        let library = match compiled.get(text) {
-            Some(library) => Arc::clone(library),
-            None => {
-                let library = Arc::new(self.compile(text)?);
-                compiled.insert(text.to_string(), Arc::clone(&library));
-                library
-            }
+        let library = if let Some(library) = compiled.get(text) {
+            Arc::clone(library)
+        } else {
+            let library = Arc::new(self.compile(text)?);
+            compiled.insert(text.to_string(), Arc::clone(&library));
+            library
         };
         // SAFETY: the text defines this function with this type.
         let found = unsafe { library.get::<Run>(c"pathmark_run") };
-        let run = *found.map_err(|e| DeviceError::Compiler { compiler: self.about.clone(), log: e.to_string() })?;
+        let run = *found.map_err(|e| DeviceError::Compiler { compiler: self.about.clone(), log: in_full(&e) })?;
         Ok(Box::new(Bound { run, numbers: numbers.to_vec(), words: words.to_vec(), _library: library }))
     }
 }

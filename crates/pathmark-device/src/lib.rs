@@ -22,6 +22,7 @@ mod ptx;
 mod self_test;
 
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
+use std::time::Instant;
 
 pub use cuda::ptx_of;
 pub use dialect::Dialect;
@@ -74,6 +75,15 @@ impl dyn Device {
 pub trait Loaded: Send + Sync {
     /// Runs so many items. `out` has room for as many words for each as the program writes.
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()>;
+}
+
+impl dyn Loaded {
+    /// [`Loaded::run`], and the seconds that it took, with what goes to the device and comes back.
+    pub fn timed(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<f64> {
+        let before = Instant::now();
+        self.run(task, items, out)?;
+        Ok(before.elapsed().as_secs_f64())
+    }
 }
 
 /// Every device there is, and the ways that lead to none.

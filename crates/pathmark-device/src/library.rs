@@ -1,6 +1,7 @@
 //! A driver's library that is opened at run time, and the functions in it.
 
 use libloading::Library;
+use std::error::Error;
 use std::path::Path;
 
 /// Opens the first library that there is of some names; what the system said of each otherwise.
@@ -11,10 +12,15 @@ pub(crate) fn open(names: &[&str]) -> Result<Library, String> {
         // SAFETY: the libraries that are named here are drivers and compilers of GPUs, made to be opened by any program.
         match unsafe { Library::new(Path::new(name)) } {
             Ok(library) => return Ok(library),
-            Err(error) => tried.push(error.to_string()),
+            Err(error) => tried.push(in_full(&error)),
         }
     }
     Err(tried.join("; "))
+}
+
+/// An error with what the system said.
+pub(crate) fn in_full(error: &libloading::Error) -> String {
+    error.source().map_or_else(|| error.to_string(), ToString::to_string)
 }
 
 /// Declares functions of a library with their types in C, and finds all of them when it is opened.
@@ -33,7 +39,7 @@ macro_rules! functions {
                         #[expect(unsafe_code, reason = "functions that are found at run time have the types that their interface documents")]
                         // SAFETY: the interface gives the function of that name this type, and the library stays open as long as it.
                         let found = unsafe { library.get::<unsafe extern "C" fn($($argument),*) -> $result>($symbol) };
-                        *found.map_err(|e| e.to_string())?
+                        *found.map_err(|e| $crate::library::in_full(&e))?
                     },)*
                     _library: library,
                 })

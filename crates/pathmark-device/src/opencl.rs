@@ -44,10 +44,12 @@ const EXACT_ENOUGH: u64 = 1 | 2 | 4;
 const READ_WRITE: u64 = 1;
 const READ_ONLY_COPY: u64 = 4 | 32;
 
-/// Items that keep a processing unit busy.
+/// Items that keep a processing unit busy; of a processor, one of its cores.
 const ITEMS_PER_UNIT: u32 = 1024;
-/// Of one that is a processor.
 const ITEMS_PER_CORE: u32 = 16;
+/// Items of a group, the same for all launches, because a driver may compile the program anew for each size; on a processor an item is a loop.
+const GROUP: usize = 64;
+const GROUP_OF_CORE: usize = 1;
 
 /// The loader's functions, or why there are none; it stays open.
 static LOADER: LazyLock<std::result::Result<Functions, String>> =
@@ -124,12 +126,8 @@ fn found(functions: &Functions) -> Vec<Found> {
 const INEXACT: &str = "it has no double precision by IEEE 754";
 
 pub(crate) fn list() -> Vec<Listed> {
-    let nothing = |why: &str| Listed {
-        id: "opencl".to_string(),
-        about: why.to_string(),
-        is_there: false,
-        is_accelerator: false,
-    };
+    let nothing =
+        |why: &str| Listed { id: "opencl".to_string(), about: why.to_string(), is_there: false, is_accelerator: false };
     match &*LOADER {
         Err(why) => vec![nothing(why)],
         Ok(functions) => {
@@ -157,31 +155,35 @@ unsafe impl Send for Shared {}
 // SAFETY: as above.
 unsafe impl Sync for Shared {}
 
+/// What a call of the driver came to.
+fn checked(call: &'static str, code: i32) -> Result<()> {
+    if code == SUCCESS { Ok(()) } else { Err(DeviceError::Call { call, why: meaning(code) }) }
+}
+
 /// A device, a context and a queue on it.
 struct Queue {
     id: String,
     functions: &'static Functions,
     device: Shared,
     context: Shared,
-    queue: Shared,
+    handle: Shared,
 }
 
 impl Queue {
-    fn checked(&self, call: &'static str, code: i32) -> Result<()> {
-        if code == SUCCESS {
-            return Ok(());
-        }
-        Err(DeviceError::Call { id: self.id.clone(), call, why: meaning(code) })
-    }
-
     /// Room for so many bytes, of which there is at least one.
     fn buffer<T>(&self, flags: u64, content: *const T, bytes: usize) -> Result<Buffer> {
         let mut code = SUCCESS;
         // SAFETY: with the flag to copy `content` has so many bytes, without it is null.
         let handle = unsafe {
-            (self.functions.create_buffer)(self.context.0, flags, bytes.max(8), content.cast_mut().cast(), &raw mut code)
+            (self.functions.create_buffer)(
+                self.context.0,
+                flags,
+                bytes.max(8),
+                content.cast_mut().cast(),
+                &raw mut code,
+            )
         };
-        self.checked("clCreateBuffer", code)?;
+        checked("clCreateBuffer", code)?;
         Ok(Buffer { handle: Shared(handle), functions: self.functions })
     }
 
@@ -210,7 +212,7 @@ impl Queue {
         let program = unsafe {
             (self.functions.create_program)(self.context.0, 1, &raw const pointer, &raw const length, &raw mut code)
         };
-        self.checked("clCreateProgramWithSource", code)?;
+        checked("clCreateProgramWithSource", code)?;
         // SAFETY: the options end with a zero.
         let code = unsafe {
             (self.functions.build)(program, 1, &raw const self.device.0, c"-cl-std=CL1.2".as_ptr(), null(), null_mut())
@@ -226,7 +228,7 @@ impl Queue {
         let mut code = SUCCESS;
         // SAFETY: the name ends with a zero.
         let kernel = unsafe { (self.functions.create_kernel)(program.0, c"pathmark_run".as_ptr(), &raw mut code) };
-        self.checked("clCreateKernel", code)?;
+        checked("clCreateKernel", code)?;
         Ok(Shared(kernel))
     }
 }
@@ -248,6 +250,7 @@ impl Drop for Buffer {
 pub(crate) struct OpenCl {
     about: String,
     width: u32,
+    group: usize,
     queue: Arc<Queue>,
     programs: Mutex<HashMap<String, Shared>>,
 }
@@ -265,22 +268,18 @@ impl OpenCl {
             return Err(missing(INEXACT));
         }
         let mut code = SUCCESS;
-        let checked = |call, code| match code {
-            SUCCESS => Ok(()),
-            _ => Err(DeviceError::Call { id: id.clone(), call, why: meaning(code) }),
-        };
         // SAFETY: one device, no properties, nobody to be told of errors.
-        let context = unsafe {
-            (functions.create_context)(null(), 1, &raw const handle, null(), null_mut(), &raw mut code)
-        };
+        let context =
+            unsafe { (functions.create_context)(null(), 1, &raw const handle, null(), null_mut(), &raw mut code) };
         checked("clCreateContext", code)?;
         // SAFETY: context and device belong together.
         let queue = unsafe { (functions.create_queue)(context, handle, 0, &raw mut code) };
         checked("clCreateCommandQueue", code)?;
-        let (device, context, queue) = (Shared(handle), Shared(context), Shared(queue));
+        let (device, context, handle) = (Shared(handle), Shared(context), Shared(queue));
         let width = units.max(1) * if is_processor { ITEMS_PER_CORE } else { ITEMS_PER_UNIT };
-        let queue = Arc::new(Queue { id, functions, device, context, queue });
-        Ok(Self { about: name, width, queue, programs: Mutex::default() })
+        let queue = Arc::new(Queue { id, functions, device, context, handle });
+        let group = if is_processor { GROUP_OF_CORE } else { GROUP };
+        Ok(Self { about: name, width, group, queue, programs: Mutex::default() })
     }
 }
 
@@ -300,27 +299,26 @@ impl Device for OpenCl {
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
         let queue = &self.queue;
         let mut programs = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
-        let program = match programs.get(text) {
-            Some(program) => *program,
-            None => {
-                let program = queue.compile(text)?;
-                programs.insert(text.to_string(), program);
-                program
-            }
+        let program = if let Some(program) = programs.get(text) {
+            *program
+        } else {
+            let program = queue.compile(text)?;
+            programs.insert(text.to_string(), program);
+            program
         };
         let kernel = queue.kernel(program)?;
         let inputs = [
             queue.buffer(READ_ONLY_COPY, numbers.as_ptr(), size_of_val(numbers))?,
             queue.buffer(READ_ONLY_COPY, words.as_ptr(), size_of_val(words))?,
         ];
-        let kernel = Mutex::new(Kernel { kernel, task: None, out: None });
-        Ok(Box::new(Bound { queue: Arc::clone(queue), inputs, kernel }))
+        let kernel = Mutex::new(Kernel { handle: kernel, task: None, out: None });
+        Ok(Box::new(Bound { queue: Arc::clone(queue), group: self.group, inputs, kernel }))
     }
 }
 
 /// A kernel, and the buffers that are kept from run to run, with their sizes.
 struct Kernel {
-    kernel: Shared,
+    handle: Shared,
     task: Option<(Buffer, usize)>,
     out: Option<(Buffer, usize)>,
 }
@@ -328,6 +326,7 @@ struct Kernel {
 /// A kernel with its inputs.
 struct Bound {
     queue: Arc<Queue>,
+    group: usize,
     inputs: [Buffer; 2],
     kernel: Mutex<Kernel>,
 }
@@ -346,16 +345,16 @@ fn kept(queue: &Queue, place: &mut Option<(Buffer, usize)>, bytes: usize) -> Res
 
 impl Loaded for Bound {
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
-        let Queue { functions, queue: Shared(queue), .. } = *self.queue;
+        let Queue { functions, handle: Shared(queue), .. } = *self.queue;
         let mut guard: MutexGuard<'_, Kernel> = self.kernel.lock().unwrap_or_else(PoisonError::into_inner);
-        let Kernel { kernel: Shared(kernel), task: task_buffer, out: out_buffer } = &mut *guard;
+        let Kernel { handle: Shared(kernel), task: task_buffer, out: out_buffer } = &mut *guard;
         let task_handle = kept(&self.queue, task_buffer, size_of_val(task))?;
         let out_handle = kept(&self.queue, out_buffer, size_of_val(out))?;
         // SAFETY: the buffer has this size, and the call returns when it has been read.
         let code = unsafe {
             (functions.write)(queue, task_handle, 1, 0, size_of_val(task), task.as_ptr().cast(), 0, null(), null_mut())
         };
-        self.queue.checked("clEnqueueWriteBuffer", code)?;
+        checked("clEnqueueWriteBuffer", code)?;
         let handles = [self.inputs[0].handle.0, self.inputs[1].handle.0, task_handle, null_mut(), out_handle];
         for (number, handle) in (0_u32..).zip(&handles) {
             // SAFETY: the kernel's fourth argument is a word of 32 bits, the others are buffers.
@@ -366,25 +365,25 @@ impl Loaded for Bound {
                     (functions.set_argument)(*kernel, number, size_of::<Handle>(), (&raw const *handle).cast())
                 }
             };
-            self.queue.checked("clSetKernelArg", code)?;
+            checked("clSetKernelArg", code)?;
         }
-        let global = items as usize;
-        // SAFETY: one dimension; the driver chooses the groups.
+        let (group, global) = (self.group, (items as usize).next_multiple_of(self.group));
+        // SAFETY: one dimension; the program asks for no item beyond the last.
         let code = unsafe {
-            (functions.launch)(queue, *kernel, 1, null(), &raw const global, null(), 0, null(), null_mut())
+            (functions.launch)(queue, *kernel, 1, null(), &raw const global, &raw const group, 0, null(), null_mut())
         };
-        self.queue.checked("clEnqueueNDRangeKernel", code)?;
+        checked("clEnqueueNDRangeKernel", code)?;
         // SAFETY: `out` has this size, and the call returns when it has been written.
         let code = unsafe {
             (functions.read)(queue, out_handle, 1, 0, size_of_val(out), out.as_mut_ptr().cast(), 0, null(), null_mut())
         };
-        self.queue.checked("clEnqueueReadBuffer", code)
+        checked("clEnqueueReadBuffer", code)
     }
 }
 
 impl Drop for Bound {
     fn drop(&mut self) {
-        let kernel = self.kernel.get_mut().unwrap_or_else(PoisonError::into_inner).kernel;
+        let kernel = self.kernel.get_mut().unwrap_or_else(PoisonError::into_inner).handle;
         // SAFETY: the handle is this one's own.
         unsafe { (self.queue.functions.release_kernel)(kernel.0) };
     }

@@ -12,9 +12,8 @@ pub fn inexact_instructions(ptx: &str) -> Vec<&str> {
         let has = |wanted: &str| parts.contains(&wanted);
         is_real
             && match parts[0] {
-                "fma" | "mad" => true,
                 "add" | "sub" | "mul" | "div" | "sqrt" | "rcp" => !has("rn") || has("ftz"),
-                "rsqrt" | "sin" | "cos" | "ex2" | "lg2" | "tanh" => true,
+                "fma" | "mad" | "rsqrt" | "sin" | "cos" | "ex2" | "lg2" | "tanh" => true,
                 _ => has("approx") || has("ftz"),
             }
     };

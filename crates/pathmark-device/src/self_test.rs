@@ -2,6 +2,7 @@
 
 use super::{Device, DeviceError, Result};
 use std::collections::HashSet;
+use std::ops::Mul;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
 /// An operation: its name, and its result on two numbers and a word.
@@ -18,7 +19,7 @@ const OPERATIONS: &[Operation] = &[
     Operation { name: "a / b", of: |a, b, _| (a / b).to_bits() },
     Operation { name: "sqrt(a)", of: |a, _, _| a.sqrt().to_bits() },
     Operation { name: "a * b + a, rounded twice", of: |a, b, _| (a * b + a).to_bits() },
-    Operation { name: "a * b - b * a, rounded three times", of: |a, b, _| (a * b - b * a).to_bits() },
+    Operation { name: "a * b - b * a, rounded three times", of: |a, b, _| (Mul::mul(a, b) - b * a).to_bits() },
     Operation { name: "a with the sign of b", of: |a, b, _| a.copysign(b).to_bits() },
     Operation { name: "|a| < b", of: |a, b, _| if a.abs() < b { a } else { b }.to_bits() },
     Operation { name: "an integer as a number", of: |_, _, bits| ((bits >> 11) as f64).to_bits() },
@@ -101,7 +102,7 @@ fn check(device: &dyn Device) -> Result<()> {
                     "{} of {a:e}, {b:e} and {word:#018x} is {found:#018x} instead of {expected:#018x}",
                     operation.name
                 );
-                return Err(DeviceError::Inexact { id: device.id().to_string(), operation });
+                return Err(DeviceError::Inexact { operation });
             }
         }
     }
@@ -157,7 +158,8 @@ mod tests {
     /// Every device here; the host always, others where a driver is installed.
     #[test]
     fn devices_compute_as_they_should() {
-        let there: Vec<String> = crate::list().into_iter().filter(|listed| listed.is_there).map(|listed| listed.id).collect();
+        let there: Vec<String> =
+            crate::list().into_iter().filter(|listed| listed.is_there).map(|listed| listed.id).collect();
         assert!(there.contains(&"host".to_string()), "{:?}", crate::list());
         for id in there {
             check(&*open(&id).unwrap()).unwrap();
@@ -169,7 +171,7 @@ mod tests {
     fn a_device_that_rounds_otherwise_is_refused() {
         for (number, operation) in (0..).zip(OPERATIONS) {
             let error = check(&Wrong(number)).unwrap_err().to_string();
-            assert!(error.contains(operation.name) && error.contains("wrong:0"), "{error}");
+            assert!(error.contains(operation.name), "{error}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What the system does to files: disks that are full at any write, kills at any instant, second processes on the same files. Whatever
 //! happens, a file is the old one or the new one, and what goes on from it comes to the same end.
 
+mod devices;
 mod disk;
 mod kills;
 mod limits;

@@ -10,4 +10,8 @@ typedef uint64_t u64;
 #define MAGNITUDE(x) __builtin_fabs(x)
 #define WITH_SIGN(x, sign) __builtin_copysign(x, sign)
 #define COUNT_ONES(x) ((u32)__builtin_popcount(x))
+#define SINGLE_SQUARE_ROOT(x) __builtin_sqrtf(x)
+#define SINGLE_MAGNITUDE(x) __builtin_fabsf(x)
+#define SINGLE_WITH_SIGN(x, sign) __builtin_copysignf(x, sign)
+#define FUSED(a, factor, addend) __builtin_fmaf(a, factor, addend)
 #define INFINITE ((real)__builtin_inf())

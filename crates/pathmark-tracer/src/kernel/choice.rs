@@ -121,7 +121,11 @@ impl Choice {
 
     /// Floating-point format of what it computes with.
     pub fn precision(&self) -> Precision {
-        self.way.lanes().map_or(Precision::F64, |lanes| lanes.precision)
+        match &self.way {
+            Way::Lanes(lanes) => lanes.precision,
+            Way::Device(device) => device.precision,
+            Way::Scalar { .. } => Precision::F64,
+        }
     }
 
     /// Why it is not the kernel that was asked for; empty if it is.

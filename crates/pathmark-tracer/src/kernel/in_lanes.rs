@@ -1,7 +1,7 @@
 //! Whether lanes render a scene with some settings, and on which level.
 
 use super::choice::unknown;
-use super::{LANES, Spec};
+use super::{SCALAR, Spec};
 use crate::error::{InputError, Result};
 use crate::estimator::PathRules;
 use crate::material::Diffuse;
@@ -21,7 +21,7 @@ pub(super) struct InLanes {
 }
 
 /// As many primitives as single precision has whole numbers for are more than lanes tell apart.
-const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
+pub(super) const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
 
 /// What of a scene or of its settings lanes have no code for.
 fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static str> {
@@ -73,15 +73,14 @@ pub(super) fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Resu
     Err(unknown("simd", name, available().map(Level::name)).into())
 }
 
-/// The format that the spec names; only lanes have another than double precision.
+/// The format that the spec names; the scalar kernel has but one.
 pub(super) fn precision(spec: &Spec) -> Result<Precision> {
     let name = &spec.precision;
     let Some(precision) = Precision::ALL.into_iter().find(|precision| precision.name() == name) else {
         return Err(unknown("precision", name, Precision::ALL.into_iter().map(Precision::name)).into());
     };
-    if spec.kernel != LANES && precision != Precision::F64 {
-        let kernel = spec.kernel.split(':').next().unwrap_or_default();
-        let problem = format!("is nothing for the {kernel} kernel");
+    if spec.kernel == SCALAR && precision != Precision::F64 {
+        let problem = "is nothing for the scalar kernel";
         return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
     }
     Ok(precision)

@@ -25,18 +25,19 @@ use crate::scene::{AllEffects, ProfileVisitor, Scene, SmallptEffects, with_profi
 pub use choice::{Choice, choose, choose_among};
 use choice::{INDEPENDENT, unknown};
 pub use clamp::{Clamp, Clamped};
-pub use inspect::{BounceRow, Event, Inspector, LightByBounce, PathLog};
 use device::OnDevice;
+pub use inspect::{BounceRow, Event, Inspector, LightByBounce, PathLog};
 use lanes::Lanes;
 pub use own::OwnEstimator;
+pub use pathmark_device::{Listed as Device, list as devices};
 pub use rays::{FoundRays, RaySearch, Start, path_rays};
 use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
 use serde::{Deserialize, Serialize};
 pub use spec::Spec;
-use way::Way;
 use std::marker::PhantomData;
 use std::sync::Arc;
+use way::Way;
 
 /// Version of the arithmetic. It changes when the same settings give other bits than before, and films of the old ones are no longer used.
 pub const REVISION: u32 = 2;
@@ -99,8 +100,10 @@ pub const KERNELS: &[Entry] = &[
 ];
 
 /// The kernel for devices: `device` for the first GPU, `device:ID` for the device of that name.
-pub const DEVICE_KERNEL: Entry =
-    Entry { name: DEVICE, about: "on a GPU, or on the device that `device:ID` names (`pathmark list devices`); in f64, with the bits of the others" };
+pub const DEVICE_KERNEL: Entry = Entry {
+    name: DEVICE,
+    about: "on a GPU, or on the device that `device:ID` names (`pathmark list devices`); in f64, with the bits of the others",
+};
 
 const DEVICE: &str = "device";
 const LANES: &str = "lanes";

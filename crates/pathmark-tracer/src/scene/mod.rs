@@ -21,10 +21,10 @@ pub use feature::{
 };
 pub use fog::Fog;
 pub use generator::GENERATORS;
+pub(crate) use hierarchy::DEEPEST;
 pub use hierarchy::{
     ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Scan, Tests, accelerator, padding,
 };
-pub(crate) use hierarchy::DEEPEST;
 pub use library::{Library, load};
 pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};

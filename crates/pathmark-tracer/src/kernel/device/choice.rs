@@ -1,11 +1,13 @@
 //! Whether a device renders a scene with some settings, and which one.
 
-use super::super::in_lanes::precision;
+use super::super::in_lanes::{MOST_IN_LANES, precision};
 use super::super::{DEVICE, Spec};
 use super::tables::{SAMPLERS, is_known};
 use crate::error::{InputError, Result};
 use crate::estimator::PathRules;
-use crate::scene::{ANGULAR_EMISSION, FOG, Scene};
+use crate::sampling::InLanes as LaneSampler;
+use crate::scene::{ANGULAR_EMISSION, FOG, LENS, POINT_LIGHT, Scene};
+use crate::simd::Precision;
 use pathmark_device::Listed;
 
 /// What the kernel is made with.
@@ -16,12 +18,14 @@ pub(in crate::kernel) struct ForDevice {
     /// The device's own name.
     pub(super) id: String,
     pub(super) course: PathRules,
+    pub(in crate::kernel) precision: Precision,
     /// The sampler's place among [`SAMPLERS`].
     pub(super) sampler: u32,
 }
 
 /// What of a scene or of its settings the program has no code for.
-fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static str> {
+fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>, precision: Precision) -> Option<&'static str> {
+    let is_single = precision == Precision::F32;
     let is_unknown = |index: usize| !is_known(&scene.objects[index].material);
     let obstacles = [
         (scene.effects().cover(FOG), "fog"),
@@ -29,6 +33,10 @@ fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static
         ((0..scene.objects.len()).any(is_unknown), "material"),
         (spec.clamp.is_some(), "clamp"),
         (epsilon.is_some(), "epsilon"),
+        // As with lanes.
+        (is_single && scene.effects().cover(LENS), "lens"),
+        (is_single && scene.effects().cover(POINT_LIGHT), "point-light"),
+        (is_single && scene.owners.len() >= MOST_IN_LANES, "primitives"),
     ];
     obstacles.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name)
 }
@@ -68,12 +76,15 @@ pub(in crate::kernel) fn device_for(
         let problem = "is for lanes, and a device has none";
         return Err(InputError::new("simd", level, problem).allowed("none").into());
     }
-    precision(spec)?;
+    let precision = precision(spec)?;
     let id = chosen(&spec.kernel)?;
-    let sampler = (0..).zip(SAMPLERS).find(|(_, (name, _))| *name == spec.sampler).map(|(number, _)| number);
-    Ok(match (obstacle(scene, spec, epsilon), course, sampler) {
+    // Single precision has the samplers of lanes.
+    let is_there = precision == Precision::F64 || LaneSampler::find(&spec.sampler).is_some();
+    let sampler = (0..).zip(SAMPLERS).find(|(_, (name, _))| is_there && *name == spec.sampler);
+    let sampler = sampler.map(|(number, _)| number);
+    Ok(match (obstacle(scene, spec, epsilon, precision), course, sampler) {
         (None, Some(course), Some(sampler)) => {
-            Ok(ForDevice { kernel: format!("{DEVICE}:{id}"), id, course, sampler })
+            Ok(ForDevice { kernel: format!("{DEVICE}:{id}"), id, course, precision, sampler })
         }
         (Some(reason), ..) => Err(reason),
         (None, None, _) => Err("estimator"),

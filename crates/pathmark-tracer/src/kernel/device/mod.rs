@@ -20,7 +20,6 @@ use pathmark_device::{DeviceError, Loaded};
 use std::io;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
 
 /// Seconds that a launch is to take.
 const LAUNCH_S: f64 = 0.25;
@@ -71,7 +70,7 @@ impl OnDevice {
         let failed = |error: DeviceError| system(&chosen.id, &error);
         let device = pathmark_device::open(&chosen.id).map_err(failed)?;
         let (numbers, words) = tables::of(scene, choice, chosen);
-        let text = program::text(choice.profile.effects, &chosen.course);
+        let text = program::text(choice.profile.effects, &chosen.course, chosen.precision);
         let loaded = device.load(&text, &numbers, &words).map_err(failed)?;
         let width = device.width();
         Ok(Self { id: chosen.id.clone(), loaded, width, rate: AtomicU64::new(0), failed: OnceLock::new() })
@@ -121,9 +120,8 @@ impl OnDevice {
             task[Task::FirstPixel as usize] = (done / parts) as u32;
             task[Task::FirstPart as usize] = (done % parts) as u32;
             results.resize(items as usize * OUT_WORDS, 0);
-            let before = Instant::now();
-            self.loaded.run(&task, items as u32, &mut results)?;
-            let rate = (items * u64::from(part)) as f64 / before.elapsed().as_secs_f64().max(1e-6);
+            let seconds = self.loaded.timed(&task, items as u32, &mut results)?;
+            let rate = (items * u64::from(part)) as f64 / seconds.max(1e-6);
             self.rate.store(rate.to_bits(), Ordering::Relaxed);
             for (item, words) in (done..).zip(results.chunks_exact(OUT_WORDS)) {
                 let number = (item % parts) as u32;

@@ -8,20 +8,48 @@ use crate::film::SAMPLE_BLOCK;
 use crate::math::{COS, SIN};
 use crate::sampling::{Purpose, SUBPIXEL, UNIFORM_SPHERE_DENSITY, each_third};
 use crate::scene::{DEEPEST, FEATURES, PRIMITIVES, nearness, padding};
+use crate::simd::Precision;
+use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 use std::fmt::{Display, Write};
 
-/// The files, in the order in which they follow each other.
-const FILES: &[&str] = &[
-    include_str!("program/math.cl"),
+/// What is in double precision in every program: single precision asks it where it is not sure, and for rough materials.
+const DOUBLE: &[&str] = &[
+    include_str!("program/double.cl"),
+    MATH,
     include_str!("program/sampler.cl"),
     include_str!("program/shape.cl"),
     include_str!("program/material.cl"),
+];
+
+/// Formulas, and the path with all that it needs besides, in the precision of the path.
+const MATH: &str = include_str!("program/math.cl");
+const PATH: &[&str] = &[
+    include_str!("program/numbers.cl"),
     include_str!("program/light.cl"),
     include_str!("program/camera.cl"),
     include_str!("program/path.cl"),
     include_str!("program/film.cl"),
 ];
+
+/// What single precision does in a way of its own: before its formulas, and behind them.
+const SINGLE: &str = include_str!("program/single.cl");
+const SINGLE_SEARCH: &[&str] = &[include_str!("program/single_search.cl"), include_str!("program/single_material.cl")];
+
+/// Words of the dialects and of `double.cl` that single precision has, too.
+const WORDS_OF_BOTH: &[&str] = &[
+    "INFINITE",
+    "MAGNITUDE",
+    "SQUARE_ROOT",
+    "TIMES_PLUS",
+    "UNIT",
+    "WITH_SIGN",
+    "SINE_COEFFICIENTS",
+    "COSINE_COEFFICIENTS",
+];
+
+/// Coefficients of sine and cosine that single precision needs.
+const SINGLE_COEFFICIENTS: usize = 5;
 
 /// Names with their values.
 struct Definitions(String);
@@ -59,7 +87,31 @@ fn constant(name: &str) -> String {
     name.to_uppercase().replace('-', "_")
 }
 
-fn definitions(effects: Effects, course: &PathRules) -> String {
+/// Constants of both precisions.
+fn numbers(precision: Precision) -> Vec<(&'static str, f64)> {
+    let digits = match precision {
+        Precision::F64 => f64::MANTISSA_DIGITS,
+        Precision::F32 => f32::MANTISSA_DIGITS,
+    };
+    vec![
+        ("PI", PI),
+        ("INVERSE_PI", FRAC_1_PI),
+        ("TAU", TAU),
+        ("UNIT_STEP", 1.0 / (1_u64 << digits) as f64),
+        ("TURN_SHIFT", 1.5 * (1_u64 << (digits - 1)) as f64),
+        ("UNIFORM_SPHERE_DENSITY", UNIFORM_SPHERE_DENSITY),
+        ("HIDING", HIDING),
+        (
+            "SMALLEST_NORMAL",
+            match precision {
+                Precision::F64 => f64::MIN_POSITIVE,
+                Precision::F32 => f32::MIN_POSITIVE.into(),
+            },
+        ),
+    ]
+}
+
+fn definitions(effects: Effects, course: &PathRules, precision: Precision) -> String {
     let mut all = Definitions(String::new());
     for entry in PRIMITIVES.iter().chain(crate::material::MATERIALS).chain(FEATURES) {
         all.add(&format!("HAS_{}", constant(entry.name)), u8::from(effects.cover(entry.effect)));
@@ -68,7 +120,9 @@ fn definitions(effects: Effects, course: &PathRules) -> String {
     all.add("AIMS", u8::from(course.aims.is_some()));
     all.add_numbered(SAMPLERS.iter().map(|(_, name)| *name));
     all.add_numbered(MATERIALS.iter().copied());
-    KINDS.iter().for_each(|names| all.add_numbered(names.iter().copied()));
+    for names in KINDS {
+        all.add_numbered(names.iter().copied());
+    }
     all.add_places(WORDS);
     all.add_places(NUMBERS);
     for (name, purpose) in [
@@ -111,30 +165,114 @@ fn definitions(effects: Effects, course: &PathRules) -> String {
     for (name, mask) in masks.into_iter().zip(thirds.into_iter().chain([lower, higher])) {
         all.add(name, format_args!("{mask:#x}U"));
     }
-    for (name, value) in [
-        ("PI", PI),
-        ("INVERSE_PI", FRAC_1_PI),
-        ("TAU", TAU),
-        ("UNIT_STEP", 1.0 / (1_u64 << f64::MANTISSA_DIGITS) as f64),
-        ("TURN_SHIFT", 1.5 * (1_u64 << (f64::MANTISSA_DIGITS - 1)) as f64),
-        ("UNIFORM_SPHERE_DENSITY", UNIFORM_SPHERE_DENSITY),
-        ("SMALLEST_NORMAL", f64::MIN_POSITIVE),
-        ("HIDING", HIDING),
-        ("PADDING", padding(f64::MANTISSA_DIGITS)),
-        ("HALF_PADDING", 0.5 * padding(f64::MANTISSA_DIGITS)),
-        ("NEARNESS", nearness(f64::MANTISSA_DIGITS)),
-    ] {
+    for (name, value) in numbers(Precision::F64) {
         all.add_number(name, value);
     }
     for (name, coefficients) in [("SINE_COEFFICIENTS", SIN), ("COSINE_COEFFICIENTS", COS)] {
         all.add(name, coefficients.map(|c| format!("({c:e})")).join(", "));
+        let single = coefficients[..SINGLE_COEFFICIENTS].iter().map(|c| format!("({:e}f)", *c as f32));
+        all.add(&format!("{name}_S"), single.collect::<Vec<_>>().join(", "));
     }
+    for (name, value) in numbers(Precision::F32) {
+        all.add(&format!("{name}_S"), format_args!("({:e}f)", value as f32));
+    }
+    // Where paths are in single precision, double precision judges their rays, which are no more exact than that.
+    let digits = match precision {
+        Precision::F64 => f64::MANTISSA_DIGITS,
+        Precision::F32 => f32::MANTISSA_DIGITS,
+    };
+    all.add_number("NEARNESS", nearness(digits));
+    all.add("NEARNESS_S", format_args!("({:e}f)", nearness(digits) as f32));
+    all.add_number("PADDING", padding(digits));
+    all.add_number("HALF_PADDING", 0.5 * padding(f64::MANTISSA_DIGITS));
     all.0
 }
 
+/// The identifiers of a text, and what stands between them.
+fn tokens(text: &str) -> impl Iterator<Item = &str> {
+    let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'.';
+    text.as_bytes().chunk_by(move |a, b| is_word(*a) == is_word(*b)).map(|chunk| {
+        // What is cut at bytes of ASCII is whole.
+        std::str::from_utf8(chunk).unwrap_or_default()
+    })
+}
+
+/// The functions and types that a text declares: each begins a line, a type may end on another.
+fn declared(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter_map(|line| {
+        let line = line.split("//").next().unwrap_or_default().trim_end();
+        let head = if line.starts_with("FN ") {
+            line.split('(').next()?
+        } else if (line.starts_with("typedef ") || line.starts_with('}')) && line.ends_with(';') {
+            line.trim_end_matches(';')
+        } else {
+            return None;
+        };
+        head.rsplit(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).next().filter(|name| !name.is_empty())
+    })
+}
+
+/// A text of double precision in single: numbers are of that type, and what both have ends in `_s`.
+fn in_single(text: &str, names: &BTreeSet<&str>) -> String {
+    let mut single = String::with_capacity(text.len() + text.len() / 8);
+    for line in text.split_inclusive('\n') {
+        let (code, comment) = line.split_at(line.find("//").unwrap_or(line.len()));
+        for token in tokens(code) {
+            single.push_str(if token == "real" { "single" } else { token });
+            if names.contains(token) {
+                single.push_str(if token.starts_with(|c: char| c.is_ascii_uppercase()) { "_S" } else { "_s" });
+            } else if token.starts_with(|c: char| c.is_ascii_digit()) && token.contains('.') {
+                single.push('f');
+            }
+        }
+        single.push_str(comment);
+    }
+    single
+}
+
 /// The program for scenes with these effects and paths by these rules.
-pub(super) fn text(effects: Effects, course: &PathRules) -> String {
-    let mut text = definitions(effects, course);
-    FILES.iter().for_each(|file| text.push_str(file));
-    text
+pub(super) fn text(effects: Effects, course: &PathRules, precision: Precision) -> String {
+    let definitions = definitions(effects, course, precision);
+    let double = [&[definitions.as_str()], DOUBLE].concat().concat();
+    if precision == Precision::F64 {
+        return [&[double.as_str()], PATH].concat().concat();
+    }
+    let own = [&[SINGLE], SINGLE_SEARCH].concat().concat();
+    let mut names: BTreeSet<&str> = declared(MATH).chain(PATH.iter().flat_map(|text| declared(text))).collect();
+    names.extend(declared(&own).filter_map(|name| name.strip_suffix("_s")));
+    names.extend(WORDS_OF_BOTH);
+    names.extend(numbers(precision).iter().map(|(name, _)| *name));
+    let path = in_single(&PATH.concat(), &names);
+    let entry = "FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {\n    run_item_s(item, numbers, words, task, out);\n}\n";
+    let math = in_single(MATH, &names);
+    [&[double.as_str(), SINGLE, &math], SINGLE_SEARCH, &[&path, entry]].concat().concat()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimator::Roulette;
+    use crate::scene::PROFILES;
+    use pathmark_device::{DeviceError, inexact_instructions, ptx_of};
+
+    /// Every program as CUDA's compiler makes it: no operation is fused with another, estimated, or rounded as the assembler likes.
+    #[test]
+    fn no_code_for_gpus_fuses_or_estimates() {
+        let rules = |splits, aims| PathRules { splits, aims, max_depth: u16::MAX, roulette: Roulette::SMALLPT };
+        for profile in PROFILES {
+            let rules = [rules(0, None), rules(2, None), rules(0, Some(true))];
+            for (rules, precision) in
+                rules.into_iter().flat_map(|rules| Precision::ALL.map(|precision| (rules, precision)))
+            {
+                let ptx = match ptx_of(&text(profile.effects, &rules, precision), 70) {
+                    Ok(ptx) => ptx,
+                    Err(DeviceError::Missing { id, why }) => return println!("SKIPPED: there is no {id}: {why}"),
+                    Err(error) => panic!("{}: {error}", profile.name),
+                };
+                assert!(ptx.contains("mul.rn.f64") && ptx.contains("sqrt.rn.f64"), "{}: no arithmetic", profile.name);
+                let inexact = inexact_instructions(&ptx);
+                assert!(inexact.is_empty(), "{}: {inexact:?}", profile.name);
+            }
+        }
+    }
 }

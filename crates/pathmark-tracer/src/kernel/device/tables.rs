@@ -1,12 +1,14 @@
 //! A scene as arrays of numbers and words, and where everything is in them: the program's names of places come from here.
 
 use super::super::Choice;
+use super::super::lanes::{Singles, surfaces};
 use super::choice::ForDevice;
 use crate::estimator::By;
 use crate::material::{Dielectric, Facets, Fresnel, Material, Sampling};
-use crate::math::{Rgb, Vec3};
+use crate::math::{Curved, Rgb, Vec3};
 use crate::sampling::{ORDERS, mix};
-use crate::scene::{AllEffects, AnyTarget, Filter, Object, Scene};
+use crate::scene::{AllEffects, AnyTarget, Bounds, Filter, Hierarchy, Object, Scene, padding};
+use crate::simd::Precision;
 
 /// The samplers that the program knows, with its names for them, in the order of their numbers.
 pub(super) const SAMPLERS: &[(&str, &str)] = &[
@@ -32,6 +34,8 @@ pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_NODE_COUNT", 1),
     ("AT_LIGHT_COUNT", 1),
     ("AT_POINT_LIGHT_COUNT", 1),
+    ("AT_ENCLOSING_COUNT", 1),
+    ("AT_LARGE_COUNT", 1),
     // Where arrays of numbers begin.
     ("AT_SPHERES", 1),
     ("AT_PLANES", 1),
@@ -40,6 +44,8 @@ pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_OBJECTS", 1),
     ("AT_LIGHTS", 1),
     ("AT_POINT_LIGHTS", 1),
+    ("AT_LARGE", 1),
+    ("AT_SURFACES", 1),
     // Where arrays of words begin.
     ("AT_NODES", 1),
     ("AT_ORDER", 1),
@@ -47,6 +53,8 @@ pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_KINDS", 1),
     ("AT_LIGHT_KINDS", 1),
     ("AT_LIGHT_OF", 1),
+    ("AT_LARGE_NUMBERS", 1),
+    ("AT_IS_LARGE", 1),
     ("AT_ORDERS", ORDERS.len()),
 ];
 
@@ -68,7 +76,7 @@ pub(super) const NUMBERS: &[(&str, usize)] = &[
 ];
 
 /// Numbers of an object, of a light and of a point light.
-pub(super) const OBJECT_NUMBERS: usize = 12;
+pub(super) const OBJECT_NUMBERS: usize = 14;
 pub(super) const LIGHT_NUMBERS: usize = 15;
 pub(super) const POINT_LIGHT_NUMBERS: usize = 7;
 
@@ -136,6 +144,7 @@ pub(super) fn is_known(material: &Material) -> bool {
 
 /// The arrays, as they grow behind their beginnings.
 struct Tables {
+    precision: Precision,
     numbers: Vec<f64>,
     words: Vec<u32>,
 }
@@ -179,8 +188,15 @@ impl Tables {
         self.add_words("AT_OWNERS", scene.owners.iter().copied());
         let tree = scene.hierarchy.as_ref();
         self.set_words("AT_NODE_COUNT", &[tree.map_or(0, |tree| tree.nodes().len() as u32)]);
-        let nodes = || tree.into_iter().flat_map(|tree| tree.nodes());
-        self.add_numbers("AT_BOXES", nodes().flat_map(|(faces, ..)| faces).flatten());
+        let nodes = || tree.into_iter().flat_map(Hierarchy::nodes);
+        // The padding that boxes have is for double precision; hits in single precision are less exact.
+        let more = if self.precision == Precision::F32 { padding(f32::MANTISSA_DIGITS) } else { 0.0 };
+        let padded = |[low, high]: [[f64; 3]; 2]| {
+            let bounds = Bounds { low, high };
+            let Bounds { low, high } = bounds.grown(more * bounds.largest());
+            [low, high]
+        };
+        self.add_numbers("AT_BOXES", nodes().flat_map(|(faces, ..)| padded(faces)).flatten());
         self.add_words("AT_NODES", nodes().flat_map(|(_, at, count)| [at, count]));
         self.add_words("AT_ORDER", tree.into_iter().flat_map(|tree| tree.order().iter().copied()));
     }
@@ -191,7 +207,8 @@ impl Tables {
             "AT_OBJECTS",
             surfaces().flat_map(|(object, surface)| {
                 let colours = [object.emission, surface.colour, object.material.albedo::<AllEffects>()];
-                let rest = [surface.eta, surface.alpha, surface.reflectivity];
+                let root = (surface.eta - 1.0) / (surface.eta + 1.0);
+                let rest = [surface.eta, 1.0 / surface.eta, root * root, surface.alpha, surface.reflectivity];
                 colours.into_iter().flat_map(Rgb::channels).chain(rest)
             }),
         );
@@ -238,6 +255,22 @@ impl Tables {
                 place.chain([light.reach.unwrap_or(f64::INFINITY)])
             }),
         );
+    }
+
+    /// What single precision needs of primitives besides: large spheres by curvature, and surfaces as they are shaded.
+    fn add_singles(&mut self, scene: &Scene, enclosing: &[u32]) {
+        let large = Singles::large(scene, enclosing);
+        let (count, curved) = large.in_order();
+        self.set_words("AT_ENCLOSING_COUNT", &[count as u32]);
+        self.set_words("AT_LARGE_COUNT", &[curved.len() as u32]);
+        self.add_words("AT_LARGE_NUMBERS", curved.iter().map(|(number, _)| *number));
+        let numbers = curved.iter().flat_map(|(_, Curved { normal: n, curvature, offset })| {
+            [n.x, n.y, n.z, *curvature, *offset].map(f64::from)
+        });
+        self.add_numbers("AT_LARGE", numbers);
+        let spheres = scene.primitives.spheres.len() as u32;
+        self.add_words("AT_IS_LARGE", (0..spheres).map(|number| u32::from(large.contains(number))));
+        self.add_numbers("AT_SURFACES", surfaces(scene, Precision::F32).into_iter().flatten());
     }
 
     fn set_view(&mut self, scene: &Scene, choice: &Choice) {
@@ -296,11 +329,15 @@ fn coordinates(v: Vec3) -> [f64; 3] {
 /// The numbers and the words of a scene that has been made ready for the choice.
 pub(super) fn of(scene: &Scene, choice: &Choice, chosen: &ForDevice) -> (Vec<f64>, Vec<u32>) {
     let length = |layout: &[(&str, usize)]| layout.iter().map(|(_, length)| length).sum::<usize>();
-    let mut tables = Tables { numbers: vec![0.0; length(NUMBERS)], words: vec![0; length(WORDS)] };
+    let mut tables =
+        Tables { precision: chosen.precision, numbers: vec![0.0; length(NUMBERS)], words: vec![0; length(WORDS)] };
     tables.set_view(scene, choice);
     tables.set_rules(choice, chosen);
     tables.add_primitives(scene);
     tables.add_objects(&scene.objects);
     tables.add_lights(scene);
+    if chosen.precision == Precision::F32 {
+        tables.add_singles(scene, &scene.enclosing(&choice.view(scene)));
+    }
     (tables.numbers, tables.words)
 }

@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::simd::Float;
 
 /// The spheres of a scene, each with the number of its primitive.
-pub(super) struct Singles {
+pub(in crate::kernel) struct Singles {
     /// Those that no path gets out of.
     enclosing: Vec<(f32, Curved<f32>)>,
     curved: Vec<(f32, Curved<f32>)>,
@@ -49,12 +49,18 @@ impl Singles {
     }
 
     /// Those of them that are as large as the scene.
-    pub(super) fn large(scene: &Scene, enclosing_all: &[u32]) -> Self {
+    pub(in crate::kernel) fn large(scene: &Scene, enclosing_all: &[u32]) -> Self {
         Self { centred: Vec::new(), ..Self::of(scene, enclosing_all) }
     }
 
+    /// Those of them that are as large as the scene with their numbers, and how many of them, the first ones, no path gets out of.
+    pub(in crate::kernel) fn in_order(&self) -> (usize, Vec<(u32, Curved<f32>)>) {
+        let all = self.enclosing.iter().chain(&self.curved).map(|(number, curved)| (*number as u32, *curved));
+        (self.enclosing.len(), all.collect())
+    }
+
     /// Whether the sphere with that number is among them.
-    pub(super) fn contains(&self, number: u32) -> bool {
+    pub(in crate::kernel) fn contains(&self, number: u32) -> bool {
         let number = number as f32;
         let curved = self.enclosing.iter().chain(&self.curved).map(|(number, _)| *number);
         curved.chain(self.centred.iter().map(|(number, ..)| *number)).any(|own| own == number)

@@ -34,6 +34,29 @@ impl Kind {
 /// What the number of a [`Kind`] is raised by where the surface gives off light.
 pub(super) const GIVES_OFF: f64 = 8.0;
 
+/// Rows of [`Tables::surfaces`].
+pub(in crate::kernel) fn surfaces(scene: &Scene, precision: Precision) -> Vec<[f64; 4]> {
+    let primitives = &scene.primitives;
+    let round = primitives.spheres.iter().map(|sphere| {
+        let (Vec3 { x, y, z }, number) = match precision {
+            Precision::F64 => (sphere.center, sphere.radius),
+            Precision::F32 => {
+                let curved = Curved::of(sphere.center, sphere.radius);
+                (curved.normal, curved.curvature)
+            }
+        };
+        [x, y, z, number]
+    });
+    let first_flat = primitives.spheres.len() as u32;
+    let nowhere = Vec3::new(0.0, 0.0, 0.0);
+    let bounds = primitives.bounds();
+    let flats = (first_flat..scene.owners.len() as u32).map(|primitive| {
+        let Vec3 { x, y, z } = primitives.normal::<AllEffects>(primitive, nowhere);
+        [x, y, z, bounds[primitive as usize].map_or(0.0, |bounds| -bounds.largest())]
+    });
+    round.chain(flats).collect()
+}
+
 /// The tables of a scene.
 pub(super) struct Tables {
     /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of a plane; the normal of
@@ -56,25 +79,10 @@ pub(super) struct Tables {
 impl Tables {
     pub(super) fn of(scene: &Scene, precision: Precision) -> Self {
         let primitives = &scene.primitives;
-        let round = primitives.spheres.iter().map(|sphere| {
-            let (Vec3 { x, y, z }, number) = match precision {
-                Precision::F64 => (sphere.center, sphere.radius),
-                Precision::F32 => {
-                    let curved = Curved::of(sphere.center, sphere.radius);
-                    (curved.normal, curved.curvature)
-                }
-            };
-            [x, y, z, number]
-        });
         let first_flat = primitives.spheres.len() as u32;
-        let nowhere = Vec3::new(0.0, 0.0, 0.0);
         let everywhere = Bounds { low: [f64::NEG_INFINITY; 3], high: [f64::INFINITY; 3] };
         let bounds = primitives.bounds();
-        let flats = (first_flat..scene.owners.len() as u32).map(|primitive| {
-            let Vec3 { x, y, z } = primitives.normal::<AllEffects>(primitive, nowhere);
-            [x, y, z, bounds[primitive as usize].map_or(0.0, |bounds| -bounds.largest())]
-        });
-        let surfaces = Table::new(round.chain(flats).collect());
+        let surfaces = Table::new(surfaces(scene, precision));
         let boxes = (precision == Precision::F64 && !primitives.triangles.is_empty()).then(|| {
             let of_triangles = bounds.iter().enumerate().map(|(primitive, bounds)| match bounds {
                 Some(bounds) if primitive >= first_flat as usize => *bounds,

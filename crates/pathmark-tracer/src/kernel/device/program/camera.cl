@@ -1,7 +1,7 @@
 // Where a path begins: `scene/camera/`.
 
 FN ray camera_ray(const scene *s, u32 x, u32 y, const sample_key *key) {
-    GLOBAL const real *view = s->numbers;
+    GLOBAL const stored *view = s->numbers;
     u32 filter = s->words[AT_FILTER], number = key->sample % 4U;
     pair film = numbers_of(s->words, key, 0U, 0U, PURPOSE_FILM);
     real dx = 0.5, dy = 0.5;
@@ -12,25 +12,25 @@ FN ray camera_ray(const scene *s, u32 x, u32 y, const sample_key *key) {
         dx = film.u;
         dy = film.v;
     }
-    real row = view[VIEW_HEIGHT] - 1.0 - (real)y;
-    real along_row = (dx + (real)x) / view[VIEW_WIDTH] - 0.5;
-    real upward = (dy + row) / view[VIEW_HEIGHT] - 0.5;
+    real row = (real)(view[VIEW_HEIGHT] - 1) - (real)y;
+    real along_row = (dx + (real)x) / (real)view[VIEW_WIDTH] - 0.5;
+    real upward = (dy + row) / (real)view[VIEW_HEIGHT] - 0.5;
     vec towards = plus(plus(times(vec_at(view + VIEW_RIGHT), along_row), times(vec_at(view + VIEW_UP), upward)),
         vec_at(view + VIEW_DIRECTION));
     vec position = vec_at(view + VIEW_POSITION);
     ray start;
 #if HAS_LENS
-    if (view[VIEW_LENS_RADIUS] > 0.0) {
+    if (view[VIEW_LENS_RADIUS] > 0) {
         pair lens = concentric_disk(numbers_of(s->words, key, 0U, 0U, PURPOSE_LENS));
-        real radius = view[VIEW_LENS_RADIUS];
+        real radius = (real)view[VIEW_LENS_RADIUS];
         vec offset = plus(times(vec_at(view + VIEW_LENS_RIGHT), lens.u * radius),
             times(vec_at(view + VIEW_LENS_UP), lens.v * radius));
-        start.direction = unit_vector(minus(times(towards, view[VIEW_LENS_FOCUS]), offset));
-        start.origin = plus(plus(position, offset), times(start.direction, view[VIEW_ADVANCE]));
+        start.direction = unit_vector(minus(times(towards, (real)view[VIEW_LENS_FOCUS]), offset));
+        start.origin = plus(plus(position, offset), times(start.direction, (real)view[VIEW_ADVANCE]));
         return start;
     }
 #endif
     start.direction = unit_vector(towards);
-    start.origin = plus(position, times(start.direction, view[VIEW_ADVANCE]));
+    start.origin = plus(position, times(start.direction, (real)view[VIEW_ADVANCE]));
     return start;
 }

@@ -1,17 +1,19 @@
 // Sums of samples: `film/sum.rs`. An item is a pixel and a run of its samples, whose sum is a subtree of the film's.
 
-typedef struct { real sum[3], square[3]; } pixel_sum;
+typedef struct { exact sum[3], square[3]; } pixel_sum;
 
 FN void clear_sum(pixel_sum *p) {
-    for (int channel = 0; channel < 3; channel++) p->sum[channel] = p->square[channel] = 0.0;
+    for (int channel = 0; channel < 3; channel++) p->sum[channel] = p->square[channel] = 0;
 }
 FN void add_sample(pixel_sum *p, rgb c) {
-    p->sum[0] += c.r;
-    p->sum[1] += c.g;
-    p->sum[2] += c.b;
-    p->square[0] += c.r * c.r;
-    p->square[1] += c.g * c.g;
-    p->square[2] += c.b * c.b;
+    exact channels[3];
+    channels[0] = c.r;
+    channels[1] = c.g;
+    channels[2] = c.b;
+    for (int channel = 0; channel < 3; channel++) {
+        p->sum[channel] += channels[channel];
+        p->square[channel] += channels[channel] * channels[channel];
+    }
 }
 // `earlier` and `later` in this order.
 FN void add_later(const pixel_sum *earlier, pixel_sum *later) {
@@ -21,24 +23,7 @@ FN void add_later(const pixel_sum *earlier, pixel_sum *later) {
     }
 }
 
-FN scene scene_of(GLOBAL const real *numbers, GLOBAL const u32 *words) {
-    scene s;
-    s.numbers = numbers;
-    s.words = words;
-    s.spheres = numbers + words[AT_SPHERES];
-    s.planes = numbers + words[AT_PLANES];
-    s.triangles = numbers + words[AT_TRIANGLES];
-    s.boxes = numbers + words[AT_BOXES];
-    s.nodes = words + words[AT_NODES];
-    s.order = words + words[AT_ORDER];
-    s.sphere_count = words[AT_SPHERE_COUNT];
-    s.plane_count = words[AT_PLANE_COUNT];
-    s.triangle_count = words[AT_TRIANGLE_COUNT];
-    s.is_tree = words[AT_NODE_COUNT] > 0U;
-    return s;
-}
-
-FN void run_item(u32 item, GLOBAL const real *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {
+FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {
     scene s = scene_of(numbers, words);
     u32 place = task[TASK_FIRST_PART] + item;
     u32 pixel = task[TASK_FIRST_PIXEL] + place / task[TASK_PARTS];
@@ -51,7 +36,7 @@ FN void run_item(u32 item, GLOBAL const real *numbers, GLOBAL const u32 *words, 
     w.max_depth = words[AT_MAX_DEPTH];
     w.roulette_by = words[AT_ROULETTE];
     w.roulette_after = words[AT_ROULETTE + 1];
-    w.roulette_chance = numbers[VIEW_ROULETTE];
+    w.roulette_chance = (real)numbers[VIEW_ROULETTE];
     w.is_weighted = words[AT_IS_WEIGHTED] != 0U;
     events e;
     e.rays = e.invalid = e.escaped = e.truncated = e.tested.boxes = e.tested.primitives = 0UL;
@@ -78,7 +63,7 @@ FN void run_item(u32 item, GLOBAL const real *numbers, GLOBAL const u32 *words, 
     }
     for (u32 level = 0; level < LEVELS; level++)
         if (blocks & (1U << level)) add_later(&subtrees[level], &block);
-    GLOBAL real *sums = (GLOBAL real *)(out + OUT_WORDS * (u64)item);
+    GLOBAL exact *sums = (GLOBAL exact *)(out + OUT_WORDS * (u64)item);
     GLOBAL u64 *counts = out + OUT_WORDS * (u64)item + 6;
     for (int channel = 0; channel < 3; channel++) {
         sums[channel] = block.sum[channel];

@@ -24,14 +24,14 @@ FN real per_steradian(real square, vec direction, vec normal, real area) {
 #define WAY_EVERYWHERE 1
 #define WAY_AREA 2
 #define WAY_CONE 3
-FN int way_to_sphere(GLOBAL const real *light, u32 kind, vec point, int is_own, int own_inside, vec *axis, real *cap) {
-    real radius = light[6];
+FN int way_to_sphere(GLOBAL const stored *light, u32 kind, vec point, int is_own, int own_inside, vec *axis, real *cap) {
+    real radius = (real)light[6], height = (real)light[10];
     vec offset = minus(vec_at(light + 3), point);
     real square = inner(offset, offset);
     if (is_own ? own_inside : square <= radius * radius) return WAY_EVERYWHERE;
     real far = SQUARE_ROOT(square);
     if (is_own || far <= radius) return WAY_NONE;
-    if (kind == LIGHT_CAP && light[10] * far < radius * (far - radius)) return WAY_AREA;
+    if (kind == LIGHT_CAP && height * far < radius * (far - radius)) return WAY_AREA;
     *axis = times(offset, 1.0 / far);
     *cap = one_minus_cosine(radius, far);
     return WAY_CONE;
@@ -42,7 +42,7 @@ FN aim aim_at(const scene *s, vec point, standpoint from, const sample_key *key,
     at.found = 0;
     u32 count = s->words[AT_LIGHT_COUNT];
     if (count == 0U) return at;
-    GLOBAL const real *lights = s->numbers + s->words[AT_LIGHTS];
+    GLOBAL const stored *lights = s->numbers + s->words[AT_LIGHTS];
     GLOBAL const u32 *kinds = s->words + s->words[AT_LIGHT_KINDS];
     u32 chosen = 0;
     if (count > 1U) {
@@ -55,7 +55,7 @@ FN aim aim_at(const scene *s, vec point, standpoint from, const sample_key *key,
         }
         if (chosen > count - 1U) chosen = count - 1U;
     }
-    GLOBAL const real *light = lights + LIGHT_NUMBERS * chosen;
+    GLOBAL const stored *light = lights + LIGHT_NUMBERS * chosen;
     u32 kind = kinds[2 * chosen];
     pair place = numbers_of(s->words, key, bounce, branch, PURPOSE_LIGHT);
     at.primitive = kinds[2 * chosen + 1];
@@ -69,7 +69,7 @@ FN aim aim_at(const scene *s, vec point, standpoint from, const sample_key *key,
         real square = inner(towards, towards);
         at.direction = times(towards, 1.0 / SQUARE_ROOT(square));
         if (is_own || !(square > 0.0)) return at;
-        density = per_steradian(square, at.direction, vec_at(light + 12), light[2]);
+        density = per_steradian(square, at.direction, vec_at(light + 12), (real)light[2]);
     } else {
         vec axis;
         real cap;
@@ -82,16 +82,16 @@ FN aim aim_at(const scene *s, vec point, standpoint from, const sample_key *key,
             at.direction = towards_cap(axis, cap, place);
             density = 0.5 / (PI * cap);
         } else {
-            vec normal = towards_cap(vec_at(light + 7), light[10] / light[6], place);
-            vec towards = minus(plus(vec_at(light + 3), times(normal, light[6])), point);
+            vec normal = towards_cap(vec_at(light + 7), (real)light[10] / (real)light[6], place);
+            vec towards = minus(plus(vec_at(light + 3), times(normal, (real)light[6])), point);
             real square = inner(towards, towards);
             at.direction = times(towards, 1.0 / SQUARE_ROOT(square));
             real cosine = -inner(at.direction, normal);
             if (!(cosine > 0.0)) return at;
-            density = square / (cosine * light[2]);
+            density = square / (cosine * (real)light[2]);
         }
     }
-    at.density = light[0] * density;
+    at.density = (real)light[0] * density;
     at.found = at.density > 0.0 && at.density < INFINITE;
     return at;
 }
@@ -100,13 +100,13 @@ FN aim aim_at(const scene *s, vec point, standpoint from, const sample_key *key,
 FN real aimed_density(const scene *s, ray way, standpoint from, const surface_hit *hit) {
     u32 chosen = s->words[s->words[AT_LIGHT_OF] + hit->primitive];
     if (chosen == NOTHING) return 0.0;
-    GLOBAL const real *light = s->numbers + s->words[AT_LIGHTS] + LIGHT_NUMBERS * chosen;
+    GLOBAL const stored *light = s->numbers + s->words[AT_LIGHTS] + LIGHT_NUMBERS * chosen;
     GLOBAL const u32 *kinds = s->words + s->words[AT_LIGHT_KINDS];
     u32 kind = kinds[2 * chosen];
     int is_own = from.primitive == kinds[2 * chosen + 1];
     real density;
     if (kind == LIGHT_TRIANGLE) {
-        density = per_steradian(hit->t * hit->t, way.direction, vec_at(light + 12), light[2]);
+        density = per_steradian(hit->t * hit->t, way.direction, vec_at(light + 12), (real)light[2]);
     } else {
         vec axis;
         real cap;
@@ -119,15 +119,10 @@ FN real aimed_density(const scene *s, ray way, standpoint from, const surface_hi
             density = 0.5 / (PI * cap);
         } else {
             vec off = minus(hit->normal, vec_at(light + 7));
-            density = inner(off, off) * light[6] > 2.0 * light[10]
+            density = inner(off, off) * (real)light[6] > 2.0 * (real)light[10]
                 ? 0.0
-                : hit->t * hit->t / (MAGNITUDE(inner(way.direction, hit->normal)) * light[2]);
+                : hit->t * hit->t / (MAGNITUDE(inner(way.direction, hit->normal)) * (real)light[2]);
         }
     }
-    return light[0] * density;
-}
-
-FN real power_heuristic(real a, real b) {
-    real ratio = b / a;
-    return 1.0 / (1.0 + ratio * ratio);
+    return (real)light[0] * density;
 }

@@ -11,11 +11,11 @@ typedef struct {
     u32 kind;
     int exact_fresnel, visible_normals;
     rgb emission, colour, albedo;
-    real eta, alpha, reflectivity;
+    real eta, inverse, r0, alpha, reflectivity;
 } surface;
 
 FN surface surface_of(const scene *s, u32 object) {
-    GLOBAL const real *p = s->numbers + s->words[AT_OBJECTS] + OBJECT_NUMBERS * object;
+    GLOBAL const stored *p = s->numbers + s->words[AT_OBJECTS] + OBJECT_NUMBERS * object;
     u32 word = s->words[s->words[AT_KINDS] + object];
     surface of;
     of.kind = word & 0xFFU;
@@ -25,8 +25,10 @@ FN surface surface_of(const scene *s, u32 object) {
     of.colour = rgb_at(p + 3);
     of.albedo = rgb_at(p + 6);
     of.eta = p[9];
-    of.alpha = p[10];
-    of.reflectivity = p[11];
+    of.inverse = p[10];
+    of.r0 = p[11];
+    of.alpha = p[12];
+    of.reflectivity = p[13];
     return of;
 }
 
@@ -59,16 +61,15 @@ FN bsdf_sample scattered(vec wi, rgb weight, real density) {
 typedef struct { vec refracted; real reflectance; int is_total; } interface;
 FN interface interface_of(const surface *of, vec wo, int inside) {
     interface at;
-    real eta = inside ? of->eta : 1.0 / of->eta, cos2;
+    real eta = inside ? of->eta : of->inverse, cos2;
     at.refracted = refracted(wo, eta, &cos2);
     at.is_total = cos2 < 0.0;
     at.reflectance = 1.0;
     if (at.is_total) return at;
     if (of->exact_fresnel) {
-        at.reflectance = fresnel(wo.z, inside ? 1.0 / of->eta : of->eta);
+        at.reflectance = fresnel(wo.z, inside ? of->inverse : of->eta);
     } else {
-        real root = (of->eta - 1.0) / (of->eta + 1.0);
-        at.reflectance = schlick(eta < 1.0 ? wo.z : -at.refracted.z, root * root);
+        at.reflectance = schlick(eta < 1.0 ? wo.z : -at.refracted.z, of->r0);
     }
     return at;
 }
@@ -274,3 +275,6 @@ FN int two_lobes(const surface *of, vec wo, int inside, bsdf_sample *first, bsdf
 #endif
     return 0;
 }
+
+// What of light from `wi` is scattered to `wo`: the value, times the cosine.
+FN rgb scattered_light(const surface *of, vec wo, vec wi) { return dimmed(bsdf_value(of, wo, wi), MAGNITUDE(wi.z)); }

@@ -1,4 +1,5 @@
-// Vectors, colours and the leaf formulas of a path: those of `math/`, operation by operation, so that results have the same bits.
+// Vectors, colours and the leaf formulas of a path: those of `math/`, operation by operation, so that results have the same bits. In single precision
+// TIMES_PLUS rounds once, in double precision twice.
 
 typedef struct { real x, y, z; } vec;
 typedef struct { real r, g, b; } rgb;
@@ -15,14 +16,16 @@ FN vec plus(vec a, vec b) { return vec_of(a.x + b.x, a.y + b.y, a.z + b.z); }
 FN vec minus(vec a, vec b) { return vec_of(a.x - b.x, a.y - b.y, a.z - b.z); }
 FN vec times(vec a, real s) { return vec_of(a.x * s, a.y * s, a.z * s); }
 FN vec negated(vec a) { return vec_of(-a.x, -a.y, -a.z); }
-FN vec times_plus(vec a, real s, vec b) { return vec_of(a.x * s + b.x, a.y * s + b.y, a.z * s + b.z); }
-FN real inner(vec a, vec b) { return a.z * b.z + (a.y * b.y + a.x * b.x); }
+FN vec times_plus(vec a, real s, vec b) {
+    return vec_of(TIMES_PLUS(a.x, s, b.x), TIMES_PLUS(a.y, s, b.y), TIMES_PLUS(a.z, s, b.z));
+}
+FN real inner(vec a, vec b) { return TIMES_PLUS(a.z, b.z, TIMES_PLUS(a.y, b.y, a.x * b.x)); }
 FN vec outer(vec a, vec b) {
     return vec_of(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 FN vec unit_vector(vec a) { return times(a, 1.0 / SQUARE_ROOT(inner(a, a))); }
 FN real largest_of(vec a) { return larger(larger(MAGNITUDE(a.x), MAGNITUDE(a.y)), MAGNITUDE(a.z)); }
-FN vec vec_at(GLOBAL const real *p) { return vec_of(p[0], p[1], p[2]); }
+FN vec vec_at(GLOBAL const stored *p) { return vec_of((real)p[0], (real)p[1], (real)p[2]); }
 
 FN rgb rgb_of(real r, real g, real b) { rgb c; c.r = r; c.g = g; c.b = b; return c; }
 FN rgb grey(real x) { return rgb_of(x, x, x); }
@@ -30,7 +33,7 @@ FN rgb mixed(rgb a, rgb b) { return rgb_of(a.r + b.r, a.g + b.g, a.b + b.b); }
 FN rgb filtered(rgb a, rgb b) { return rgb_of(a.r * b.r, a.g * b.g, a.b * b.b); }
 FN rgb dimmed(rgb a, real s) { return rgb_of(a.r * s, a.g * s, a.b * s); }
 FN int is_black(rgb c) { return c.r == 0.0 && c.g == 0.0 && c.b == 0.0; }
-FN rgb rgb_at(GLOBAL const real *p) { return rgb_of(p[0], p[1], p[2]); }
+FN rgb rgb_at(GLOBAL const stored *p) { return rgb_of((real)p[0], (real)p[1], (real)p[2]); }
 FN real max_channel(rgb c) { return larger(larger(c.r, c.g), c.b); }
 FN real largest_channel(rgb c) {
     real larger_of_two = c.r < c.g ? c.g : c.r;
@@ -45,8 +48,8 @@ FN frame frame_around(vec n) {
     real sign_of_z = WITH_SIGN(1.0, n.z);
     real a = -1.0 / (sign_of_z + n.z);
     real b = n.x * n.y * a;
-    f.s = vec_of((sign_of_z * n.x * n.x) * a + 1.0, sign_of_z * b, -(sign_of_z * n.x));
-    f.t = vec_of(b, (n.y * n.y) * a + sign_of_z, -n.y);
+    f.s = vec_of(TIMES_PLUS(sign_of_z * n.x * n.x, a, 1.0), sign_of_z * b, -(sign_of_z * n.x));
+    f.t = vec_of(b, TIMES_PLUS(n.y * n.y, a, sign_of_z), -n.y);
     f.n = n;
     return f;
 }
@@ -55,7 +58,7 @@ FN vec to_world(const frame *f, vec v) { return times_plus(f->n, v.z, times_plus
 
 FN vec reflected(vec wo) { return vec_of(-wo.x, -wo.y, wo.z); }
 FN vec refracted(vec wo, real eta, real *cos2) {
-    *cos2 = (-(eta * eta)) * (1.0 - wo.z * wo.z) + 1.0;
+    *cos2 = TIMES_PLUS(-(eta * eta), 1.0 - wo.z * wo.z, 1.0);
     return vec_of(-(wo.x * eta), -(wo.y * eta), -SQUARE_ROOT(*cos2));
 }
 FN real schlick(real cosine, real r0) {
@@ -73,17 +76,10 @@ FN real fresnel(real cosine, real eta) {
     return g2 < 0.0 ? 1.0 : reflectance;
 }
 
-FN real linear(real a, real b, real x) { return b * x + a; }
-FN real polynomial(real c0, real c1, real c2, real c3, real c4, real c5, real c6, real c7, real c8, real x) {
-    real x2 = x * x, x4 = x2 * x2;
-    real low = linear(c2, c3, x) * x2 + linear(c0, c1, x);
-    real high = linear(c6, c7, x) * x2 + linear(c4, c5, x);
-    return (c8 * x4 + high) * x4 + low;
-}
 // Sine and cosine of u turns.
 FN void turn(real u, real *sine, real *cosine) {
     real quarter = (u * 4.0 + TURN_SHIFT) - TURN_SHIFT;
-    real x = (quarter * -0.25 + u) * TAU;
+    real x = TIMES_PLUS(quarter, -0.25, u) * TAU;
     real x2 = x * x;
     real s = x * polynomial(SINE_COEFFICIENTS, x2);
     real c = polynomial(COSINE_COEFFICIENTS, x2);
@@ -131,4 +127,54 @@ FN pair concentric_disk(pair p) {
     at.u = r * cosine;
     at.v = r * sine;
     return at;
+}
+
+// Where a ray that starts on a sphere and goes inside meets it again; `f` is its start seen from the centre.
+FN real other_root(vec f, vec direction) { return 2.0 * MAGNITUDE(inner(f, direction)); }
+FN real first_root(vec f, vec direction, real r) {
+    real b = -inner(f, direction);
+    vec closest = times_plus(direction, b, f);
+    real discriminant = r * r - inner(closest, closest);
+    real q = b + WITH_SIGN(SQUARE_ROOT(discriminant), b);
+    real c = inner(f, f) - r * r;
+    return (0.0 < q && c <= 0.0) ? q : c / q;
+}
+// Distance to a plane; not above zero if the ray does not meet it.
+FN real plane_root(vec to_plane, vec direction, vec normal) {
+    real t = inner(to_plane, normal) / inner(direction, normal);
+    return t < INFINITE ? t : -1.0;
+}
+// Distance along the z axis to a triangle; below zero if it misses.
+FN real triangle_root(vec a, vec b, vec c) {
+    real u = across(c.x, c.y, b.x, b.y), v = across(a.x, a.y, c.x, c.y), w = across(b.x, b.y, a.x, a.y);
+    int front = 0.0 <= u && 0.0 <= v && 0.0 <= w;
+    int back = u <= 0.0 && v <= 0.0 && w <= 0.0;
+    real determinant = u + v + w;
+    real t = (u * a.z + v * b.z + w * c.z) / determinant;
+    int has_area = determinant < 0.0 || 0.0 < determinant;
+    return (front || back) && has_area ? t : -1.0;
+}
+FN real power_heuristic(real a, real b) {
+    real ratio = b / a;
+    return 1.0 / (1.0 + ratio * ratio);
+}
+
+// The ray's own axes: which components become x, y and z, and the shear.
+typedef struct { int x, y, z; real sx, sy, sz; } shear;
+FN real component(vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+FN shear axes_of(vec d) {
+    shear by;
+    real x = MAGNITUDE(d.x), y = MAGNITUDE(d.y), z = MAGNITUDE(d.z);
+    if (x > y && x > z) {
+        by.x = 1; by.y = 2; by.z = 0;
+    } else if (y > z) {
+        by.x = 2; by.y = 0; by.z = 1;
+    } else {
+        by.x = 0; by.y = 1; by.z = 2;
+    }
+    return by;
+}
+FN vec sheared(vec v, const shear *by) {
+    real x = component(v, by->x), y = component(v, by->y), z = component(v, by->z);
+    return vec_of(x - by->sx * z, y - by->sy * z, by->sz * z);
 }

@@ -32,19 +32,17 @@ FN rgb point_light(const walk *w, const surface *of, const surface_hit *hit, con
     rgb radiance = grey(0.0);
     u32 count = s->words[AT_POINT_LIGHT_COUNT];
     for (u32 k = 0; k < count; k++) {
-        GLOBAL const real *light = s->numbers + s->words[AT_POINT_LIGHTS] + POINT_LIGHT_NUMBERS * k;
+        GLOBAL const stored *light = s->numbers + s->words[AT_POINT_LIGHTS] + POINT_LIGHT_NUMBERS * k;
         vec towards = minus(vec_at(light), hit->point);
         real far = SQUARE_ROOT(inner(towards, towards));
-        if (far > light[6] || !(far > 0.0)) continue;
+        if (far > (real)light[6] || !(far > 0.0)) continue;
         ray way;
         way.origin = hit->point;
         way.direction = times(towards, 1.0 / far);
         vec wi = to_local(around, way.direction);
-        rgb share = dimmed(bsdf_value(of, wo, wi), MAGNITUDE(wi.z));
+        rgb share = scattered_light(of, wo, wi);
         if (is_black(share)) continue;
-        standpoint from;
-        from.primitive = hit->primitive;
-        from.inside = (wi.z < 0.0) != hit->inside;
+        standpoint from = leaving(hit, wi, way.direction);
         e->rays += 1;
         if (first_hit(s, way, from, far * HIDING, &e->tested).primitive != NOTHING) continue;
         radiance = mixed(radiance, filtered(share, dimmed(rgb_at(light + 3), 1.0 / (far * far))));
@@ -59,8 +57,7 @@ FN part left_by(const walk *w, const part *p, const surface_hit *hit, const fram
     vec towards = to_world(around, sample.wi);
     next.way.direction = sample.is_delta ? unit_vector(towards) : towards;
     next.way.origin = hit->point;
-    next.from.primitive = hit->primitive;
-    next.from.inside = (sample.wi.z < 0.0) != hit->inside;
+    next.from = leaving(hit, sample.wi, next.way.direction);
     next.is_rival = AIMS && !sample.is_delta;
     next.density = sample.density;
     next.throughput = filtered(throughput, sample.weight);
@@ -84,7 +81,7 @@ FN rgb light_at(const walk *w, const part *p, rgb emission, const surface_hit *h
 // What a shadow ray to a light adds, in parts of what the path carries.
 FN rgb aimed_light(const walk *w, const part *p, const surface *of, const surface_hit *hit, const frame *around, vec wo,
     events *e, int *found) {
-    standpoint from;
+    standpoint from = on_nothing();
     ray way;
     *found = 0;
     from.primitive = hit->primitive;
@@ -92,9 +89,9 @@ FN rgb aimed_light(const walk *w, const part *p, const surface *of, const surfac
     aim at = aim_at(w->s, hit->point, from, w->key, p->vertices + 1U, p->branch);
     if (!at.found) return grey(0.0);
     vec wi = to_local(around, at.direction);
-    rgb share = dimmed(bsdf_value(of, wo, wi), MAGNITUDE(wi.z));
+    rgb share = scattered_light(of, wo, wi);
     if (is_black(share)) return grey(0.0);
-    from.inside = (wi.z < 0.0) != hit->inside;
+    from = leaving(hit, wi, at.direction);
     way.origin = hit->point;
     way.direction = at.direction;
     e->rays += 1;
@@ -114,8 +111,7 @@ FN rgb sample_radiance(const walk *w, ray start, events *e) {
     int depth = 0;
     part p;
     p.way = start;
-    p.from.primitive = NOTHING;
-    p.from.inside = 0;
+    p.from = on_nothing();
     p.is_rival = 0;
     p.density = 0.0;
     p.throughput = grey(1.0);

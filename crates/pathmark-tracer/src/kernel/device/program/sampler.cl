@@ -20,8 +20,6 @@ FN u64 reversed64(u64 x) {
     x = ((x >> 16) & 0x0000FFFF0000FFFFUL) | ((x & 0x0000FFFF0000FFFFUL) << 16);
     return (x >> 32) | (x << 32);
 }
-FN real unit_of(u64 bits) { return (real)(bits >> 11) * UNIT_STEP; }
-
 FN u64 own_prefix(u64 seed_key, u64 place) { return mix64(mix64(place) ^ seed_key); }
 
 // Owen's scrambling by 64-bit products, `sampling/owen.rs`.
@@ -89,17 +87,19 @@ FN sample_key key_of(GLOBAL const u32 *words, u32 pixel, u32 sample) {
     return key;
 }
 
-FN real inside_cell(u32 cell, u64 bits) { return unit_of(((u64)cell << 62) | (bits >> 2)); }
+FN u64 inside_cell(u32 cell, u64 bits) { return ((u64)cell << 62) | (bits >> 2); }
 
-// The two numbers of a use.
-FN pair numbers_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce, u32 branch, u32 purpose) {
+typedef struct { u64 first, second; } word_pair;
+
+// The two words of a use, of which numbers take the leading digits.
+FN word_pair words_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce, u32 branch, u32 purpose) {
     u64 dimension = ((u64)(bounce & 0xFFFFU) << 32) | ((u64)branch << 16) | (u64)purpose;
     u64 word = mix64(key->pixel_key ^ dimension);
     u32 kind = words[AT_SAMPLER];
-    pair result;
+    word_pair result;
     if (kind == SAMPLER_HASH) {
-        result.u = unit_of(word);
-        result.v = unit_of((word << 32) | (word >> 32));
+        result.first = word;
+        result.second = (word << 32) | (word >> 32);
         return result;
     }
     if (kind == SAMPLER_INDEPENDENT) {
@@ -108,8 +108,8 @@ FN pair numbers_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce, u
         u64 second = first * multiplier + increment;
         u64 third = second * multiplier + increment;
         u64 fourth = third * multiplier + increment;
-        result.u = unit_of(pcg_output(first) | (pcg_output(second) << 32));
-        result.v = unit_of(pcg_output(third) | (pcg_output(fourth) << 32));
+        result.first = pcg_output(first) | (pcg_output(second) << 32);
+        result.second = pcg_output(third) | (pcg_output(fourth) << 32);
         return result;
     }
     if (kind == SAMPLER_STRATIFIED) {
@@ -121,8 +121,8 @@ FN pair numbers_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce, u
             row ^= (table >> (8U + 2U * column)) & 3U;
         }
         u64 place = ((u64)(key->sample % 16U) << 1) | 1UL;
-        result.u = inside_cell(column, mix64(word ^ place));
-        result.v = inside_cell(row, mix64(word ^ (place + 1UL)));
+        result.first = inside_cell(column, mix64(word ^ place));
+        result.second = inside_cell(row, mix64(word ^ (place + 1UL)));
         return result;
     }
     u64 place;
@@ -137,11 +137,11 @@ FN pair numbers_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce, u
         place = reversed64(burley(reversed64((u64)key->sample) >> 32, mix64(word ^ 1UL)) << 32);
     }
     if (kind == SAMPLER_SOBOL) {
-        result.u = unit_of(reversed64(scramble(place, mix64(word ^ 2UL), mix64(word ^ 3UL))));
-        result.v = unit_of(reversed64(scramble(pascal(place), mix64(word ^ 4UL), mix64(word ^ 5UL))));
+        result.first = reversed64(scramble(place, mix64(word ^ 2UL), mix64(word ^ 3UL)));
+        result.second = reversed64(scramble(pascal(place), mix64(word ^ 4UL), mix64(word ^ 5UL)));
     } else {
-        result.u = unit_of(reversed64(burley(place, word)));
-        result.v = unit_of(reversed64(burley(pascal(place), word >> 32)));
+        result.first = reversed64(burley(place, word));
+        result.second = reversed64(burley(pascal(place), word >> 32));
     }
     return result;
 }

@@ -3,9 +3,9 @@
 #define NOTHING 0xFFFFFFFFU
 
 typedef struct {
-    GLOBAL const real *numbers;
+    GLOBAL const stored *numbers;
     GLOBAL const u32 *words;
-    GLOBAL const real *spheres, *planes, *triangles, *boxes;
+    GLOBAL const stored *spheres, *planes, *triangles, *boxes;
     GLOBAL const u32 *nodes, *order;
     u32 sphere_count, plane_count, triangle_count, is_tree;
 } scene;
@@ -19,9 +19,6 @@ typedef struct {
     vec point, normal;
     int inside;
 } surface_hit;
-
-// The ray's own axes.
-typedef struct { int x, y, z; real sx, sy, sz; } shear;
 
 FN nearest nothing_nearer_than(real t) { nearest n; n.t = t; n.primitive = NOTHING; return n; }
 
@@ -44,61 +41,28 @@ FN nearest nearer_in_any_order(nearest so_far, real distance, u32 primitive) {
     return so_far;
 }
 
-FN real sphere_first_root(GLOBAL const real *sphere, ray way) {
-    vec f = minus(way.origin, vec_at(sphere));
-    real r = sphere[3];
-    real b = -inner(f, way.direction);
-    vec closest = times_plus(way.direction, b / 1.0, f);
-    real discriminant = r * r - inner(closest, closest);
-    real q = b + WITH_SIGN(SQUARE_ROOT(discriminant), b);
-    real c = inner(f, f) - r * r;
-    return (0.0 < q && c <= 0.0) ? q / 1.0 : c / q;
+FN real sphere_first_root(GLOBAL const stored *sphere, ray way) {
+    return first_root(minus(way.origin, vec_at(sphere)), way.direction, sphere[3]);
 }
-FN real sphere_leave(GLOBAL const real *sphere, ray way, int inside) {
-    return inside ? 2.0 * MAGNITUDE(inner(minus(vec_at(sphere), way.origin), way.direction)) : -1.0;
+FN real sphere_leave(GLOBAL const stored *sphere, ray way, int inside) {
+    return inside ? other_root(minus(vec_at(sphere), way.origin), way.direction) : -1.0;
 }
-
-FN real plane_meet(GLOBAL const real *plane, ray way) {
-    vec normal = vec_at(plane + 3);
-    real t = inner(minus(vec_at(plane), way.origin), normal) / inner(way.direction, normal);
-    return t < INFINITE ? t : -1.0;
+FN real plane_meet(GLOBAL const stored *plane, ray way) {
+    return plane_root(minus(vec_at(plane), way.origin), way.direction, vec_at(plane + 3));
 }
-
-FN real component(vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 FN shear shear_of(vec d) {
-    shear by;
-    real x = MAGNITUDE(d.x), y = MAGNITUDE(d.y), z = MAGNITUDE(d.z), inverse;
-    if (x > y && x > z) {
-        by.x = 1; by.y = 2; by.z = 0;
-    } else if (y > z) {
-        by.x = 2; by.y = 0; by.z = 1;
-    } else {
-        by.x = 0; by.y = 1; by.z = 2;
-    }
-    inverse = 1.0 / component(d, by.z);
+    shear by = axes_of(d);
+    real inverse = 1.0 / component(d, by.z);
     by.sx = component(d, by.x) * inverse;
     by.sy = component(d, by.y) * inverse;
     by.sz = inverse;
     return by;
 }
-FN vec sheared(vec v, const shear *by) {
-    real x = component(v, by->x), y = component(v, by->y), z = component(v, by->z);
-    return vec_of(x - by->sx * z, y - by->sy * z, by->sz * z);
+FN real triangle_meet(GLOBAL const stored *corners, ray way, const shear *by) {
+    return triangle_root(sheared(minus(vec_at(corners), way.origin), by),
+        sheared(minus(vec_at(corners + 3), way.origin), by), sheared(minus(vec_at(corners + 6), way.origin), by));
 }
-FN real across(vec p, vec q) { return p.x * q.y - p.y * q.x; }
-FN real triangle_meet(GLOBAL const real *corners, ray way, const shear *by) {
-    vec a = sheared(minus(vec_at(corners), way.origin), by);
-    vec b = sheared(minus(vec_at(corners + 3), way.origin), by);
-    vec c = sheared(minus(vec_at(corners + 6), way.origin), by);
-    real u = across(c, b), v = across(a, c), w = across(b, a);
-    int front = 0.0 <= u && 0.0 <= v && 0.0 <= w;
-    int back = u <= 0.0 && v <= 0.0 && w <= 0.0;
-    real determinant = u + v + w;
-    real t = (u * a.z + v * b.z + w * c.z) / determinant;
-    int has_area = determinant < 0.0 || 0.0 < determinant;
-    return (front || back) && has_area ? t : -1.0;
-}
-FN vec triangle_normal(GLOBAL const real *corners) {
+FN vec triangle_normal(GLOBAL const stored *corners) {
     vec a = vec_at(corners);
     vec e = minus(vec_at(corners + 3), a), f = minus(vec_at(corners + 6), a);
     return unit_vector(outer(times(e, 1.0 / largest_of(e)), times(f, 1.0 / largest_of(f))));
@@ -123,7 +87,7 @@ FN real distance_to(const scene *s, u32 primitive, ray way, const shear *by, sta
     int own = from.primitive == primitive;
     u32 index = primitive;
     if (index < s->sphere_count) {
-        GLOBAL const real *sphere = s->spheres + 4 * index;
+        GLOBAL const stored *sphere = s->spheres + 4 * index;
         return own ? sphere_leave(sphere, way, from.inside) : sphere_first_root(sphere, way);
     }
     index -= s->sphere_count;
@@ -147,7 +111,7 @@ FN void extend(real *low, real *high, real x) {
     if (x > *high) *high = x;
 }
 // The largest coordinate of a triangle's box, and the box.
-FN real triangle_box(GLOBAL const real *corners, real *low, real *high) {
+FN real triangle_box(GLOBAL const stored *corners, real *low, real *high) {
     real largest = 0.0;
     for (int axis = 0; axis < 3; axis++) {
         low[axis] = INFINITE;
@@ -157,7 +121,7 @@ FN real triangle_box(GLOBAL const real *corners, real *low, real *high) {
     }
     return largest;
 }
-FN looks looks_of(GLOBAL const real *corners, ray way, real t, vec normal, real nearness) {
+FN looks looks_of(GLOBAL const stored *corners, ray way, real t, vec normal, real nearness) {
     looks of;
     real low[3], high[3];
     real reach = triangle_box(corners, low, high) + largest_of(way.origin);
@@ -168,7 +132,7 @@ FN looks looks_of(GLOBAL const real *corners, ray way, real t, vec normal, real 
         && point.y <= high[1] + by && low[2] - by <= point.z && point.z <= high[2] + by;
     return of;
 }
-FN int can_reach(GLOBAL const real *own, GLOBAL const real *other, vec direction) {
+FN int can_reach(GLOBAL const stored *own, GLOBAL const stored *other, vec direction) {
     real low[3], high[3];
     vec own_normal = triangle_normal(own), normal = triangle_normal(other);
     real largest = triangle_box(own, low, high);
@@ -185,7 +149,7 @@ FN int can_reach(GLOBAL const real *own, GLOBAL const real *other, vec direction
     real towards = inner(direction, normal);
     return rises && ((above && (below || towards < 0.0)) || (below && towards > 0.0));
 }
-FN GLOBAL const real *triangle_of(const scene *s, u32 primitive) {
+FN GLOBAL const stored *triangle_of(const scene *s, u32 primitive) {
     return s->triangles + 9 * (primitive - s->sphere_count - s->plane_count);
 }
 FN int is_triangle(const scene *s, u32 primitive) {
@@ -198,7 +162,7 @@ FN real wanted_distance(const scene *s, u32 primitive, ray way, const shear *by,
     real t = distance_to(s, primitive, way, by, from);
 #if HAS_TRIANGLE
     if (only_sure && is_triangle(s, primitive)) {
-        GLOBAL const real *corners = triangle_of(s, primitive);
+        GLOBAL const stored *corners = triangle_of(s, primitive);
         looks of = looks_of(corners, way, t, triangle_normal(corners), NEARNESS);
         int is_sure = of.inside
             && (!of.near || !is_triangle(s, from.primitive)
@@ -228,7 +192,7 @@ FN slabs slabs_of(ray way) {
     return of;
 }
 // Where the ray enters a box; below zero if it does not, or only beyond `limit`.
-FN real enter(const slabs *of, GLOBAL const real *faces, real limit) {
+FN real enter(const slabs *of, GLOBAL const stored *faces, real limit) {
     real first_in = 0.0, last_in = limit;
     for (int axis = 0; axis < 3; axis++) {
         int backward = of->backward[axis];
@@ -311,7 +275,7 @@ FN nearest search(const scene *s, ray way, standpoint from, real limit, int only
         return so_far;
     }
     for (u32 k = 0; k < s->sphere_count; k++) {
-        GLOBAL const real *sphere = s->spheres + 4 * k;
+        GLOBAL const stored *sphere = s->spheres + 4 * k;
         real distance = from.primitive == k ? sphere_leave(sphere, way, from.inside) : sphere_first_root(sphere, way);
         so_far = nearer(so_far, distance, k);
     }
@@ -351,4 +315,35 @@ FN surface_hit first_hit(const scene *s, ray way, standpoint from, real limit, t
     }
 #endif
     return hit;
+}
+
+// Where a ray starts that leaves a surface along the local direction `wi`.
+FN standpoint leaving(const surface_hit *hit, vec wi, vec direction) {
+    standpoint from;
+    from.primitive = hit->primitive;
+    from.inside = (wi.z < 0.0) != hit->inside;
+    return from;
+}
+FN standpoint on_nothing(void) {
+    standpoint from;
+    from.primitive = NOTHING;
+    from.inside = 0;
+    return from;
+}
+
+FN scene scene_of(GLOBAL const stored *numbers, GLOBAL const u32 *words) {
+    scene s;
+    s.numbers = numbers;
+    s.words = words;
+    s.spheres = numbers + words[AT_SPHERES];
+    s.planes = numbers + words[AT_PLANES];
+    s.triangles = numbers + words[AT_TRIANGLES];
+    s.boxes = numbers + words[AT_BOXES];
+    s.nodes = words + words[AT_NODES];
+    s.order = words + words[AT_ORDER];
+    s.sphere_count = words[AT_SPHERE_COUNT];
+    s.plane_count = words[AT_PLANE_COUNT];
+    s.triangle_count = words[AT_TRIANGLE_COUNT];
+    s.is_tree = words[AT_NODE_COUNT] > 0U;
+    return s;
 }

@@ -1,0 +1,100 @@
+//! F12: devices that fail. No compiler, a compiler that refuses, a driver without memory, a device that is lost in the middle: the reason is told with
+//! exit code 3, a checkpoint is kept, and a processor goes on from it to the same image.
+
+use super::skip;
+use crate::program::{Finished, finish, pathmark};
+use std::fs::{self, Permissions};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const RENDER: [&str; 10] =
+    ["render", "cornell", "--size", "40x30", "--spp", "720", "--estimator", "bsdf", "--sampler", "hash"];
+
+/// The loader of this machine; `None` if it has none, or none that shows a device.
+fn loader() -> Option<PathBuf> {
+    let folder = tempfile::tempdir().unwrap();
+    let listed = finish(pathmark(folder.path(), &["list", "devices"])).with_code(0);
+    let folders = ["/usr/lib/x86_64-linux-gnu", "/usr/lib/aarch64-linux-gnu", "/usr/lib64", "/usr/lib"];
+    let mut files = folders.iter().map(|folder| Path::new(folder).join("libOpenCL.so.1"));
+    files.find(|file| file.exists()).filter(|_| listed.out.contains("opencl:0"))
+}
+
+/// `pathmark ARGUMENTS` with a loader that fails on purpose.
+fn with_failing_loader(folder: &Path, loader: &Path, failure: (&str, u64), arguments: &[&str]) -> Finished {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/failing-opencl.c");
+    let library = folder.join("libOpenCL.so.1");
+    if !library.exists() {
+        let options = ["-shared", "-fPIC", "-o"];
+        let made = Command::new("cc").args(options).arg(&library).arg(source).arg("-ldl").status().unwrap();
+        assert!(made.success());
+    }
+    let mut command = pathmark(folder, arguments);
+    command.env("LD_LIBRARY_PATH", folder).env("PATHMARK_TEST_OPENCL", loader).env(failure.0, failure.1.to_string());
+    finish(command)
+}
+
+fn says(refused: &Finished, words: &[&str]) {
+    assert!(words.iter().all(|word| refused.err.contains(word)), "{words:?} are not all in {}", refused.err);
+}
+
+fn checksum(finished: &Finished) -> String {
+    let row: serde_json::Value = serde_json::from_str(&finished.out).unwrap();
+    row["checksum"].as_str().unwrap().to_string()
+}
+
+#[test]
+fn a_device_lost_in_the_middle_leaves_a_checkpoint_that_a_processor_goes_on_from() {
+    let Some(loader) = loader() else { return skip("there is no OpenCL device") };
+    let folder = tempfile::tempdir().unwrap();
+    let whole = finish(pathmark(folder.path(), &[&RENDER[..], &["--json"]].concat())).with_code(0);
+    let checkpoint = folder.path().join("lost.checkpoint");
+    let on_device = ["--kernel", "device:opencl:0", "--decomposition", "bands:2", "--checkpoint", "lost.checkpoint"];
+    let lost = [&RENDER[..], &on_device, &["-o", "lost.pfm"]].concat();
+    // The first launches are of the self-test. It is lost later and later, until something has been rendered before.
+    for launches in 14.. {
+        assert!(launches < 1000, "the render ends before the device is lost");
+        let refused = with_failing_loader(folder.path(), &loader, ("PATHMARK_TEST_LAUNCHES", launches), &lost);
+        says(&refused.with_code(3), &["opencl:0", "clEnqueueNDRangeKernel", "the device may be lost"]);
+        assert!(!folder.path().join("lost.pfm").exists());
+        if checkpoint.exists() {
+            break;
+        }
+    }
+    let resumed = ["--kernel", "lanes", "--checkpoint", "lost.checkpoint", "--json"];
+    let resumed = finish(pathmark(folder.path(), &[&RENDER[..], &resumed].concat())).with_code(0);
+    assert_eq!(checksum(&resumed), checksum(&whole));
+}
+
+#[test]
+fn a_device_without_memory_is_the_systems_fault() {
+    let Some(loader) = loader() else { return skip("there is no OpenCL device") };
+    let folder = tempfile::tempdir().unwrap();
+    // Enough for the self-test, and not for a mesh.
+    let mut arguments = [&RENDER[..], &["--kernel", "device:opencl:0", "-o", "none.pfm"]].concat();
+    arguments[1] = "bumpy-ball";
+    let refused = with_failing_loader(folder.path(), &loader, ("PATHMARK_TEST_BYTES", 200_000), &arguments);
+    says(&refused.with_code(3), &["opencl:0", "clCreateBuffer", "no memory for an object on the device"]);
+    assert!(!folder.path().join("none.pfm").exists());
+}
+
+/// A compiler that is not there is a device that is not there, which the user has named; one that refuses the program is the system's.
+#[test]
+fn a_compiler_that_fails_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let compiler = folder.path().join("compiler");
+    let refuses = "#!/bin/sh\n[ \"$1\" = --version ] && echo 'a compiler 1.0' && exit 0\necho 'no room for libraries' >&2\nexit 1\n";
+    fs::write(&compiler, refuses).unwrap();
+    fs::set_permissions(&compiler, Permissions::from_mode(0o755)).unwrap();
+    let arguments = [&RENDER[..], &["--kernel", "device", "--device", "host", "-o", "none.pfm"]].concat();
+    let with = |compiler: &Path| {
+        let mut command = pathmark(folder.path(), &arguments);
+        command.env("CC", compiler);
+        finish(command)
+    };
+    let refused = with(&compiler).with_code(3);
+    says(&refused, &["rendering on host", "a compiler 1.0 refused the program", "no room for libraries"]);
+    let missing = with(Path::new("no-such-compiler")).with_code(2);
+    says(&missing, &["there is no device host here", "no-such-compiler"]);
+    assert!(!folder.path().join("none.pfm").exists());
+}
