@@ -74,6 +74,19 @@ impl Ledger {
         self.done.fetch_add(1, Ordering::Relaxed);
     }
 
+    /// Notes of job `index` that it took from one time to another, for what was done together with others; `work` delivers it.
+    pub(super) fn enter(&self, index: usize, [start_s, stop_s]: [f64; 2], work: impl FnOnce() -> Counts) {
+        let Some(mut entry) = self.entries[index].take() else {
+            self.collisions.fetch_add(1, Ordering::Relaxed);
+            return;
+        };
+        entry.span = JobSpan { worker: self.worker(), start_s, stop_s };
+        entry.counts = work();
+        entry.times_run += 1;
+        self.entries[index].store(Some(entry));
+        self.done.fetch_add(1, Ordering::Relaxed);
+    }
+
     /// Jobs done so far.
     pub(super) fn done(&self) -> u64 {
         self.done.load(Ordering::Relaxed)

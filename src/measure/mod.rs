@@ -5,6 +5,7 @@
 
 mod adaptive;
 mod axes;
+mod beside;
 mod calibration;
 mod checkpoint;
 mod chrome_trace;

@@ -1,5 +1,6 @@
 //! A run: jobs handed to a strategy, once or in several rounds, timed and verified.
 
+use super::beside::{Claims, Shared};
 use super::foreign_load::FOREIGN_SHARE;
 use super::history::History;
 use super::invalid::{InvalidSample, first_invalid};
@@ -193,7 +194,8 @@ impl Account {
             films,
             threads: setup.settings().threads.min(available_threads()),
         })?;
-        let run = Arc::new(Run { kernel: Arc::clone(&kernel), ledger: Ledger::new(plan.len()), output });
+        let claims = Claims::new(plan.len(), kernel.beside().is_some());
+        let run = Arc::new(Run { kernel: Arc::clone(&kernel), claims, ledger: Ledger::new(plan.len()), output });
         let strategy = match &mut self.strategy {
             Some(strategy) => strategy,
             none => {
@@ -203,7 +205,7 @@ impl Account {
                 strategy
             }
         };
-        let timed = watched(&run, watch, || run.timed(setup, strategy.as_mut(), plan.len()))?;
+        let timed = watched(&run, watch, || run.timed(setup, strategy.as_mut(), &plan))?;
         if let Some(failure) = kernel.failure() {
             return Err(failure);
         }
@@ -335,6 +337,7 @@ fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> Result<T>) -> 
 /// What all jobs of a round share.
 struct Run {
     kernel: Arc<dyn Kernel>,
+    claims: Claims,
     ledger: Ledger,
     output: Box<dyn Output>,
 }
@@ -360,15 +363,36 @@ pub(super) struct Round<'a> {
 }
 
 impl Run {
-    fn timed(self: &Arc<Self>, setup: &Setup, strategy: &mut dyn Strategy, jobs: usize) -> Result<Timed> {
+    /// Does `work` while a thread has the device render pieces.
+    fn with_device(
+        &self,
+        device: &dyn Kernel,
+        plan: &Plan,
+        start: Instant,
+        work: impl FnOnce() -> Result<()>,
+    ) -> Result<()> {
+        let shared = Shared { plan, claims: &self.claims, ledger: &self.ledger, output: &*self.output };
+        thread::scope(|scope| {
+            let started = thread::Builder::new().spawn_scoped(scope, || shared.serve(device, start));
+            started.map_err(|e| Error::system("starting", "the thread that serves the device", e)).and_then(|_| work())
+        })
+    }
+
+    fn timed(self: &Arc<Self>, setup: &Setup, strategy: &mut dyn Strategy, plan: &Plan) -> Result<Timed> {
         let shared = Arc::clone(self);
         let usage = Usage::now();
         let start = Instant::now();
         let job = Arc::new(move |index: usize| {
-            let Self { kernel, ledger, output } = &*shared;
-            ledger.record(index, start, || output.render(index, &**kernel));
+            let Self { kernel, claims, ledger, output } = &*shared;
+            if claims.take(index) {
+                ledger.record(index, start, || output.render(index, &**kernel));
+            }
         });
-        strategy.run(jobs, job).map_err(|error| setup.strategy_error(error))?;
+        let work = || strategy.run(plan.len(), job).map_err(|error| setup.strategy_error(error));
+        match self.kernel.beside() {
+            None => work()?,
+            Some(device) => self.with_device(device, plan, start, work)?,
+        }
         let makespan_s = start.elapsed().as_secs_f64();
         Ok(Timed { makespan_s, cpu: usage.zip(Usage::now()).map(|(before, after)| after.since(&before)) })
     }

@@ -333,7 +333,9 @@ impl Setup {
             warnings.push(Warning::WorkersUnused { asked, used: workers_used });
         }
         let processors = available_threads();
-        if workers_used as usize > processors {
+        // One of them waits for the device.
+        let waiting = usize::from(self.subject.choice().is_some_and(Choice::has_device_beside));
+        if workers_used as usize > processors + waiting {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
         }
         if self.has_subpixels() && !spp.is_multiple_of(SUBPIXELS) {

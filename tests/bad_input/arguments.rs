@@ -22,7 +22,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--kernel", "quantum"], &["kernel", "quantum", "scalar"]),
     (&["--kernel", "device:abacus:0"], &["kernel", "device:abacus:0", "there is no device abacus:0 here"]),
     (&["--kernel", "lanes", "--device", "host"], &["--device host", "--kernel is lanes"]),
-    (&["--kernel", "device:host", "--precision", "f32"], &["precision", "f32", "device kernel", "f64"]),
+    (&["--kernel", "scalar", "--precision", "f32"], &["precision", "f32", "scalar kernel", "f64"]),
     (&["--kernel", "device:host", "--simd", "avx2"], &["simd", "avx2", "a device has none"]),
     (&["--effects", "smoke"], &["effects", "smoke", "diffuse", "all"]),
     (&["--accelerator", "octree"], &["accelerator", "octree", "median", "sah"]),

@@ -57,6 +57,34 @@ fn strategies_threads_and_decompositions() {
     }
 }
 
+/// A device beside the workers: whoever renders a piece, the image is the same, in either precision.
+#[test]
+fn a_device_beside_any_strategy() {
+    let with = |kernel: &str, precision: &str, changed: Settings| {
+        let spec = Spec { kernel: kernel.into(), precision: precision.into(), ..changed.spec };
+        run(Settings { spec, ..changed })
+    };
+    for precision in ["f64", "f32"] {
+        let expected = with("lanes", precision, settings());
+        for strategy in STRATEGIES {
+            for (threads, decomposition) in [(1, "tiles:4x4"), (3, "samples:16:8x8")] {
+                let what = format!("{} with {threads} threads on {decomposition}, {precision}", strategy.name);
+                let (strategy, decomposition) = (strategy.name.into(), decomposition.into());
+                let settings = Settings { strategy, threads, decomposition, ..settings() };
+                let found = with("lanes+device:host", precision, settings);
+                assert_eq!(found.checksum, expected.checksum, "{what}");
+                assert_eq!(found.trace.jobs.len(), found.plan.len(), "{what}");
+            }
+        }
+        for output in OUTPUTS {
+            let settings =
+                Settings { output: output.name.into(), strategy: "dynamic".into(), threads: 2, ..settings() };
+            let found = with("lanes+device:host", precision, settings);
+            assert_eq!(found.checksum, expected.checksum, "{}, {precision}", output.name);
+        }
+    }
+}
+
 #[test]
 fn outputs() {
     let expected = run(settings());

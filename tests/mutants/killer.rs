@@ -1,6 +1,6 @@
 //! Who notices a fault: cases of `pathmark check`, or tests by their path, wherever their program is.
 
-use super::fault::{packages, rust_files};
+use super::fault::{packages, source_files};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;

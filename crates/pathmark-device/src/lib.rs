@@ -1,13 +1,13 @@
 //! One program text for three kinds of device: a GPU by CUDA, whatever OpenCL finds, and the processor by the host's C compiler.
 //!
 //! A program is written in what C, OpenCL C and CUDA C have in common, with the words of the [dialects](Dialect): `real`, `u32`, `u64`, `GLOBAL`,
-//! `FN`, `SQUARE_ROOT`, `MAGNITUDE`, `WITH_SIGN`, `COUNT_ONES`, `INFINITE`. It defines
+//! `FN`, `SQUARE_ROOT`, `MAGNITUDE`, `WITH_SIGN`, `COUNT_ONES`, `INFINITE`, and of `float` those with `SINGLE_` before them and `FUSED`. It defines
 //!
 //! ```c
 //! FN void run_item(u32 item, GLOBAL const real *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out);
 //! ```
 //!
-//! which is called once for each item. Every operation on a `real` is rounded once, by IEEE 754: compilers are told to fuse none, and a device
+//! which is called once for each item. Every operation is rounded once, by IEEE 754: compilers are told to fuse none but `FUSED`, and a device
 //! shows in a table of operations that it obeys ([`Device::load`] refuses one that does not). So the results have the same bits on every device.
 //!
 //! Drivers and compilers are looked for when the program runs. Where there are none, everything builds, and [`list`] says what is missing.
@@ -64,9 +64,9 @@ pub trait Device: Send + Sync {
 }
 
 impl dyn Device {
-    /// [`Device::bind`] on a device that has shown that it computes as it should.
-    pub fn load(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
-        self_test::passed(self)?;
+    /// [`Device::bind`] on a device that has shown that it computes as it should, also in single precision if the program uses it.
+    pub fn load(&self, text: &str, uses_single: bool, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
+        self_test::passed(self, uses_single)?;
         self.bind(text, numbers, words)
     }
 }

@@ -37,10 +37,13 @@ const DEVICE_TYPE: u32 = 0x1000;
 const COMPUTE_UNITS: u32 = 0x1002;
 const DEVICE_NAME: u32 = 0x102B;
 const DOUBLE_CONFIG: u32 = 0x1032;
+const SINGLE_CONFIG: u32 = 0x101B;
 const BUILD_LOG: u32 = 0x1183;
 const TYPE_CPU: u64 = 2;
 /// Small numbers are kept, infinities and NaN exist, results are rounded to the nearest.
 const EXACT_ENOUGH: u64 = 1 | 2 | 4;
+/// Divisions and roots in single precision can be rounded to the nearest, if the compiler is asked to.
+const ROUNDS_SINGLES: u64 = 1 << 7;
 const READ_WRITE: u64 = 1;
 const READ_ONLY_COPY: u64 = 4 | 32;
 
@@ -54,6 +57,14 @@ const GROUP_OF_CORE: usize = 1;
 /// The loader's functions, or why there are none; it stays open.
 static LOADER: LazyLock<std::result::Result<Functions, String>> =
     LazyLock::new(|| open(&["libOpenCL.so.1", "libOpenCL.so"]).and_then(Functions::of));
+
+/// Held by whoever calls the driver. `PoCL` 3.1 crashes if two threads look for devices at a time for the first time, and it compiles at the first
+/// launch; a device has one launch at a time anyway.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
+fn turn() -> MutexGuard<'static, ()> {
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A code of OpenCL's header in words, where it is one that users meet.
 fn meaning(code: i32) -> String {
@@ -101,6 +112,7 @@ fn name_of(functions: &Functions, device: Handle) -> String {
 /// Every device of every platform, in the driver's order.
 fn found(functions: &Functions) -> Vec<Found> {
     const MOST: usize = 64;
+    let _turn = turn();
     let (mut platforms, mut count) = ([null_mut(); MOST], 0);
     // SAFETY: there is room for as many handles as it is told.
     let code = unsafe { (functions.platforms)(MOST as u32, platforms.as_mut_ptr(), &raw mut count) };
@@ -213,9 +225,11 @@ impl Queue {
             (self.functions.create_program)(self.context.0, 1, &raw const pointer, &raw const length, &raw mut code)
         };
         checked("clCreateProgramWithSource", code)?;
+        let rounds = number_of(self.functions, self.device.0, SINGLE_CONFIG) & ROUNDS_SINGLES != 0;
+        let options = if rounds { c"-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt" } else { c"-cl-std=CL1.2" };
         // SAFETY: the options end with a zero.
         let code = unsafe {
-            (self.functions.build)(program, 1, &raw const self.device.0, c"-cl-std=CL1.2".as_ptr(), null(), null_mut())
+            (self.functions.build)(program, 1, &raw const self.device.0, options.as_ptr(), null(), null_mut())
         };
         if code != SUCCESS {
             let log = format!("{}\n{}", meaning(code), self.log(program));
@@ -267,6 +281,7 @@ impl OpenCl {
         if !is_exact {
             return Err(missing(INEXACT));
         }
+        let _turn = turn();
         let mut code = SUCCESS;
         // SAFETY: one device, no properties, nobody to be told of errors.
         let context =
@@ -297,6 +312,7 @@ impl Device for OpenCl {
     }
 
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
+        let _turn = turn();
         let queue = &self.queue;
         let mut programs = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
         let program = if let Some(program) = programs.get(text) {
@@ -345,6 +361,7 @@ fn kept(queue: &Queue, place: &mut Option<(Buffer, usize)>, bytes: usize) -> Res
 
 impl Loaded for Bound {
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
+        let _turn = turn();
         let Queue { functions, handle: Shared(queue), .. } = *self.queue;
         let mut guard: MutexGuard<'_, Kernel> = self.kernel.lock().unwrap_or_else(PoisonError::into_inner);
         let Kernel { handle: Shared(kernel), task: task_buffer, out: out_buffer } = &mut *guard;

@@ -5,37 +5,80 @@ use std::collections::HashSet;
 use std::ops::Mul;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// An operation: its name, and its result on two numbers and a word.
+/// An operation, and its result on two numbers and a word.
 struct Operation {
     name: &'static str,
+    kind: Kind,
     of: fn(f64, f64, u64) -> u64,
+}
+
+/// What an operation is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Double,
+    Integer,
+    /// In single precision, of operands that are rounded to it; the result in double.
+    Single,
+}
+
+/// A result in single precision.
+fn single(result: f32) -> u64 {
+    f64::from(result).to_bits()
 }
 
 /// The operations in the order in which `self_test.cl` numbers them.
 const OPERATIONS: &[Operation] = &[
-    Operation { name: "a + b", of: |a, b, _| (a + b).to_bits() },
-    Operation { name: "a - b", of: |a, b, _| (a - b).to_bits() },
-    Operation { name: "a * b", of: |a, b, _| (a * b).to_bits() },
-    Operation { name: "a / b", of: |a, b, _| (a / b).to_bits() },
-    Operation { name: "sqrt(a)", of: |a, _, _| a.sqrt().to_bits() },
-    Operation { name: "a * b + a, rounded twice", of: |a, b, _| (a * b + a).to_bits() },
-    Operation { name: "a * b - b * a, rounded three times", of: |a, b, _| (Mul::mul(a, b) - b * a).to_bits() },
-    Operation { name: "a with the sign of b", of: |a, b, _| a.copysign(b).to_bits() },
-    Operation { name: "|a| < b", of: |a, b, _| if a.abs() < b { a } else { b }.to_bits() },
-    Operation { name: "an integer as a number", of: |_, _, bits| ((bits >> 11) as f64).to_bits() },
-    Operation { name: "200 times x * b + a", of: |a, b, _| (0..200).fold(a, |x, _| x * b + a).to_bits() },
+    Operation { name: "a + b", kind: Kind::Double, of: |a, b, _| (a + b).to_bits() },
+    Operation { name: "a - b", kind: Kind::Double, of: |a, b, _| (a - b).to_bits() },
+    Operation { name: "a * b", kind: Kind::Double, of: |a, b, _| (a * b).to_bits() },
+    Operation { name: "a / b", kind: Kind::Double, of: |a, b, _| (a / b).to_bits() },
+    Operation { name: "sqrt(a)", kind: Kind::Double, of: |a, _, _| a.sqrt().to_bits() },
+    Operation { name: "a * b + a, rounded twice", kind: Kind::Double, of: |a, b, _| (a * b + a).to_bits() },
+    Operation {
+        name: "a * b - b * a, rounded three times",
+        kind: Kind::Double,
+        of: |a, b, _| (Mul::mul(a, b) - b * a).to_bits(),
+    },
+    Operation { name: "a with the sign of b", kind: Kind::Double, of: |a, b, _| a.copysign(b).to_bits() },
+    Operation { name: "|a| < b", kind: Kind::Double, of: |a, b, _| if a.abs() < b { a } else { b }.to_bits() },
+    Operation { name: "an integer as a number", kind: Kind::Double, of: |_, _, bits| ((bits >> 11) as f64).to_bits() },
+    Operation {
+        name: "200 times x * b + a",
+        kind: Kind::Double,
+        of: |a, b, _| (0..200).fold(a, |x, _| x * b + a).to_bits(),
+    },
     Operation {
         name: "an integer product",
+        kind: Kind::Integer,
         of: |_, _, bits| bits.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(bits >> 31),
     },
     Operation {
         name: "ones and shifts of an integer",
+        kind: Kind::Integer,
         of: |_, _, bits| u64::from((bits as u32).count_ones()) | ((bits << 13) ^ (bits >> 51)) << 6,
+    },
+    Operation { name: "a + b in single precision", kind: Kind::Single, of: |a, b, _| single(a as f32 + b as f32) },
+    Operation { name: "a * b in single precision", kind: Kind::Single, of: |a, b, _| single(a as f32 * b as f32) },
+    Operation { name: "a / b in single precision", kind: Kind::Single, of: |a, b, _| single(a as f32 / b as f32) },
+    Operation { name: "sqrt(a) in single precision", kind: Kind::Single, of: |a, _, _| single((a as f32).sqrt()) },
+    Operation {
+        name: "a * b + a in single precision, rounded twice",
+        kind: Kind::Single,
+        of: |a, b, _| single(a as f32 * b as f32 + a as f32),
+    },
+    // A product of two numbers of 24 digits has 48, so double precision knows what is lost.
+    Operation {
+        name: "what rounding a * b in single precision loses, by a fused operation",
+        kind: Kind::Single,
+        of: |a, b, _| {
+            let (a, b) = (a as f32, b as f32);
+            single((f64::from(a) * f64::from(b) - f64::from(a * b)) as f32)
+        },
     },
 ];
 
 /// Numbers whose results are rounded or out of range: halves, ends of the range, numbers below the normal ones, zeros, infinities.
-const EDGES: [f64; 14] = [
+const EDGES: [f64; 16] = [
     0.0,
     -0.0,
     1.0,
@@ -50,6 +93,8 @@ const EDGES: [f64; 14] = [
     -1e-160,
     f64::INFINITY,
     9_007_199_254_740_993.0,
+    1e-40,
+    -3e-23,
 ];
 
 /// Random operands beside those of the edges.
@@ -80,24 +125,24 @@ fn operands() -> (Vec<f64>, Vec<u64>) {
 }
 
 /// Two results are the same if their bits are, or if both are no number.
-fn is_same(found: u64, expected: u64, is_integer: bool) -> bool {
+fn is_same(found: u64, expected: u64, kind: Kind) -> bool {
     let is_nan = |bits: u64| f64::from_bits(bits).is_nan();
-    found == expected || !is_integer && is_nan(found) && is_nan(expected)
+    found == expected || kind != Kind::Integer && is_nan(found) && is_nan(expected)
 }
 
-/// Runs the table on a device, whatever it has shown before.
-fn check(device: &dyn Device) -> Result<()> {
+/// Runs the table on a device, whatever it has shown before: the part in single precision, or all else.
+fn check(device: &dyn Device, in_single: bool) -> Result<()> {
     let (numbers, words) = operands();
     let halves: Vec<u32> = words.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
     let loaded = device.bind(include_str!("self_test.cl"), &numbers, &halves)?;
     let mut out = vec![0; words.len()];
-    for (number, operation) in (0_u32..).zip(OPERATIONS) {
+    let table = (0_u32..).zip(OPERATIONS);
+    for (number, operation) in table.filter(|(_, operation)| (operation.kind == Kind::Single) == in_single) {
         loaded.run(&[number], words.len() as u32, &mut out)?;
-        let is_integer = operation.name.contains("integer p") || operation.name.contains("ones");
         for ((pair, word), found) in numbers.chunks_exact(2).zip(&words).zip(&out) {
             let (a, b) = (pair[0], pair[1]);
             let expected = (operation.of)(a, b, *word);
-            if !is_same(*found, expected, is_integer) {
+            if !is_same(*found, expected, operation.kind) {
                 let operation = format!(
                     "{} of {a:e}, {b:e} and {word:#018x} is {found:#018x} instead of {expected:#018x}",
                     operation.name
@@ -109,13 +154,16 @@ fn check(device: &dyn Device) -> Result<()> {
     Ok(())
 }
 
-/// Refuses a device that computes otherwise. Each is asked once.
-pub(crate) fn passed(device: &dyn Device) -> Result<()> {
-    static PASSED: LazyLock<Mutex<HashSet<String>>> = LazyLock::new(Mutex::default);
+/// Refuses a device that computes otherwise. Each is asked once, and once more in single precision where that is used.
+pub(crate) fn passed(device: &dyn Device, uses_single: bool) -> Result<()> {
+    static PASSED: LazyLock<Mutex<HashSet<(String, bool)>>> = LazyLock::new(Mutex::default);
     let mut passed = PASSED.lock().unwrap_or_else(PoisonError::into_inner);
-    if !passed.contains(device.id()) {
-        check(device)?;
-        passed.insert(device.id().to_string());
+    for in_single in [false, true].into_iter().filter(|in_single| uses_single || !in_single) {
+        let key = (device.id().to_string(), in_single);
+        if !passed.contains(&key) {
+            check(device, in_single)?;
+            passed.insert(key);
+        }
     }
     Ok(())
 }
@@ -162,7 +210,9 @@ mod tests {
             crate::list().into_iter().filter(|listed| listed.is_there).map(|listed| listed.id).collect();
         assert!(there.contains(&"host".to_string()), "{:?}", crate::list());
         for id in there {
-            check(&*open(&id).unwrap()).unwrap();
+            let device = open(&id).unwrap();
+            check(&*device, false).unwrap();
+            check(&*device, true).unwrap();
         }
     }
 
@@ -170,7 +220,7 @@ mod tests {
     #[test]
     fn a_device_that_rounds_otherwise_is_refused() {
         for (number, operation) in (0..).zip(OPERATIONS) {
-            let error = check(&Wrong(number)).unwrap_err().to_string();
+            let error = check(&Wrong(number), operation.kind == Kind::Single).unwrap_err().to_string();
             assert!(error.contains(operation.name), "{error}");
         }
     }

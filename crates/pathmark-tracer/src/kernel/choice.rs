@@ -105,11 +105,21 @@ impl Choice {
         }
     }
 
+    /// The same, rendered by another kernel.
+    pub(super) fn by(&self, way: &Way) -> Self {
+        Self { way: way.clone(), ..self.clone() }
+    }
+
+    /// Whether a device renders beside the workers.
+    pub fn has_device_beside(&self) -> bool {
+        matches!(self.way, Way::Beside { .. })
+    }
+
     /// Name of the kernel that renders; of a device with the device's own: `device:cuda:0`.
     pub fn kernel(&self) -> &str {
         match &self.way {
             Way::Lanes(_) => LANES,
-            Way::Device(device) => &device.kernel,
+            Way::Device(device) | Way::Beside { device, .. } => &device.kernel,
             Way::Scalar { .. } => SCALAR,
         }
     }
@@ -123,7 +133,7 @@ impl Choice {
     pub fn precision(&self) -> Precision {
         match &self.way {
             Way::Lanes(lanes) => lanes.precision,
-            Way::Device(device) => device.precision,
+            Way::Device(device) | Way::Beside { device, .. } => device.precision,
             Way::Scalar { .. } => Precision::F64,
         }
     }
@@ -141,9 +151,12 @@ impl Choice {
     /// The effects that the kernel was compiled for: a profile's name (of lanes, whose primitives are no part of it), or that it asks at run time.
     pub fn effects(&self) -> &'static str {
         match &self.way {
-            Way::Lanes(lanes) if lanes.is_matt => DiffuseOnly::NAME,
-            Way::Lanes(_) => AT_RUN_TIME,
             Way::Device(_) | Way::Scalar { .. } => self.profile.name,
+            way => match way.lanes() {
+                Some(lanes) if lanes.is_matt => DiffuseOnly::NAME,
+                Some(_) => AT_RUN_TIME,
+                None => self.profile.name,
+            },
         }
     }
 

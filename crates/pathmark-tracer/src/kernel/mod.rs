@@ -1,5 +1,6 @@
 //! How an estimator is executed over a piece of the film. A kernel never sees a thread.
 
+mod beside;
 mod choice;
 mod clamp;
 mod device;
@@ -22,6 +23,7 @@ use crate::sampling::{
     Independent, SAMPLERS, Sampler, SamplerVisitor, keyed_sampler, stateful_sampler, with_keyed_sampler,
 };
 use crate::scene::{AllEffects, ProfileVisitor, Scene, SmallptEffects, with_profile};
+use beside::Beside;
 pub use choice::{Choice, choose, choose_among};
 use choice::{INDEPENDENT, unknown};
 pub use clamp::{Clamp, Clamped};
@@ -79,6 +81,16 @@ pub trait Kernel: Send + Sync {
     /// Renders the samples of the piece into the buffer, which has the piece's columns and at least its rows.
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts;
 
+    /// Renders pieces, each into its buffer, and tells what happened in each.
+    fn render_all(&self, pieces: &[&Piece], out: &mut [TileBuffer]) -> Vec<Counts> {
+        pieces.iter().zip(out).map(|(piece, out)| self.render(piece, out)).collect()
+    }
+
+    /// A device that renders pieces beside whoever asks this kernel to.
+    fn beside(&self) -> Option<&dyn Kernel> {
+        None
+    }
+
     /// Why pieces were not rendered, if the system refused; what is in their buffers then counts for nothing.
     fn failure(&self) -> Option<Error> {
         None
@@ -99,10 +111,10 @@ pub const KERNELS: &[Entry] = &[
     Entry { name: SCALAR, about: "one path at a time" },
 ];
 
-/// The kernel for devices: `device` for the first GPU, `device:ID` for the device of that name.
+/// The kernel for devices: `device` for the first GPU, `device:ID` for the device of that name, `lanes+device:ID` for both beside each other.
 pub const DEVICE_KERNEL: Entry = Entry {
     name: DEVICE,
-    about: "on a GPU, or on the device that `device:ID` names (`pathmark list devices`); in f64, with the bits of the others",
+    about: "on a GPU, or on the device that `device:ID` names; `lanes+device:ID` renders on both",
 };
 
 const DEVICE: &str = "device";
@@ -136,6 +148,11 @@ pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>>
     match &choice.way {
         Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(prepared(scene, choice), choice, *chosen))),
         Way::Device(chosen) => return Ok(Box::new(OnDevice::new(&prepared(scene, choice), choice, chosen)?)),
+        Way::Beside { own, device } => {
+            let device = OnDevice::new(&prepared(scene, choice), choice, device)?;
+            let own = construct(scene, &choice.by(own))?;
+            return Ok(Box::new(Beside { own, device }));
+        }
         Way::Scalar { .. } => {}
     }
     if let Some(Clamp { what: Clamped::Recursion, limit }) = choice.clamp {

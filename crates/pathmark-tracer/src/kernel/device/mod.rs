@@ -1,7 +1,7 @@
 //! `--kernel device`: pieces are rendered by a GPU, by CUDA or OpenCL, or by whatever else compiles the program in `program/`.
 //!
 //! The program is the scalar kernel's path in the common subset of C, OpenCL C and CUDA C, one operation for one operation, so an image has the same
-//! bits on every device and on the processor. It is compiled for an effect profile, as scalar kernels are, when a kernel is made. Numbers that the
+//! bits on every device and on the processor; in single precision the path is that of lanes. It is compiled for an effect profile, as scalar kernels are, when a kernel is made. Numbers that the
 //! scalar kernel has in tables are written into it from those ([`program`]); the scene goes to the device as arrays ([`tables`]).
 //!
 //! An *item* is a pixel and a run of its samples that is a subtree of the film's sum. A launch is so many items as take a quarter of a second, because
@@ -15,6 +15,7 @@ use super::{Choice, Counts, Kernel};
 use crate::error::{Error, Result};
 use crate::film::{Piece, PixelSum, SAMPLE_BLOCK, SampleSum, TileBuffer};
 use crate::scene::Scene;
+use crate::simd::Precision;
 pub(super) use choice::{ForDevice, device_for};
 use pathmark_device::{DeviceError, Loaded};
 use std::io;
@@ -30,20 +31,64 @@ const MOST_ITEMS: u64 = 1 << 18;
 /// Blocks of samples in an item at most, as a power of two.
 const MOST_BLOCKS: u32 = 8;
 
-/// Numbers that tell the program which items a launch is of, in the order in which `program/film.cl` reads them.
-#[derive(Clone, Copy)]
-#[repr(usize)]
-enum Task {
-    X,
-    Y,
-    Columns,
-    FirstPixel,
-    FirstPart,
-    Parts,
-    PartSamples,
-    FirstSample,
-    EndSample,
-    Count,
+/// What the program is told of a launch, and how many words each takes, in the order in which they stand; then comes a row for each piece.
+const TASK: &[(&str, usize)] =
+    &[("TASK_PIECES", 1), ("TASK_PART_SAMPLES", 1), ("TASK_FIRST_ITEM", 2), ("TASK_TABLE", 0)];
+
+/// What it is told of a piece.
+const PIECE: &[(&str, usize)] = &[
+    ("PIECE_FIRST_ITEM", 2),
+    ("PIECE_X", 1),
+    ("PIECE_Y", 1),
+    ("PIECE_COLUMNS", 1),
+    ("PIECE_PARTS", 1),
+    ("PIECE_FIRST_SAMPLE", 1),
+    ("PIECE_END_SAMPLE", 1),
+];
+
+/// The two halves of a number.
+fn halves(number: u64) -> [u32; 2] {
+    [number as u32, (number >> 32) as u32]
+}
+
+/// Pieces as a launch has them: each item is a pixel of one of them and a part of its samples.
+struct Items<'a> {
+    pieces: &'a [&'a Piece],
+    /// Samples of a part.
+    part: u32,
+    /// The first item of each piece, and how many there are.
+    first: Vec<u64>,
+    count: u64,
+}
+
+impl<'a> Items<'a> {
+    fn new(pieces: &'a [&'a Piece], part: u32) -> Self {
+        let mut count = 0;
+        let first = pieces.iter().map(|piece| {
+            let first = count;
+            count += piece.bounds.area() as u64 * Self::parts(piece, part);
+            first
+        });
+        let first = first.collect();
+        Self { pieces, part, first, count }
+    }
+
+    fn parts(piece: &Piece, part: u32) -> u64 {
+        u64::from((piece.samples.end - piece.samples.start).div_ceil(part))
+    }
+
+    /// The words of a launch that begins with an item.
+    fn task(&self, first_item: u64) -> Vec<u32> {
+        let mut task = vec![self.pieces.len() as u32, self.part];
+        task.extend(halves(first_item));
+        for (piece, first) in self.pieces.iter().zip(&self.first) {
+            let Piece { bounds, samples } = piece;
+            task.extend(halves(*first));
+            task.extend([bounds.x0, bounds.y0, bounds.width(), Self::parts(piece, self.part) as u32]);
+            task.extend([samples.start, samples.end]);
+        }
+        task
+    }
 }
 
 /// Words that an item writes: three sums, three sums of squares, and six counts.
@@ -71,18 +116,19 @@ impl OnDevice {
         let device = pathmark_device::open(&chosen.id).map_err(failed)?;
         let (numbers, words) = tables::of(scene, choice, chosen);
         let text = program::text(choice.profile.effects, &chosen.course, chosen.precision);
-        let loaded = device.load(&text, &numbers, &words).map_err(failed)?;
+        let uses_single = chosen.precision == Precision::F32;
+        let loaded = device.load(&text, uses_single, &numbers, &words).map_err(failed)?;
         let width = device.width();
         Ok(Self { id: chosen.id.clone(), loaded, width, rate: AtomicU64::new(0), failed: OnceLock::new() })
     }
 
-    /// The samples of an item of this piece: as many blocks, a power of two, as leave the device enough items.
-    fn part_samples(&self, pixels: u64, samples: u32) -> u32 {
-        let enough = |part: u32| pixels * u64::from(samples.div_ceil(part)) >= u64::from(self.width);
-        let sizes = (0..=MOST_BLOCKS).rev().map(|level| SAMPLE_BLOCK << level);
+    /// The samples of an item: as many blocks, a power of two, as leave the device enough items.
+    fn part_samples(&self, pieces: &[&Piece]) -> u32 {
+        let enough = |part: u32| Items::new(pieces, part).count >= u64::from(self.width);
+        let samples = pieces.iter().map(|piece| piece.samples.end - piece.samples.start).max().unwrap_or_default();
+        let mut sizes = (0..=MOST_BLOCKS).rev().map(|level| SAMPLE_BLOCK << level);
         // No larger than it needs to be: parts are what a launch ends at.
-        let fitting = sizes.filter(|part| *part < 2 * samples.max(SAMPLE_BLOCK));
-        fitting.into_iter().find(|part| enough(*part)).unwrap_or(SAMPLE_BLOCK)
+        sizes.find(|part| *part < 2 * samples.max(SAMPLE_BLOCK) && enough(*part)).unwrap_or(SAMPLE_BLOCK)
     }
 
     /// Items of the next launch.
@@ -92,53 +138,57 @@ impl OnDevice {
         (samples / u64::from(part)).clamp(1, MOST_ITEMS)
     }
 
-    fn render_all(&self, piece: &Piece, out: &mut TileBuffer) -> std::result::Result<Counts, DeviceError> {
-        let mut counts = Counts::default();
-        let (bounds, samples) = (piece.bounds, piece.samples.end - piece.samples.start);
-        let pixels = bounds.area() as u64;
-        if samples == 0 || pixels == 0 {
-            return Ok(counts);
-        }
-        let part = self.part_samples(pixels, samples);
-        let parts = u64::from(samples.div_ceil(part));
-        let mut task = [0; Task::Count as usize];
-        for (number, value) in [
-            (Task::X, bounds.x0),
-            (Task::Y, bounds.y0),
-            (Task::Columns, bounds.width()),
-            (Task::Parts, parts as u32),
-            (Task::PartSamples, part),
-            (Task::FirstSample, piece.samples.start),
-            (Task::EndSample, piece.samples.end),
-        ] {
-            task[number as usize] = value;
-        }
-        let (mut done, all) = (0_u64, pixels * parts);
-        let (mut results, mut sum) = (Vec::new(), SampleSum::default());
-        while done < all {
-            let items = self.items(part).min(all - done);
-            task[Task::FirstPixel as usize] = (done / parts) as u32;
-            task[Task::FirstPart as usize] = (done % parts) as u32;
-            results.resize(items as usize * OUT_WORDS, 0);
-            let seconds = self.loaded.timed(&task, items as u32, &mut results)?;
-            let rate = (items * u64::from(part)) as f64 / seconds.max(1e-6);
+    fn launch_all(&self, pieces: &[&Piece], out: &mut [TileBuffer]) -> std::result::Result<Vec<Counts>, DeviceError> {
+        let items = Items::new(pieces, self.part_samples(pieces));
+        let counts = vec![Counts::default(); pieces.len()];
+        let mut placing =
+            Placing { items: &items, out, counts, sum: SampleSum::default(), piece: 0, pixel: 0, number: 0 };
+        let (mut done, mut results) = (0, Vec::new());
+        while done < items.count {
+            let of_launch = self.items(items.part).min(items.count - done);
+            results.resize(of_launch as usize * OUT_WORDS, 0);
+            let seconds = self.loaded.timed(&items.task(done), of_launch as u32, &mut results)?;
+            let rate = (of_launch * u64::from(items.part)) as f64 / seconds.max(1e-6);
             self.rate.store(rate.to_bits(), Ordering::Relaxed);
-            for (item, words) in (done..).zip(results.chunks_exact(OUT_WORDS)) {
-                let number = (item % parts) as u32;
-                let is_last = u64::from(number) + 1 == parts;
-                let count = if is_last { samples - number * part } else { part };
-                sum.add_part(pixel_sum(words, count), is_last);
-                counts.add(&item_counts(words, count));
-                if is_last {
-                    let pixel = item / parts;
-                    let (column, row) = (pixel % u64::from(bounds.width()), pixel / u64::from(bounds.width()));
-                    out.row_mut(bounds.y0 + row as u32)[column as usize] = sum.total();
-                    sum.clear();
-                }
-            }
-            done += items;
+            results.chunks_exact(OUT_WORDS).for_each(|words| placing.put(words));
+            done += of_launch;
         }
-        Ok(counts)
+        Ok(placing.counts)
+    }
+}
+
+/// Puts results of items, as they come, where they belong.
+struct Placing<'a> {
+    items: &'a Items<'a>,
+    out: &'a mut [TileBuffer],
+    counts: Vec<Counts>,
+    sum: SampleSum,
+    /// The piece, the pixel and the part of the next item.
+    piece: usize,
+    pixel: u64,
+    number: u64,
+}
+
+impl Placing<'_> {
+    fn put(&mut self, words: &[u64]) {
+        let piece = self.items.pieces[self.piece];
+        let parts = Items::parts(piece, self.items.part);
+        let is_last = self.number + 1 == parts;
+        let samples = piece.samples.end - piece.samples.start;
+        let count = if is_last { samples - self.number as u32 * self.items.part } else { self.items.part };
+        self.sum.add_part(pixel_sum(words, count), is_last);
+        self.counts[self.piece].add(&item_counts(words, count));
+        self.number += 1;
+        if is_last {
+            let columns = u64::from(piece.bounds.width());
+            let (column, row) = (self.pixel % columns, self.pixel / columns);
+            self.out[self.piece].row_mut(piece.bounds.y0 + row as u32)[column as usize] = self.sum.total();
+            self.sum.clear();
+            (self.number, self.pixel) = (0, self.pixel + 1);
+        }
+        if self.pixel == piece.bounds.area() as u64 {
+            (self.pixel, self.piece) = (0, self.piece + 1);
+        }
     }
 }
 
@@ -160,14 +210,22 @@ fn item_counts(words: &[u64], paths: u32) -> Counts {
 }
 
 impl Kernel for OnDevice {
-    /// Once the device has failed, nothing more is asked of it.
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        if self.failed.get().is_some() {
+        if piece.samples.is_empty() || piece.bounds.area() == 0 {
             return Counts::default();
         }
-        self.render_all(piece, out).unwrap_or_else(|error| {
+        self.render_all(&[piece], std::slice::from_mut(out)).first().copied().unwrap_or_default()
+    }
+
+    /// Once the device has failed, nothing more is asked of it.
+    fn render_all(&self, pieces: &[&Piece], out: &mut [TileBuffer]) -> Vec<Counts> {
+        let nothing = || vec![Counts::default(); pieces.len()];
+        if self.failed.get().is_some() {
+            return nothing();
+        }
+        self.launch_all(pieces, out).unwrap_or_else(|error| {
             self.failed.get_or_init(|| error);
-            Counts::default()
+            nothing()
         })
     }
 

@@ -1,7 +1,7 @@
 //! The text of the program: the files in `program/` behind the numbers that they have in common with the processor's kernels.
 
 use super::tables::{KINDS, LIGHT_NUMBERS, MATERIALS, NUMBERS, OBJECT_NUMBERS, POINT_LIGHT_NUMBERS, SAMPLERS, WORDS};
-use super::{MOST_BLOCKS, OUT_WORDS, Task};
+use super::{MOST_BLOCKS, OUT_WORDS, PIECE, TASK};
 use crate::effect::Effects;
 use crate::estimator::{HIDING, PathRules};
 use crate::film::SAMPLE_BLOCK;
@@ -135,19 +135,9 @@ fn definitions(effects: Effects, course: &PathRules, precision: Precision) -> St
     ] {
         all.add(name, format_args!("{}U", purpose as u32));
     }
-    for (name, task) in [
-        ("TASK_X", Task::X),
-        ("TASK_Y", Task::Y),
-        ("TASK_COLUMNS", Task::Columns),
-        ("TASK_FIRST_PIXEL", Task::FirstPixel),
-        ("TASK_FIRST_PART", Task::FirstPart),
-        ("TASK_PARTS", Task::Parts),
-        ("TASK_PART_SAMPLES", Task::PartSamples),
-        ("TASK_FIRST_SAMPLE", Task::FirstSample),
-        ("TASK_END_SAMPLE", Task::EndSample),
-    ] {
-        all.add(name, task as usize);
-    }
+    all.add_places(TASK);
+    all.add_places(PIECE);
+    all.add("PIECE_WORDS", PIECE.iter().map(|(_, words)| words).sum::<usize>());
     for (name, value) in [
         ("OBJECT_NUMBERS", OBJECT_NUMBERS),
         ("LIGHT_NUMBERS", LIGHT_NUMBERS),

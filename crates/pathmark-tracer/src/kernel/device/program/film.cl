@@ -23,14 +23,28 @@ FN void add_later(const pixel_sum *earlier, pixel_sum *later) {
     }
 }
 
+FN u64 first_item(GLOBAL const u32 *piece) {
+    return ((u64)piece[PIECE_FIRST_ITEM + 1] << 32) | (u64)piece[PIECE_FIRST_ITEM];
+}
+
 FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {
     scene s = scene_of(numbers, words);
-    u32 place = task[TASK_FIRST_PART] + item;
-    u32 pixel = task[TASK_FIRST_PIXEL] + place / task[TASK_PARTS];
-    u32 x = task[TASK_X] + pixel % task[TASK_COLUMNS], y = task[TASK_Y] + pixel / task[TASK_COLUMNS];
-    u32 sample = task[TASK_FIRST_SAMPLE] + place % task[TASK_PARTS] * task[TASK_PART_SAMPLES];
-    u32 end = task[TASK_END_SAMPLE];
-    if (end - sample > task[TASK_PART_SAMPLES]) end = sample + task[TASK_PART_SAMPLES];
+    u64 place = (((u64)task[TASK_FIRST_ITEM + 1] << 32) | (u64)task[TASK_FIRST_ITEM]) + (u64)item;
+    // The last piece that begins no later.
+    GLOBAL const u32 *piece = task + TASK_TABLE;
+    u32 low = 0, high = task[TASK_PIECES];
+    while (high - low > 1U) {
+        u32 middle = low + (high - low) / 2U;
+        if (first_item(piece + PIECE_WORDS * middle) <= place) low = middle;
+        else high = middle;
+    }
+    piece += PIECE_WORDS * low;
+    place -= first_item(piece);
+    u32 pixel = (u32)(place / (u64)piece[PIECE_PARTS]), part_samples = task[TASK_PART_SAMPLES];
+    u32 x = piece[PIECE_X] + pixel % piece[PIECE_COLUMNS], y = piece[PIECE_Y] + pixel / piece[PIECE_COLUMNS];
+    u32 sample = piece[PIECE_FIRST_SAMPLE] + (u32)(place % (u64)piece[PIECE_PARTS]) * part_samples;
+    u32 end = piece[PIECE_END_SAMPLE];
+    if (end - sample > part_samples) end = sample + part_samples;
     walk w;
     w.s = &s;
     w.max_depth = words[AT_MAX_DEPTH];

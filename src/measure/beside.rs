@@ -1,0 +1,193 @@
+//! A device that takes pieces beside the workers.
+//!
+//! A thread of its own claims pieces from the last one on, many at a time, and has the device render them; a worker that comes to a piece that is
+//! claimed has nothing to do there. So any strategy shares its pieces with a device, whose launches are as large as it likes and as the end of the
+//! run allows: no batch is more than half of what the device would get if both went on as fast as they have been.
+
+use super::ledger::Ledger;
+use super::output::Output;
+use crate::film::{Bounds, Piece, Plan, TileBuffer};
+use crate::kernel::{Counts, Kernel};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// A batch is to take so long, in seconds: launches that take longer are cut anyway.
+const BATCH_S: f64 = 0.25;
+
+/// Which pieces have been claimed; all are the workers' if there is no device.
+pub(super) struct Claims {
+    taken: Vec<AtomicBool>,
+    /// Pieces that nobody has claimed.
+    left: AtomicUsize,
+}
+
+impl Claims {
+    /// Of so many pieces, which a device shares or not.
+    pub(super) fn new(pieces: usize, has_device: bool) -> Self {
+        let pieces = if has_device { pieces } else { 0 };
+        Self { taken: (0..pieces).map(|_| AtomicBool::new(false)).collect(), left: AtomicUsize::new(pieces) }
+    }
+
+    /// Whether a piece is the caller's from now on.
+    pub(super) fn take(&self, index: usize) -> bool {
+        let Some(taken) = self.taken.get(index) else { return true };
+        let is_free = !taken.swap(true, Ordering::Relaxed);
+        if is_free {
+            self.left.fetch_sub(1, Ordering::Relaxed);
+        }
+        is_free
+    }
+
+    fn left(&self) -> usize {
+        self.left.load(Ordering::Relaxed)
+    }
+}
+
+/// What was rendered already, as a kernel: an output is given it like anything else.
+struct Rendered {
+    tile: TileBuffer,
+    counts: Counts,
+}
+
+impl Kernel for Rendered {
+    fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+        let Bounds { y0, .. } = piece.bounds;
+        for (y, row) in (y0..).zip(self.tile.rows()) {
+            out.row_mut(y)[..row.len()].copy_from_slice(row);
+        }
+        self.counts
+    }
+}
+
+/// What the device and the workers share.
+pub(super) struct Shared<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) claims: &'a Claims,
+    pub(super) ledger: &'a Ledger,
+    pub(super) output: &'a dyn Output,
+}
+
+impl Shared<'_> {
+    /// Pieces from the end that nobody has claimed, at most so many; `next` is the first that has been looked at.
+    fn claim(&self, next: &mut usize, most: usize) -> Vec<usize> {
+        let mut claimed = Vec::new();
+        while claimed.len() < most && *next > 0 {
+            *next -= 1;
+            if self.claims.take(*next) {
+                claimed.push(*next);
+            }
+        }
+        claimed
+    }
+
+    /// Has the device render pieces until none is left or it fails.
+    pub(super) fn serve(&self, device: &dyn Kernel, start: Instant) {
+        let pieces = self.plan.pieces();
+        let (mut next, mut batch, mut done) = (pieces.len(), 1, 0);
+        let mut longest = 1;
+        loop {
+            let claimed = self.claim(&mut next, batch);
+            if claimed.is_empty() {
+                return;
+            }
+            let tiles = claimed.iter().map(|index| TileBuffer::new(pieces[*index].bounds));
+            let mut tiles: Vec<TileBuffer> = tiles.collect();
+            let of_batch: Vec<&Piece> = claimed.iter().map(|index| &pieces[*index]).collect();
+            let start_s = start.elapsed().as_secs_f64();
+            let counts = device.render_all(&of_batch, &mut tiles);
+            if device.failure().is_some() {
+                return;
+            }
+            let stop_s = start.elapsed().as_secs_f64();
+            let each_s = (stop_s - start_s) / claimed.len() as f64;
+            for (place, ((index, tile), counts)) in claimed.iter().zip(tiles).zip(counts).enumerate() {
+                let span = [start_s + place as f64 * each_s, start_s + (place + 1) as f64 * each_s];
+                self.ledger.enter(*index, span, || self.output.render(*index, &Rendered { tile, counts }));
+            }
+            done += claimed.len();
+            // As many as take long enough, twice as many as before at most, and half of the device's share of what is left.
+            let by_workers = (pieces.len() - self.claims.left()).saturating_sub(done) as f64 / stop_s;
+            let by_device = 1.0 / each_s.max(1e-9);
+            let share = self.claims.left() as f64 * by_device / (by_device + by_workers);
+            longest *= 2;
+            batch = ((BATCH_S * by_device) as usize).min(longest).min((0.5 * share) as usize).max(1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{Decomposition, Film};
+    use std::sync::Mutex;
+    use std::thread;
+
+    /// A device that tells by its sums which pieces it was given.
+    struct Device;
+
+    impl Kernel for Device {
+        fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+            let Bounds { x0, y0, .. } = piece.bounds;
+            out.row_mut(y0)[0].sum = [f64::from(x0), f64::from(y0), 0.0];
+            Counts { paths: 1, ..Counts::default() }
+        }
+    }
+
+    /// Where pieces were delivered, and with which sums.
+    #[derive(Default)]
+    struct Delivered(Mutex<Vec<(usize, [f64; 3])>>, Plan);
+
+    impl Output for Delivered {
+        fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts {
+            let piece = &self.1.pieces()[index];
+            let mut tile = TileBuffer::new(piece.bounds);
+            let counts = kernel.render(piece, &mut tile);
+            self.0.lock().unwrap().push((index, tile.row_mut(piece.bounds.y0)[0].sum));
+            counts
+        }
+        fn films(self: Box<Self>) -> Vec<Film> {
+            Vec::new()
+        }
+    }
+
+    /// Without workers the device renders every piece that is left, from the last one on, one after the other in its lane.
+    #[test]
+    fn a_device_renders_what_is_left() {
+        let plan = Decomposition::parse("tiles:4x4").unwrap().plan(40, 20, &(0..16));
+        let (claims, ledger) = (Claims::new(plan.len(), true), Ledger::new(plan.len()));
+        assert!(claims.take(7));
+        ledger.record(7, Instant::now(), Counts::default);
+        let output = Delivered(Mutex::default(), plan.clone());
+        Shared { plan: &plan, claims: &claims, ledger: &ledger, output: &output }.serve(&Device, Instant::now());
+        let delivered = output.0.into_inner().unwrap();
+        let order: Vec<usize> = (0..plan.len()).rev().filter(|index| *index != 7).collect();
+        assert_eq!(delivered.iter().map(|(index, _)| *index).collect::<Vec<_>>(), order);
+        for (index, sum) in delivered {
+            let Bounds { x0, y0, .. } = plan.pieces()[index].bounds;
+            assert_eq!(sum, [f64::from(x0), f64::from(y0), 0.0]);
+        }
+        let entries = ledger.close().unwrap();
+        let spans: Vec<_> = order.iter().map(|index| entries[*index].span).collect();
+        assert!(spans.windows(2).all(|two| two[0].stop_s <= two[1].start_s + 1e-9), "{spans:?}");
+        assert_eq!(entries.iter().map(|entry| entry.counts.paths).sum::<u64>(), order.len() as u64);
+    }
+
+    /// Workers and a device claim each piece once.
+    #[test]
+    fn each_piece_is_claimed_once() {
+        let claims = Claims::new(10_000, true);
+        let claimed = AtomicUsize::new(0);
+        thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(|| {
+                    let mine = (0..10_000).filter(|index| claims.take(*index)).count();
+                    claimed.fetch_add(mine, Ordering::Relaxed);
+                });
+            }
+            let mine = (0..10_000).rev().filter(|index| claims.take(*index)).count();
+            claimed.fetch_add(mine, Ordering::Relaxed);
+        });
+        assert_eq!((claimed.into_inner(), claims.left()), (10_000, 0));
+        assert!(Claims::new(10, false).take(3));
+    }
+}
