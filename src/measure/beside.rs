@@ -1,6 +1,6 @@
-//! A device that takes pieces beside the workers.
+//! Devices that take pieces beside the workers.
 //!
-//! A thread of its own claims pieces from the last one on, many at a time, and has the device render them; a worker that comes to a piece that is
+//! For each a thread of its own claims pieces from the last one on, many at a time, and has the device render them; a worker that comes to a piece that is
 //! claimed has nothing to do there. So any strategy shares its pieces with a device, whose launches are as large as it likes and as the end of the
 //! run allows: no batch is more than half of what the device would get if both went on as fast as they have been.
 

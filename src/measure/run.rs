@@ -194,7 +194,7 @@ impl Account {
             films,
             threads: setup.settings().threads.min(available_threads()),
         })?;
-        let claims = Claims::new(plan.len(), kernel.beside().is_some());
+        let claims = Claims::new(plan.len(), !kernel.beside().is_empty());
         let run = Arc::new(Run { kernel: Arc::clone(&kernel), claims, ledger: Ledger::new(plan.len()), output });
         let strategy = match &mut self.strategy {
             Some(strategy) => strategy,
@@ -363,18 +363,20 @@ pub(super) struct Round<'a> {
 }
 
 impl Run {
-    /// Does `work` while a thread has the device render pieces.
-    fn with_device(
-        &self,
-        device: &dyn Kernel,
-        plan: &Plan,
-        start: Instant,
-        work: impl FnOnce() -> Result<()>,
-    ) -> Result<()> {
+    /// Does `work` while threads have devices render pieces, one thread for each.
+    fn beside_devices(&self, plan: &Plan, start: Instant, work: impl FnOnce() -> Result<()>) -> Result<()> {
+        let devices = self.kernel.beside();
+        if devices.is_empty() {
+            return work();
+        }
         let shared = Shared { plan, claims: &self.claims, ledger: &self.ledger, output: &*self.output };
         thread::scope(|scope| {
-            let started = thread::Builder::new().spawn_scoped(scope, || shared.serve(device, start));
-            started.map_err(|e| Error::system("starting", "the thread that serves the device", e)).and_then(|_| work())
+            for device in devices {
+                let (shared, builder) = (&shared, thread::Builder::new());
+                let started = builder.spawn_scoped(scope, move || shared.serve(device, start));
+                started.map_err(|e| Error::system("starting", "the thread that serves a device", e))?;
+            }
+            work()
         })
     }
 
@@ -389,10 +391,7 @@ impl Run {
             }
         });
         let work = || strategy.run(plan.len(), job).map_err(|error| setup.strategy_error(error));
-        match self.kernel.beside() {
-            None => work()?,
-            Some(device) => self.with_device(device, plan, start, work)?,
-        }
+        self.beside_devices(plan, start, work)?;
         let makespan_s = start.elapsed().as_secs_f64();
         Ok(Timed { makespan_s, cpu: usage.zip(Usage::now()).map(|(before, after)| after.since(&before)) })
     }

@@ -333,8 +333,8 @@ impl Setup {
             warnings.push(Warning::WorkersUnused { asked, used: workers_used });
         }
         let processors = available_threads();
-        // One of them waits for the device.
-        let waiting = usize::from(self.subject.choice().is_some_and(Choice::has_device_beside));
+        // Those that serve devices wait for them.
+        let waiting = self.subject.choice().map_or(0, Choice::devices_beside);
         if workers_used as usize > processors + waiting {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
         }

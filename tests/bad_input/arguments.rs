@@ -21,6 +21,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--sampler", "dice"], &["sampler", "dice", "independent"]),
     (&["--kernel", "quantum"], &["kernel", "quantum", "scalar"]),
     (&["--kernel", "device:abacus:0"], &["kernel", "device:abacus:0", "there is no device abacus:0 here"]),
+    (&["--kernel", "lanes+scalar"], &["kernel", "scalar", "is no device", "device:ID"]),
     (&["--kernel", "lanes", "--device", "host"], &["--device host", "--kernel is lanes"]),
     (&["--kernel", "scalar", "--precision", "f32"], &["precision", "f32", "scalar kernel", "f64"]),
     (&["--kernel", "device:host", "--simd", "avx2"], &["simd", "avx2", "a device has none"]),

@@ -58,8 +58,8 @@ const GROUP_OF_CORE: usize = 1;
 static LOADER: LazyLock<std::result::Result<Functions, String>> =
     LazyLock::new(|| open(&["libOpenCL.so.1", "libOpenCL.so"]).and_then(Functions::of));
 
-/// Held by whoever calls the driver. `PoCL` 3.1 crashes if two threads look for devices at a time for the first time, and it compiles at the first
-/// launch; a device has one launch at a time anyway.
+/// Held by whoever looks for devices, compiles, or launches a kernel for the first time, which is when `PoCL` compiles it: version 3.1 crashes if two
+/// threads do so at a time.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 fn turn() -> MutexGuard<'static, ()> {
@@ -327,7 +327,7 @@ impl Device for OpenCl {
             queue.buffer(READ_ONLY_COPY, numbers.as_ptr(), size_of_val(numbers))?,
             queue.buffer(READ_ONLY_COPY, words.as_ptr(), size_of_val(words))?,
         ];
-        let kernel = Mutex::new(Kernel { handle: kernel, task: None, out: None });
+        let kernel = Mutex::new(Kernel { handle: kernel, is_compiled: false, task: None, out: None });
         Ok(Box::new(Bound { queue: Arc::clone(queue), group: self.group, inputs, kernel }))
     }
 }
@@ -335,6 +335,7 @@ impl Device for OpenCl {
 /// A kernel, and the buffers that are kept from run to run, with their sizes.
 struct Kernel {
     handle: Shared,
+    is_compiled: bool,
     task: Option<(Buffer, usize)>,
     out: Option<(Buffer, usize)>,
 }
@@ -361,10 +362,11 @@ fn kept(queue: &Queue, place: &mut Option<(Buffer, usize)>, bytes: usize) -> Res
 
 impl Loaded for Bound {
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
-        let _turn = turn();
         let Queue { functions, handle: Shared(queue), .. } = *self.queue;
         let mut guard: MutexGuard<'_, Kernel> = self.kernel.lock().unwrap_or_else(PoisonError::into_inner);
-        let Kernel { handle: Shared(kernel), task: task_buffer, out: out_buffer } = &mut *guard;
+        let _turn = (!guard.is_compiled).then(turn);
+        guard.is_compiled = true;
+        let Kernel { handle: Shared(kernel), task: task_buffer, out: out_buffer, .. } = &mut *guard;
         let task_handle = kept(&self.queue, task_buffer, size_of_val(task))?;
         let out_handle = kept(&self.queue, out_buffer, size_of_val(out))?;
         // SAFETY: the buffer has this size, and the call returns when it has been read.

@@ -1,15 +1,15 @@
-//! `--kernel lanes+device:ID`: workers render pieces with a kernel of the processor, and a device renders others meanwhile. Which piece was rendered by
-//! whom changes no bit, because both kernels have the same.
+//! `--kernel lanes+device:ID`, or with several devices `lanes+device:ID+device:ID`: workers render pieces with a kernel of the processor, and devices
+//! render others meanwhile. Which piece was rendered by whom changes no bit, because all these kernels have the same.
 
 use super::device::OnDevice;
 use super::{Counts, Kernel};
 use crate::error::Error;
 use crate::film::{Piece, TileBuffer};
 
-/// Both kernels.
+/// The kernels.
 pub(super) struct Beside {
     pub(super) own: Box<dyn Kernel>,
-    pub(super) device: OnDevice,
+    pub(super) devices: Vec<OnDevice>,
 }
 
 impl Kernel for Beside {
@@ -18,10 +18,10 @@ impl Kernel for Beside {
     }
 
     fn failure(&self) -> Option<Error> {
-        self.device.failure()
+        self.devices.iter().find_map(Kernel::failure)
     }
 
-    fn beside(&self) -> Option<&dyn Kernel> {
-        Some(&self.device)
+    fn beside(&self) -> Vec<&dyn Kernel> {
+        self.devices.iter().map(|device| device as &dyn Kernel).collect()
     }
 }

@@ -110,16 +110,17 @@ impl Choice {
         Self { way: way.clone(), ..self.clone() }
     }
 
-    /// Whether a device renders beside the workers.
-    pub fn has_device_beside(&self) -> bool {
-        matches!(self.way, Way::Beside { .. })
+    /// How many devices render beside the workers.
+    pub fn devices_beside(&self) -> usize {
+        if let Way::Beside { devices, .. } = &self.way { devices.len() } else { 0 }
     }
 
     /// Name of the kernel that renders; of a device with the device's own: `device:cuda:0`.
     pub fn kernel(&self) -> &str {
         match &self.way {
             Way::Lanes(_) => LANES,
-            Way::Device(device) | Way::Beside { device, .. } => &device.kernel,
+            Way::Device(device) => &device.kernel,
+            Way::Beside { kernel, .. } => kernel,
             Way::Scalar { .. } => SCALAR,
         }
     }
@@ -133,7 +134,8 @@ impl Choice {
     pub fn precision(&self) -> Precision {
         match &self.way {
             Way::Lanes(lanes) => lanes.precision,
-            Way::Device(device) | Way::Beside { device, .. } => device.precision,
+            Way::Device(device) => device.precision,
+            Way::Beside { own, .. } => own.lanes().map_or(Precision::F64, |lanes| lanes.precision),
             Way::Scalar { .. } => Precision::F64,
         }
     }

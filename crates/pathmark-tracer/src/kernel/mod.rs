@@ -86,9 +86,9 @@ pub trait Kernel: Send + Sync {
         pieces.iter().zip(out).map(|(piece, out)| self.render(piece, out)).collect()
     }
 
-    /// A device that renders pieces beside whoever asks this kernel to.
-    fn beside(&self) -> Option<&dyn Kernel> {
-        None
+    /// Devices that render pieces beside whoever asks this kernel to.
+    fn beside(&self) -> Vec<&dyn Kernel> {
+        Vec::new()
     }
 
     /// Why pieces were not rendered, if the system refused; what is in their buffers then counts for nothing.
@@ -148,10 +148,11 @@ pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>>
     match &choice.way {
         Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(prepared(scene, choice), choice, *chosen))),
         Way::Device(chosen) => return Ok(Box::new(OnDevice::new(&prepared(scene, choice), choice, chosen)?)),
-        Way::Beside { own, device } => {
-            let device = OnDevice::new(&prepared(scene, choice), choice, device)?;
-            let own = construct(scene, &choice.by(own))?;
-            return Ok(Box::new(Beside { own, device }));
+        Way::Beside { own, devices, .. } => {
+            let prepared = prepared(scene, choice);
+            let devices =
+                devices.iter().map(|device| OnDevice::new(&prepared, choice, device)).collect::<Result<_>>()?;
+            return Ok(Box::new(Beside { own: construct(scene, &choice.by(own))?, devices }));
         }
         Way::Scalar { .. } => {}
     }

@@ -4,7 +4,7 @@ use super::choice::unknown;
 use super::device::{ForDevice, device_for};
 use super::in_lanes::{InLanes, lanes_for, level, precision};
 use super::{DEVICE, DEVICE_KERNEL, KERNELS, LANES, SCALAR, Spec};
-use crate::error::Result;
+use crate::error::{InputError, Result};
 use crate::estimator::PathRules;
 use crate::scene::Scene;
 use crate::simd::LEVELS;
@@ -16,12 +16,14 @@ pub(super) enum Way {
     Lanes(InLanes),
     /// On a device.
     Device(ForDevice),
-    /// By a kernel of the processor, and on a device beside it.
+    /// By a kernel of the processor, and on devices beside it.
     Beside {
+        /// Name of all of it.
+        kernel: String,
         /// The processor's.
         own: Box<Way>,
-        /// The device's.
-        device: ForDevice,
+        /// The devices'.
+        devices: Vec<ForDevice>,
     },
     /// One path at a time.
     Scalar {
@@ -44,22 +46,8 @@ impl Way {
 /// The kernel for a scene with these settings.
 pub(super) fn way_for(scene: &Scene, spec: &Spec, course: Option<PathRules>, epsilon: Option<f64>) -> Result<Way> {
     let instead = |reason| Way::Scalar { instead_because: reason };
-    if let Some((own_name, device)) = spec.kernel.split_once('+') {
-        let by = |kernel: &str, simd: &Option<String>| {
-            let spec = Spec { kernel: kernel.to_string(), simd: simd.clone(), ..spec.clone() };
-            way_for(scene, &spec, course, epsilon)
-        };
-        // Where either has no code for something, the processor renders alone: both must have the same bits.
-        return Ok(match (by(own_name, &spec.simd)?, by(device, &None)?) {
-            (own @ (Way::Lanes(_) | Way::Scalar { instead_because: "" }), Way::Device(device)) => {
-                let device = device.beside(own_name);
-                Way::Beside { own: Box::new(own), device }
-            }
-            (Way::Lanes(_) | Way::Scalar { instead_because: "" }, Way::Scalar { instead_because }) => {
-                Way::Scalar { instead_because }
-            }
-            (own, _) => own,
-        });
+    if let Some((own, devices)) = spec.kernel.split_once('+') {
+        return beside(scene, spec, (own, devices), course, epsilon);
     }
     match spec.kernel.split_once(':').map_or(spec.kernel.as_str(), |(kernel, _)| kernel) {
         DEVICE => Ok(device_for(scene, spec, course, epsilon)?.map_or_else(instead, Way::Device)),
@@ -74,4 +62,40 @@ pub(super) fn way_for(scene: &Scene, spec: &Spec, course: Option<PathRules>, eps
             Err(unknown("kernel", &spec.kernel, names).into())
         }
     }
+}
+
+/// The processor's kernel and devices beside it. Where either has no code for something, the processor renders alone: all must have the same bits.
+fn beside(
+    scene: &Scene,
+    spec: &Spec,
+    (own, devices): (&str, &str),
+    course: Option<PathRules>,
+    epsilon: Option<f64>,
+) -> Result<Way> {
+    let by = |kernel: &str, simd: Option<&String>| {
+        let spec = Spec { kernel: kernel.to_string(), simd: simd.cloned(), ..spec.clone() };
+        way_for(scene, &spec, course, epsilon)
+    };
+    let (own_name, own) = (own, by(own, spec.simd.as_ref())?);
+    if !matches!(own, Way::Lanes(_) | Way::Scalar { instead_because: "" }) {
+        return Ok(own);
+    }
+    let (mut kernel, mut all) = (own_name.to_string(), Vec::new());
+    for device in devices.split('+') {
+        match by(device, None)? {
+            Way::Device(device) => {
+                kernel = format!("{kernel}+{}", device.kernel);
+                all.push(device);
+            }
+            Way::Scalar { instead_because } if !instead_because.is_empty() => {
+                return Ok(Way::Scalar { instead_because });
+            }
+            _ => {
+                let problem = "is no device, and stands beside a kernel";
+                let allowed = format!("{DEVICE}, or {DEVICE}:ID");
+                return Err(InputError::new("kernel", device, problem).allowed(allowed).into());
+            }
+        }
+    }
+    Ok(Way::Beside { kernel, own: Box::new(own), devices: all })
 }

@@ -23,13 +23,6 @@ pub(in crate::kernel) struct ForDevice {
     pub(super) sampler: u32,
 }
 
-impl ForDevice {
-    /// The same beside a kernel of that name.
-    pub(in crate::kernel) fn beside(self, own: &str) -> Self {
-        Self { kernel: format!("{own}+{}", self.kernel), ..self }
-    }
-}
-
 /// What of a scene or of its settings the program has no code for.
 fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>, precision: Precision) -> Option<&'static str> {
     let is_single = precision == Precision::F32;

@@ -19,11 +19,14 @@ const DOUBLE: &[&str] = &[
     MATH,
     include_str!("program/sampler.cl"),
     include_str!("program/shape.cl"),
+    TREE,
+    include_str!("program/search.cl"),
     include_str!("program/material.cl"),
 ];
 
-/// Formulas, and the path with all that it needs besides, in the precision of the path.
+/// Formulas, the walk through a tree, and the path with all that it needs besides, in the precision of the path.
 const MATH: &str = include_str!("program/math.cl");
+const TREE: &str = include_str!("program/tree.cl");
 const PATH: &[&str] = &[
     include_str!("program/numbers.cl"),
     include_str!("program/light.cl"),
@@ -32,9 +35,17 @@ const PATH: &[&str] = &[
     include_str!("program/film.cl"),
 ];
 
-/// What single precision does in a way of its own: before its formulas, and behind them.
+/// What single precision does in a way of its own: before its formulas, between them and the tree, and behind that.
 const SINGLE: &str = include_str!("program/single.cl");
+const SINGLE_SHAPE: &str = include_str!("program/single_shape.cl");
 const SINGLE_SEARCH: &[&str] = &[include_str!("program/single_search.cl"), include_str!("program/single_material.cl")];
+
+/// The name by which devices call a program, for the one of single precision.
+const ENTRY: &str = "
+FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {
+    run_item_s(item, numbers, words, task, out);
+}
+";
 
 /// Words of the dialects and of `double.cl` that single precision has, too.
 const WORDS_OF_BOTH: &[&str] = &[
@@ -227,15 +238,14 @@ pub(super) fn text(effects: Effects, course: &PathRules, precision: Precision) -
     if precision == Precision::F64 {
         return [&[double.as_str()], PATH].concat().concat();
     }
-    let own = [&[SINGLE], SINGLE_SEARCH].concat().concat();
-    let mut names: BTreeSet<&str> = declared(MATH).chain(PATH.iter().flat_map(|text| declared(text))).collect();
+    let own = [&[SINGLE, SINGLE_SHAPE], SINGLE_SEARCH].concat().concat();
+    let both = [&[MATH, TREE], PATH].concat();
+    let mut names: BTreeSet<&str> = both.iter().flat_map(|text| declared(text)).collect();
     names.extend(declared(&own).filter_map(|name| name.strip_suffix("_s")));
     names.extend(WORDS_OF_BOTH);
     names.extend(numbers(precision).iter().map(|(name, _)| *name));
-    let path = in_single(&PATH.concat(), &names);
-    let entry = "FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {\n    run_item_s(item, numbers, words, task, out);\n}\n";
-    let math = in_single(MATH, &names);
-    [&[double.as_str(), SINGLE, &math], SINGLE_SEARCH, &[&path, entry]].concat().concat()
+    let [math, tree, path] = [MATH, TREE, &PATH.concat()].map(|text| in_single(text, &names));
+    [&[double.as_str(), SINGLE, &math, SINGLE_SHAPE, &tree], SINGLE_SEARCH, &[&path, ENTRY]].concat().concat()
 }
 
 #[cfg(test)]
