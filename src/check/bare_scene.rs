@@ -1,7 +1,7 @@
 //! Scenes of bare primitives, searched in every way that there is.
 
 use crate::math::Ray;
-use crate::scene::{ACCELERATORS, AllEffects, Hit, Primitives, Scene, Sphere, Standpoint, Tests, load};
+use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, Standpoint, load};
 
 /// A scene of these primitives, all of one object; its camera is of no interest.
 pub fn scene_of(primitives: Primitives) -> Scene {
@@ -23,5 +23,5 @@ pub fn searches(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> + 
 
 /// What the ray meets first.
 pub fn intersect(scene: &Scene, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
-    scene.intersect::<AllEffects>(ray, from, &mut Tests::default())
+    scene.first_of_any(ray, from)
 }

@@ -3,7 +3,7 @@
 use crate::error::{InputError, Result};
 use crate::image_io::Image;
 use crate::measure::Setup;
-use crate::scene::{AllEffects, Filter, Scene, Tests};
+use crate::scene::{AllEffects, Filter, Scene};
 
 /// The index of the object of that name.
 fn index(scene: &Scene, object: &str) -> Result<u32> {
@@ -32,7 +32,7 @@ pub(super) fn object_pixels(setup: &Setup, object: &str) -> Result<Vec<bool>> {
     let pixels = (0..spec.height).flat_map(|y| (0..spec.width).map(move |x| (x, y)));
     let is_on_it = |(x, y)| {
         let ray = view.ray::<AllEffects>(x, y, 0, [0.5; 2], || [0.5; 2]);
-        let hit = scene.intersect::<AllEffects>(&ray, None, &mut Tests::default());
+        let hit = scene.first_of_any(&ray, None);
         hit.is_some_and(|hit| hit.object == wanted)
     };
     Ok(pixels.map(is_on_it).collect())

@@ -7,7 +7,6 @@ mod determinism;
 mod documents;
 mod effects;
 mod energy;
-mod equilibrium;
 #[path = "../support/estimate.rs"]
 mod estimate;
 mod estimators;

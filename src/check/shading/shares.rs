@@ -6,7 +6,7 @@ use crate::check::{Case, Trials};
 use crate::estimator::power_heuristic;
 use crate::material::Density;
 use crate::sampling::{mix, unit};
-use crate::scene::{AllEffects, SCENES, Tests, load};
+use crate::scene::{AllEffects, SCENES, load};
 
 pub(super) const CASES: &[Case] = &[
     Case { id: "H33", tries: "densities where there is light: above 0, finite, and delta by type", run: densities },
@@ -55,7 +55,7 @@ fn aims(trials: &mut Trials) {
         let Some(lights) = &scene.lights else { continue };
         for k in 0..rays {
             let ray = view.ray::<AllEffects>(k * 7 % 64, k * 5 % 48, 0, [0.5, 0.5], || [0.5, 0.5]);
-            let Some(hit) = scene.intersect::<AllEffects>(&ray, None, &mut Tests::default()) else { continue };
+            let Some(hit) = scene.first_of_any(&ray, None) else { continue };
             for point in [ray.at(0.5 * hit.t), hit.point] {
                 let u: [f64; 3] = std::array::from_fn(|i| unit(mix(u64::from(3 * k) + i as u64)));
                 if let Some(aim) = lights.aim(point, None, || u[2], [u[0], u[1]]) {

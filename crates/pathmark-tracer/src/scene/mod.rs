@@ -169,7 +169,12 @@ impl Scene {
         self.first::<X>(ray, from, f64::INFINITY, tests)
     }
 
-    /// Likewise, if it is nearer than `limit`. With an epsilon the search begins that far along the ray and nobody knows where it started, so
+    /// The first primitive of any kind along the ray. This crate compiles it, so a caller in a crate that is not optimised searches as fast.
+    pub fn first_of_any(&self, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
+        self.intersect::<AllEffects>(ray, from, &mut Tests::default())
+    }
+
+    /// As [`Self::intersect`], if it is nearer than `limit`. With an epsilon the search begins that far along the ray and nobody knows where it started, so
     /// that it finds what a program finds that drops nearer hits.
     #[inline(always)]
     fn first<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, limit: f64, tests: &mut Tests) -> Option<Hit> {
