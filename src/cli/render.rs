@@ -167,5 +167,6 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
             if is_workload { String::new() } else { format!(", {length:.2} rays per sample") }
         )
     };
-    format!("{what}{noise}\n{how}\n{checksum}")
+    let lines = [format!("{what}{noise}"), how].into_iter().chain(outcome.remarks.iter().cloned()).chain([checksum]);
+    lines.collect::<Vec<_>>().join("\n")
 }

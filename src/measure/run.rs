@@ -66,6 +66,8 @@ pub struct Outcome {
     pub checksum: Option<String>,
     /// What a reader should know.
     pub warnings: Vec<Warning>,
+    /// What the kernel says of how it rendered.
+    pub remarks: Vec<String>,
     /// When it started; empty if the system's clock shows no date from 1970 to 9999.
     pub started_utc: String,
     /// What the system counted during the makespan.
@@ -279,6 +281,7 @@ impl Account {
         Outcome {
             checksum: setup.is_deterministic().then(|| film.checksum()),
             warnings,
+            remarks: setup.kernel().map(|(kernel, _)| kernel.remarks()).unwrap_or_default(),
             film,
             spp,
             adaptive: false,

@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "calls of the driver; each has the arguments that CUDA's documentation asks for")]
 
 use super::library::{functions, open};
-use super::{Device, DeviceError, Dialect, Listed, Loaded, Result};
+use super::{Costs, Device, DeviceError, Dialect, Listed, Loaded, Result};
 use std::collections::HashMap;
 use std::env;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -45,6 +45,7 @@ functions! { Compiler;
 
 // Numbers of CUDA's header.
 const SUCCESS: c_int = 0;
+const NO_DEVICE: c_int = 100;
 const MULTIPROCESSORS: c_int = 16;
 const CAPABILITY_MAJOR: c_int = 75;
 const CAPABILITY_MINOR: c_int = 76;
@@ -54,11 +55,22 @@ const GROUP: u32 = 128;
 /// Items that keep a multiprocessor busy.
 const ITEMS_PER_MULTIPROCESSOR: u32 = 2048;
 
-static DRIVER: LazyLock<std::result::Result<Driver, String>> = LazyLock::new(|| {
-    let driver = open(&["libcuda.so.1", "libcuda.so"]).and_then(Driver::of)?;
+/// Why there is no driver to ask.
+struct NoDriver {
+    why: String,
+    /// Whether there is one that refuses.
+    is_broken: bool,
+}
+
+static DRIVER: LazyLock<std::result::Result<Driver, NoDriver>> = LazyLock::new(|| {
+    let driver = open(&["libcuda.so.1", "libcuda.so"]).and_then(Driver::of);
+    let driver = driver.map_err(|why| NoDriver { why, is_broken: false })?;
     // SAFETY: the flags must be zero.
-    let code = unsafe { (driver.init)(0) };
-    if code == SUCCESS { Ok(driver) } else { Err(format!("cuInit: {}", text_of(&driver, code))) }
+    match unsafe { (driver.init)(0) } {
+        SUCCESS => Ok(driver),
+        NO_DEVICE => Err(NoDriver { why: text_of(&driver, NO_DEVICE), is_broken: false }),
+        code => Err(NoDriver { why: format!("cuInit: {}", text_of(&driver, code)), is_broken: true }),
+    }
 });
 
 /// The compiler of the library that `PATHMARK_NVRTC` names, or of the first that there is.
@@ -111,14 +123,17 @@ fn devices(driver: &Driver) -> Vec<c_int> {
 }
 
 pub(crate) fn list() -> Vec<Listed> {
-    let nothing = |about: String| vec![Listed { id: "cuda".to_string(), about, is_there: false, is_accelerator: true }];
+    let nothing = |about: &str, is_broken| {
+        let (id, about) = ("cuda".to_string(), about.to_string());
+        vec![Listed { id, about, is_there: false, is_broken, is_accelerator: true }]
+    };
     let driver = match &*DRIVER {
         Ok(driver) => driver,
-        Err(why) => return nothing(why.clone()),
+        Err(NoDriver { why, is_broken }) => return nothing(why, *is_broken),
     };
     let devices = devices(driver);
     if devices.is_empty() {
-        return nothing("the driver shows no device".to_string());
+        return nothing("the driver shows no device", false);
     }
     let compiler = COMPILER.as_ref().err();
     let listed = devices.into_iter().enumerate().map(|(number, device)| Listed {
@@ -128,6 +143,7 @@ pub(crate) fn list() -> Vec<Listed> {
             Some(why) => format!("{}: no compiler (install libnvrtc): {why}", name_of(driver, device)),
         },
         is_there: compiler.is_none(),
+        is_broken: false,
         is_accelerator: true,
     });
     listed.collect()
@@ -276,7 +292,7 @@ impl Cuda {
     pub(crate) fn open(number: usize) -> Result<Self> {
         let id = format!("cuda:{number}");
         let missing = |why: &str| DeviceError::Missing { id: id.clone(), why: why.to_string() };
-        let driver = DRIVER.as_ref().map_err(|why| missing(why))?;
+        let driver = DRIVER.as_ref().map_err(|no_driver| missing(&no_driver.why))?;
         let all = devices(driver);
         let device = *all.get(number).ok_or_else(|| missing(&format!("the driver shows {} devices", all.len())))?;
         let mut handle = null_mut();
@@ -324,21 +340,19 @@ impl Device for Cuda {
 
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
         self.context.enter()?;
-        let mut functions = self.functions.lock().unwrap_or_else(PoisonError::into_inner);
-        let function = if let Some(function) = functions.get(text) {
-            *function
-        } else {
+        let compile = || {
+            let mut functions = self.functions.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some(function) = functions.get(text) {
+                return Ok(*function);
+            }
             let function = self.compile(text)?;
             functions.insert(text.to_string(), function);
-            function
+            Ok(function)
         };
-        Ok(Box::new(Bound {
-            function,
-            numbers: Buffer::of(&self.context, numbers)?,
-            words: Buffer::of(&self.context, words)?,
-            kept: Mutex::default(),
-            context: Arc::clone(&self.context),
-        }))
+        let copy = |function| Ok((function, Buffer::of(&self.context, numbers)?, Buffer::of(&self.context, words)?));
+        let ((function, numbers, words), costs) = Costs::of(compile, copy)?;
+        let (kept, context) = (Mutex::default(), Arc::clone(&self.context));
+        Ok(Box::new(Bound { context, function, numbers, words, kept, costs }))
     }
 }
 
@@ -350,6 +364,7 @@ struct Bound {
     words: Buffer,
     /// Room for a task and its results, kept from run to run.
     kept: Mutex<[Option<Buffer>; 2]>,
+    costs: Costs,
 }
 
 /// The address of a buffer of at least that size, made anew if the one there is is smaller.
@@ -362,6 +377,10 @@ fn kept<'a>(context: &Arc<Context>, place: &'a mut Option<Buffer>, bytes: usize)
 }
 
 impl Loaded for Bound {
+    fn costs(&self) -> Costs {
+        self.costs
+    }
+
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
         // One run at a time: they share the room for their results.
         let mut room = self.kept.lock().unwrap_or_else(PoisonError::into_inner);

@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "a function that was compiled a moment ago is called; its text is in this crate")]
 
 use super::library::in_full;
-use super::{Device, DeviceError, Dialect, HOST, Listed, Loaded, Result};
+use super::{Costs, Device, DeviceError, Dialect, HOST, Listed, Loaded, Result};
 use libloading::Library;
 use std::collections::HashMap;
 use std::env;
@@ -47,7 +47,7 @@ pub(crate) fn list() -> Vec<Listed> {
     let found = version();
     let is_there = found.is_ok();
     let about = found.unwrap_or_else(|error| error.to_string());
-    vec![Listed { id: HOST.to_string(), about, is_there, is_accelerator: false }]
+    vec![Listed { id: HOST.to_string(), about, is_there, is_broken: false, is_accelerator: false }]
 }
 
 /// The processor by the C compiler.
@@ -97,18 +97,21 @@ impl Device for Host {
     }
 
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
-        let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
-        let library = if let Some(library) = compiled.get(text) {
-            Arc::clone(library)
-        } else {
+        let compile = || {
+            let mut compiled = self.compiled.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some(library) = compiled.get(text) {
+                return Ok(Arc::clone(library));
+            }
             let library = Arc::new(self.compile(text)?);
             compiled.insert(text.to_string(), Arc::clone(&library));
-            library
+            Ok(library)
         };
+        let copy = |library| Ok((library, numbers.to_vec(), words.to_vec()));
+        let ((library, numbers, words), costs) = Costs::of(compile, copy)?;
         // SAFETY: the text defines this function with this type.
         let found = unsafe { library.get::<Run>(c"pathmark_run") };
         let run = *found.map_err(|e| DeviceError::Compiler { compiler: self.about.clone(), log: in_full(&e) })?;
-        Ok(Box::new(Bound { run, numbers: numbers.to_vec(), words: words.to_vec(), _library: library }))
+        Ok(Box::new(Bound { run, numbers, words, costs, _library: library }))
     }
 }
 
@@ -117,11 +120,16 @@ struct Bound {
     run: Run,
     numbers: Vec<f64>,
     words: Vec<u32>,
+    costs: Costs,
     /// Where the function lives.
     _library: Arc<Library>,
 }
 
 impl Loaded for Bound {
+    fn costs(&self) -> Costs {
+        self.costs
+    }
+
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
         let inputs = [self.numbers.as_ptr().cast::<c_void>(), self.words.as_ptr().cast()];
         // SAFETY: the function reads its inputs, and writes so many words for each item as the caller has made room for.

@@ -44,6 +44,8 @@ pub struct Listed {
     pub about: String,
     /// Whether it can be opened.
     pub is_there: bool,
+    /// Whether there is a driver that refuses, which is the system's fault, instead of none.
+    pub is_broken: bool,
     /// Whether it is a processor of another kind than the one that this program runs on.
     pub is_accelerator: bool,
 }
@@ -71,8 +73,34 @@ impl dyn Device {
     }
 }
 
+/// Seconds that a program takes before it runs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Costs {
+    /// To compile it; next to nothing if it was compiled before.
+    pub compile_s: f64,
+    /// To copy its inputs.
+    pub copy_s: f64,
+}
+
+impl Costs {
+    /// Compiles and copies, and tells how long each took.
+    pub(crate) fn of<A, B>(
+        compile: impl FnOnce() -> Result<A>,
+        copy: impl FnOnce(A) -> Result<B>,
+    ) -> Result<(B, Self)> {
+        let before = Instant::now();
+        let compiled = compile()?;
+        let compile_s = before.elapsed().as_secs_f64();
+        let copied = copy(compiled)?;
+        Ok((copied, Self { compile_s, copy_s: before.elapsed().as_secs_f64() - compile_s }))
+    }
+}
+
 /// A program on a device, with its inputs.
 pub trait Loaded: Send + Sync {
+    /// What it took to get there.
+    fn costs(&self) -> Costs;
+
     /// Runs so many items. `out` has room for as many words for each as the program writes.
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()>;
 }

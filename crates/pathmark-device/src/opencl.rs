@@ -2,7 +2,7 @@
 #![expect(unsafe_code, reason = "calls of the driver; each has the arguments that OpenCL's specification asks for")]
 
 use super::library::{functions, open};
-use super::{Device, DeviceError, Dialect, Listed, Loaded, Result};
+use super::{Costs, Device, DeviceError, Dialect, Listed, Loaded, Result};
 use std::collections::HashMap;
 use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -32,6 +32,7 @@ functions! { Functions;
 
 // Numbers of OpenCL's header.
 const SUCCESS: i32 = 0;
+const NO_DRIVER: i32 = -1001;
 const ALL_DEVICES: u64 = 0xFFFF_FFFF;
 const DEVICE_TYPE: u32 = 0x1000;
 const COMPUTE_UNITS: u32 = 0x1002;
@@ -78,7 +79,7 @@ fn meaning(code: i32) -> String {
         -36 => "the queue is gone: the device may be lost",
         -54 => "the group of items is too large",
         -61 => "a buffer is too large",
-        -1001 => "no driver is installed",
+        NO_DRIVER => "no driver is installed",
         _ => return format!("error {code}"),
     };
     format!("{name} (error {code})")
@@ -109,13 +110,16 @@ fn name_of(functions: &Functions, device: Handle) -> String {
     String::from_utf8_lossy(&text[..end]).trim().to_string()
 }
 
-/// Every device of every platform, in the driver's order.
-fn found(functions: &Functions) -> Vec<Found> {
+/// Every device of every platform, in the driver's order; the driver's refusal, if it is more than that it knows no device.
+fn found(functions: &Functions) -> std::result::Result<Vec<Found>, String> {
     const MOST: usize = 64;
     let _turn = turn();
     let (mut platforms, mut count) = ([null_mut(); MOST], 0);
     // SAFETY: there is room for as many handles as it is told.
     let code = unsafe { (functions.platforms)(MOST as u32, platforms.as_mut_ptr(), &raw mut count) };
+    if code != SUCCESS && code != NO_DRIVER {
+        return Err(format!("clGetPlatformIDs: {}", meaning(code)));
+    }
     let mut all = Vec::new();
     for platform in platforms.into_iter().take(if code == SUCCESS { count as usize } else { 0 }) {
         let (mut devices, mut count) = ([null_mut(); MOST], 0);
@@ -132,30 +136,33 @@ fn found(functions: &Functions) -> Vec<Found> {
             });
         }
     }
-    all
+    Ok(all)
 }
 
 const INEXACT: &str = "it has no double precision by IEEE 754";
 
 pub(crate) fn list() -> Vec<Listed> {
-    let nothing =
-        |why: &str| Listed { id: "opencl".to_string(), about: why.to_string(), is_there: false, is_accelerator: false };
-    match &*LOADER {
-        Err(why) => vec![nothing(why)],
-        Ok(functions) => {
-            let all = found(functions);
-            if all.is_empty() {
-                return vec![nothing("no driver shows a device")];
-            }
-            let listed = all.into_iter().enumerate().map(|(number, device)| Listed {
-                id: format!("opencl:{number}"),
-                about: if device.is_exact { device.name } else { format!("{}: {INEXACT}", device.name) },
-                is_there: device.is_exact,
-                is_accelerator: !device.is_processor,
-            });
-            listed.collect()
-        }
-    }
+    let nothing = |why: &str, is_broken| Listed {
+        id: "opencl".to_string(),
+        about: why.to_string(),
+        is_there: false,
+        is_broken,
+        is_accelerator: false,
+    };
+    let all = match LOADER.as_ref().map(found) {
+        Err(why) => return vec![nothing(why, false)],
+        Ok(Err(why)) => return vec![nothing(&why, true)],
+        Ok(Ok(all)) if all.is_empty() => return vec![nothing("no driver shows a device", false)],
+        Ok(Ok(all)) => all,
+    };
+    let listed = all.into_iter().enumerate().map(|(number, device)| Listed {
+        id: format!("opencl:{number}"),
+        about: if device.is_exact { device.name } else { format!("{}: {INEXACT}", device.name) },
+        is_there: device.is_exact,
+        is_broken: false,
+        is_accelerator: !device.is_processor,
+    });
+    listed.collect()
 }
 
 /// A handle that may go from thread to thread: the driver's functions may be called by any, but a kernel's arguments by one at a time.
@@ -274,7 +281,7 @@ impl OpenCl {
         let id = format!("opencl:{number}");
         let missing = |why: &str| DeviceError::Missing { id: id.clone(), why: why.to_string() };
         let functions = LOADER.as_ref().map_err(|why| missing(why))?;
-        let all = found(functions);
+        let all = found(functions).map_err(|why| missing(&why))?;
         let count = format!("drivers show {} devices", all.len());
         let Found { handle, name, is_processor, units, is_exact } =
             all.into_iter().nth(number).ok_or_else(|| missing(&count))?;
@@ -314,21 +321,23 @@ impl Device for OpenCl {
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
         let _turn = turn();
         let queue = &self.queue;
-        let mut programs = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
-        let program = if let Some(program) = programs.get(text) {
-            *program
-        } else {
+        let compile = || {
+            let mut programs = self.programs.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some(program) = programs.get(text) {
+                return queue.kernel(*program);
+            }
             let program = queue.compile(text)?;
             programs.insert(text.to_string(), program);
-            program
+            queue.kernel(program)
         };
-        let kernel = queue.kernel(program)?;
-        let inputs = [
-            queue.buffer(READ_ONLY_COPY, numbers.as_ptr(), size_of_val(numbers))?,
-            queue.buffer(READ_ONLY_COPY, words.as_ptr(), size_of_val(words))?,
-        ];
-        let kernel = Mutex::new(Kernel { handle: kernel, is_compiled: false, task: None, out: None });
-        Ok(Box::new(Bound { queue: Arc::clone(queue), group: self.group, inputs, kernel }))
+        let copy = |handle| {
+            let numbers = queue.buffer(READ_ONLY_COPY, numbers.as_ptr(), size_of_val(numbers))?;
+            let words = queue.buffer(READ_ONLY_COPY, words.as_ptr(), size_of_val(words))?;
+            Ok((handle, [numbers, words]))
+        };
+        let ((handle, inputs), costs) = Costs::of(compile, copy)?;
+        let kernel = Mutex::new(Kernel { handle, is_compiled: false, task: None, out: None });
+        Ok(Box::new(Bound { queue: Arc::clone(queue), group: self.group, inputs, kernel, costs }))
     }
 }
 
@@ -346,6 +355,7 @@ struct Bound {
     group: usize,
     inputs: [Buffer; 2],
     kernel: Mutex<Kernel>,
+    costs: Costs,
 }
 
 /// A buffer of at least that size, made anew if the one there is is smaller.
@@ -361,6 +371,10 @@ fn kept(queue: &Queue, place: &mut Option<(Buffer, usize)>, bytes: usize) -> Res
 }
 
 impl Loaded for Bound {
+    fn costs(&self) -> Costs {
+        self.costs
+    }
+
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
         let Queue { functions, handle: Shared(queue), .. } = *self.queue;
         let mut guard: MutexGuard<'_, Kernel> = self.kernel.lock().unwrap_or_else(PoisonError::into_inner);

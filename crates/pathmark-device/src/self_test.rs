@@ -171,7 +171,7 @@ pub(crate) fn passed(device: &dyn Device, uses_single: bool) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Loaded, open};
+    use crate::{Costs, Loaded, open};
 
     /// A device that changes one result of one operation.
     struct Wrong(u32);
@@ -194,6 +194,9 @@ mod tests {
     struct Wrongly(u32, Box<dyn Loaded>);
 
     impl Loaded for Wrongly {
+        fn costs(&self) -> Costs {
+            self.1.costs()
+        }
         fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
             self.1.run(task, items, out)?;
             if task[0] == self.0 {

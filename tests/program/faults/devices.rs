@@ -20,15 +20,20 @@ fn loader() -> Option<PathBuf> {
     files.find(|file| file.exists()).filter(|_| listed.out.contains("opencl:0"))
 }
 
-/// `pathmark ARGUMENTS` with a loader that fails on purpose.
-fn with_failing_loader(folder: &Path, loader: &Path, failure: (&str, u64), arguments: &[&str]) -> Finished {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/failing-opencl.c");
-    let library = folder.join("libOpenCL.so.1");
+/// Compiles a library that stands in for a driver's.
+fn make_library(folder: &Path, source: &str, name: &str) {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(source);
+    let library = folder.join(name);
     if !library.exists() {
         let options = ["-shared", "-fPIC", "-o"];
         let made = Command::new("cc").args(options).arg(&library).arg(source).arg("-ldl").status().unwrap();
         assert!(made.success());
     }
+}
+
+/// `pathmark ARGUMENTS` with a loader that fails on purpose.
+fn with_failing_loader(folder: &Path, loader: &Path, failure: (&str, u64), arguments: &[&str]) -> Finished {
+    make_library(folder, "failing-opencl.c", "libOpenCL.so.1");
     let mut command = pathmark(folder, arguments);
     command.env("LD_LIBRARY_PATH", folder).env("PATHMARK_TEST_OPENCL", loader).env(failure.0, failure.1.to_string());
     finish(command)
@@ -76,6 +81,26 @@ fn a_device_without_memory_is_the_systems_fault() {
     let refused = with_failing_loader(folder.path(), &loader, ("PATHMARK_TEST_BYTES", 200_000), &arguments);
     says(&refused.with_code(3), &["opencl:0", "clCreateBuffer", "no memory for an object on the device"]);
     assert!(!folder.path().join("none.pfm").exists());
+}
+
+/// A driver that may not reach its device is the system's fault; a driver that is not there is a device that is not there.
+#[test]
+fn a_driver_that_refuses_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    make_library(folder.path(), "refusing-cuda.c", "libcuda.so.1");
+    let with = |kernel: &str| {
+        let mut command = pathmark(folder.path(), &[&RENDER[..], &["--kernel", kernel, "-o", "none.pfm"]].concat());
+        command.env("LD_LIBRARY_PATH", folder.path());
+        finish(command)
+    };
+    for kernel in ["device:cuda:0", "lanes+device:cuda:0"] {
+        says(&with(kernel).with_code(3), &["opening cuda:0", "cuInit", "OS call failed", "error 304"]);
+    }
+    assert!(!folder.path().join("none.pfm").exists());
+    let mut listed = pathmark(folder.path(), &["list", "devices"]);
+    listed.env("LD_LIBRARY_PATH", folder.path());
+    let listed = finish(listed).with_code(0);
+    assert!(listed.out.contains("none: cuInit: OS call failed"), "{}", listed.out);
 }
 
 /// A compiler that is not there is a device that is not there, which the user has named; one that refuses the program is the system's.

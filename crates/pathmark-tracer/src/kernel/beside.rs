@@ -21,6 +21,10 @@ impl Kernel for Beside {
         self.devices.iter().find_map(Kernel::failure)
     }
 
+    fn remarks(&self) -> Vec<String> {
+        self.devices.iter().flat_map(Kernel::remarks).collect()
+    }
+
     fn beside(&self) -> Vec<&dyn Kernel> {
         self.devices.iter().map(|device| device as &dyn Kernel).collect()
     }

@@ -91,6 +91,11 @@ pub trait Kernel: Send + Sync {
         Vec::new()
     }
 
+    /// What a user should hear of how it rendered, besides counts.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Why pieces were not rendered, if the system refused; what is in their buffers then counts for nothing.
     fn failure(&self) -> Option<Error> {
         None

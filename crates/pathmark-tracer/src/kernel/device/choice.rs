@@ -3,12 +3,13 @@
 use super::super::in_lanes::{MOST_IN_LANES, precision};
 use super::super::{DEVICE, Spec};
 use super::tables::{SAMPLERS, is_known};
-use crate::error::{InputError, Result};
+use crate::error::{Error, InputError, Result};
 use crate::estimator::PathRules;
 use crate::sampling::InLanes as LaneSampler;
 use crate::scene::{ANGULAR_EMISSION, FOG, LENS, POINT_LIGHT, Scene};
 use crate::simd::Precision;
 use pathmark_device::Listed;
+use std::io;
 
 /// What the kernel is made with.
 #[derive(Debug, Clone)]
@@ -52,6 +53,11 @@ fn chosen(kernel: &str) -> Result<String> {
     };
     if let Some(found) = found {
         return Ok(found.id.clone());
+    }
+    // What was asked for may be what a driver refuses to show.
+    let is_meant = |listed: &&Listed| named.map_or(listed.is_accelerator, |id| id.starts_with(&listed.id));
+    if let Some(broken) = all.iter().filter(is_meant).find(|listed| listed.is_broken) {
+        return Err(Error::system("opening", named.unwrap_or(&broken.id), io::Error::other(broken.about.clone())));
     }
     let missing = all.iter().filter(|listed| !listed.is_there);
     let why: Vec<String> = missing.map(|listed| format!("{}: {}", listed.id, listed.about)).collect();

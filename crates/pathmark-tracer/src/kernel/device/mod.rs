@@ -17,7 +17,7 @@ use crate::film::{Piece, PixelSum, SAMPLE_BLOCK, SampleSum, TileBuffer};
 use crate::scene::Scene;
 use crate::simd::Precision;
 pub(super) use choice::{ForDevice, device_for};
-use pathmark_device::{DeviceError, Loaded};
+use pathmark_device::{Costs, DeviceError, Loaded};
 use std::io;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -102,6 +102,9 @@ pub(super) struct OnDevice {
     width: u32,
     /// Samples a second of the last launch, as bits; 0 before it.
     rate: AtomicU64,
+    /// Launches so far, and microseconds that they took, with copies of their results.
+    launches: AtomicU64,
+    launches_us: AtomicU64,
     failed: OnceLock<DeviceError>,
 }
 
@@ -119,7 +122,9 @@ impl OnDevice {
         let uses_single = chosen.precision == Precision::F32;
         let loaded = device.load(&text, uses_single, &numbers, &words).map_err(failed)?;
         let width = device.width();
-        Ok(Self { id: chosen.id.clone(), loaded, width, rate: AtomicU64::new(0), failed: OnceLock::new() })
+        let none = || AtomicU64::new(0);
+        let (rate, launches, launches_us) = (none(), none(), none());
+        Ok(Self { id: chosen.id.clone(), loaded, width, rate, launches, launches_us, failed: OnceLock::new() })
     }
 
     /// The samples of an item: as many blocks, a power of two, as leave the device enough items.
@@ -150,6 +155,8 @@ impl OnDevice {
             let seconds = self.loaded.timed(&items.task(done), of_launch as u32, &mut results)?;
             let rate = (of_launch * u64::from(items.part)) as f64 / seconds.max(1e-6);
             self.rate.store(rate.to_bits(), Ordering::Relaxed);
+            self.launches.fetch_add(1, Ordering::Relaxed);
+            self.launches_us.fetch_add((seconds * 1e6) as u64, Ordering::Relaxed);
             results.chunks_exact(OUT_WORDS).for_each(|words| placing.put(words));
             done += of_launch;
         }
@@ -227,6 +234,16 @@ impl Kernel for OnDevice {
             self.failed.get_or_init(|| error);
             nothing()
         })
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let Costs { compile_s, copy_s } = self.loaded.costs();
+        let launches = self.launches.load(Ordering::Relaxed);
+        let launches_s = self.launches_us.load(Ordering::Relaxed) as f64 * 1e-6;
+        vec![format!(
+            "{}: compiled in {compile_s:.3} s, scene copied in {copy_s:.6} s, {launches} launches in {launches_s:.3} s",
+            self.id
+        )]
     }
 
     fn failure(&self) -> Option<Error> {
