@@ -10,6 +10,8 @@ use std::sync::Arc;
 
 const SAMPLERS: [&str; 5] = ["independent", "hash", "sobol", "sobol-burley", "stratified"];
 
+const HOST: &str = "device:host";
+
 /// The kernels of all devices here.
 fn devices() -> Vec<String> {
     let there = pathmark_device::list().into_iter().filter(|listed| listed.is_there);
@@ -27,7 +29,7 @@ fn render(kernel: &dyn Kernel, piece: &Piece) -> (TileBuffer, Counts) {
 /// test rays against more at a time; `false` if it does not render them.
 fn is_same(scene: &Arc<Scene>, spec: &Spec, device: &str, pieces: &[Piece]) -> bool {
     // Drivers take seconds to compile a program, C compilers a part of one: the host has one for each profile, the others one for all.
-    let effects = (device != "device:host").then(|| "all".to_string());
+    let effects = (device != HOST).then(|| "all".to_string());
     let on_device = Spec { kernel: device.to_string(), effects, ..spec.clone() };
     if choose(scene, &on_device).unwrap().kernel() != device {
         return false;
@@ -61,32 +63,38 @@ fn devices_add_up_samples_as_a_film_does() {
     }
 }
 
-#[test]
-fn devices_have_the_scalar_kernels_bits() {
+/// Every scene with every estimator on a device, in both precisions: one scene with every sampler, the others with one after the other, because
+/// random numbers know nothing of scenes.
+fn have_the_scalar_kernels_bits(device: &str) {
     let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..8 };
-    for device in devices() {
-        let (mut compared, mut in_single, mut scenes) = (0, 0, 0);
-        for (name, _) in SCENES {
-            let scene = Arc::new(load(name).unwrap());
-            let before = compared;
-            for estimator in ESTIMATORS {
-                for (sampler, precision) in
-                    SAMPLERS.into_iter().flat_map(|sampler| [(sampler, "f64"), (sampler, "f32")])
-                {
-                    let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
-                    let spec = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
-                    let spec = Spec { precision: precision.to_string(), ..spec };
-                    let is_rendered = usize::from(is_same(&scene, &spec, &device, from_ref(&piece)));
-                    compared += is_rendered;
-                    in_single += is_rendered * usize::from(precision == "f32");
-                }
+    let (mut compared, mut in_single, mut scenes) = (0, 0, 0);
+    let mut next = SAMPLERS.into_iter().cycle();
+    for (name, _) in SCENES {
+        let scene = Arc::new(load(name).unwrap());
+        let before = compared;
+        for estimator in ESTIMATORS {
+            let samplers = next.by_ref().take(if *name == "cornell" { SAMPLERS.len() } else { 1 });
+            for (sampler, precision) in samplers.flat_map(|sampler| [(sampler, "f64"), (sampler, "f32")]) {
+                let (estimator, sampler) = (estimator.name.to_string(), sampler.to_string());
+                let spec = Spec { width: 24, height: 18, seed: 3, estimator, sampler, ..Spec::default() };
+                let spec = Spec { precision: precision.to_string(), ..spec };
+                let is_rendered = usize::from(is_same(&scene, &spec, device, from_ref(&piece)));
+                compared += is_rendered;
+                in_single += is_rendered * usize::from(precision == "f32");
             }
-            scenes += usize::from(compared > before);
         }
-        println!("{device}: {compared} comparisons of {scenes} scenes, {in_single} in single precision");
-        assert!(
-            scenes >= 30 && compared > 900 && in_single > 300,
-            "{compared} comparisons, {in_single}, {scenes} scenes"
-        );
+        scenes += usize::from(compared > before);
     }
+    println!("{device}: {compared} comparisons of {scenes} scenes, {in_single} in single precision");
+    assert!(scenes >= 30 && compared > 230 && in_single > 80, "{compared} comparisons, {in_single}, {scenes} scenes");
+}
+
+#[test]
+fn the_host_has_the_scalar_kernels_bits() {
+    have_the_scalar_kernels_bits(HOST);
+}
+
+#[test]
+fn other_devices_have_the_scalar_kernels_bits() {
+    devices().iter().filter(|device| *device != HOST).for_each(|device| have_the_scalar_kernels_bits(device));
 }

@@ -1,22 +1,22 @@
 //! `--kernel device`: pieces are rendered by a GPU, by CUDA or OpenCL, or by whatever else compiles the program in `program/`.
 //!
 //! The program is the scalar kernel's path in the common subset of C, OpenCL C and CUDA C, one operation for one operation, so an image has the same
-//! bits on every device and on the processor; in single precision the path is that of lanes. It is compiled for an effect profile, as scalar kernels are, when a kernel is made. Numbers that the
-//! scalar kernel has in tables are written into it from those ([`program`]); the scene goes to the device as arrays ([`tables`]).
-//!
-//! An *item* is a pixel and a run of its samples that is a subtree of the film's sum. A launch is so many items as take a quarter of a second, because
-//! drivers of displays end longer ones.
+//! bits on every device and on the processor; in single precision the path is that of lanes. It is compiled for an effect profile, as scalar kernels
+//! are, when a kernel is made. Numbers that the scalar kernel has in tables are written into it from those ([`program`]); the scene goes to the device
+//! as arrays ([`tables`]). A launch is so many items ([`items`]) as take a quarter of a second, because drivers of displays end longer ones.
 
 mod choice;
+mod items;
 mod program;
 mod tables;
 
 use super::{Choice, Counts, Kernel};
 use crate::error::{Error, Result};
-use crate::film::{Piece, PixelSum, SAMPLE_BLOCK, SampleSum, TileBuffer};
+use crate::film::{Piece, SAMPLE_BLOCK, TileBuffer};
 use crate::scene::Scene;
 use crate::simd::Precision;
 pub(super) use choice::{ForDevice, device_for};
+use items::{Items, OUT_WORDS, Placing};
 use pathmark_device::{Costs, DeviceError, Loaded};
 use std::io;
 use std::sync::OnceLock;
@@ -30,69 +30,6 @@ const FIRST_SAMPLES: u64 = 1 << 14;
 const MOST_ITEMS: u64 = 1 << 18;
 /// Blocks of samples in an item at most, as a power of two.
 const MOST_BLOCKS: u32 = 8;
-
-/// What the program is told of a launch, and how many words each takes, in the order in which they stand; then comes a row for each piece.
-const TASK: &[(&str, usize)] =
-    &[("TASK_PIECES", 1), ("TASK_PART_SAMPLES", 1), ("TASK_FIRST_ITEM", 2), ("TASK_TABLE", 0)];
-
-/// What it is told of a piece.
-const PIECE: &[(&str, usize)] = &[
-    ("PIECE_FIRST_ITEM", 2),
-    ("PIECE_X", 1),
-    ("PIECE_Y", 1),
-    ("PIECE_COLUMNS", 1),
-    ("PIECE_PARTS", 1),
-    ("PIECE_FIRST_SAMPLE", 1),
-    ("PIECE_END_SAMPLE", 1),
-];
-
-/// The two halves of a number.
-fn halves(number: u64) -> [u32; 2] {
-    [number as u32, (number >> 32) as u32]
-}
-
-/// Pieces as a launch has them: each item is a pixel of one of them and a part of its samples.
-struct Items<'a> {
-    pieces: &'a [&'a Piece],
-    /// Samples of a part.
-    part: u32,
-    /// The first item of each piece, and how many there are.
-    first: Vec<u64>,
-    count: u64,
-}
-
-impl<'a> Items<'a> {
-    fn new(pieces: &'a [&'a Piece], part: u32) -> Self {
-        let mut count = 0;
-        let first = pieces.iter().map(|piece| {
-            let first = count;
-            count += piece.bounds.area() as u64 * Self::parts(piece, part);
-            first
-        });
-        let first = first.collect();
-        Self { pieces, part, first, count }
-    }
-
-    fn parts(piece: &Piece, part: u32) -> u64 {
-        u64::from((piece.samples.end - piece.samples.start).div_ceil(part))
-    }
-
-    /// The words of a launch that begins with an item.
-    fn task(&self, first_item: u64) -> Vec<u32> {
-        let mut task = vec![self.pieces.len() as u32, self.part];
-        task.extend(halves(first_item));
-        for (piece, first) in self.pieces.iter().zip(&self.first) {
-            let Piece { bounds, samples } = piece;
-            task.extend(halves(*first));
-            task.extend([bounds.x0, bounds.y0, bounds.width(), Self::parts(piece, self.part) as u32]);
-            task.extend([samples.start, samples.end]);
-        }
-        task
-    }
-}
-
-/// Words that an item writes: three sums, three sums of squares, and six counts.
-const OUT_WORDS: usize = 12;
 
 /// The kernel.
 pub(super) struct OnDevice {
@@ -145,9 +82,7 @@ impl OnDevice {
 
     fn launch_all(&self, pieces: &[&Piece], out: &mut [TileBuffer]) -> std::result::Result<Vec<Counts>, DeviceError> {
         let items = Items::new(pieces, self.part_samples(pieces));
-        let counts = vec![Counts::default(); pieces.len()];
-        let mut placing =
-            Placing { items: &items, out, counts, sum: SampleSum::default(), piece: 0, pixel: 0, number: 0 };
+        let mut placing = Placing::new(&items, out);
         let (mut done, mut results) = (0, Vec::new());
         while done < items.count {
             let of_launch = self.items(items.part).min(items.count - done);
@@ -161,58 +96,6 @@ impl OnDevice {
             done += of_launch;
         }
         Ok(placing.counts)
-    }
-}
-
-/// Puts results of items, as they come, where they belong.
-struct Placing<'a> {
-    items: &'a Items<'a>,
-    out: &'a mut [TileBuffer],
-    counts: Vec<Counts>,
-    sum: SampleSum,
-    /// The piece, the pixel and the part of the next item.
-    piece: usize,
-    pixel: u64,
-    number: u64,
-}
-
-impl Placing<'_> {
-    fn put(&mut self, words: &[u64]) {
-        let piece = self.items.pieces[self.piece];
-        let parts = Items::parts(piece, self.items.part);
-        let is_last = self.number + 1 == parts;
-        let samples = piece.samples.end - piece.samples.start;
-        let count = if is_last { samples - self.number as u32 * self.items.part } else { self.items.part };
-        self.sum.add_part(pixel_sum(words, count), is_last);
-        self.counts[self.piece].add(&item_counts(words, count));
-        self.number += 1;
-        if is_last {
-            let columns = u64::from(piece.bounds.width());
-            let (column, row) = (self.pixel % columns, self.pixel / columns);
-            self.out[self.piece].row_mut(piece.bounds.y0 + row as u32)[column as usize] = self.sum.total();
-            self.sum.clear();
-            (self.number, self.pixel) = (0, self.pixel + 1);
-        }
-        if self.pixel == piece.bounds.area() as u64 {
-            (self.pixel, self.piece) = (0, self.piece + 1);
-        }
-    }
-}
-
-fn pixel_sum(words: &[u64], count: u32) -> PixelSum {
-    let channels = |first: usize| [0, 1, 2].map(|channel| f64::from_bits(words[first + channel]));
-    PixelSum { sum: channels(0), square: channels(3), count }
-}
-
-fn item_counts(words: &[u64], paths: u32) -> Counts {
-    Counts {
-        paths: u64::from(paths),
-        rays: words[6],
-        invalid: words[7],
-        escaped: words[8],
-        truncated: words[9],
-        box_tests: words[10],
-        primitive_tests: words[11],
     }
 }
 

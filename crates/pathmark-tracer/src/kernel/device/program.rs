@@ -1,7 +1,8 @@
 //! The text of the program: the files in `program/` behind the numbers that they have in common with the processor's kernels.
 
+use super::MOST_BLOCKS;
+use super::items::{OUT_WORDS, PIECE, TASK};
 use super::tables::{KINDS, LIGHT_NUMBERS, MATERIALS, NUMBERS, OBJECT_NUMBERS, POINT_LIGHT_NUMBERS, SAMPLERS, WORDS};
-use super::{MOST_BLOCKS, OUT_WORDS, PIECE, TASK};
 use crate::effect::Effects;
 use crate::estimator::{HIDING, PathRules};
 use crate::film::SAMPLE_BLOCK;
@@ -189,7 +190,7 @@ fn definitions(effects: Effects, course: &PathRules, precision: Precision) -> St
     all.0
 }
 
-/// The identifiers of a text, and what stands between them.
+/// The words of a text, and what stands between them. A word goes on behind a dot, so a number is one, and the name of a field is none.
 fn tokens(text: &str) -> impl Iterator<Item = &str> {
     let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'.';
     text.as_bytes().chunk_by(move |a, b| is_word(*a) == is_word(*b)).map(|chunk| {
@@ -255,6 +256,17 @@ mod tests {
     use crate::scene::PROFILES;
     use pathmark_device::{DeviceError, inexact_instructions, ptx_of};
 
+    /// Types, declared names, words of both and numbers change; fields, comments and other names do not.
+    #[test]
+    fn a_text_is_put_into_single_precision() {
+        let text = "FN real plus(real a, vec b) { return TAU * a + 0.5 * plus(b.plus, -1.0); }  // plus 1.0\n} vec;\n";
+        let mut names: BTreeSet<&str> = declared(text).collect();
+        assert_eq!(names.iter().copied().collect::<Vec<_>>(), ["plus", "vec"]);
+        names.insert("TAU");
+        let single = "FN single plus_s(single a, vec_s b) { return TAU_S * a + 0.5f * plus_s(b.plus, -1.0f); }  // plus 1.0\n} vec_s;\n";
+        assert_eq!(in_single(text, &names), single);
+    }
+
     /// Every program as CUDA's compiler makes it: no operation is fused with another, estimated, or rounded as the assembler likes.
     #[test]
     fn no_code_for_gpus_fuses_or_estimates() {
@@ -264,7 +276,7 @@ mod tests {
             for (rules, precision) in
                 rules.into_iter().flat_map(|rules| Precision::ALL.map(|precision| (rules, precision)))
             {
-                let ptx = match ptx_of(&text(profile.effects, &rules, precision), 70) {
+                let ptx = match ptx_of(&text(profile.effects, &rules, precision), u32::MAX) {
                     Ok(ptx) => ptx,
                     Err(DeviceError::Missing { id, why }) => return println!("SKIPPED: there is no {id}: {why}"),
                     Err(error) => panic!("{}: {error}", profile.name),
