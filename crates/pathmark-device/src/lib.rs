@@ -8,7 +8,7 @@
 //! ```
 //!
 //! which is called once for each item. Every operation is rounded once, by IEEE 754: compilers are told to fuse none but `FUSED`, and a device
-//! shows in a table of operations that it obeys ([`Device::load`] refuses one that does not). So the results have the same bits on every device.
+//! shows in a table of operations that it obeys (`Device::load` refuses one that does not). So the results have the same bits on every device.
 //!
 //! Drivers and compilers are looked for when the program runs. Where there are none, everything builds, and [`list`] says what is missing.
 
