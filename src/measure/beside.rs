@@ -6,9 +6,11 @@
 
 use super::ledger::Ledger;
 use super::output::Output;
+use crate::error::{Error, Result};
 use crate::film::{Bounds, Piece, Plan, TileBuffer};
 use crate::kernel::{Counts, Kernel};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
 use std::time::Instant;
 
 /// A batch is to take so long, in seconds: launches that take longer are cut anyway.
@@ -68,6 +70,22 @@ pub(super) struct Shared<'a> {
 }
 
 impl Shared<'_> {
+    /// Does `work` while each device renders pieces, served by a thread of its own.
+    pub(super) fn beside(
+        &self,
+        devices: Vec<&dyn Kernel>,
+        start: Instant,
+        work: impl FnOnce() -> Result<()>,
+    ) -> Result<()> {
+        thread::scope(|scope| {
+            for device in devices {
+                let started = thread::Builder::new().spawn_scoped(scope, move || self.serve(device, start));
+                started.map_err(|e| Error::system("starting", "the thread that serves a device", e))?;
+            }
+            work()
+        })
+    }
+
     /// Pieces from the end that nobody has claimed, at most so many; `next` is the first that has been looked at.
     fn claim(&self, next: &mut usize, most: usize) -> Vec<usize> {
         let mut claimed = Vec::new();
@@ -81,7 +99,7 @@ impl Shared<'_> {
     }
 
     /// Has the device render pieces until none is left or it fails.
-    pub(super) fn serve(&self, device: &dyn Kernel, start: Instant) {
+    fn serve(&self, device: &dyn Kernel, start: Instant) {
         let pieces = self.plan.pieces();
         let (mut next, mut batch, mut done) = (pieces.len(), 1, 0);
         let mut longest = 1;
@@ -120,7 +138,6 @@ mod tests {
     use super::*;
     use crate::film::{Decomposition, Film};
     use std::sync::Mutex;
-    use std::thread;
 
     /// A device that tells by its sums which pieces it was given.
     struct Device;

@@ -366,23 +366,6 @@ pub(super) struct Round<'a> {
 }
 
 impl Run {
-    /// Does `work` while threads have devices render pieces, one thread for each.
-    fn beside_devices(&self, plan: &Plan, start: Instant, work: impl FnOnce() -> Result<()>) -> Result<()> {
-        let devices = self.kernel.beside();
-        if devices.is_empty() {
-            return work();
-        }
-        let shared = Shared { plan, claims: &self.claims, ledger: &self.ledger, output: &*self.output };
-        thread::scope(|scope| {
-            for device in devices {
-                let (shared, builder) = (&shared, thread::Builder::new());
-                let started = builder.spawn_scoped(scope, move || shared.serve(device, start));
-                started.map_err(|e| Error::system("starting", "the thread that serves a device", e))?;
-            }
-            work()
-        })
-    }
-
     fn timed(self: &Arc<Self>, setup: &Setup, strategy: &mut dyn Strategy, plan: &Plan) -> Result<Timed> {
         let shared = Arc::clone(self);
         let usage = Usage::now();
@@ -394,7 +377,8 @@ impl Run {
             }
         });
         let work = || strategy.run(plan.len(), job).map_err(|error| setup.strategy_error(error));
-        self.beside_devices(plan, start, work)?;
+        let shared = Shared { plan, claims: &self.claims, ledger: &self.ledger, output: &*self.output };
+        shared.beside(self.kernel.beside(), start, work)?;
         let makespan_s = start.elapsed().as_secs_f64();
         Ok(Timed { makespan_s, cpu: usage.zip(Usage::now()).map(|(before, after)| after.since(&before)) })
     }

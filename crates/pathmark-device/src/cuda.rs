@@ -2,9 +2,9 @@
 #![expect(unsafe_code, reason = "calls of the driver; each has the arguments that CUDA's documentation asks for")]
 
 use super::library::{functions, open};
-use super::{Costs, Device, DeviceError, Dialect, Listed, Loaded, Result};
+use super::nvrtc::{self, ptx_of};
+use super::{Costs, Device, DeviceError, Listed, Loaded, Result};
 use std::collections::HashMap;
-use std::env;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
@@ -29,18 +29,6 @@ functions! { Driver;
     from_device = c"cuMemcpyDtoH_v2" (*mut c_void, Address, usize) -> c_int;
     launch = c"cuLaunchKernel" (Handle, u32, u32, u32, u32, u32, u32, u32, Handle, *mut *mut c_void, *mut *mut c_void) -> c_int;
     error_text = c"cuGetErrorString" (c_int, *mut *const c_char) -> c_int;
-}
-
-functions! { Compiler;
-    create = c"nvrtcCreateProgram" (*mut Handle, *const c_char, *const c_char, c_int, *const *const c_char, *const *const c_char) -> c_int;
-    compile = c"nvrtcCompileProgram" (Handle, c_int, *const *const c_char) -> c_int;
-    ptx_size = c"nvrtcGetPTXSize" (Handle, *mut usize) -> c_int;
-    ptx = c"nvrtcGetPTX" (Handle, *mut c_char) -> c_int;
-    log_size = c"nvrtcGetProgramLogSize" (Handle, *mut usize) -> c_int;
-    log = c"nvrtcGetProgramLog" (Handle, *mut c_char) -> c_int;
-    destroy = c"nvrtcDestroyProgram" (*mut Handle) -> c_int;
-    architecture_count = c"nvrtcGetNumSupportedArchs" (*mut c_int) -> c_int;
-    architectures = c"nvrtcGetSupportedArchs" (*mut c_int) -> c_int;
 }
 
 // Numbers of CUDA's header.
@@ -71,14 +59,6 @@ static DRIVER: LazyLock<std::result::Result<Driver, NoDriver>> = LazyLock::new(|
         NO_DEVICE => Err(NoDriver { why: text_of(&driver, NO_DEVICE), is_broken: false }),
         code => Err(NoDriver { why: format!("cuInit: {}", text_of(&driver, code)), is_broken: true }),
     }
-});
-
-/// The compiler of the library that `PATHMARK_NVRTC` names, or of the first that there is.
-static COMPILER: LazyLock<std::result::Result<Compiler, String>> = LazyLock::new(|| {
-    let named = env::var("PATHMARK_NVRTC").unwrap_or_default();
-    let usual = ["libnvrtc.so", "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2"];
-    let names: &[&str] = if named.is_empty() { &usual } else { &[&named] };
-    open(names).and_then(Compiler::of)
 });
 
 /// The driver's words for an error.
@@ -135,7 +115,7 @@ pub(crate) fn list() -> Vec<Listed> {
     if devices.is_empty() {
         return nothing("the driver shows no device", false);
     }
-    let compiler = COMPILER.as_ref().err();
+    let compiler = nvrtc::missing();
     let listed = devices.into_iter().enumerate().map(|(number, device)| Listed {
         id: format!("cuda:{number}"),
         about: match compiler {
@@ -147,65 +127,6 @@ pub(crate) fn list() -> Vec<Listed> {
         is_accelerator: true,
     });
     listed.collect()
-}
-
-/// The newest architecture that the compiler knows and a device of that capability can run.
-fn architecture(compiler: &Compiler, capability: u32) -> u32 {
-    let mut count = 0;
-    // SAFETY: it writes one number.
-    unsafe { (compiler.architecture_count)(&raw mut count) };
-    let mut known = vec![0; count.max(0) as usize];
-    // SAFETY: there is room for as many as it has said.
-    unsafe { (compiler.architectures)(known.as_mut_ptr()) };
-    known.into_iter().map(|known| known as u32).filter(|known| *known <= capability).max().unwrap_or(capability)
-}
-
-/// The code for GPUs of at least that compute capability (80 for 8.0), as `libnvrtc` makes it of a program; needs no GPU.
-pub fn ptx_of(program: &str, capability: u32) -> Result<String> {
-    let missing = |why: &String| DeviceError::Missing { id: "libnvrtc".to_string(), why: why.clone() };
-    let compiler = COMPILER.as_ref().map_err(missing)?;
-    let refused = |log: String| DeviceError::Compiler { compiler: "libnvrtc".to_string(), log };
-    let text = CString::new(Dialect::Cuda.whole(program)).map_err(|e| refused(e.to_string()))?;
-    let mut handle = null_mut();
-    // SAFETY: texts end with zeros; there are no headers.
-    let code = unsafe { (compiler.create)(&raw mut handle, text.as_ptr(), c"pathmark.cu".as_ptr(), 0, null(), null()) };
-    if code != SUCCESS {
-        return Err(refused(format!("nvrtcCreateProgram: error {code}")));
-    }
-    let target = format!("--gpu-architecture=compute_{}", architecture(compiler, capability));
-    let target = CString::new(target).map_err(|e| refused(e.to_string()))?;
-    let options = [
-        target.as_ptr(),
-        c"--fmad=false".as_ptr(),
-        c"--ftz=false".as_ptr(),
-        c"--prec-div=true".as_ptr(),
-        c"--prec-sqrt=true".as_ptr(),
-    ];
-    // SAFETY: so many options, each of which ends with a zero.
-    let code = unsafe { (compiler.compile)(handle, options.len() as c_int, options.as_ptr()) };
-    let made = if code == SUCCESS {
-        Ok(text_by(compiler.ptx_size, compiler.ptx, handle))
-    } else {
-        Err(refused(text_by(compiler.log_size, compiler.log, handle)))
-    };
-    // SAFETY: the handle is this function's own.
-    unsafe { (compiler.destroy)(&raw mut handle) };
-    made
-}
-
-/// A text whose length one function tells and which another one writes.
-fn text_by(
-    size: unsafe extern "C" fn(Handle, *mut usize) -> c_int,
-    write: unsafe extern "C" fn(Handle, *mut c_char) -> c_int,
-    program: Handle,
-) -> String {
-    let mut length = 0;
-    // SAFETY: it writes one number.
-    unsafe { size(program, &raw mut length) };
-    let mut text = vec![0_u8; length];
-    // SAFETY: there is room for as much as it has said.
-    unsafe { write(program, text.as_mut_ptr().cast()) };
-    String::from_utf8_lossy(&text).trim_end_matches('\0').to_string()
 }
 
 /// A handle that may go from thread to thread.

@@ -17,16 +17,18 @@ mod dialect;
 mod error;
 mod host;
 mod library;
+mod nvrtc;
 mod opencl;
+mod opencl_driver;
 mod ptx;
 mod self_test;
 
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::Instant;
 
-pub use cuda::ptx_of;
 pub use dialect::Dialect;
 pub use error::DeviceError;
+pub use nvrtc::ptx_of;
 pub use ptx::inexact_instructions;
 
 /// The result of whatever a device can make fail.
@@ -116,7 +118,7 @@ impl dyn Loaded {
 
 /// Every device there is, and the ways that lead to none.
 pub fn list() -> Vec<Listed> {
-    [cuda::list(), opencl::list(), host::list()].concat()
+    [cuda::list(), opencl_driver::list(), host::list()].concat()
 }
 
 /// Devices that are open, each once.
