@@ -92,6 +92,14 @@ fn about_device(device: &Device) -> String {
     if device.is_there { device.about.clone() } else { format!("none: {}", device.about) }
 }
 
+/// The kernels of the processor, and one for each device that is there.
+fn kernels() -> Vec<Item> {
+    let on_processor = KERNELS.iter().map(|entry| item(entry.name, entry.about));
+    let there = devices().into_iter().filter(|device| device.is_there);
+    let on_device = there.map(|device| item(&format!("{}:{}", DEVICE_KERNEL.name, device.id), DEVICE_KERNEL.about));
+    on_processor.chain(on_device).collect()
+}
+
 fn scene_item(lab: &Lab, name: &str) -> Result<Item> {
     let scene = lab.load_scene(name)?;
     let choice = choose(&scene, &Spec::default())?;
@@ -113,7 +121,7 @@ fn items(lab: &Arc<Lab>, kind: Kind) -> Result<Vec<Item>> {
         Kind::Outputs => OUTPUTS.iter().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Estimators => lab.estimators().map(|entry| item(entry.name, entry.about)).collect(),
         Kind::Samplers => SAMPLERS.iter().map(|entry| item(entry.name, entry.about)).collect(),
-        Kind::Kernels => KERNELS.iter().chain([&DEVICE_KERNEL]).map(|entry| item(entry.name, entry.about)).collect(),
+        Kind::Kernels => kernels(),
         Kind::Simd => LEVELS.iter().map(|level| item(level.name, level.about)).collect(),
         Kind::Devices => devices().iter().map(|device| item(&device.id, &about_device(device))).collect(),
         Kind::Effects => PROFILES.iter().map(|entry| item(entry.name, entry.about)).collect(),

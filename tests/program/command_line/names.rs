@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 
-const KINDS: [&str; 24] = [
+const KINDS: [&str; 25] = [
     "scenes",
     "workloads",
     "strategies",
@@ -17,6 +17,7 @@ const KINDS: [&str; 24] = [
     "kernels",
     "keys",
     "simd",
+    "devices",
     "effects",
     "accelerators",
     "cameras",

@@ -117,10 +117,8 @@ pub const KERNELS: &[Entry] = &[
 ];
 
 /// The kernel for devices: `device` for the first GPU, `device:ID` for the device of that name, `lanes+device:ID` for both beside each other.
-pub const DEVICE_KERNEL: Entry = Entry {
-    name: DEVICE,
-    about: "on a GPU, or on the device that `device:ID` names; `lanes+device:ID` renders on both",
-};
+pub const DEVICE_KERNEL: Entry =
+    Entry { name: DEVICE, about: "on a device, with the bits of the others; `lanes+device:ID` renders on both" };
 
 const DEVICE: &str = "device";
 const LANES: &str = "lanes";
