@@ -291,10 +291,11 @@ impl Record {
 
     /// The kernel that rendered, in words: with the precision and the instruction set of its lanes, if it has any.
     pub fn kernel_name(&self) -> String {
-        if self.simd.is_empty() {
-            self.kernel.clone()
-        } else {
-            format!("{}, {} {}", self.kernel, self.precision, self.simd)
+        // Only lanes and devices have another precision than double.
+        match (self.simd.as_str(), self.precision.as_str()) {
+            ("", double) if double == Precision::F64.name() => self.kernel.clone(),
+            ("", precision) => format!("{}, {precision}", self.kernel),
+            (simd, precision) => format!("{}, {precision} {simd}", self.kernel),
         }
     }
 
