@@ -281,7 +281,8 @@ mod tests {
                     Err(DeviceError::Missing { id, why }) => return println!("SKIPPED: there is no {id}: {why}"),
                     Err(error) => panic!("{}: {error}", profile.name),
                 };
-                assert!(ptx.contains("mul.rn.f64") && ptx.contains("sqrt.rn.f64"), "{}: no arithmetic", profile.name);
+                let root = if precision == Precision::F64 { "sqrt.rn.f64" } else { "sqrt.rn.f32" };
+                assert!(ptx.contains("mul.rn.f64") && ptx.contains(root), "{}: no arithmetic", profile.name);
                 let inexact = inexact_instructions(&ptx);
                 assert!(inexact.is_empty(), "{}: {inexact:?}", profile.name);
             }
