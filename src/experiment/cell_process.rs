@@ -14,9 +14,10 @@ use crate::error::{Error, InputError, Result};
 use crate::film::SAMPLE_BLOCK;
 use crate::film_file::read_film;
 use crate::image_io::{self, Image};
+use crate::kernel::DEVICE_KERNEL;
 use crate::lab::Lab;
 use crate::measure::{
-    Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, failure, missing_external, run_external,
+    Measured, Outcome, Record, Rounds, Settings, Setup, TraceFile, Warning, failure, missing_external, run_external,
 };
 use crate::metric::cross_mse;
 use serde::{Deserialize, Serialize};
@@ -118,6 +119,11 @@ impl CellJob {
         if let Some((ranks, rule)) = self.settings.ranks.zip(self.settings.rank_rule.as_deref()) {
             return self.by_processes(lab, ranks, rule, references.as_ref());
         }
+        if self.settings.spec.kernel == DEVICE_KERNEL.name
+            && let Some(rows) = self.without_device(lab)?
+        {
+            return Ok(rows);
+        }
         if let [point] = self.points.as_slice() {
             let setup = self.setup(lab, point.spp)?;
             let outcome = setup.run(None)?;
@@ -134,6 +140,18 @@ impl CellJob {
         let setup = lab.prepare(Settings { spp, ..self.settings.clone() })?;
         self.scene.check(&setup.hash())?;
         Ok(setup)
+    }
+
+    /// The rows of a cell for a GPU where there is none: no failures, but nothing measured either.
+    fn without_device(&self, lab: &Lab) -> Result<Option<Vec<Record>>> {
+        let row = |point: &PointJob| {
+            let setup = self.setup(lab, point.spp)?;
+            let is_without = setup.scene().is_some_and(|(_, choice)| choice.lacks_device());
+            let mut record = Record::of(&setup);
+            record.warn(&Warning::NoDevice);
+            Ok(is_without.then(|| self.label(point, record)))
+        };
+        self.points.iter().map(row).collect()
     }
 
     /// The rows of a curve. Rounds that end inside a block of samples would render its samples twice and time them twice, so an image of fewer

@@ -51,7 +51,6 @@ use super::until::Until;
 use super::{Chapter, External, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
-use crate::kernel::devices;
 use crate::lab::Lab;
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -68,29 +67,22 @@ pub(super) const REFERENCE_SPP: &str = "reference-spp";
 /// What else there is in a folder of results.
 const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
 
-/// Something that not every build or machine has.
+/// Something that not every build has.
 pub(super) struct Feature {
     /// What an experiment calls it.
     pub(super) name: &'static str,
-    /// Whether it is there.
-    pub(super) is_there: fn() -> bool,
+    /// Whether this build has it.
+    pub(super) is_there: bool,
     /// What it takes to have it.
     pub(super) takes: &'static str,
 }
 
 /// What an experiment may require.
-pub(super) const FEATURES: &[Feature] = &[
-    Feature {
-        name: "openmp",
-        is_there: || cfg!(feature = "openmp"),
-        takes: "a program built by `cargo run --release --features openmp -- ...`",
-    },
-    Feature {
-        name: "gpu",
-        is_there: || devices().iter().any(|device| device.is_there && device.is_accelerator),
-        takes: "a GPU in `pathmark list devices`",
-    },
-];
+pub(super) const FEATURES: &[Feature] = &[Feature {
+    name: "openmp",
+    is_there: cfg!(feature = "openmp"),
+    takes: "a program built by `cargo run --release --features openmp -- ...`",
+}];
 
 /// What a sweep may keep beside its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
@@ -152,7 +144,7 @@ pub struct Definition {
     /// Whether samplers may be used that give other numbers in each run, so that no checksum can be expected.
     #[serde(default)]
     pub unverified: bool,
-    /// What not every build or machine has; without it the experiment is left out.
+    /// What not every build has; without it the experiment is left out.
     #[serde(default)]
     pub requires: Vec<String>,
     #[serde(deserialize_with = "one_or_many")]
@@ -241,10 +233,10 @@ impl Definition {
         names
     }
 
-    /// The first feature that it needs and that this program or machine has not, and what it takes to have it.
+    /// The first feature that it needs and that this program has not, and what it takes to have it.
     pub fn missing_feature(&self) -> Option<(&str, &'static str)> {
         let required = |feature: &&Feature| self.requires.iter().any(|name| name == feature.name);
-        let missing = FEATURES.iter().filter(required).find(|feature| !(feature.is_there)());
+        let missing = FEATURES.iter().filter(required).find(|feature| !feature.is_there);
         missing.map(|feature| (feature.name, feature.takes))
     }
 

@@ -14,7 +14,7 @@ const KEYS: &[(&str, &str)] = &[
     ("in-short", "number of the finding that stands at the beginning of the page"),
     ("keep", "what stays beside the rows: images, traces, calibration, messages"),
     ("unverified", "true for samplers that give other numbers in each run, so that no checksum can be expected"),
-    ("requires", "what not every build or machine has: openmp, gpu"),
+    ("requires", "what not every build has: openmp"),
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
     ("matrix.weak", "true: samples per pixel are for each thread"),
     ("matrix.curve", "true: a row at 1, 2, 4 ... times the fewest samples on the way to each spp"),

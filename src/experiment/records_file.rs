@@ -4,11 +4,14 @@ use crate::atomic_file;
 use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
 use crate::lock::{self, Sharing};
-use crate::measure::{Record, SCHEMA};
+use crate::measure::{COLUMNS, Column, Record, SCHEMA};
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+
+/// Versions of the columns that are read. The older ones lack columns that may be empty, and nothing else.
+const READABLE: [u32; 2] = [7, SCHEMA];
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {
@@ -67,6 +70,19 @@ fn end_of_rows(bytes: &[u8]) -> usize {
     end
 }
 
+/// Refuses a file whose rows have other columns than those that would be added to it.
+fn check_columns(text: &str, path: &Path) -> Result<()> {
+    let head = csv::Reader::from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
+    if head.is_empty() || head.iter().eq(COLUMNS.iter().map(|column| column.name)) {
+        return Ok(());
+    }
+    let is_lacking = |column: &&Column| !head.iter().any(|name| name == column.name);
+    let lacking: Vec<&str> = COLUMNS.iter().filter(is_lacking).map(|column| column.name).collect();
+    let problem = "was written with other columns, so this version of the program can add no rows to it";
+    let error = InputError::new("records", lacking.join(", "), problem).allowed("another --out");
+    Err(error.in_file(path.display().to_string(), Some((1, 1))).into())
+}
+
 fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
     let file = path.display().to_string();
     let mut records = Vec::new();
@@ -83,10 +99,10 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
         let line = row.position().map(|position| (position.line() as usize, 1));
         // Before anything else of the row: other versions have other columns.
         let found = schema.and_then(|at| row.get(at)).unwrap_or_default();
-        if found != SCHEMA.to_string() {
+        if !READABLE.iter().any(|readable| found == readable.to_string()) {
             let problem = "was written by another version of the program";
             return Err(InputError::new("schema", found, problem)
-                .allowed(SCHEMA.to_string())
+                .allowed(READABLE.map(|readable| readable.to_string()).join(", "))
                 .in_file(&file, line)
                 .into());
         }
@@ -128,6 +144,7 @@ impl RecordsFile {
         let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
         let complete = complete_part(&bytes, path)?;
         let mut records = parse(complete, path)?;
+        check_columns(complete, path)?;
         let rows = records.len();
         records.retain(|record| record.error.is_empty());
         if rows == records.len() && complete.len() == bytes.len() {

@@ -19,6 +19,7 @@ const SINCE: &[(u32, &[&str])] = &[
     (5, &["kernel_fallback", "simd"]),
     (6, &["filter", "epsilon", "object_mse", "within_tolerance", "fireflies", "black_pixels", "image_write_s"]),
     (7, &["ranks", "rank_rule", "mpi"]),
+    (8, &["device_compile_s", "device_copy_s"]),
 ];
 
 impl Column {

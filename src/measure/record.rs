@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 7;
+pub const SCHEMA: u32 = 8;
 
 columns! {
     /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
@@ -98,6 +98,10 @@ columns! {
         pub workers_used: Option<u32>,
         /// Seconds to build the kernel and the scene's acceleration structure.
         pub build_s: Option<f64>,
+        /// Seconds of `build_s` to compile programs for devices; empty without devices.
+        pub device_compile_s: Option<f64>,
+        /// Seconds of `build_s` to copy the scene to devices; empty without devices.
+        pub device_copy_s: Option<f64>,
         /// Seconds of the pilot that estimates the cost of the pieces, where the strategy needs it.
         pub pilot_s: Option<f64>,
         /// Seconds to make the strategy, with its pool if it keeps one.
@@ -345,6 +349,8 @@ impl Record {
             record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
         }
         record.build_s = Some(outcome.build_s);
+        record.device_compile_s = outcome.device.map(|device| device.compile_s);
+        record.device_copy_s = outcome.device.map(|device| device.copy_s);
         record.jobs = durations.len();
         record.workers_used = Some(outcome.workers_used);
         record.pilot_s = Some(outcome.pilot_s);

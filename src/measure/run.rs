@@ -12,7 +12,7 @@ use super::{JobSpan, Setup, Trace, Warning, available_threads, utc_now};
 use crate::error::{Error, Result};
 use crate::film::{Film, Plan, Reserve, Sections};
 use crate::film_file::FilmKey;
-use crate::kernel::{Counts, Kernel};
+use crate::kernel::{Counts, DeviceCosts, Kernel};
 use crate::strategy::Strategy;
 use std::cell::Cell;
 use std::ops::Range;
@@ -54,6 +54,8 @@ pub struct Outcome {
     pub workers_used: u32,
     /// Seconds to build the kernel and what accelerates the scene; once for all runs of a setup.
     pub build_s: f64,
+    /// What of it devices took, if there were any.
+    pub device: Option<DeviceCosts>,
     /// Seconds to find out what the pieces will cost, where their order depends on it.
     pub pilot_s: f64,
     /// Seconds to make the strategy.
@@ -278,10 +280,12 @@ impl Account {
         if cfg!(debug_assertions) {
             warnings.push(Warning::DebugBuild);
         }
+        let kernel = setup.kernel().ok().map(|(kernel, _)| kernel);
         Outcome {
             checksum: setup.is_deterministic().then(|| film.checksum()),
             warnings,
-            remarks: setup.kernel().map(|(kernel, _)| kernel.remarks()).unwrap_or_default(),
+            remarks: kernel.as_ref().map(|kernel| kernel.remarks()).unwrap_or_default(),
+            device: kernel.and_then(|kernel| kernel.costs()),
             film,
             spp,
             adaptive: false,

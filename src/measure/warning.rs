@@ -60,6 +60,8 @@ pub enum Warning {
     },
     /// The other program that was to be run is not there.
     NoProgram,
+    /// The GPU that was to render is not there.
+    NoDevice,
     /// The system's clock shows no date from 1970 to 9999.
     NoDate,
     /// The program was built without optimisation for measuring.
@@ -155,6 +157,11 @@ pub const WARNINGS: &[WarningEntry] = &[
         advice: "Install it, or start `pathmark` in the folder of its sources; the report leaves its rows out.",
     },
     WarningEntry {
+        name: "no-device",
+        about: "The row is for a GPU, and neither CUDA nor OpenCL finds one.",
+        advice: "`pathmark list devices` says which libraries are missing; the report leaves the row out.",
+    },
+    WarningEntry {
         name: "no-date",
         about: "The system's clock shows no date from 1970 to 9999.",
         advice: "Set the clock; durations are measured with another clock and are right.",
@@ -188,6 +195,7 @@ impl fmt::Display for Warning {
                 write!(f, "invalid-samples({count}{at})")
             }
             Self::NoProgram => f.write_str("no-program"),
+            Self::NoDevice => f.write_str("no-device"),
             Self::NoDate => f.write_str("no-date"),
             Self::DebugBuild => f.write_str("debug-build"),
         }
@@ -216,6 +224,7 @@ mod tests {
             Warning::LeftOut(1),
             Warning::InvalidSamples { count: 1, first: Vec::new() },
             Warning::NoProgram,
+            Warning::NoDevice,
             Warning::NoDate,
             Warning::DebugBuild,
         ];
@@ -236,6 +245,7 @@ mod tests {
                 | Warning::LeftOut(_)
                 | Warning::InvalidSamples { .. }
                 | Warning::NoProgram
+                | Warning::NoDevice
                 | Warning::NoDate
                 | Warning::DebugBuild => {}
             }

@@ -119,8 +119,8 @@ fn rows_of_another_version_are_told_as_such() {
     let whole = fs::read_to_string(&records).unwrap();
     let (header, rows) = whole.split_once('\n').unwrap();
     let rows: Vec<&str> = rows.lines().map(|row| row.split_once(',').unwrap().1).collect();
-    let (older, newer) = ((SCHEMA - 1).to_string(), (SCHEMA + 1).to_string());
-    for (columns, version) in [("a_column_that_was", older.as_str()), ("two,columns", &newer), ("mse", "")] {
+    let newer = (SCHEMA + 1).to_string();
+    for (columns, version) in [("a_column_that_was", "6"), ("two,columns", &newer), ("mse", "")] {
         // Columns that there are no longer, instead of those behind the first.
         let header = header.replacen("experiment", columns, 1);
         let value = if columns.contains(',') { "1,2" } else { "1" };
@@ -131,6 +131,32 @@ fn rows_of_another_version_are_told_as_such() {
         refused(folder.path(), &["report", "out"], 2, &said);
         refused(folder.path(), &RESUME, 2, &said);
     }
+}
+
+/// Rows of version 7 lack two columns that may be empty: they are read, and no rows of other columns are put behind them.
+#[test]
+fn rows_of_the_version_before_are_read_and_not_added_to() {
+    let (folder, records) = after_a_run();
+    let mut reader = csv::Reader::from_path(&records).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let is_old = |column: usize| !heads[column].starts_with("device_");
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let kept = |row: &csv::StringRecord| -> Vec<String> {
+        (0..row.len()).filter(|column| is_old(*column)).map(|column| row[column].to_string()).collect()
+    };
+    writer.write_record(kept(&heads)).unwrap();
+    for row in reader.records() {
+        let row = kept(&row.unwrap());
+        writer.write_record(std::iter::once("7").chain(row[1..].iter().map(String::as_str))).unwrap();
+    }
+    fs::write(&records, writer.into_inner().unwrap()).unwrap();
+    finish(pathmark(folder.path(), &["report", "out"])).with_code(0);
+    refused(
+        folder.path(),
+        &RESUME,
+        2,
+        &["records.csv:1:", "device_compile_s, device_copy_s", "other columns", "another --out"],
+    );
 }
 
 #[test]

@@ -19,7 +19,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("title = \"Tiny\"", "title = \"Tiny\"\nchapter = \"sports\"", &["chapter", "sports", "accuracy", "scheduling"]),
     ("title = \"Tiny\"", "title = \"Tiny\"\nplace = -1", &["place", "-1"]),
     ("title = \"Tiny\"", "title = \"Tiny\"\nin-short = 0", &["in-short", "0"]),
-    ("title = \"Tiny\"", "title = \"Tiny\"\nrequires = [\"abacus\"]", &["requires", "abacus", "openmp, gpu"]),
+    ("title = \"Tiny\"", "title = \"Tiny\"\nrequires = [\"abacus\"]", &["requires", "abacus", "openmp"]),
     ("spp = [4]", "spp = [4]\nprofiles = [\"huge\"]", &["profiles", "huge", "quick", "full", "reports"]),
     ("spp = [4]", "spp = [4]\nprofiles = \"full\"", &["profiles", "full", "sequence"]),
     ("spp = [4]", "spp = [4]\nprofiles = [\"reports\"]", &["profiles", "reports", "[reports]", "quick, full"]),

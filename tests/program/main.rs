@@ -4,6 +4,7 @@ mod changed_inputs;
 mod claims;
 mod command_line;
 mod commands;
+mod device_rows;
 mod diff;
 #[path = "../support/experiment.rs"]
 mod experiment;

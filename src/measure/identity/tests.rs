@@ -39,7 +39,7 @@ const SCHEDULE: [&str; 11] = [
 ];
 
 /// Columns that say which row it is, what follows from the others, and what was measured.
-const OTHER: [&str; 56] = [
+const OTHER: [&str; 58] = [
     "mpi",
     "object_mse",
     "within_tolerance",
@@ -58,6 +58,8 @@ const OTHER: [&str; 56] = [
     "jobs",
     "workers_used",
     "build_s",
+    "device_compile_s",
+    "device_copy_s",
     "pilot_s",
     "setup_s",
     "makespan_s",

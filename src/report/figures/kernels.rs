@@ -3,6 +3,7 @@
 use super::prelude::*;
 use crate::analysis::versus::equal_error;
 use crate::kernel::DEVICE_KERNEL;
+use crate::measure::Warning;
 use crate::report::contenders::{Contender, contenders};
 
 #[derive(Deserialize)]
@@ -36,7 +37,8 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
     for ((scene, estimator, sampler, _, threads), rows) in
         results.by(|row| (&row.scene, &row.estimator, &row.sampler, &row.roulette, row.threads))
     {
-        let kernels = group(rows, |row| row.kernel_name());
+        let measured = rows.into_iter().filter(|row| row.makespan_s.is_some());
+        let kernels = group(measured, |row| row.kernel_name());
         let Some(base) = kernels.get(yardstick) else { continue };
         let mut lines = Vec::new();
         for (kernel, rows) in &kernels {
@@ -64,22 +66,36 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         return Ok(vec![Block::finding("No two kernels rendered the same, so there is no ratio of them.")]);
     }
     let mut blocks = vec![Block::figure("kernels", plot(results, &works, &yardstick))];
+    let warning = Warning::NoDevice.to_string();
+    if results.rows().any(|row| row.warnings.contains(&warning)) {
+        let text = "The kernel `device` was not measured: neither CUDA nor OpenCL finds a GPU on this machine.";
+        blocks.push(Block::finding(text));
+    }
     let scenes = contenders(results)?;
     blocks.extend(scenes.iter().filter_map(|(scene, all)| finding(scene, all, &yardstick, goal.0)));
-    blocks.push(
-        Block::table("kernels", "Samples and rays per second, medians", works.iter().flatten())
-            .column("workload", |line| line.name.clone())
-            .column("threads", |line| line.threads.to_string())
-            .column("kernel", |line| line.kernel.clone())
-            .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
-            .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
-            .told(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Told::from))
-            .end(),
-    );
+    let mut table = Block::table("kernels", "Samples and rays per second, medians", works.iter().flatten())
+        .column("workload", |line| line.name.clone())
+        .column("threads", |line| line.threads.to_string())
+        .column("kernel", |line| line.kernel.clone())
+        .number("Msamples/s", Decimals(2), |line| line.rate(|row| row.paths))
+        .number("Mrays/s", Decimals(2), |line| line.rate(|row| row.rays))
+        .told(format!("times as fast as {yardstick}"), Decimals(2), |line| line.ratio.map(Told::from));
+    if results.rows().any(|row| row.device_compile_s.is_some()) {
+        table = table.number("s to compile", Decimals(2), |line| line.typical(|row| row.device_compile_s)).number(
+            "s to copy the scene",
+            Decimals(4),
+            |line| line.typical(|row| row.device_copy_s),
+        );
+    }
+    blocks.push(table.end());
     Ok(blocks)
 }
 
 impl Line<'_> {
+    fn typical(&self, seconds: fn(&Row) -> Option<f64>) -> Option<f64> {
+        median(&values(self.rows.iter().copied(), seconds))
+    }
+
     fn rate(&self, count: fn(&Row) -> Option<u64>) -> Option<f64> {
         // Of a curve, its end: the longest of its renders.
         let spp = self.rows.iter().map(|row| row.spp).max();

@@ -5,6 +5,7 @@ use super::device::OnDevice;
 use super::{Counts, Kernel};
 use crate::error::Error;
 use crate::film::{Piece, TileBuffer};
+use pathmark_device::Costs;
 
 /// The kernels.
 pub(super) struct Beside {
@@ -23,6 +24,13 @@ impl Kernel for Beside {
 
     fn remarks(&self) -> Vec<String> {
         self.devices.iter().flat_map(Kernel::remarks).collect()
+    }
+
+    fn costs(&self) -> Option<Costs> {
+        self.devices
+            .iter()
+            .filter_map(Kernel::costs)
+            .reduce(|a, b| Costs { compile_s: a.compile_s + b.compile_s, copy_s: a.copy_s + b.copy_s })
     }
 
     fn beside(&self) -> Vec<&dyn Kernel> {

@@ -115,6 +115,11 @@ impl Choice {
         if let Way::Beside { devices, .. } = &self.way { devices.len() } else { 0 }
     }
 
+    /// Whether it asks for a GPU and there is none: then there is no kernel to be made.
+    pub fn lacks_device(&self) -> bool {
+        matches!(&self.way, Way::Device(device) if device.id.is_none())
+    }
+
     /// Name of the kernel that renders; of a device with the device's own: `device:cuda:0`.
     pub fn kernel(&self) -> &str {
         match &self.way {

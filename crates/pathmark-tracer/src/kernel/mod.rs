@@ -31,7 +31,7 @@ use device::OnDevice;
 pub use inspect::{BounceRow, Event, Inspector, LightByBounce, PathLog};
 use lanes::Lanes;
 pub use own::OwnEstimator;
-pub use pathmark_device::{Listed as Device, list as devices};
+pub use pathmark_device::{Costs as DeviceCosts, Listed as Device, list as devices};
 pub use rays::{FoundRays, RaySearch, Start, path_rays};
 use recursion_clamp::RecursionClamp;
 use scalar::Scalar;
@@ -94,6 +94,11 @@ pub trait Kernel: Send + Sync {
     /// What a user should hear of how it rendered, besides counts.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// What it took to make programs for devices, if it has any.
+    fn costs(&self) -> Option<DeviceCosts> {
+        None
     }
 
     /// Why pieces were not rendered, if the system refused; what is in their buffers then counts for nothing.

@@ -1,7 +1,7 @@
 //! Which kernel renders a scene: the one that was asked for, or the scalar one where that has no code for something.
 
 use super::choice::unknown;
-use super::device::{ForDevice, device_for};
+use super::device::{ForDevice, device_for, missing};
 use super::in_lanes::{InLanes, lanes_for, level, precision};
 use super::{DEVICE, DEVICE_KERNEL, KERNELS, LANES, SCALAR, Spec};
 use crate::error::{InputError, Result};
@@ -83,6 +83,7 @@ fn beside(
     let (mut kernel, mut all) = (own_name.to_string(), Vec::new());
     for device in devices.split('+') {
         match by(device, None)? {
+            Way::Device(ForDevice { id: None, kernel, .. }) => return Err(missing(&kernel)),
             Way::Device(device) => {
                 kernel = format!("{kernel}+{}", device.kernel);
                 all.push(device);

@@ -16,8 +16,8 @@ use std::io;
 pub(in crate::kernel) struct ForDevice {
     /// The kernel's name with the device's: `device:opencl:0`.
     pub(in crate::kernel) kernel: String,
-    /// The device's own name.
-    pub(super) id: String,
+    /// The device's own name; `None` where any GPU would do and there is none.
+    pub(in crate::kernel) id: Option<String>,
     pub(super) course: PathRules,
     pub(in crate::kernel) precision: Precision,
     /// The sampler's place among [`SAMPLERS`].
@@ -42,8 +42,8 @@ fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>, precision: Precisi
     obstacles.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name)
 }
 
-/// The device that was asked for: the one that is named, or else the first GPU.
-fn chosen(kernel: &str) -> Result<String> {
+/// The device that was asked for: the one that is named, or else the first GPU, if there is one.
+fn chosen(kernel: &str) -> Result<Option<String>> {
     let all = pathmark_device::list();
     let there = |wanted: &dyn Fn(&Listed) -> bool| all.iter().find(|listed| listed.is_there && wanted(listed));
     let named = kernel.split_once(':').map(|(_, id)| id);
@@ -52,13 +52,19 @@ fn chosen(kernel: &str) -> Result<String> {
         None => there(&|listed| listed.is_accelerator),
     };
     if let Some(found) = found {
-        return Ok(found.id.clone());
+        return Ok(Some(found.id.clone()));
     }
     // What was asked for may be what a driver refuses to show.
     let is_meant = |listed: &&Listed| named.map_or(listed.is_accelerator, |id| id.starts_with(&listed.id));
     if let Some(broken) = all.iter().filter(is_meant).find(|listed| listed.is_broken) {
         return Err(Error::system("opening", named.unwrap_or(&broken.id), io::Error::other(broken.about.clone())));
     }
+    if named.is_none() { Ok(None) } else { Err(missing(kernel)) }
+}
+
+/// There is no such device here.
+pub(in crate::kernel) fn missing(kernel: &str) -> Error {
+    let (all, named) = (pathmark_device::list(), kernel.split_once(':').map(|(_, id)| id));
     let missing = all.iter().filter(|listed| !listed.is_there);
     let why: Vec<String> = missing.map(|listed| format!("{}: {}", listed.id, listed.about)).collect();
     let why = if why.is_empty() { String::new() } else { format!(" ({})", why.join("; ")) };
@@ -68,7 +74,7 @@ fn chosen(kernel: &str) -> Result<String> {
     };
     let ids = all.iter().filter(|listed| listed.is_there).map(|listed| format!("{DEVICE}:{}", listed.id));
     let allowed: Vec<String> = ids.collect();
-    Err(InputError::new("kernel", kernel, problem).allowed(allowed.join(", ")).into())
+    InputError::new("kernel", kernel, problem).allowed(allowed.join(", ")).into()
 }
 
 /// The device that renders a scene with these settings, or why none does.
@@ -90,7 +96,8 @@ pub(in crate::kernel) fn device_for(
     let sampler = sampler.map(|(number, _)| number);
     Ok(match (obstacle(scene, spec, epsilon, precision), course, sampler) {
         (None, Some(course), Some(sampler)) => {
-            Ok(ForDevice { kernel: format!("{DEVICE}:{id}"), id, course, precision, sampler })
+            let kernel = id.as_ref().map_or_else(|| DEVICE.to_string(), |id| format!("{DEVICE}:{id}"));
+            Ok(ForDevice { kernel, id, course, precision, sampler })
         }
         (Some(reason), ..) => Err(reason),
         (None, None, _) => Err("estimator"),

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::film::{Piece, SAMPLE_BLOCK, TileBuffer};
 use crate::scene::Scene;
 use crate::simd::Precision;
-pub(super) use choice::{ForDevice, device_for};
+pub(super) use choice::{ForDevice, device_for, missing};
 use items::{Items, OUT_WORDS, Placing};
 use pathmark_device::{Costs, DeviceError, Loaded};
 use std::io;
@@ -52,8 +52,9 @@ fn system(id: &str, error: &DeviceError) -> Error {
 
 impl OnDevice {
     pub(super) fn new(scene: &Scene, choice: &Choice, chosen: &ForDevice) -> Result<Self> {
-        let failed = |error: DeviceError| system(&chosen.id, &error);
-        let device = pathmark_device::open(&chosen.id).map_err(failed)?;
+        let Some(id) = chosen.id.clone() else { return Err(missing(&chosen.kernel)) };
+        let failed = |error: DeviceError| system(&id, &error);
+        let device = pathmark_device::open(&id).map_err(failed)?;
         let (numbers, words) = tables::of(scene, choice, chosen);
         let text = program::text(choice.profile.effects, &chosen.course, chosen.precision);
         let uses_single = chosen.precision == Precision::F32;
@@ -61,7 +62,7 @@ impl OnDevice {
         let width = device.width();
         let none = || AtomicU64::new(0);
         let (rate, launches, launches_us) = (none(), none(), none());
-        Ok(Self { id: chosen.id.clone(), loaded, width, rate, launches, launches_us, failed: OnceLock::new() })
+        Ok(Self { id, loaded, width, rate, launches, launches_us, failed: OnceLock::new() })
     }
 
     /// The samples of an item: as many blocks, a power of two, as leave the device enough items.
@@ -127,6 +128,10 @@ impl Kernel for OnDevice {
             "{}: compiled in {compile_s:.3} s, scene copied in {copy_s:.6} s, {launches} launches in {launches_s:.3} s",
             self.id
         )]
+    }
+
+    fn costs(&self) -> Option<Costs> {
+        Some(self.loaded.costs())
     }
 
     fn failure(&self) -> Option<Error> {
