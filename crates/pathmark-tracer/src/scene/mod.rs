@@ -23,7 +23,7 @@ pub use fog::Fog;
 pub use generator::GENERATORS;
 pub(crate) use hierarchy::DEEPEST;
 pub use hierarchy::{
-    ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Hierarchy, Scan, Tests, accelerator, padding,
+    ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Gathered, Hierarchy, Scan, Tests, accelerator, padding,
 };
 pub use library::{Library, load};
 pub use light::{Aim, Lights, one_minus_cos};

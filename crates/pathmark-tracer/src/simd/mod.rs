@@ -29,6 +29,7 @@ fn has_bit_counts() -> bool {
 #[macro_use]
 mod register;
 
+mod aligned;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
@@ -41,8 +42,9 @@ mod tests;
 mod two;
 
 use crate::math::{Bits, Real};
+pub use aligned::Aligned;
 use std::ops::{BitAnd, BitOr, Not};
-pub use table::{Number, Numbers, Table};
+pub use table::{Column, Number, Numbers, Table};
 
 /// The answers of a comparison, one bit a lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {

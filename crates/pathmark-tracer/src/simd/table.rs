@@ -1,8 +1,8 @@
 //! Numbers that lanes look up, each its own row of a table, or load side by side.
 
-use super::Precision;
+use super::{Aligned, Apart, Float, MOST_LANES, Precision};
 
-/// Rows of four.
+/// Rows of four in one format. Those of the other are a row of zeros, so that whoever asks for them finds something.
 pub struct Table {
     pub(super) rows: Vec<[f64; 4]>,
     pub(super) singles: Vec<[f32; 4]>,
@@ -33,16 +33,20 @@ fn start<T>(rows: &[[T; 4]], number: i32) -> *const [T; 4] {
 }
 
 impl Table {
-    /// A table; there must be a row.
-    pub fn new(rows: Vec<[f64; 4]>) -> Self {
-        assert!(!rows.is_empty(), "a table needs a row");
-        let singles: Vec<[f32; 4]> = rows.iter().map(|row| row.map(|number| number as f32)).collect();
+    /// A table, its numbers rounded if need be; there must be a row.
+    pub fn new(rows: impl IntoIterator<Item = [f64; 4]>, precision: Precision) -> Self {
+        let (mut doubles, mut singles) = (vec![[0.0; 4]], vec![[0.0; 4]]);
+        match precision {
+            Precision::F64 => doubles = rows.into_iter().collect(),
+            Precision::F32 => singles = rows.into_iter().map(|row| row.map(|number| number as f32)).collect(),
+        }
+        assert!(!doubles.is_empty() && !singles.is_empty(), "a table needs a row");
         Self {
             #[cfg(target_arch = "x86_64")]
-            columns: columns(&rows),
+            columns: columns(&doubles),
             #[cfg(target_arch = "x86_64")]
             single_columns: columns(&singles),
-            rows,
+            rows: doubles,
             singles,
         }
     }
@@ -62,7 +66,7 @@ impl Table {
 
     /// The row of that number; the first if there is none, since what is in a lane without a ray may be anything.
     #[inline(always)]
-    pub(super) fn row(&self, number: i32) -> &[f64; 4] {
+    pub fn row(&self, number: i32) -> &[f64; 4] {
         self.rows.get(number as usize).unwrap_or(&self.rows[0])
     }
 
@@ -72,20 +76,61 @@ impl Table {
     }
 }
 
+/// One number in each row, which single precision has exactly.
+pub struct Column(Vec<f32>);
+
+impl Column {
+    /// A column; there must be a row.
+    pub fn new(numbers: impl IntoIterator<Item = f32>) -> Self {
+        let numbers: Vec<f32> = numbers.into_iter().collect();
+        assert!(!numbers.is_empty(), "a column needs a row");
+        Self(numbers)
+    }
+
+    /// The numbers in these rows; that in the first where there is no such row.
+    #[inline(always)]
+    pub fn at<V: Float>(&self, rows: V) -> V {
+        V::apart(Rows { column: self, rows })
+    }
+}
+
+/// Rows of a column. Its loop over lanes would take registers from whoever asks.
+struct Rows<'a, V> {
+    column: &'a Column,
+    rows: V,
+}
+
+impl<V: Float> Apart for Rows<'_, V> {
+    type Output = V;
+
+    #[inline(always)]
+    fn run(self) -> V {
+        let Self { column: Column(column), rows } = self;
+        let mut numbers = [V::One::default(); MOST_LANES];
+        rows.store(&mut numbers);
+        for number in &mut numbers[..V::LANES] {
+            let row: f64 = (*number).into();
+            *number = V::one(f64::from(column.get(row as usize).copied().unwrap_or(column[0])));
+        }
+        V::load(&numbers)
+    }
+}
+
 /// Numbers that stand side by side, in the format in which they will be loaded.
 pub struct Numbers {
     precision: Precision,
-    doubles: Vec<f64>,
-    singles: Vec<f32>,
+    doubles: Aligned<f64>,
+    singles: Aligned<f32>,
 }
 
 impl Numbers {
     /// None yet, with room for so many.
     pub fn with_capacity(count: usize, precision: Precision) -> Self {
         let (doubles, singles) = match precision {
-            Precision::F64 => (Vec::with_capacity(count), Vec::new()),
-            Precision::F32 => (Vec::new(), Vec::with_capacity(count)),
+            Precision::F64 => (count, 0),
+            Precision::F32 => (0, count),
         };
+        let (doubles, singles) = (Aligned::with_capacity(doubles), Aligned::with_capacity(singles));
         Self { precision, doubles, singles }
     }
 
@@ -119,18 +164,13 @@ impl Numbers {
 
     /// Numbers, rounded if need be.
     pub fn new(numbers: Vec<f64>, precision: Precision) -> Self {
-        match precision {
-            Precision::F64 => Self { precision, doubles: numbers, singles: Vec::new() },
-            Precision::F32 => {
-                let mut all = Self::with_capacity(numbers.len(), precision);
-                all.extend(numbers);
-                all
-            }
-        }
+        let mut all = Self::with_capacity(numbers.len(), precision);
+        all.extend(numbers);
+        all
     }
 }
 
-/// A number of either format.
+/// A number of either format; nothing else is one, since memory is looked at as such.
 pub trait Number: Copy + Default + PartialOrd + Into<f64> + Send + Sync {
     /// Those of that format; none if they are of another.
     fn all(numbers: &Numbers) -> &[Self];

@@ -201,7 +201,8 @@ fn lanes_move<V: Float>() {
         }
     }
     for rows in [1_usize, 5, 16, 17, 32, 33, 40] {
-        let table = Table::new((0..rows).map(|row| [0, 1, 2, 3].map(|j| (10 * row + j) as f64)).collect());
+        let precision = if V::IS_DOUBLE { Precision::F64 } else { Precision::F32 };
+        let table = Table::new((0..rows).map(|row| [0, 1, 2, 3].map(|j| (10 * row + j) as f64)), precision);
         let numbers: [f64; MOST_LANES] = std::array::from_fn(|k| (k * 7 % rows) as f64);
         for (j, column) in V::rows(&table, of::<V>(numbers)).into_iter().enumerate() {
             for (lane, number) in numbers.iter().enumerate().take(V::LANES) {

@@ -270,7 +270,7 @@ impl Tables {
         self.add_numbers("AT_LARGE", numbers);
         let spheres = scene.primitives.spheres.len() as u32;
         self.add_words("AT_IS_LARGE", (0..spheres).map(|number| u32::from(large.contains(number))));
-        self.add_numbers("AT_SURFACES", surfaces(scene, Precision::F32).into_iter().flatten());
+        self.add_numbers("AT_SURFACES", surfaces(scene, Precision::F32).flatten());
     }
 
     fn set_view(&mut self, scene: &Scene, choice: &Choice) {

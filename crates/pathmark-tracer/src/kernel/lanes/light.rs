@@ -94,7 +94,7 @@ impl Lanes {
         let rays = Rays { ray: Ray { origin: at.point, direction: aims.direction }, from: at.primitive, own_root };
         let (_, met) = self.nearest(&rays, lit.lanes.bits(), &mut packet.scratch, counts);
         counts.rays += u64::from(lit.lanes.bits().count_ones());
-        let [r, g, b, _] = V::rows(&self.tables.emissions, aims.primitive);
+        let [r, g, b, _] = V::rows(&self.tables.emissions, self.tables.rows(aims.primitive));
         let weight = match self.course.aims {
             Some(true) => power_heuristic(aims.density, lit.density),
             _ => V::splat(1.0),

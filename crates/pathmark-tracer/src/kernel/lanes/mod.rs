@@ -64,21 +64,27 @@ enum Search {
 
 impl Lanes {
     pub(super) fn new(
-        scene: Arc<Scene>,
+        mut scene: Arc<Scene>,
         choice: &Choice,
         InLanes { level, precision, course, sampler, is_matt }: InLanes,
     ) -> Self {
-        let tables = Tables::of(&scene, precision);
         let view = choice.view(&scene);
+        let is_round = scene.primitives.spheres.len() == scene.owners.len();
+        let search = match precision {
+            _ if !is_round || scene.hierarchy.is_some() => {
+                Search::Wide(Box::new(Wide::of(&scene, level, precision, &scene.enclosing(&view))))
+            }
+            Precision::F64 => Search::Filter(Filter::of(&scene)),
+            Precision::F32 => Search::Singles(Singles::of(&scene, &scene.enclosing(&view))),
+        };
+        // Nobody asks the scene itself for the nearest of spheres that are in a tree.
+        if let Some(scene) = Arc::get_mut(&mut scene).filter(|_| is_round) {
+            scene.hierarchy = None;
+        }
         Self {
-            targets: scene.lights.as_ref().and_then(Targets::of).map(Box::new),
-            search: match precision {
-                _ if !tables.is_round || scene.hierarchy.is_some() => {
-                    Search::Wide(Box::new(Wide::of(&scene, level, precision, &scene.enclosing(&view))))
-                }
-                Precision::F64 => Search::Filter(Filter::of(&scene)),
-                Precision::F32 => Search::Singles(Singles::of(&scene, &scene.enclosing(&view))),
-            },
+            targets: scene.lights.as_ref().and_then(|lights| Targets::of(lights, precision)).map(Box::new),
+            tables: Tables::of(&scene, precision),
+            search,
             view,
             precision,
             scene,
@@ -86,7 +92,6 @@ impl Lanes {
             seed: choice.seed,
             course,
             sampler,
-            tables,
             level,
             is_matt,
         }

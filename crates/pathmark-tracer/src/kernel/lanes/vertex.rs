@@ -82,7 +82,8 @@ impl Lanes {
         if ended == packet.alive {
             return ended;
         }
-        let [r, g, b, kind] = V::rows(&self.tables.materials, primitive);
+        let row = self.tables.rows(primitive);
+        let [r, g, b, kind] = V::rows(&self.tables.materials, row);
         let gives_off = V::splat(GIVES_OFF);
         let is_lamp = gives_off.le(kind);
         let vertex = Vertex { number, albedo: Rgb { r, g, b }, kind: V::select(is_lamp, kind - gives_off, kind) };
@@ -90,7 +91,7 @@ impl Lanes {
         let early = if AIMS { Some(self.arrive(packet, met, t, primitive)) } else { None };
         let lit = met & is_lamp;
         if lit.any() {
-            let [r, g, b, _] = V::rows(&self.tables.emissions, primitive);
+            let [r, g, b, _] = V::rows(&self.tables.emissions, row);
             let mut emission = Rgb { r, g, b };
             if let Some(at) = &early {
                 emission = emission * V::apart(ArrivedAtLight { kernel: self, packet, at, lit });
@@ -212,7 +213,7 @@ impl Lanes {
     ) -> Option<Split<V>> {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
         let tint = vertex.albedo;
-        let [eta, inverse, r0, is_exact] = V::rows(&self.tables.interfaces, at.primitive);
+        let [eta, inverse, r0, is_exact] = V::rows(&self.tables.interfaces, self.tables.rows(at.primitive));
         let crossed = V::select(at.inside, eta, inverse);
         let (refracted, cos2) = refract(wo, crossed);
         let is_total = cos2.lt(zero);

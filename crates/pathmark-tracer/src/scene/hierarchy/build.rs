@@ -6,7 +6,8 @@
 
 use super::bounds::Faces;
 use super::sorted::sorted;
-use super::{Bounds, Hierarchy, Node, Split};
+use super::{Bounds, Hierarchy, Item, Node, Split};
+use std::collections::BTreeMap;
 use std::panic::resume_unwind;
 use std::sync::{Mutex, PoisonError};
 use std::thread::{Builder, available_parallelism, scope};
@@ -26,7 +27,7 @@ pub(super) const UNKNOWN: Node = Node { faces: Bounds::EMPTY.faces(), at: 0, cou
 
 /// Primitives of which a node is to be built.
 struct Task<'a> {
-    own: &'a mut [u32],
+    own: &'a mut [Item],
     /// The first one's place in the order of the leaves.
     first: usize,
     depth: usize,
@@ -42,47 +43,41 @@ enum Top {
     Part,
 }
 
-/// The tree over the primitives that have a box; `None` if none has.
-pub(super) fn build(boxes: Vec<Option<Bounds>>, rule: &impl Split) -> Option<Hierarchy> {
-    let threads = if boxes.len() > SORTED { available_parallelism().map_or(1, std::num::NonZero::get) } else { 1 };
-    build_with(boxes, rule, SORTED, threads)
+/// The tree over primitives; `None` if there are none.
+pub(super) fn build(items: Vec<Item>, rule: &impl Split) -> Option<Hierarchy> {
+    let threads = if items.len() > SORTED { available_parallelism().map_or(1, std::num::NonZero::get) } else { 1 };
+    build_with(items, rule, SORTED, threads)
 }
 
-fn build_with(boxes: Vec<Option<Bounds>>, rule: &impl Split, most: usize, threads: usize) -> Option<Hierarchy> {
-    let mut order: Vec<u32> =
-        (0u32..).zip(&boxes).filter(|(_, bounds)| bounds.is_some()).map(|(index, _)| index).collect();
-    let bounds: Vec<Bounds> =
-        boxes.into_iter().map(|bounds| bounds.map_or(Bounds::EMPTY, |bounds| bounds.padded())).collect();
-    if order.is_empty() {
+fn build_with(mut items: Vec<Item>, rule: &impl Split, most: usize, threads: usize) -> Option<Hierarchy> {
+    if items.is_empty() {
         return None;
     }
-    let (top, tasks) = divided(&bounds, Task { own: &mut order, first: 0, depth: 0 }, rule, most, threads);
-    let parts = parts(&bounds, tasks, rule, threads);
-    let mut nodes = Vec::with_capacity(2 * parts.len() + parts.iter().map(Vec::len).sum::<usize>());
-    nodes.push(UNKNOWN);
-    assemble(top, &mut parts.into_iter(), &mut nodes, 0);
-    Some(Hierarchy { nodes, order })
+    let count = items.len();
+    let (top, tasks) = divided(Task { own: &mut items, first: 0, depth: 0 }, rule, most, threads);
+    let mut nodes = nodes(Assembly::of(top, count), tasks, rule, threads);
+    nodes.shrink_to_fit();
+    Some(Hierarchy { nodes, order: items.into_iter().map(|item| item.number).collect() })
 }
 
 /// Divides nodes until they have `most` primitives or the rule needs them sorted.
-fn divided<'a>(
-    bounds: &[Bounds],
-    task: Task<'a>,
-    rule: &impl Split,
-    most: usize,
-    threads: usize,
-) -> (Top, Vec<Task<'a>>) {
+fn divided<'a>(task: Task<'a>, rule: &impl Split, most: usize, threads: usize) -> (Top, Vec<Task<'a>>) {
     let Task { own, first, depth } = task;
     if own.len() <= most || depth >= UNBALANCED {
         return (Top::Part, vec![Task { own, first, depth }]);
     }
-    let whole = own.iter().fold(Bounds::EMPTY, |whole, k| whole.and(&bounds[*k as usize]));
-    let Some(left) = rule.divide(bounds, &whole, own) else {
+    let (mut whole, mut middles) = (Bounds::EMPTY, Bounds::EMPTY);
+    for Item { bounds, .. } in own.iter() {
+        let middle = [0, 1, 2].map(|axis| bounds.middle(axis));
+        whole = whole.and(bounds);
+        middles = middles.and(&Bounds { low: middle, high: middle });
+    }
+    let Some(left) = rule.divide(&whole, &middles, own) else {
         return (Top::Part, vec![Task { own, first, depth }]);
     };
     let faces = whole.faces();
     let (own, others) = own.split_at_mut(left);
-    let half = |own, first, threads| divided(bounds, Task { own, first, depth: depth + 1 }, rule, most, threads);
+    let half = |own, first, threads| divided(Task { own, first, depth: depth + 1 }, rule, most, threads);
     let ((a, mut tasks), (b, more)) =
         both(threads, || half(own, first, threads.div_ceil(2)), || half(others, first + left, threads / 2));
     tasks.extend(more);
@@ -104,67 +99,80 @@ fn both<A: Send, B>(threads: usize, first: impl FnOnce() -> A + Send, second: im
     })
 }
 
-/// The nodes of each task, in the order of the tasks, by so many threads.
-fn parts<S: Split>(bounds: &[Bounds], tasks: Vec<Task<'_>>, rule: &S, threads: usize) -> Vec<Vec<Node>> {
+/// All nodes, by so many threads. A part is put into the list as soon as those before it are there, so that few wait beside it.
+fn nodes<S: Split>(assembly: Assembly, tasks: Vec<Task<'_>>, rule: &S, threads: usize) -> Vec<Node> {
     let count = tasks.len();
     let waiting = Mutex::new(tasks.into_iter().enumerate());
+    let assembly = Mutex::new(assembly);
     let work = || {
-        let (mut rule, mut done) = (rule.clone(), Vec::new());
+        let mut rule = rule.clone();
         loop {
             let next = waiting.lock().unwrap_or_else(PoisonError::into_inner).next();
-            let Some((number, Task { own, first, depth })) = next else { return done };
-            done.push((number, sorted(bounds, own, first, depth, &mut rule)));
+            let Some((number, Task { own, first, depth })) = next else { return };
+            let part = sorted(own, first, depth, &mut rule);
+            assembly.lock().unwrap_or_else(PoisonError::into_inner).take(number, part);
         }
     };
-    let mut done = scope(|scope| {
-        let others: Vec<_> =
-            (1..threads.min(count)).map_while(|_| Builder::new().spawn_scoped(scope, work).ok()).collect();
-        let mut done = work();
-        for other in others {
-            done.extend(other.join().unwrap_or_else(|panic| resume_unwind(panic)));
+    scope(|scope| {
+        // Where the system gives no thread, this one does what is left.
+        for _ in 1..threads.min(count) {
+            if Builder::new().spawn_scoped(scope, work).is_err() {
+                break;
+            }
         }
-        done
+        work();
     });
-    done.sort_unstable_by_key(|(number, _)| *number);
-    done.into_iter().map(|(_, nodes)| nodes).collect()
+    assembly.into_inner().unwrap_or_else(PoisonError::into_inner).nodes
 }
 
-/// Puts a tree into the list: its root in a place that is there, what is below it behind the others.
-fn assemble(top: Top, parts: &mut impl Iterator<Item = Vec<Node>>, nodes: &mut Vec<Node>, place: usize) {
-    match top {
-        Top::Inner { faces, children } => {
-            let at = nodes.len();
-            nodes[place] = Node { faces, at: at as u32, count: 0 };
-            nodes.extend([UNKNOWN; 2]);
-            let [a, b] = *children;
-            assemble(a, parts, nodes, at);
-            assemble(b, parts, nodes, at + 1);
-        }
-        Top::Part => {
-            // A part counts its nodes from its root, which is not among those that follow.
-            let offset = nodes.len() as u32 - 1;
-            let moved = |node: Node| Node { at: if node.count == 0 { node.at + offset } else { node.at }, ..node };
-            let mut own = parts.next().into_iter().flatten().map(moved);
-            nodes[place] = own.next().unwrap_or(UNKNOWN);
-            nodes.extend(own);
-        }
-    }
+/// The list of nodes as it is put together.
+struct Assembly {
+    nodes: Vec<Node>,
+    /// What is not in it yet, the first last, with the places of its roots.
+    rest: Vec<(Top, usize)>,
+    /// The number of the next part, and those behind it that are done.
+    next: usize,
+    done: BTreeMap<usize, Vec<Node>>,
 }
 
-/// Those for which it holds to the front, where all keep their order; gives their number.
-pub(super) fn to_front(own: &mut [u32], is_first: impl Fn(u32) -> bool) -> usize {
-    let (mut front, mut aside) = (0, Vec::new());
-    for place in 0..own.len() {
-        let k = own[place];
-        if is_first(k) {
-            own[front] = k;
-            front += 1;
-        } else {
-            aside.push(k);
+impl Assembly {
+    /// Of so many primitives.
+    fn of(top: Top, primitives: usize) -> Self {
+        let mut nodes = Vec::with_capacity(2 * primitives);
+        nodes.push(UNKNOWN);
+        Self { nodes, rest: vec![(top, 0)], next: 0, done: BTreeMap::new() }
+    }
+
+    /// Takes the part of that number, and puts into the list whatever can be. A root has a place that is there; what is below it comes behind all
+    /// others.
+    fn take(&mut self, number: usize, part: Vec<Node>) {
+        self.done.insert(number, part);
+        while let Some((top, place)) = self.rest.pop() {
+            match top {
+                Top::Inner { faces, children } => {
+                    let at = self.nodes.len();
+                    self.nodes[place] = Node { faces, at: at as u32, count: 0 };
+                    self.nodes.extend([UNKNOWN; 2]);
+                    let [a, b] = *children;
+                    self.rest.extend([(b, at + 1), (a, at)]);
+                }
+                Top::Part => {
+                    let Some(part) = self.done.remove(&self.next) else {
+                        self.rest.push((Top::Part, place));
+                        return;
+                    };
+                    self.next += 1;
+                    // A part counts its nodes from its root, which is not among those that follow.
+                    let offset = self.nodes.len() as u32 - 1;
+                    let moved =
+                        |node: Node| Node { at: if node.count == 0 { node.at + offset } else { node.at }, ..node };
+                    let mut own = part.into_iter().map(moved);
+                    self.nodes[place] = own.next().unwrap_or(UNKNOWN);
+                    self.nodes.extend(own);
+                }
+            }
         }
     }
-    own[front..].copy_from_slice(&aside);
-    front
 }
 
 #[cfg(test)]
@@ -176,7 +184,7 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     /// Boxes in a cube, some of them alike, most of them in one corner, and some primitives without one.
-    fn boxes(count: u32) -> Vec<Option<Bounds>> {
+    fn items(count: u32) -> Vec<Item> {
         let mut numbers = Pcg64Mcg::new(7);
         let mut unit = || (numbers.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
         let mut one = |index: u32| {
@@ -185,9 +193,10 @@ mod tests {
             }
             let middle = [0, 1, 2].map(|_| if index.is_multiple_of(7) { 0.25 } else { unit() * unit() * unit() });
             let size = 1e-3 * unit();
-            Some(Bounds { low: middle.map(|x| x - size), high: middle.map(|x| x + size) })
+            let bounds = Bounds { low: middle.map(|x| x - size), high: middle.map(|x| x + size) };
+            Some(Item { bounds: bounds.padded(), number: index })
         };
-        (0..count).map(&mut one).collect()
+        (0..count).filter_map(&mut one).collect()
     }
 
     /// The expected cost of a search: the surfaces of nodes, and of leaves times their primitives, over that of the root.
@@ -200,19 +209,19 @@ mod tests {
     /// Halves are the same whether they are found by sorting or not.
     #[test]
     fn dividing_at_the_median_is_sorting() {
-        let boxes = boxes(3000);
-        let sorted = build_with(boxes.clone(), &Median, usize::MAX, 1).unwrap();
+        let items = items(3000);
+        let sorted = build_with(items.clone(), &Median, usize::MAX, 1).unwrap();
         for most in [1, 2, 10, 700] {
-            assert!(build_with(boxes.clone(), &Median, most, 2).unwrap() == sorted, "{most}");
+            assert!(build_with(items.clone(), &Median, most, 2).unwrap() == sorted, "{most}");
         }
     }
 
     #[test]
     fn threads_do_not_change_the_tree() {
-        let boxes = boxes(20_000);
-        let alone = build_with(boxes.clone(), &Sah::new(), 500, 1).unwrap();
+        let items = items(20_000);
+        let alone = build_with(items.clone(), &Sah::new(), 500, 1).unwrap();
         for threads in [2, 3, 8] {
-            assert!(build_with(boxes.clone(), &Sah::new(), 500, threads).unwrap() == alone, "{threads} threads");
+            assert!(build_with(items.clone(), &Sah::new(), 500, threads).unwrap() == alone, "{threads} threads");
         }
         let mut order = alone.order.clone();
         order.sort_unstable();
@@ -225,8 +234,8 @@ mod tests {
     /// Bins see 31 places on each axis where sorting sees them all.
     #[test]
     fn dividing_by_bins_costs_little() {
-        let boxes = boxes(20_000);
-        let tree = |most| build_with(boxes.clone(), &Sah::new(), most, 2).unwrap();
+        let items = items(20_000);
+        let tree = |most| build_with(items.clone(), &Sah::new(), most, 2).unwrap();
         let ratio = cost(&tree(500)) / cost(&tree(usize::MAX));
         println!("cost of the tree by bins over that by sorting: {ratio:.4}");
         assert!((0.9..1.05).contains(&ratio), "{ratio}");
@@ -235,12 +244,13 @@ mod tests {
     /// Where all middles are one, nothing can be told apart, and the tree still holds everything.
     #[test]
     fn boxes_in_one_place_are_all_kept() {
-        let same = vec![Some(Bounds { low: [0.0; 3], high: [1.0; 3] }); 5000];
+        let bounds = Bounds { low: [0.0; 3], high: [1.0; 3] };
+        let same: Vec<Item> = (0..5000).map(|number| Item { bounds, number }).collect();
         for tree in [build_with(same.clone(), &Sah::new(), 100, 2), build_with(same.clone(), &Median, 100, 2)] {
             let tree = tree.unwrap();
             assert_eq!(tree.order.len(), 5000);
             assert!(tree.depth() <= DEEPEST);
         }
-        assert!(build_with(vec![None, None], &Median, 1, 2).is_none());
+        assert!(build_with(Vec::new(), &Median, 1, 2).is_none());
     }
 }

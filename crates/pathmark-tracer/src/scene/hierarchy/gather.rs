@@ -4,7 +4,7 @@
 use super::{Bounds, Hierarchy};
 
 /// A child of a node with many.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Child {
     /// Its box, with its padding.
     pub bounds: Bounds,
@@ -13,12 +13,54 @@ pub struct Child {
 }
 
 /// What is in a box.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Content {
     /// A node by its number.
-    Node(usize),
-    /// Primitives: no more than a node has children, unless the tree keeps more together.
-    Primitives(Vec<u32>),
+    Node(u32),
+    /// Primitives by their places in the order of the leaves, from one on: no more than a node has children, unless the tree keeps more together.
+    Primitives {
+        /// The first.
+        first: u32,
+        /// How many.
+        count: u32,
+    },
+}
+
+/// A tree whose nodes have many children; the first node is the root, and each stands behind its parent.
+pub struct Gathered<'a> {
+    /// Of each node the first of its children, and how many it has.
+    nodes: Vec<[u32; 2]>,
+    children: Vec<Child>,
+    /// Primitives in the order of the leaves.
+    order: &'a [u32],
+}
+
+impl<'a> Gathered<'a> {
+    /// A tree of nodes with these children over primitives in that order.
+    #[cfg(test)]
+    pub(crate) fn new(nodes: impl IntoIterator<Item = Vec<Child>>, order: &'a [u32]) -> Self {
+        let mut made = Self { nodes: Vec::new(), children: Vec::new(), order };
+        for children in nodes {
+            made.nodes.push([made.children.len() as u32, children.len() as u32]);
+            made.children.extend(children);
+        }
+        made
+    }
+
+    /// The children of each node.
+    pub fn nodes(&self) -> impl DoubleEndedIterator<Item = &[Child]> + ExactSizeIterator {
+        self.nodes.iter().map(|[first, count]| &self.children[*first as usize..][..*count as usize])
+    }
+
+    /// The children of all nodes.
+    pub fn children(&self) -> &[Child] {
+        &self.children
+    }
+
+    /// The primitives in these places.
+    pub fn primitives(&self, first: u32, count: u32) -> &'a [u32] {
+        &self.order[first as usize..][..count as usize]
+    }
 }
 
 /// The most children that a node may have.
@@ -106,12 +148,14 @@ fn least([first, second]: [&Costs; 2], count: usize) -> (f32, u8) {
 impl Hierarchy {
     /// Nodes of at most `width` children, which must be 2 or more; the first is the root. Of all such trees over this one it is the one that rays are
     /// expected to go through at the least cost.
-    pub fn gathered(&self, width: usize) -> Vec<Vec<Child>> {
+    pub fn gathered(&self, width: usize) -> Gathered<'_> {
         let choices = Choices::of(self, width);
-        let mut gathered = vec![Vec::new()];
+        let mut gathered = Gathered { nodes: vec![[0; 2]], children: Vec::new(), order: &self.order };
         let mut waiting = vec![(0, 0)];
+        let mut parts = Vec::new();
         while let Some((root, place)) = waiting.pop() {
-            let mut parts = vec![(root, if choices.is_node(root) { choices.width } else { 1 })];
+            let first = gathered.children.len();
+            parts.push((root, if choices.is_node(root) { choices.width } else { 1 }));
             while let Some((index, count)) = parts.pop() {
                 if count > 1 {
                     match choices.to_first(index, count) {
@@ -124,14 +168,16 @@ impl Hierarchy {
                     continue;
                 }
                 let content = if choices.is_node(index) {
-                    gathered.push(Vec::new());
-                    waiting.push((index, gathered.len() - 1));
-                    Content::Node(gathered.len() - 1)
+                    let number = gathered.nodes.len();
+                    gathered.nodes.push([0; 2]);
+                    waiting.push((index, number));
+                    Content::Node(number as u32)
                 } else {
-                    Content::Primitives(self.primitives(index))
+                    self.primitives(index)
                 };
-                gathered[place].push(Child { bounds: self.bounds(index), content });
+                gathered.children.push(Child { bounds: self.bounds(index), content });
             }
+            gathered.nodes[place] = [first as u32, (gathered.children.len() - first) as u32];
         }
         gathered
     }
@@ -152,19 +198,17 @@ impl Hierarchy {
         Bounds { low, high }
     }
 
-    fn primitives(&self, root: usize) -> Vec<u32> {
-        let mut found = Vec::new();
-        let mut waiting = vec![root];
-        while let Some(index) = waiting.pop() {
-            let node = &self.nodes[index];
-            let at = node.at as usize;
-            if node.count == 0 {
-                waiting.extend([at + 1, at]);
-            } else {
-                found.extend(&self.order[at..at + node.count as usize]);
+    /// Those below a node, which stand side by side in the order of the leaves.
+    fn primitives(&self, root: usize) -> Content {
+        let leaf = |second: usize| {
+            let mut node = &self.nodes[root];
+            while node.count == 0 {
+                node = &self.nodes[node.at as usize + second];
             }
-        }
-        found
+            node
+        };
+        let (first, last) = (leaf(0), leaf(1));
+        Content::Primitives { first: first.at, count: last.at + last.count - first.at }
     }
 }
 
@@ -200,15 +244,15 @@ mod tests {
         as_leaf.min(area + costs.fold(f64::INFINITY, f64::min))
     }
 
-    fn cost(nodes: &[Vec<Child>], node: usize, area: f64, width: usize) -> f64 {
+    fn cost(nodes: &[&[Child]], node: u32, area: f64, width: usize) -> f64 {
         let of_child = |child: &Child| {
             let area = child.bounds.half_area();
             match &child.content {
                 Content::Node(inner) => cost(nodes, *inner, area, width),
-                Content::Primitives(primitives) => area * primitives.len().div_ceil(width) as f64,
+                Content::Primitives { count, .. } => area * (*count as usize).div_ceil(width) as f64,
             }
         };
-        area + nodes[node].iter().map(of_child).sum::<f64>()
+        area + nodes[node as usize].iter().map(of_child).sum::<f64>()
     }
 
     /// No other tree over the binary one costs less.
@@ -217,7 +261,9 @@ mod tests {
         for (name, width) in [("spheres:9", 2), ("spheres:11", 3), ("spheres:13", 4), ("cornell-tall", 3)] {
             for accelerator in ["median", "sah"] {
                 let tree = load(name).unwrap().accelerated(accelerator).unwrap().hierarchy.unwrap();
-                let found = cost(&tree.gathered(width), 0, tree.bounds(0).half_area(), width);
+                let gathered = tree.gathered(width);
+                let nodes: Vec<&[Child]> = gathered.nodes().collect();
+                let found = cost(&nodes, 0, tree.bounds(0).half_area(), width);
                 let expected = least_of_all(&tree, &tree.sizes(), 0, width);
                 assert!((found / expected - 1.0).abs() < 1e-5, "{name}, {accelerator}: {found} instead of {expected}");
             }
@@ -229,22 +275,25 @@ mod tests {
     fn all_primitives_are_kept() {
         for (name, width) in [("spheres:1000", 16), ("spheres:1000", 4), ("spheres:3", 16), ("cornell-mesh", 8)] {
             let scene = load(name).unwrap();
-            let bounds = scene.primitives.bounds();
+            let bounds: Vec<Option<Bounds>> = scene.primitives.bounds().collect();
             for accelerator in ["median", "sah"] {
                 let hierarchy = scene.accelerated(accelerator).unwrap().hierarchy.unwrap();
-                let nodes = hierarchy.gathered(width);
+                let gathered = hierarchy.gathered(width);
+                let nodes: Vec<&[Child]> = gathered.nodes().collect();
                 let mut found: Vec<u32> = Vec::new();
-                let mut waiting = vec![(0, None)];
+                let mut waiting = vec![(0_u32, None)];
                 while let Some((node, around)) = waiting.pop() {
+                    let node = node as usize;
                     assert!((1..=width).contains(&nodes[node].len()), "{name}: {} children", nodes[node].len());
-                    for Child { bounds: own, content } in &nodes[node] {
+                    for Child { bounds: own, content } in nodes[node] {
                         assert!(
                             around.is_none_or(|around: Bounds| around.and(own) == around),
                             "{name}: a box sticks out"
                         );
                         match content {
                             Content::Node(inner) => waiting.push((*inner, Some(*own))),
-                            Content::Primitives(primitives) => {
+                            Content::Primitives { first, count } => {
+                                let primitives = gathered.primitives(*first, *count);
                                 for primitive in primitives {
                                     let inner = bounds[*primitive as usize].unwrap();
                                     assert_eq!(own.and(&inner), *own, "{name}: {primitive} sticks out");

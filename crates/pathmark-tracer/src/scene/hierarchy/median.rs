@@ -1,6 +1,6 @@
 //! `--accelerator median`: half of the primitives to either side, along the axis where their centroids spread most, down to one each.
 
-use super::{Bounds, Split};
+use super::{Bounds, Item, Split};
 
 /// The rule; it remembers nothing.
 #[derive(Clone)]
@@ -16,16 +16,12 @@ impl Split for Median {
         Some((axis, sorted[axis].len() / 2))
     }
 
-    fn divide(&self, bounds: &[Bounds], _node: &Bounds, own: &mut [u32]) -> Option<usize> {
-        let middles = own.iter().fold(Bounds::EMPTY, |middles, k| {
-            let middle = [0, 1, 2].map(|axis| bounds[*k as usize].middle(axis));
-            middles.and(&Bounds { low: middle, high: middle })
-        });
+    fn divide(&self, _node: &Bounds, middles: &Bounds, own: &mut [Item]) -> Option<usize> {
         let spread = |axis: usize| middles.high[axis] - middles.low[axis];
         let axis = (1..3).fold(0, |widest, axis| if spread(axis) > spread(widest) { axis } else { widest });
-        let place = |k: &u32| bounds[*k as usize].middle(axis);
+        let place = |item: &Item| item.bounds.middle(axis);
         let half = own.len() / 2;
-        own.select_nth_unstable_by(half, |a, b| place(a).total_cmp(&place(b)).then(a.cmp(b)));
+        own.select_nth_unstable_by(half, |a, b| place(a).total_cmp(&place(b)).then(a.number.cmp(&b.number)));
         Some(half)
     }
 }

@@ -18,7 +18,7 @@ mod traverse;
 
 pub use bounds::{Bounds, padding};
 pub(crate) use build::DEEPEST;
-pub use gather::{Child, Content};
+pub use gather::{Child, Content, Gathered};
 
 use bounds::Faces;
 
@@ -49,6 +49,13 @@ pub struct Hierarchy {
     order: Vec<u32>,
 }
 
+/// A primitive with its box, padding included.
+#[derive(Debug, Clone, Copy)]
+struct Item {
+    bounds: Bounds,
+    number: u32,
+}
+
 /// How a node's primitives are divided between its children.
 trait Split: Clone + Send + Sync {
     /// Of few primitives: the axis, and how many of the node's primitives, in the order of their centroids along it, go to the first child; `None` makes
@@ -56,12 +63,12 @@ trait Split: Clone + Send + Sync {
     fn split(&mut self, bounds: &[Bounds], node: &Bounds, sorted: [&[u32]; 3]) -> Option<(usize, usize)>;
 
     /// Of many, which nobody has sorted: puts those of the first child to the front and says how many they are, at least one and not all; `None` if
-    /// they have to be sorted.
-    fn divide(&self, bounds: &[Bounds], node: &Bounds, own: &mut [u32]) -> Option<usize>;
+    /// they have to be sorted. `middles` is the box around their centroids.
+    fn divide(&self, node: &Bounds, middles: &Bounds, own: &mut [Item]) -> Option<usize>;
 }
 
-/// From the boxes of primitives to a tree, if any has a box.
-type Build = fn(Vec<Option<Bounds>>) -> Option<Hierarchy>;
+/// From primitives to a tree, if there are any.
+type Build = fn(Vec<Item>) -> Option<Hierarchy>;
 
 /// One line of the table of accelerators.
 pub struct Entry {
@@ -81,8 +88,8 @@ macro_rules! accelerators {
 
 accelerators! {
     "none", "every primitive is tested" => None;
-    "median", "a bounding volume hierarchy, split at the median of the widest axis" => Some(|bounds| build::build(bounds, &median::Median));
-    "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|bounds| build::build(bounds, &sah::Sah::new()));
+    "median", "a bounding volume hierarchy, split at the median of the widest axis" => Some(|items| build::build(items, &median::Median));
+    "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|items| build::build(items, &sah::Sah::new()));
 }
 
 /// From so many primitives on, a hierarchy is faster than testing all of them (experiment `acceleration`). Of the shipped scenes those with
@@ -120,8 +127,12 @@ impl Entry {
     }
 
     /// Builds the structure over primitives with these boxes; `None` if there is nothing to build.
-    pub fn build(&self, bounds: Vec<Option<Bounds>>) -> Option<Hierarchy> {
-        self.build?(bounds)
+    pub fn build(&self, bounds: impl Iterator<Item = Option<Bounds>>) -> Option<Hierarchy> {
+        let build = self.build?;
+        let mut items = Vec::with_capacity(bounds.size_hint().1.unwrap_or_default());
+        let with_box = (0..).zip(bounds).filter_map(|(number, bounds)| Some(Item { bounds: bounds?.padded(), number }));
+        items.extend(with_box);
+        build(items)
     }
 }
 

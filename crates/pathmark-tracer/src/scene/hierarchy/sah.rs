@@ -5,8 +5,7 @@
 //! Of nodes with thousands of primitives only the places between 32 equal bins are tried (I. Wald, "On fast Construction of SAH-based Bounding
 //! Volume Hierarchies", 2007).
 
-use super::build::to_front;
-use super::{Bounds, Split};
+use super::{Bounds, Item, Split};
 
 /// What a step of the traversal costs in tests of a primitive (measured: a box takes about as long as half a sphere).
 const TRAVERSAL: f64 = 1.0;
@@ -55,21 +54,14 @@ impl Split for Sah {
         best
     }
 
-    fn divide(&self, bounds: &[Bounds], node: &Bounds, own: &mut [u32]) -> Option<usize> {
-        let mut middles = Bounds::EMPTY;
-        for k in own.iter() {
-            let bounds = &bounds[*k as usize];
-            let middle = [0, 1, 2].map(|axis| bounds.middle(axis));
-            middles = middles.and(&Bounds { low: middle, high: middle });
-        }
+    fn divide(&self, node: &Bounds, middles: &Bounds, own: &mut [Item]) -> Option<usize> {
         // A conversion to an integer takes what is no number for 0.
         let scale = [0, 1, 2].map(|axis| BINS as f64 / (middles.high[axis] - middles.low[axis]));
         let bin_of = |bounds: &Bounds, axis: usize| {
             (((bounds.middle(axis) - middles.low[axis]) * scale[axis]) as usize).min(BINS - 1)
         };
         let mut bins: [[Bin; BINS]; 3] = [[(Bounds::EMPTY, 0); BINS]; 3];
-        for k in own.iter() {
-            let bounds = &bounds[*k as usize];
+        for Item { bounds, .. } in own.iter() {
             for (axis, bins) in bins.iter_mut().enumerate() {
                 let bin = &mut bins[bin_of(bounds, axis)];
                 *bin = (bin.0.and(bounds), bin.1 + 1);
@@ -78,8 +70,20 @@ impl Split for Sah {
         let least = (own.len() as f64 - TRAVERSAL) * node.half_area();
         let best = bins.iter().enumerate().fold((least, None), |best, (axis, bins)| cheaper(best, axis, bins));
         let (axis, place) = best.1?;
-        Some(to_front(own, |k| bin_of(&bounds[k as usize], axis) < place))
+        Some(to_front(own, |item| bin_of(&item.bounds, axis) < place))
     }
+}
+
+/// Those for which it holds to the front; gives their number.
+fn to_front(own: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
+    let mut front = 0;
+    for place in 0..own.len() {
+        if is_first(&own[place]) {
+            own.swap(front, place);
+            front += 1;
+        }
+    }
+    front
 }
 
 /// The cost and the place, an axis and a bin, that is the cheapest of the best so far and of all before a bin of this axis.

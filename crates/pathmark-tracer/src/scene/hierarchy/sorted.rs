@@ -1,7 +1,7 @@
 //! The nodes over few primitives, which are sorted along each axis once.
 
 use super::build::{UNBALANCED, UNKNOWN};
-use super::{Bounds, Node, Split};
+use super::{Bounds, Item, Node, Split};
 
 /// What is still to be built: a node, its range of the sorted primitives, and its depth.
 struct Task {
@@ -12,17 +12,10 @@ struct Task {
 }
 
 /// The nodes over these primitives, the root first, whose leaves have their places from `first` on. The primitives are put into the order of the leaves.
-pub(super) fn sorted(
-    all: &[Bounds],
-    own: &mut [u32],
-    first_place: usize,
-    depth: usize,
-    rule: &mut impl Split,
-) -> Vec<Node> {
-    // By their numbers among themselves, so that all that is looked at is near each other.
-    own.sort_unstable();
-    let numbers = own.to_vec();
-    let bounds: Vec<Bounds> = own.iter().map(|k| all[*k as usize]).collect();
+pub(super) fn sorted(own: &mut [Item], first_place: usize, depth: usize, rule: &mut impl Split) -> Vec<Node> {
+    own.sort_unstable_by_key(|item| item.number);
+    let numbers: Vec<u32> = own.iter().map(|item| item.number).collect();
+    let bounds: Vec<Bounds> = own.iter().map(|item| item.bounds).collect();
     // Ties go by number: a total order, so one tree.
     let mut sorted = [0, 1, 2].map(|axis| {
         let mut order: Vec<(f64, u32)> = (0..).zip(&bounds).map(|(k, bounds)| (bounds.middle(axis), k)).collect();
@@ -59,8 +52,8 @@ pub(super) fn sorted(
         tasks.push(Task { node: at + 1, first: first + left, count: count - left, depth });
         tasks.push(Task { node: at, first, count: left, depth });
     }
-    for (place, k) in own.iter_mut().zip(&sorted[0]) {
-        *place = numbers[*k as usize];
+    for (item, k) in own.iter_mut().zip(&sorted[0]) {
+        *item = Item { bounds: bounds[*k as usize], number: numbers[*k as usize] };
     }
     nodes
 }

@@ -110,10 +110,8 @@ macro_rules! primitives {
             }
 
             /// The boxes of all primitives in the order of their numbers; `None` for those without an end.
-            pub fn bounds(&self) -> Vec<Option<Bounds>> {
-                let mut bounds = Vec::with_capacity(self.counts().iter().sum());
-                $(bounds.extend(self.$field.iter().map(Primitive::bounds));)*
-                bounds
+            pub fn bounds(&self) -> impl Iterator<Item = Option<Bounds>> {
+                std::iter::empty()$(.chain(self.$field.iter().map(Primitive::bounds)))*
             }
 
             /// The same with every length multiplied.

@@ -5,7 +5,7 @@ mod triangle;
 
 use crate::math::{Ray, Vec3};
 use crate::scene::{AnyTarget, Lights, NO_LIGHT};
-use crate::simd::{Float, Table};
+use crate::simd::{Column, Float, Precision, Table};
 use sphere::Spheres;
 use triangle::Triangles;
 
@@ -18,7 +18,7 @@ pub(super) struct Targets {
     /// How often each light or one before it is chosen.
     up_to: Vec<f64>,
     /// The light of each primitive, or -1.
-    of_primitive: Table,
+    of_primitive: Column,
 }
 
 /// Directions towards lights.
@@ -86,7 +86,7 @@ impl<V: Float> Directions<V> {
 
 impl Targets {
     /// The lights in tables; `None` if there are none.
-    pub(super) fn of(lights: &Lights) -> Option<Self> {
+    pub(super) fn of(lights: &Lights, precision: Precision) -> Option<Self> {
         if lights.lights.is_empty() {
             return None;
         }
@@ -94,14 +94,14 @@ impl Targets {
             let is_triangle = matches!(light.target, AnyTarget::Triangle(_));
             [f64::from(light.primitive), light.chance, light.target.area(), f64::from(u8::from(is_triangle))]
         });
-        let number = |light: &u32| if *light == NO_LIGHT { -1.0 } else { f64::from(*light) };
-        let of_primitive = lights.of_primitive.iter().map(|light| [number(light), 0.0, 0.0, 0.0]).collect();
+        let number = |light: &u32| if *light == NO_LIGHT { -1.0 } else { *light as f32 };
+        let of_primitive = lights.of_primitive.iter().map(number);
         Some(Self {
-            spheres: Spheres::of(lights),
-            triangles: Triangles::of(lights),
-            all: Table::new(all.collect()),
+            spheres: Spheres::of(lights, precision),
+            triangles: Triangles::of(lights, precision),
+            all: Table::new(all, precision),
             up_to: lights.lights.iter().map(|light| light.up_to).collect(),
-            of_primitive: Table::new(of_primitive),
+            of_primitive: Column::new(of_primitive),
         })
     }
 
@@ -158,7 +158,7 @@ impl Targets {
     #[inline(always)]
     pub(super) fn density<V: Float>(&self, start: &Start<V>, ray: &Ray<V>, met: &Met<V>) -> V {
         let zero = V::splat(0.0);
-        let [light, ..] = V::rows(&self.of_primitive, met.primitive);
+        let light = self.of_primitive.at::<V>(met.primitive);
         let is_target = zero.le(light);
         let light = self.chosen::<V>(light);
         let density = match (&self.spheres, &self.triangles) {

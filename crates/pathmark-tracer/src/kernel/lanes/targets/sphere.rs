@@ -4,7 +4,7 @@ use super::{Chosen, Directions, Met, Start};
 use crate::math::{Ray, Vec3, dot};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, uniform_sphere};
 use crate::scene::{AnyTarget, Lights, Sphere, one_minus_cos, towards_cap};
-use crate::simd::{Float, Mask, Table};
+use crate::simd::{Float, Mask, Precision, Table};
 use std::f64::consts::PI;
 
 /// Spheres among lights.
@@ -34,7 +34,7 @@ struct Way<V: Float> {
 
 impl Spheres {
     /// Those among the lights, in tables with a row for each light; `None` if there are none.
-    pub(super) fn of(lights: &Lights) -> Option<Self> {
+    pub(super) fn of(lights: &Lights, precision: Precision) -> Option<Self> {
         let rows = lights.lights.iter().map(|light| {
             let AnyTarget::Sphere(target) = &light.target else { return None };
             let (Sphere { center, radius }, cap) = target.parts();
@@ -42,7 +42,7 @@ impl Spheres {
             Some([[center.x, center.y, center.z, radius], [axis.x, axis.y, axis.z, height]])
         });
         let rows: Vec<_> = rows.collect();
-        let table = |k: usize| Table::new(rows.iter().map(|row| row.map_or([0.0; 4], |row| row[k])).collect());
+        let table = |k: usize| Table::new(rows.iter().map(|row| row.map_or([0.0; 4], |row| row[k])), precision);
         rows.iter().any(Option::is_some).then(|| Self { spheres: table(0), caps: table(1) })
     }
 

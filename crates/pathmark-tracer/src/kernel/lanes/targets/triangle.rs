@@ -3,7 +3,7 @@
 use super::{Chosen, Directions, Met, Start};
 use crate::math::{Ray, Vec3, dot};
 use crate::scene::{AnyTarget, Lights, TriangleTarget, per_steradian, point_of};
-use crate::simd::{Float, Table};
+use crate::simd::{Float, Precision, Table};
 
 /// Triangles among lights.
 pub(super) struct Triangles {
@@ -21,7 +21,7 @@ fn vector<V: Float>(table: &Table, row: V) -> Vec3<V> {
 
 impl Triangles {
     /// Those among the lights, in tables with a row for each light; `None` if there are none.
-    pub(super) fn of(lights: &Lights) -> Option<Self> {
+    pub(super) fn of(lights: &Lights, precision: Precision) -> Option<Self> {
         let table = |part: fn(&TriangleTarget) -> Vec3| {
             let rows = lights.lights.iter().map(|light| match &light.target {
                 AnyTarget::Triangle(target) => {
@@ -30,7 +30,7 @@ impl Triangles {
                 }
                 AnyTarget::Sphere(_) => [0.0; 4],
             });
-            Table::new(rows.collect())
+            Table::new(rows, precision)
         };
         let is_there = lights.lights.iter().any(|light| matches!(light.target, AnyTarget::Triangle(_)));
         is_there.then(|| Self {

@@ -8,8 +8,8 @@ use super::coarse::Scale;
 use crate::kernel::lanes::packet::LanesOf;
 use crate::kernel::lanes::singles::Singles;
 use crate::math::{Crossing, Real, Vec3, first_root, sheared};
-use crate::scene::{Bounds, Primitives};
-use crate::simd::{Float, Mask, Number, Numbers, Precision, prefetch};
+use crate::scene::{Bounds, Primitive, Primitives};
+use crate::simd::{Aligned, Float, Mask, Number, Numbers, Precision, Table, prefetch};
 
 /// Numbers of a sphere: its centre, a radius and its number.
 const OF_SPHERE: usize = 5;
@@ -25,10 +25,10 @@ const NO_SPHERE: ([f64; 4], [f64; 4]) = ([1e30, 1e30, 1e30, 0.0], [f64::NAN; 4])
 /// Blocks: of each the first number of all its primitives, then the second, and so on.
 pub(super) struct Blocks {
     /// As [`super::coarse`] has them.
-    spheres: Vec<f32>,
-    /// The same in the same order: centres and radii as they are, in double precision sphere by sphere, in single precision block by block, first the
-    /// x of all, then y, z and the radii.
-    exact: Numbers,
+    spheres: Aligned<f32>,
+    /// In single precision the same in the same order: centres and radii as they are, block by block, first the x of all, then y, z and the radii. In
+    /// double precision, which tests them one by one, they are in the table of surfaces.
+    exact: Aligned<f32>,
     triangles: Numbers,
     pub(super) has_triangles: bool,
     pub(super) scale: Scale,
@@ -47,28 +47,27 @@ pub(super) struct Leaf {
 /// Blocks that are being made.
 pub(super) struct Making<'a> {
     primitives: &'a Primitives,
-    bounds: &'a [Option<Bounds>],
     scale: Scale,
     /// Spheres that are tested elsewhere.
     large: Option<&'a Singles>,
     /// Spheres in a block, and triangles in one.
     widths: [usize; 2],
-    spheres: Vec<f32>,
-    exact: Numbers,
+    spheres: Aligned<f32>,
+    exact: Aligned<f32>,
     triangles: Numbers,
 }
 
 impl<'a> Making<'a> {
     pub(super) fn new(
         primitives: &'a Primitives,
-        bounds: &'a [Option<Bounds>],
         scale: Scale,
         large: Option<&'a Singles>,
         widths: [usize; 2],
         precision: Precision,
     ) -> Self {
-        let none = || Numbers::with_capacity(0, precision);
-        Self { primitives, bounds, scale, large, widths, spheres: Vec::new(), exact: none(), triangles: none() }
+        let none = || Aligned::with_capacity(0);
+        let triangles = Numbers::with_capacity(0, precision);
+        Self { primitives, scale, large, widths, spheres: none(), exact: none(), triangles }
     }
 
     /// Makes room for the primitives of leaves with so many primitives: growing by and by would take half as much memory again.
@@ -82,8 +81,8 @@ impl<'a> Making<'a> {
         }
         // Where both kinds are there, each leaf counts for both, and what is not used is never touched.
         if !self.primitives.spheres.is_empty() {
-            self.spheres = Vec::with_capacity(OF_SPHERE * spheres);
-            self.exact = Numbers::with_capacity(OF_EXACT * spheres, precision);
+            self.spheres = Aligned::with_capacity(OF_SPHERE * spheres);
+            self.exact = Aligned::with_capacity(if precision == Precision::F32 { OF_EXACT * spheres } else { 0 });
         }
         if !self.primitives.triangles.is_empty() {
             self.triangles = Numbers::with_capacity(OF_TRIANGLE * triangles, precision);
@@ -116,8 +115,8 @@ impl<'a> Making<'a> {
     /// Appends spheres in blocks, the last of which is filled up. The first block, and the one behind the last.
     fn add_spheres(&mut self, numbers: &[u32]) -> [u32; 2] {
         let width = self.widths[0];
-        let count = |exact: &Numbers| (exact.len() / (OF_EXACT * width)) as u32;
-        let first = count(&self.exact);
+        let count = |spheres: &[f32]| (spheres.len() / (OF_SPHERE * width)) as u32;
+        let first = count(&self.spheres);
         for block in numbers.chunks(width) {
             let of_lane = |lane: usize| block.get(lane).map_or(NO_SPHERE, |number| self.sphere(*number));
             let spheres: Vec<([f64; 4], [f64; 4])> = (0..width).map(of_lane).collect();
@@ -126,22 +125,20 @@ impl<'a> Making<'a> {
             }
             let number = |lane: usize| block.get(lane).map_or(NO_NUMBER, |number| f64::from(*number)) as f32;
             self.spheres.extend((0..width).map(number));
-            match self.exact.precision() {
-                Precision::F64 => self.exact.extend(spheres.iter().flat_map(|(_, exact)| *exact)),
-                Precision::F32 => {
-                    let column = |k: usize| spheres.iter().map(move |(_, exact)| exact[k]);
-                    self.exact.extend((0..OF_EXACT).flat_map(column));
+            if self.triangles.precision() == Precision::F32 {
+                for k in 0..OF_EXACT {
+                    self.exact.extend(spheres.iter().map(|(_, exact)| exact[k] as f32));
                 }
             }
         }
-        [first, count(&self.exact)]
+        [first, count(&self.spheres)]
     }
 
     /// A sphere as single precision has it, and as it is.
     fn sphere(&self, number: u32) -> ([f64; 4], [f64; 4]) {
         let sphere = &self.primitives.spheres[number as usize];
         let Vec3 { x, y, z } = sphere.center;
-        let bounds = self.bounds[number as usize].unwrap_or(Bounds::EMPTY);
+        let bounds = sphere.bounds().unwrap_or(Bounds::EMPTY);
         (self.scale.sphere(&bounds, sphere.center, sphere.radius), [x, y, z, sphere.radius])
     }
 
@@ -204,7 +201,7 @@ impl Blocks {
     /// Distances to the spheres of a block, by the formula of [`Singles`] and with its bits.
     #[inline(always)]
     fn roots_in_block<W: Float<One = f32>>(&self, block: usize, origin: Vec3, direction: Vec3) -> W {
-        let exact = &f32::all(&self.exact)[block * 4 * W::LANES..];
+        let exact = &self.exact[block * OF_EXACT * W::LANES..];
         let (x, y) = (W::load(exact), W::load(&exact[W::LANES..]));
         let (z, radius) = (W::load(&exact[2 * W::LANES..]), W::load(&exact[3 * W::LANES..]));
         first_root(Vec3::splat(origin) - Vec3 { x, y, z }, Vec3::splat(direction), W::splat(1.0), radius)
@@ -218,7 +215,7 @@ impl Blocks {
     /// How large they are.
     #[inline(always)]
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(&*self.spheres) + self.exact.bytes() + self.triangles.bytes()
+        size_of_val(&*self.spheres) + size_of_val(&*self.exact) + self.triangles.bytes()
     }
 
     /// Asks for the first triangles of a leaf.
@@ -240,15 +237,21 @@ impl Blocks {
 
     /// Tests a ray against those spheres of a block.
     #[inline(always)]
-    pub(super) fn test_near<V: Float>(&self, block: u32, near: u32, ray: &Single<V>, best: &mut Best) {
+    pub(super) fn test_near<V: Float>(
+        &self,
+        block: u32,
+        near: u32,
+        surfaces: &Table,
+        ray: &Single<V>,
+        best: &mut Best,
+    ) {
         let lanes = V::Single::LANES;
         let block = block as usize;
         let numbers = &self.spheres[(block * OF_SPHERE + OF_SPHERE - 1) * lanes..][..lanes];
         if V::IS_DOUBLE {
             // Of a block most rays come near one sphere or none.
-            let exact = f64::all(&self.exact).as_chunks().0;
             for lane in LanesOf(near) {
-                let [x, y, z, radius] = exact[block * lanes + lane];
+                let [x, y, z, radius] = *surfaces.row(numbers[lane] as i32);
                 let root = first_root(ray.origin - Vec3::new(x, y, z), ray.direction, 1.0, radius);
                 best.take_one(root, numbers[lane].into());
             }
@@ -261,11 +264,11 @@ impl Blocks {
 
     /// Tests a ray against all primitives of a leaf but for the first block of spheres.
     #[inline(always)]
-    pub(super) fn test_rest<V: Float>(&self, leaf: &Leaf, ray: &Single<V>, best: &mut Best) {
+    pub(super) fn test_rest<V: Float>(&self, leaf: &Leaf, surfaces: &Table, ray: &Single<V>, best: &mut Best) {
         for block in leaf.spheres[0] + 1..leaf.spheres[1] {
             let near = self.near(block, ray, best.nearest);
             if near != 0 {
-                self.test_near(block, near, ray, best);
+                self.test_near(block, near, surfaces, ray, best);
             }
         }
         let Some(turned) = &ray.turned else { return };

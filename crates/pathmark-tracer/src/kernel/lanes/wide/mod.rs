@@ -18,8 +18,8 @@ use super::singles::Singles;
 use super::tables::Tables;
 use crate::kernel::Counts;
 use crate::math::{Vec3, plane_root};
-use crate::scene::{Bounds, Child, Plane, Scene, Tests};
-use crate::simd::{Apart, Float, Level, Mask, Precision, Sizes, sizes_of};
+use crate::scene::{Bounds, Gathered, Plane, Scene, Tests};
+use crate::simd::{Apart, Float, Level, Mask, Precision, Sizes, Table, sizes_of};
 use all::All;
 use blocks::{Blocks, Making};
 use bundle::Bundle;
@@ -47,9 +47,9 @@ enum Search {
 impl Search {
     /// A search of so many primitives by a tree of these nodes. One so deep that a ray may leave more for later than there is place for is not used:
     /// to ask for place at each node costs every search a tenth of its time, and such trees are of scenes made for it.
-    fn of(nodes: Option<&[Vec<Child>]>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
-        match nodes.filter(|nodes| is_shallow(nodes)) {
-            Some(nodes) => Self::Tree(Tree::of(nodes, width, scale, making)),
+    fn of(gathered: Option<&Gathered<'_>>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
+        match gathered.filter(|gathered| is_shallow(gathered)) {
+            Some(gathered) => Self::Tree(Tree::of(gathered, width, scale, making)),
             None => Self::All(making.all()),
         }
     }
@@ -72,7 +72,7 @@ impl<V: Float> Apart for Nearest<'_, '_, V> {
     #[inline(always)]
     fn run(self) -> (Found<V>, u32) {
         let Self { wide, tables, rays, wanted, scratch, counts } = self;
-        let found = wide.nearest(rays, wanted, scratch, counts);
+        let found = wide.nearest(rays, wanted, &tables.surfaces, scratch, counts);
         let has_triangles = wide.blocks.has_triangles;
         let left = if has_triangles { wanted & are_doubtful(tables, &rays.ray, &found).bits() } else { 0 };
         (found, left)
@@ -83,11 +83,11 @@ impl Wide {
     pub(in crate::kernel::lanes) fn of(scene: &Scene, level: Level, precision: Precision, enclosing: &[u32]) -> Self {
         let Sizes { register, single: width, .. } = sizes_of(level, precision);
         let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
-        let bounds = scene.primitives.bounds();
-        let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
-        let mut making = Making::new(&scene.primitives, &bounds, scale, large.as_ref(), [width, register], precision);
-        let nodes = scene.hierarchy.as_ref().map(|hierarchy| hierarchy.gathered(width));
-        let search = Search::of(nodes.as_deref(), width, scale, &mut making);
+        let bounds = scene.primitives.bounds().flatten();
+        let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
+        let mut making = Making::new(&scene.primitives, scale, large.as_ref(), [width, register], precision);
+        let gathered = scene.hierarchy.as_ref().map(|hierarchy| hierarchy.gathered(width));
+        let search = Search::of(gathered.as_ref(), width, scale, &mut making);
         let blocks = making.made();
         let first_plane = scene.primitives.spheres.len() as u32;
         let planes = (first_plane..).map(f64::from).zip(scene.primitives.planes.iter().copied()).collect();
@@ -105,6 +105,7 @@ impl Wide {
         &self,
         rays: &Rays<V>,
         wanted: u32,
+        surfaces: &Table,
         scratch: &mut Scratch<'_, V>,
         counts: &mut Counts,
     ) -> Found<V> {
@@ -129,7 +130,7 @@ impl Wide {
         let Scratch { stacks, bundle } = scratch;
         bundle.fill(rays, &found, self.blocks.scale, self.blocks.has_triangles);
         let mut tests = Tests::default();
-        V::apart(Descent { tree, blocks: &self.blocks, rays: bundle, wanted, stacks, tests: &mut tests });
+        V::apart(Descent { tree, blocks: &self.blocks, surfaces, rays: bundle, wanted, stacks, tests: &mut tests });
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
         Found { nearest: V::load(&bundle.nearest), primitive: V::load(&bundle.primitive) }

@@ -5,15 +5,15 @@ use super::blocks::{Blocks, Leaf, Making};
 use super::bundle::Bundle;
 use super::coarse::Scale;
 use crate::kernel::lanes::packet::LanesOf;
-use crate::scene::{Bounds, Child, Content, Tests};
-use crate::simd::{Apart, Float, MOST_LANES, Mask, prefetch};
+use crate::scene::{Bounds, Child, Content, Gathered, Tests};
+use crate::simd::{Aligned, Apart, Float, MOST_LANES, Mask, Table, prefetch};
 
 /// The tree; its root is the first node.
 pub(super) struct Tree {
     /// Of each node the lowest x, y and z of all children, then the highest.
-    faces: Vec<f32>,
+    faces: Aligned<f32>,
     /// Of each node as many as there are lanes, as bits of a number: numbers of nodes, or with [`IS_LEAF`] of leaves.
-    children: Vec<f32>,
+    children: Aligned<f32>,
     /// How many of them there are.
     counts: Vec<u32>,
     leaves: Vec<Leaf>,
@@ -27,36 +27,37 @@ const IS_LEAF: u32 = 1 << 31;
 const NOTHING: u32 = u32::MAX;
 
 impl Tree {
-    pub(super) fn of(nodes: &[Vec<Child>], width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
-        let of_leaf = |child: &Child| match &child.content {
+    pub(super) fn of(gathered: &Gathered<'_>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
+        let of_leaf = |child: &Child| match child.content {
             Content::Node(_) => None,
-            Content::Primitives(primitives) => Some(primitives.len()),
+            Content::Primitives { count, .. } => Some(count as usize),
         };
-        let in_leaves = || nodes.iter().flatten().filter_map(of_leaf);
+        let in_leaves = || gathered.children().iter().filter_map(of_leaf);
         making.make_room(in_leaves());
-        let mut faces = Vec::with_capacity(6 * width * nodes.len());
-        let mut children = Vec::with_capacity(width * nodes.len());
+        let count = gathered.nodes().len();
+        let mut faces = Aligned::with_capacity(6 * width * count);
+        let mut children = Aligned::with_capacity(width * count);
         let mut leaves = Vec::with_capacity(in_leaves().count());
-        for node in nodes {
-            let bounds: Vec<Bounds> = node.iter().map(|child| scale.padded(&child.bounds)).collect();
+        for node in gathered.nodes() {
+            let mut bounds = [Bounds::EMPTY; MOST_LANES];
+            bounds.iter_mut().zip(node).for_each(|(bounds, child)| *bounds = scale.padded(&child.bounds));
             for k in 0..6 {
                 // What has its sides exchanged is met by no ray.
                 let face = |bounds: &Bounds| if k < 3 { bounds.low[k] } else { bounds.high[k - 3] };
-                let nothing = face(&Bounds::EMPTY);
-                faces.extend((0..width).map(|lane| bounds.get(lane).map_or(nothing, face) as f32));
+                faces.extend(bounds[..width].iter().map(|bounds| face(bounds) as f32));
             }
             children.extend((0..width).map(|lane| {
-                f32::from_bits(match node.get(lane).map(|child| &child.content) {
+                f32::from_bits(match node.get(lane).map(|child| child.content) {
                     None => 0,
-                    Some(Content::Node(node)) => *node as u32,
-                    Some(Content::Primitives(primitives)) => {
-                        leaves.push(making.add(primitives.iter().copied()));
+                    Some(Content::Node(node)) => node,
+                    Some(Content::Primitives { first, count }) => {
+                        leaves.push(making.add(gathered.primitives(first, count).iter().copied()));
                         (leaves.len() - 1) as u32 | IS_LEAF
                     }
                 })
             }));
         }
-        let counts = nodes.iter().map(|node| node.len() as u32).collect();
+        let counts = gathered.nodes().map(|node| node.len() as u32).collect();
         Self { faces, children, counts, leaves }
     }
 }
@@ -69,6 +70,7 @@ impl Tree {
 pub(super) struct Descent<'a, V: Float> {
     pub(super) tree: &'a Tree,
     pub(super) blocks: &'a Blocks,
+    pub(super) surfaces: &'a Table,
     pub(super) rays: &'a mut Bundle<V>,
     pub(super) wanted: u32,
     pub(super) stacks: &'a mut [Stack],
@@ -172,7 +174,7 @@ impl<V: Float> Descent<'_, V> {
         for lane in LanesOf(near) {
             let mut best = self.best(lane);
             let (block, near) = (self.leaf(lane).spheres[0], self.stacks[lane].near);
-            self.blocks.test_near(block, near, &self.rays.of_lane(lane), &mut best);
+            self.blocks.test_near(block, near, self.surfaces, &self.rays.of_lane(lane), &mut best);
             self.keep(lane, &best);
         }
     }
@@ -191,7 +193,7 @@ impl<V: Float> Descent<'_, V> {
         self.tests.primitives += u64::from(leaf.primitives);
         if leaf.has_rest() {
             let mut best = self.best(lane);
-            self.blocks.test_rest(&leaf, &self.rays.of_lane(lane), &mut best);
+            self.blocks.test_rest(&leaf, self.surfaces, &self.rays.of_lane(lane), &mut best);
             self.keep(lane, &best);
         }
     }
@@ -215,12 +217,12 @@ impl Tree {
 const MOST_WAITING: usize = 160;
 
 /// Whether there is place for all children that may wait for a ray at a time in a tree of these nodes, each of which stands behind its parent.
-pub(super) fn is_shallow(nodes: &[Vec<Child>]) -> bool {
-    let mut below = vec![0; nodes.len()];
-    for (index, node) in nodes.iter().enumerate().rev() {
+pub(super) fn is_shallow(gathered: &Gathered<'_>) -> bool {
+    let mut below = vec![0; gathered.nodes().len()];
+    for (index, node) in gathered.nodes().enumerate().rev() {
         let deepest = node.iter().map(|child| match child.content {
-            Content::Node(node) => below[node],
-            Content::Primitives(_) => 0,
+            Content::Node(node) => below[node as usize],
+            Content::Primitives { .. } => 0,
         });
         below[index] = node.len() - 1 + deepest.max().unwrap_or(0);
     }
@@ -333,8 +335,11 @@ mod tests {
         let node = |depth: usize| {
             let end = (DEPTH - depth) * (width - 1);
             let first = end - (width - 1);
-            let leaf = |k: usize| Child { bounds: around(k..k + 1), content: Content::Primitives(vec![k as u32]) };
-            let deeper = Child { bounds: around(0..first), content: Content::Node(depth + 1) };
+            let leaf = |k: usize| Child {
+                bounds: around(k..k + 1),
+                content: Content::Primitives { first: k as u32, count: 1 },
+            };
+            let deeper = Child { bounds: around(0..first), content: Content::Node(depth as u32 + 1) };
             (first..end).map(leaf).chain((depth + 1 < DEPTH).then_some(deeper)).collect()
         };
         let nodes = (0..DEPTH).map(node).collect();
@@ -351,7 +356,9 @@ mod tests {
             let ray =
                 Ray { origin: Vec3::splat(Vec3::new(0.0, 0.0, 0.0)), direction: Vec3::splat(Vec3::new(1.0, 0.0, 0.0)) };
             let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
-            let found = self.0.nearest(&rays, 1, &mut Scratch::new(&mut []), &mut Counts::default());
+            // Without a tree nobody looks at surfaces.
+            let surfaces = Table::new([[0.0; 4]], Precision::F64);
+            let found = self.0.nearest(&rays, 1, &surfaces, &mut Scratch::new(&mut []), &mut Counts::default());
             (found.nearest.lane(0), found.primitive.lane(0))
         }
     }
@@ -363,13 +370,15 @@ mod tests {
             for precision in Precision::ALL {
                 let Sizes { register, single: width, .. } = sizes_of(level, precision);
                 let (spheres, nodes) = row(width);
-                assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&nodes));
-                assert!(is_shallow(&nodes[DEPTH - 1..]));
-                let bounds: Vec<Option<Bounds>> = spheres.iter().map(Primitive::bounds).collect();
-                let scale = Scale::of(&bounds.iter().flatten().fold(Bounds::EMPTY, |all, own| all.and(own)));
+                let order: Vec<u32> = (0..spheres.len() as u32).collect();
+                assert!(is_shallow(&Gathered::new(nodes[DEPTH - 1..].to_vec(), &order)));
+                let gathered = Gathered::new(nodes, &order);
+                assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&gathered));
+                let bounds = spheres.iter().filter_map(Primitive::bounds);
+                let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
                 let primitives = Primitives { spheres, ..Primitives::default() };
-                let mut making = Making::new(&primitives, &bounds, scale, None, [width, register], precision);
-                let search = Search::of(Some(&nodes), width, scale, &mut making);
+                let mut making = Making::new(&primitives, scale, None, [width, register], precision);
+                let search = Search::of(Some(&gathered), width, scale, &mut making);
                 let blocks = making.made();
                 let wide = Wide { large: None, planes: Vec::new(), blocks, search };
                 let last = primitives.spheres.len() - 1;
