@@ -154,7 +154,7 @@ pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Inspector> {
 /// Builds the kernel for a scene, and what accelerates it.
 pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>> {
     match &choice.way {
-        Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(prepared(scene, choice), choice, *chosen))),
+        Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(scene, choice, *chosen))),
         Way::Device(chosen) => return Ok(Box::new(OnDevice::new(&prepared(scene, choice), choice, chosen)?)),
         Way::Beside { own, devices, .. } => {
             let prepared = prepared(scene, choice);

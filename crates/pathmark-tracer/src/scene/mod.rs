@@ -221,7 +221,18 @@ impl Scene {
     /// The distance and the number of the first primitive along a ray, which is as exact as numbers of so many digits. [`Scene::intersect`]
     /// finds the same with those of double precision, sooner.
     pub fn nearest(&self, ray: &Ray, from: Option<Standpoint>, digits: u32, tests: &mut Tests) -> Nearest {
-        let hierarchy = self.hierarchy.as_ref();
+        self.nearest_in(self.hierarchy.as_ref(), ray, from, digits, tests)
+    }
+
+    /// Likewise, by another hierarchy than the scene's own.
+    pub(crate) fn nearest_in(
+        &self,
+        hierarchy: Option<&Hierarchy>,
+        ray: &Ray,
+        from: Option<Standpoint>,
+        digits: u32,
+        tests: &mut Tests,
+    ) -> Nearest {
         if self.primitives.triangles.is_empty() {
             return self.primitives.nearest::<AllEffects>(hierarchy, ray, from, f64::INFINITY, tests);
         }
@@ -303,12 +314,22 @@ impl Scene {
 
     /// Adds what estimators aim at, as seen by that view.
     pub(crate) fn add_lights(&mut self, view: &View) {
-        self.lights = Some(Lights::of(self, &view.origins()));
+        self.lights = Some(self.lights_for(view));
+    }
+
+    /// What estimators aim at, as seen by that view.
+    pub(crate) fn lights_for(&self, view: &View) -> Lights {
+        Lights::of(self, &view.origins())
     }
 
     /// The same scene with the search structure of that name; `None` if it is to have none.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
-        let hierarchy = accelerator(Some(name), 0, Scan::OneByOne)?.build(self.primitives.bounds())?;
+        let hierarchy = self.hierarchy_by(name)?;
         Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
+    }
+
+    /// The search structure of that name over its primitives; `None` if there is to be none.
+    pub(crate) fn hierarchy_by(&self, name: &str) -> Option<Hierarchy> {
+        accelerator(Some(name), 0, Scan::OneByOne)?.build(self.primitives.bounds())
     }
 }

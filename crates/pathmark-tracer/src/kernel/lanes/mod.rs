@@ -23,7 +23,7 @@ use crate::film::{Piece, TileBuffer};
 use crate::kernel::in_lanes::InLanes;
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
-use crate::scene::{Scene, View};
+use crate::scene::{Hierarchy, Scene, View};
 use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level, sizes_of};
 use filter::Filter;
 use packet::{LanesOf, NO_PARTS, NextPart, Packet, Parts};
@@ -39,6 +39,8 @@ use window::Window;
 /// The kernel.
 pub(super) struct Lanes {
     scene: Arc<Scene>,
+    /// What rays that the scene is asked for are searched in. The scene has none, because it would have to be copied for one.
+    hierarchy: Option<Hierarchy>,
     view: View,
     width: u32,
     seed: u64,
@@ -64,30 +66,30 @@ enum Search {
 
 impl Lanes {
     pub(super) fn new(
-        mut scene: Arc<Scene>,
+        scene: &Arc<Scene>,
         choice: &Choice,
         InLanes { level, precision, course, sampler, is_matt }: InLanes,
     ) -> Self {
-        let view = choice.view(&scene);
+        let view = choice.view(scene);
         let is_round = scene.primitives.spheres.len() == scene.owners.len();
+        let hierarchy = scene.hierarchy_by(choice.accelerator()).or_else(|| scene.hierarchy.clone());
         let search = match precision {
-            _ if !is_round || scene.hierarchy.is_some() => {
-                Search::Wide(Box::new(Wide::of(&scene, level, precision, &scene.enclosing(&view))))
+            _ if !is_round || hierarchy.is_some() => {
+                Search::Wide(Box::new(Wide::of(scene, hierarchy.as_ref(), level, precision, &scene.enclosing(&view))))
             }
-            Precision::F64 => Search::Filter(Filter::of(&scene)),
-            Precision::F32 => Search::Singles(Singles::of(&scene, &scene.enclosing(&view))),
+            Precision::F64 => Search::Filter(Filter::of(scene)),
+            Precision::F32 => Search::Singles(Singles::of(scene, &scene.enclosing(&view))),
         };
-        // Nobody asks the scene itself for the nearest of spheres that are in a tree.
-        if let Some(scene) = Arc::get_mut(&mut scene).filter(|_| is_round) {
-            scene.hierarchy = None;
-        }
+        let lights = choice.estimator.aims.then(|| scene.lights_for(&view));
         Self {
-            targets: scene.lights.as_ref().and_then(|lights| Targets::of(lights, precision)).map(Box::new),
-            tables: Tables::of(&scene, precision),
+            // Nobody asks for the nearest of spheres that are in a tree of their own.
+            hierarchy: hierarchy.filter(|_| !is_round),
+            targets: lights.as_ref().and_then(|lights| Targets::of(lights, precision)).map(Box::new),
+            tables: Tables::of(scene, precision),
             search,
             view,
             precision,
-            scene,
+            scene: Arc::clone(scene),
             width: choice.width,
             seed: choice.seed,
             course,

@@ -5,7 +5,7 @@ use super::wide::{Nearest, Scratch};
 use super::{Lanes, Search};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3};
-use crate::scene::{Scene, Standpoint, Tests};
+use crate::scene::{Hierarchy, Scene, Standpoint, Tests};
 use crate::simd::{Apart, Float, MOST_LANES, Mask};
 
 impl Lanes {
@@ -47,7 +47,13 @@ impl Lanes {
         let [mut nearest, mut primitive] = [[V::One::default(); MOST_LANES]; 2];
         found.nearest.store(&mut nearest);
         found.primitive.store(&mut primitive);
-        all.ask(&self.scene, wanted, [&mut nearest, &mut primitive], (V::one, V::SIGNIFICAND), counts);
+        all.ask(
+            (&self.scene, self.hierarchy.as_ref()),
+            wanted,
+            [&mut nearest, &mut primitive],
+            (V::one, V::SIGNIFICAND),
+            counts,
+        );
         found.nearest = V::load(&nearest);
         found.primitive = V::load(&primitive);
     }
@@ -63,7 +69,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
     #[inline(never)]
     fn ask(
         &self,
-        scene: &Scene,
+        (scene, hierarchy): (&Scene, Option<&Hierarchy>),
         wanted: u32,
         [nearest, primitive]: [&mut [T; MOST_LANES]; 2],
         (one, digits): (fn(f64) -> T, u32),
@@ -76,7 +82,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
             // Only what goes inside has another root; what is flat has none on either side.
             let inside = !own_root.is_nan();
             let from = (from >= 0.0).then_some(Standpoint { primitive: from as u32, inside });
-            let found = scene.nearest(&ray, from, digits, &mut tests);
+            let found = scene.nearest_in(hierarchy, &ray, from, digits, &mut tests);
             nearest[lane] = one(found.t);
             primitive[lane] = one(if found.primitive == u32::MAX { -1.0 } else { found.primitive.into() });
         }

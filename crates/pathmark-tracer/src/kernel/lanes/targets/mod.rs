@@ -5,7 +5,7 @@ mod triangle;
 
 use crate::math::{Ray, Vec3};
 use crate::scene::{AnyTarget, Lights, NO_LIGHT};
-use crate::simd::{Column, Float, Precision, Table};
+use crate::simd::{Float, Precision, Table};
 use sphere::Spheres;
 use triangle::Triangles;
 
@@ -18,7 +18,7 @@ pub(super) struct Targets {
     /// How often each light or one before it is chosen.
     up_to: Vec<f64>,
     /// The light of each primitive, or -1.
-    of_primitive: Column,
+    of_primitive: Table,
 }
 
 /// Directions towards lights.
@@ -94,14 +94,14 @@ impl Targets {
             let is_triangle = matches!(light.target, AnyTarget::Triangle(_));
             [f64::from(light.primitive), light.chance, light.target.area(), f64::from(u8::from(is_triangle))]
         });
-        let number = |light: &u32| if *light == NO_LIGHT { -1.0 } else { *light as f32 };
-        let of_primitive = lights.of_primitive.iter().map(number);
+        let number = |light: &u32| if *light == NO_LIGHT { -1.0 } else { f64::from(*light) };
+        let of_primitive = lights.of_primitive.iter().map(|light| [number(light), 0.0, 0.0, 0.0]);
         Some(Self {
             spheres: Spheres::of(lights, precision),
             triangles: Triangles::of(lights, precision),
             all: Table::new(all, precision),
             up_to: lights.lights.iter().map(|light| light.up_to).collect(),
-            of_primitive: Column::new(of_primitive),
+            of_primitive: Table::new(of_primitive, precision),
         })
     }
 
@@ -158,7 +158,7 @@ impl Targets {
     #[inline(always)]
     pub(super) fn density<V: Float>(&self, start: &Start<V>, ray: &Ray<V>, met: &Met<V>) -> V {
         let zero = V::splat(0.0);
-        let light = self.of_primitive.at::<V>(met.primitive);
+        let [light, ..] = V::rows(&self.of_primitive, met.primitive);
         let is_target = zero.le(light);
         let light = self.chosen::<V>(light);
         let density = match (&self.spheres, &self.triangles) {

@@ -18,7 +18,7 @@ use super::singles::Singles;
 use super::tables::Tables;
 use crate::kernel::Counts;
 use crate::math::{Vec3, plane_root};
-use crate::scene::{Bounds, Gathered, Plane, Scene, Tests};
+use crate::scene::{Bounds, Gathered, Hierarchy, Plane, Scene, Tests};
 use crate::simd::{Apart, Float, Level, Mask, Precision, Sizes, Table, sizes_of};
 use all::All;
 use blocks::{Blocks, Making};
@@ -80,13 +80,20 @@ impl<V: Float> Apart for Nearest<'_, '_, V> {
 }
 
 impl Wide {
-    pub(in crate::kernel::lanes) fn of(scene: &Scene, level: Level, precision: Precision, enclosing: &[u32]) -> Self {
+    /// The primitives of a scene, in a tree that is made of the hierarchy, if there is one.
+    pub(in crate::kernel::lanes) fn of(
+        scene: &Scene,
+        hierarchy: Option<&Hierarchy>,
+        level: Level,
+        precision: Precision,
+        enclosing: &[u32],
+    ) -> Self {
         let Sizes { register, single: width, .. } = sizes_of(level, precision);
         let large = (precision == Precision::F32).then(|| Singles::large(scene, enclosing));
         let bounds = scene.primitives.bounds().flatten();
         let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
         let mut making = Making::new(&scene.primitives, scale, large.as_ref(), [width, register], precision);
-        let gathered = scene.hierarchy.as_ref().map(|hierarchy| hierarchy.gathered(width));
+        let gathered = hierarchy.map(|hierarchy| hierarchy.gathered(width));
         let search = Search::of(gathered.as_ref(), width, scale, &mut making);
         let blocks = making.made();
         let first_plane = scene.primitives.spheres.len() as u32;
@@ -262,7 +269,7 @@ mod tests {
                 }
                 let (walks, edges) = walks(&scene, 4000);
                 for level in levels() {
-                    let wide = Wide::of(&scene, level, Precision::F64, &[]);
+                    let wide = Wide::of(&scene, scene.hierarchy.as_ref(), level, Precision::F64, &[]);
                     for starts in [&walks, &edges] {
                         left += on_level(level, Precision::F64, Compare(&scene, &wide, starts));
                         compared += starts.len();
@@ -282,7 +289,7 @@ mod tests {
                 let scene = load(name).unwrap().scaled(libm::exp2(f64::from(exponent))).accelerated("sah").unwrap();
                 let (walks, edges) = walks(&scene, 1000);
                 for level in levels() {
-                    let wide = Wide::of(&scene, level, Precision::F64, &[]);
+                    let wide = Wide::of(&scene, scene.hierarchy.as_ref(), level, Precision::F64, &[]);
                     for starts in [&walks, &edges] {
                         let left = on_level(level, Precision::F64, Compare(&scene, &wide, starts));
                         assert!(left < starts.len() / 10, "{left} left");
@@ -315,7 +322,7 @@ mod tests {
         };
         assert!(starts.iter().filter(line_passes).count() > 500);
         for level in levels() {
-            let wide = Wide::of(&scene, level, Precision::F64, &[]);
+            let wide = Wide::of(&scene, scene.hierarchy.as_ref(), level, Precision::F64, &[]);
             assert_eq!(on_level(level, Precision::F64, Compare(&scene, &wide, &starts)), 0);
         }
     }
