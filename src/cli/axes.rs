@@ -63,6 +63,7 @@ fn device_option() -> Arg {
 /// What clap refuses before the program looks at a value.
 fn parser(axis: &Axis) -> ValueParser {
     match (axis.field)(&mut Settings::default()) {
+        Field::Switch(_) => value_parser!(bool),
         Field::Count(_) => value_parser!(u16).into(),
         Field::Samples(_) => value_parser!(u32).into(),
         Field::Seed(_) => value_parser!(u64).into(),

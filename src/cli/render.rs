@@ -12,7 +12,7 @@ use crate::film::Shard;
 use crate::image_io;
 use crate::kernel::workload::WORKLOAD;
 use crate::lab::Lab;
-use crate::measure::{Measured, Outcome, Record, Setup, TraceFile};
+use crate::measure::{Measured, Outcome, Record, Settings, Setup, TraceFile};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -60,11 +60,9 @@ const DEFAULT_SPP: u32 = 16;
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let spp = arguments.spp.unwrap_or(DEFAULT_SPP);
     let setup = talk.busy(&format!("reading {}", arguments.scene), || {
-        lab.prepare(arguments.axes.settings(lab, &arguments.scene, spp, arguments.seed)?)
+        let settings = arguments.axes.settings(lab, &arguments.scene, spp, arguments.seed)?;
+        lab.prepare(Settings { adaptive: arguments.adaptive, ..settings })
     })?;
-    if arguments.adaptive {
-        setup.check_adaptive()?;
-    }
     if let Some(shard) = arguments.part.shard()? {
         return render_part(arguments, shard, setup, talk);
     }
@@ -93,7 +91,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         talk.busy(&format!("building {}", setup.name()), || setup.build())?;
         talk.begin(&format!("{} at {spp} spp", setup.name()), setup.jobs() as u64);
         let watch = |done| talk.advance(done);
-        let outcome = if arguments.adaptive { setup.run_adaptive(Some(&watch)) } else { setup.run(Some(&watch)) }?;
+        let outcome = setup.run(Some(&watch))?;
         talk.end();
         (setup, outcome)
     };

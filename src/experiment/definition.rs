@@ -19,7 +19,7 @@
 //! threads = [1, 2, "all"]
 //! decomposition = ["tiles:32x32"]
 //! # There may be several, each under [[matrix]]. Optional: sampler, output, effects, accelerator, roulette, max-depth, size (instead of the
-//! # profile's), kernel, simd, precision, clamp, filter, epsilon, weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
+//! # profile's), kernel, simd, precision, adaptive, clamp, filter, epsilon, weak = true, which gives each cell spp times its threads, and curve = true, which gives a row at 1, 2, 4 ... times the
 //! # fewest samples on the way to each spp. profiles = ["reports"] is for a matrix that other profiles do not have, and repetitions = 3 for one
 //! # whose cells are run no more often.
 //!

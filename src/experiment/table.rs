@@ -138,6 +138,7 @@ impl<'de> DeserializeSeed<'de> for Values {
     fn deserialize<D: Deserializer<'de>>(self, from: D) -> Result<Self::Value, D::Error> {
         Ok(match (self.0.field)(&mut Settings::default()) {
             Field::Name(_) | Field::Fitting(_) => Vec::deserialize(from)?,
+            Field::Switch(_) => words(&Vec::<bool>::deserialize(from)?),
             Field::Count(_) => words(&Vec::<u16>::deserialize(from)?),
             Field::Samples(_) => words(&Vec::<u32>::deserialize(from)?),
             Field::Seed(_) => words(&Vec::<u64>::deserialize(from)?),

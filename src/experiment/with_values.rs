@@ -84,6 +84,7 @@ fn value_of(axis: &Axis, values: &str) -> Result<Value> {
             let (width, height) = parse_size(values)?;
             Value::Array(vec![Value::Integer(width.into()), Value::Integer(height.into())])
         }
+        Field::Switch(_) => Value::Array(each.map(|value| switch(axis.name, value)).collect::<Result<_>>()?),
         Field::Name(_) | Field::Fitting(_) => Value::Array(each.map(Value::from).collect()),
         Field::Workers(_) => {
             let workers = |value: &str| if value == "all" { Ok(value.into()) } else { number(axis.name, value) };
@@ -93,6 +94,11 @@ fn value_of(axis: &Axis, values: &str) -> Result<Value> {
             Value::Array(each.map(|value| number(axis.name, value)).collect::<Result<_>>()?)
         }
     })
+}
+
+fn switch(name: &str, value: &str) -> Result<Value> {
+    let parsed = value.parse().map(Value::Boolean);
+    parsed.map_err(|_| InputError::new(name, value, "is not true or false").into())
 }
 
 fn number(name: &str, value: &str) -> Result<Value> {

@@ -1,4 +1,4 @@
-//! Samples where the noise is: `render --adaptive`.
+//! Samples where the noise is: `render --adaptive`, and `adaptive = [false, true]` in an experiment.
 //!
 //! A pilot renders a few samples a pixel under a seed that no image can have, says how noisy each cell of a fixed grid is, and is thrown
 //! away. The samples of the image decide nothing, so its mean is as unbiased as with the same number everywhere; adaptive renderers that
@@ -9,7 +9,6 @@ use super::run::{Account, Watch};
 use super::{Outcome, Settings, Setup};
 use crate::error::{InputError, Result};
 use crate::film::{Film, SampleGrid};
-use crate::film_file::FilmKey;
 use crate::scene::SUBPIXELS;
 use std::slice::from_ref;
 use std::time::Instant;
@@ -24,20 +23,30 @@ const EVEN_PART: u32 = 8;
 const PILOT_PART: u32 = 16;
 
 impl Setup {
-    /// Refuses settings whose samples cannot be shared out.
-    pub fn check_adaptive(&self) -> Result<()> {
-        let spp = self.settings().spp;
-        if spp >= FEWEST_SPP && spp.is_multiple_of(SUBPIXELS) {
+    /// Refuses settings whose samples are to be shared out and cannot be.
+    pub(super) fn check_adaptive(&self) -> Result<()> {
+        let Settings { adaptive, spp, rank_rule, .. } = self.settings();
+        if !*adaptive {
+            return Ok(());
+        }
+        if self.scene().is_none() {
+            let problem = format!("has no meaning for {}, which is a workload", self.name());
+            return Err(InputError::new("adaptive", "true", problem).allowed("false").into());
+        }
+        if let Some(rule) = rank_rule {
+            let problem = "shares out jobs whose samples are the same in every pixel";
+            return Err(InputError::new("rank-rule", rule, problem).allowed("none where samples are adaptive").into());
+        }
+        if *spp >= FEWEST_SPP && spp.is_multiple_of(SUBPIXELS) {
             return Ok(());
         }
         let problem = "cannot be shared out over an image";
-        let allowed = format!("multiples of {SUBPIXELS} from {FEWEST_SPP} on with --adaptive");
+        let allowed = format!("multiples of {SUBPIXELS} from {FEWEST_SPP} on where samples are adaptive");
         Err(InputError::new("spp", spp.to_string(), problem).allowed(allowed).into())
     }
 
-    /// As [`Setup::run`], with as many samples on average, more of them where a pilot found more noise.
-    pub fn run_adaptive(&self, watch: Watch<'_>) -> Result<Outcome> {
-        self.check_adaptive()?;
+    /// As many samples on average as were asked for, more of them where a pilot found more noise.
+    pub(super) fn run_adaptive(&self, watch: Watch<'_>) -> Result<Outcome> {
         let before = Instant::now();
         let grid = self.sample_grid()?;
         let pilot_s = before.elapsed().as_secs_f64();
@@ -61,10 +70,5 @@ impl Setup {
         let pilot = self.pilot(pilot_spp, seed)?.run(None)?;
         let least = (spp / EVEN_PART / SUBPIXELS * SUBPIXELS).max(SUBPIXELS);
         Ok(SampleGrid::neyman(&pilot.film, *spp, least, SUBPIXELS))
-    }
-
-    /// What the film of [`Setup::run_adaptive`] is of.
-    pub fn adaptive_film_key(&self) -> FilmKey {
-        FilmKey { adaptive: true, ..self.film_key() }
     }
 }

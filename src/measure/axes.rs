@@ -17,6 +17,8 @@ pub enum Field<'a> {
     Name(&'a mut String),
     /// A name, or a choice that fits the scene.
     Fitting(&'a mut Option<String>),
+    /// Yes or no.
+    Switch(&'a mut bool),
     /// A number, or none.
     Count(&'a mut Option<u16>),
     /// Samples per pixel.
@@ -110,6 +112,7 @@ impl Field<'_> {
         match self {
             Self::Name(name) => *name = text.to_string(),
             Self::Fitting(name) => *name = Some(text.to_string()),
+            Self::Switch(switch) => *switch = text.parse().ok()?,
             Self::Count(count) => *count = Some(text.parse().ok()?),
             Self::Samples(spp) => *spp = text.parse().ok()?,
             Self::Seed(seed) => *seed = text.parse().ok()?,
@@ -123,6 +126,7 @@ impl Field<'_> {
         match self {
             Self::Name(name) => name.clone(),
             Self::Fitting(name) => name.clone().unwrap_or_default(),
+            Self::Switch(switch) => switch.to_string(),
             Self::Count(count) => count.map(|count| count.to_string()).unwrap_or_default(),
             Self::Samples(spp) => spp.to_string(),
             Self::Seed(seed) => seed.to_string(),
@@ -149,13 +153,14 @@ fn all_strategies(lab: &Lab) -> Vec<String> {
 }
 
 /// Every axis, in the order in which an experiment nests them: the first varies slowest. Results on disk depend on the order.
-pub static AXES: [Axis; 22] = [
+pub static AXES: [Axis; 23] = [
     Axis::new("scene", |s| Name(&mut s.scene)).image().all(all_scenes),
     Axis::new("size", |s| Field::Size(&mut s.spec)).image().option("WxH", "Columns and rows").default("512x384"),
     Axis::new("estimator", |s| Name(&mut s.spec.estimator)).image().light().option("NAME", "Estimator [default: the scene's own]"),
     Axis::new("sampler", |s| Name(&mut s.spec.sampler)).image().light().option("NAME", "Sampler").default("independent"),
     Axis::new("max-depth", |s| Field::Count(&mut s.spec.max_depth)).image().light().option("N", "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]"),
     Axis::new("spp", |s| Field::Samples(&mut s.spp)).image(),
+    Axis::new("adaptive", |s| Field::Switch(&mut s.adaptive)).image().light(),
     Axis::new("seed", |s| Field::Seed(&mut s.spec.seed)).image(),
     Axis::new("clamp", |s| Fitting(&mut s.spec.clamp)).image().light(),
     Axis::new("filter", |s| Fitting(&mut s.spec.filter)).image().light().all(all_filters).option("NAME", "Pixel filter: tent, box or center [default: the camera's own]"),

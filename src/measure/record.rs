@@ -235,6 +235,7 @@ fn described(settings: &Settings) -> Record {
         width: spec.width,
         height: spec.height,
         spp: settings.spp,
+        adaptive: settings.adaptive,
         seed: spec.seed,
         estimator: spec.estimator.clone(),
         sampler: spec.sampler.clone(),
@@ -291,6 +292,12 @@ impl Record {
     /// CPU seconds during the makespan, in the program and in the system.
     pub fn cpu_s(&self) -> Option<f64> {
         Some(self.cpu_user_s? + self.cpu_system_s?)
+    }
+
+    /// Seconds that its samples took: the makespan, and where a pilot shared the samples out, that too.
+    pub fn rendering_s(&self) -> Option<f64> {
+        let pilot_s = if self.adaptive { self.pilot_s? } else { 0.0 };
+        Some(self.makespan_s? + pilot_s)
     }
 
     /// The kernel that rendered, in words: with the precision and the instruction set of its lanes, if it has any.

@@ -104,6 +104,9 @@ impl Outcome {
 impl Setup {
     /// Renders, times and verifies.
     pub fn run(&self, watch: Watch<'_>) -> Result<Outcome> {
+        if self.settings().adaptive {
+            return self.run_adaptive(watch);
+        }
         let (spec, spp) = (&self.settings().spec, self.settings().spp);
         let mut account = Account::new();
         let films = account.round(self, self.plan(), from_ref(&(0..spp)), watch)?;

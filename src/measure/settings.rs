@@ -25,6 +25,9 @@ pub struct Settings {
     pub scene: String,
     /// Samples per pixel.
     pub spp: u32,
+    /// Whether each cell of a grid has as many samples as its noise calls for; `spp` is their mean then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub adaptive: bool,
     /// What the kernel is built from.
     pub spec: Spec,
     /// How the film is cut into jobs.
@@ -48,6 +51,7 @@ impl Default for Settings {
         Self {
             scene: "cornell".to_string(),
             spp: 16,
+            adaptive: false,
             spec: Spec::default(),
             decomposition: "tiles:32x32".to_string(),
             output: "slots".to_string(),

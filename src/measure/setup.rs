@@ -115,13 +115,16 @@ impl Setup {
         }
         let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
         check_jobs(plan.len(), &strategy, &settings.decomposition)?;
-        Ok(Self { subject, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings })
+        let setup =
+            Self { subject, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings };
+        setup.check_adaptive()?;
+        Ok(setup)
     }
 
     /// The same run of other samples of the same radiance, nothing of it clamped.
     pub(super) fn pilot(&self, spp: u32, seed: u64) -> Result<Self> {
         let mut settings = Settings { spp, ..self.settings.clone() };
-        (settings.spec.seed, settings.spec.clamp) = (seed, None);
+        (settings.spec.seed, settings.spec.clamp, settings.adaptive) = (seed, None, false);
         check_spp(spp, &settings.spec.estimator, self.spp_multiple())?;
         let plan = self.decomposition.plan(settings.spec.width, settings.spec.height, &(0..spp));
         check_jobs(plan.len(), &self.strategy, &settings.decomposition)?;

@@ -62,7 +62,7 @@ impl Contender {
         let renderer = renderer(&seeds, law_of(&first.sampler))?;
         let points = group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| {
             let mse = one_per_seed(&rows, |row| row.mse);
-            let times = values(rows, |row| row.makespan_s);
+            let times = values(rows, |row| row.rendering_s());
             let error = over_seeds(&mse, LEVEL);
             CostPoint {
                 spp,
@@ -126,7 +126,7 @@ pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
     let of_seed = |rows: &BTreeMap<u32, &Row>| {
         let own = rows.iter().filter(|(spp, _)| whole.contains(spp));
         let curve: Curve = own.filter_map(|(spp, row)| Some((f64::from(*spp), mse(row)?))).collect();
-        let longest = rows.iter().rev().find_map(|(spp, row)| Some(row.makespan_s? / f64::from(*spp)))?;
+        let longest = rows.iter().rev().find_map(|(spp, row)| Some(row.rendering_s()? / f64::from(*spp)))?;
         Some((curve, longest))
     };
     seeds.values().filter_map(of_seed).collect()

@@ -241,7 +241,7 @@ pub(super) fn prefixed(name: &str, value: &str) -> String {
 fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
     let main: [Part<ImageKey>; 3] =
         [|image| image.scene.clone(), |image| image.estimator.clone(), |image| image.sampler.clone()];
-    let rest: [Part<ImageKey>; 7] = [
+    let rest: [Part<ImageKey>; 8] = [
         |image| format!("{}x{}", image.width, image.height),
         |image| image.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
         |image| image.roulette.clone(),
@@ -249,6 +249,7 @@ fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
         |image| if image.filter.is_empty() { "own filter".to_string() } else { prefixed("filter ", &image.filter) },
         |image| if image.epsilon.is_empty() { "no epsilon".to_string() } else { prefixed("epsilon ", &image.epsilon) },
         |image| image.precision.clone(),
+        |image| if image.adaptive { "adaptive".to_string() } else { "even".to_string() },
     ];
     let images: Vec<&ImageKey> = rows.iter().map(|row| &row.image).collect();
     let told = |image: &ImageKey| {

@@ -2,11 +2,13 @@
 
 use crate::scene_text::{Ball, load_scene};
 use pathmark::analysis::z_test::{critical_value, normal_quantile, z_score};
-use pathmark::error::Error;
+use pathmark::error::Result;
 use pathmark::film::Film;
 use pathmark::kernel::Spec;
 use pathmark::math::Rgb;
-use pathmark::measure::{CONFIDENCE, Checkpoint, Goal, Position, RoundTimes, Rounds, Settings, Setup, Warning};
+use pathmark::measure::{
+    CONFIDENCE, Checkpoint, Goal, Outcome, Position, RoundTimes, Rounds, Settings, Setup, Warning,
+};
 use pathmark::scene::{Scene, load};
 use std::sync::Arc;
 
@@ -24,7 +26,7 @@ fn goal() -> Goal {
 }
 
 /// This process renders.
-fn by_itself(rounds: &mut Rounds, spp: u32) -> Result<RoundTimes, Error> {
+fn by_itself(rounds: &mut Rounds, spp: u32) -> Result<RoundTimes> {
     rounds.extend_to(spp, None)
 }
 
@@ -175,6 +177,12 @@ fn goals_that_say_nothing_are_refused() {
     assert_eq!(rounds.spp(), 16);
 }
 
+/// The same samples on average, more of them where the noise is.
+fn run_adaptive(setup: &Setup) -> Result<Outcome> {
+    let (scene, _) = setup.scene().unwrap();
+    Setup::for_scene(Arc::clone(scene), Settings { adaptive: true, ..setup.settings().clone() })?.run(None)
+}
+
 /// A pixel that is a cell of its own has many samples where the pilot was bright and few where it was dark. Over many seeds its mean is
 /// that of equally many everywhere: z-test on one pixel, two-sided, at 1e-3.
 #[test]
@@ -201,7 +209,7 @@ fn adaptive_sampling_is_unbiased() {
         let n = SEEDS as f64;
         (sum / n, ((square / n - sum * sum / n / n) / (n - 1.0)).sqrt())
     };
-    let adaptive = moments(&|setup| setup.run_adaptive(None).unwrap().film, 1);
+    let adaptive = moments(&|setup| run_adaptive(setup).unwrap().film, 1);
     let even = moments(&|setup| setup.run(None).unwrap().film, 1 + SEEDS);
     let z = z_score(adaptive.0, adaptive.1, even.0, even.1).unwrap();
     println!("adaptive {adaptive:?}, even {even:?}, z {z:.2}");
@@ -213,7 +221,7 @@ fn adaptive_sampling_is_unbiased() {
 fn adaptive_sampling_keeps_its_total_and_lowers_the_noise() {
     let scene = Arc::new(load("cornell").unwrap());
     let setup = setup(&scene, 64, 48, 3, 64);
-    let (even, adaptive) = (setup.run(None).unwrap(), setup.run_adaptive(None).unwrap());
+    let (even, adaptive) = (setup.run(None).unwrap(), run_adaptive(&setup).unwrap());
     let (asked, found) = (even.counts.paths, adaptive.counts.paths);
     assert!(found <= asked && asked - found < 4 * 256, "{found} of {asked}");
     assert!(adaptive.adaptive && !even.adaptive && adaptive.checksum != even.checksum);
@@ -223,7 +231,7 @@ fn adaptive_sampling_keeps_its_total_and_lowers_the_noise() {
     println!("variance is {gain:.3} times lower");
     assert!(gain > 1.0, "{gain}");
     for spp in [8, 18] {
-        assert!(few(&scene, spp).run_adaptive(None).is_err());
+        assert!(run_adaptive(&few(&scene, spp)).is_err());
     }
 }
 

@@ -135,7 +135,10 @@ fn rounds() {
 /// Samples where the noise is: as many in each pixel, and the same bits, whoever renders them in which pieces.
 #[test]
 fn adaptive() {
-    let run = |settings| Setup::for_scene(Arc::clone(&SCENE), settings).unwrap().run_adaptive(None).unwrap();
+    let run = |settings| {
+        let settings = Settings { adaptive: true, ..settings };
+        Setup::for_scene(Arc::clone(&SCENE), settings).unwrap().run(None).unwrap()
+    };
     let expected = run(settings());
     for strategy in STRATEGIES {
         for decomposition in DECOMPOSITIONS {

@@ -150,20 +150,21 @@ fn words_differ_where_keys_do() {
 }
 
 fn setup(change: impl Fn(&mut Settings)) -> Setup {
-    let mut settings = Settings { spp: 4, threads: 1, ..Settings::default() };
+    let mut settings = Settings { spp: 16, threads: 1, ..Settings::default() };
     (settings.spec.width, settings.spec.height, settings.spec.estimator) = (8, 6, "bsdf".to_string());
     change(&mut settings);
     Setup::prepare(settings).unwrap()
 }
 
 /// Another value on each axis than the setups above have.
-const OTHER_VALUES: [(&str, &str); 21] = [
+const OTHER_VALUES: [(&str, &str); 22] = [
     ("scene", "sky"),
     ("size", "9x6"),
     ("estimator", "mis"),
     ("sampler", "sobol"),
     ("max-depth", "3"),
     ("spp", "8"),
+    ("adaptive", "true"),
     ("seed", "2"),
     ("clamp", "subpixel"),
     ("filter", "box"),

@@ -40,7 +40,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let places = groups.into_iter().filter_map(|((key, spp), rows)| {
         let mse = one_per_seed(&rows, |row| row.mse);
         let mse = mse.iter().sum::<f64>() / mse.len() as f64;
-        let seconds = results.median(&values(rows, |row| row.makespan_s))?;
+        let seconds = results.median(&values(rows, |row| row.rendering_s()))?;
         (mse > 0.0).then_some(Place { key, spp, seconds, mse })
     });
     let places: Vec<Place<'_>> = places.collect();
