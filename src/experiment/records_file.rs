@@ -72,7 +72,7 @@ fn end_of_rows(bytes: &[u8]) -> usize {
 
 /// Refuses a file whose rows have other columns than those that would be added to it.
 fn check_columns(text: &str, path: &Path) -> Result<()> {
-    let head = csv::Reader::from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
+    let head = csv::ReaderBuilder::new().from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
     if head.is_empty() || head.iter().eq(COLUMNS.iter().map(|column| column.name)) {
         return Ok(());
     }

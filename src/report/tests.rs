@@ -162,6 +162,16 @@ fn contenders_are_told_apart_on_every_axis() {
     }
 }
 
+/// What shares samples out costs as much as what renders them; the pilot of an order of pieces is another matter.
+#[test]
+fn the_pilot_of_adaptive_samples_is_paid_for() {
+    let even = Record { makespan_s: Some(2.0), pilot_s: Some(1.0), ..Record::default() };
+    assert_eq!(even.rendering_s(), Some(2.0));
+    let adaptive = Record { adaptive: true, ..even };
+    assert_eq!(adaptive.rendering_s(), Some(3.0));
+    assert_eq!(Record { makespan_s: None, ..adaptive }.rendering_s(), None);
+}
+
 /// Rows of so many strategies, scenes and samplers, under names that the program does not know.
 fn of_unknown_names(each: usize) -> Vec<Record> {
     let numbered = |name: &str, index: usize| format!("{name}-{index}");
