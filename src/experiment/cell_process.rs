@@ -144,14 +144,14 @@ impl CellJob {
 
     /// The rows of a cell for a GPU where there is none: no failures, but nothing measured either.
     fn without_device(&self, lab: &Lab) -> Result<Option<Vec<Record>>> {
+        let setup = self.setup(lab, self.settings.spp)?;
+        let is_without = setup.scene().is_some_and(|(_, choice)| choice.lacks_device());
         let row = |point: &PointJob| {
-            let setup = self.setup(lab, point.spp)?;
-            let is_without = setup.scene().is_some_and(|(_, choice)| choice.lacks_device());
-            let mut record = Record::of(&setup);
+            let mut record = Record { spp: point.spp, ..Record::of(&setup) };
             record.warn(&Warning::NoDevice);
-            Ok(is_without.then(|| self.label(point, record)))
+            self.label(point, record)
         };
-        self.points.iter().map(row).collect()
+        Ok(is_without.then(|| self.points.iter().map(row).collect()))
     }
 
     /// The rows of a curve. Rounds that end inside a block of samples would render its samples twice and time them twice, so an image of fewer

@@ -58,7 +58,6 @@ impl Setup {
         let film = films.into_iter().next().unwrap_or_else(|| Film::new(spec.width, spec.height));
         let mut outcome = account.outcome(self, self.settings().spp, film);
         outcome.pilot_s += pilot_s;
-        outcome.adaptive = true;
         Ok(outcome)
     }
 

@@ -345,7 +345,6 @@ impl Record {
         let counts = &outcome.counts;
         let mut record = Self::of(setup).with_errors(errors);
         record.spp = outcome.spp;
-        record.adaptive = outcome.adaptive;
         record.rounds = Some(outcome.rounds);
         record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());
         record.started_utc.clone_from(&outcome.started_utc);

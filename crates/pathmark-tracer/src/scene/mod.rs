@@ -239,6 +239,11 @@ impl Scene {
         self.primitives.surely_nearest(hierarchy, ray, from, (f64::INFINITY, digits), tests)
     }
 
+    /// Whether everything in it is a sphere.
+    pub fn is_round(&self) -> bool {
+        self.primitives.spheres.len() == self.owners.len()
+    }
+
     /// How far from the origin things happen among spheres: where the camera is, or, if that is the origin, as far as the least of them reaches.
     pub fn size(&self) -> f64 {
         let length = |v: Vec3| dot(v, v).sqrt();

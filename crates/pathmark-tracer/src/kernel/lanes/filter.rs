@@ -138,7 +138,7 @@ mod tests {
         let mut scenes = 0;
         for (name, _) in SCENES {
             let scene = load(name).unwrap();
-            if scene.primitives.spheres.len() < scene.owners.len() || scene.hierarchy.is_some() {
+            if !scene.is_round() || scene.hierarchy.is_some() {
                 continue;
             }
             scenes += 1;

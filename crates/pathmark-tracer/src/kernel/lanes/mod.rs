@@ -71,7 +71,7 @@ impl Lanes {
         InLanes { level, precision, course, sampler, is_matt }: InLanes,
     ) -> Self {
         let view = choice.view(scene);
-        let is_round = scene.primitives.spheres.len() == scene.owners.len();
+        let is_round = scene.is_round();
         let hierarchy = scene.hierarchy_by(choice.accelerator()).or_else(|| scene.hierarchy.clone());
         let search = match precision {
             _ if !is_round || hierarchy.is_some() => {

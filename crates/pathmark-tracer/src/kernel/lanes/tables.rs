@@ -123,16 +123,7 @@ impl Tables {
             _ => [1.0, 1.0, 0.0, 0.0],
         });
         let has_others = scene.objects.iter().any(|object| Kind::of(&object.material) == Kind::Other);
-        Self {
-            surfaces,
-            boxes,
-            owners,
-            emissions,
-            materials,
-            interfaces,
-            has_others,
-            is_round: first_flat as usize == scene.owners.len(),
-        }
+        Self { surfaces, boxes, owners, emissions, materials, interfaces, has_others, is_round: scene.is_round() }
     }
 
     /// The rows of primitives in the tables of emissions, materials and interfaces.
