@@ -71,6 +71,26 @@ fn a_device_lost_in_the_middle_leaves_a_checkpoint_that_a_processor_goes_on_from
     assert_eq!(checksum(&resumed), checksum(&whole));
 }
 
+/// Two devices and two workers make one image. Of two devices the one that is lost ends the program, unless the others left it no piece.
+#[test]
+fn two_devices_in_one_run_render_the_same_image_or_none() {
+    let Some(loader) = loader() else { return skip("there is no OpenCL device") };
+    let folder = tempfile::tempdir().unwrap();
+    let whole = finish(pathmark(folder.path(), &[&RENDER[..], &["--json"]].concat())).with_code(0);
+    let devices = ["--kernel", "lanes+device:host+device:opencl:0", "--decomposition", "tiles:4x4", "--threads", "2"];
+    let together = [&RENDER[..], &devices, &["--json"]].concat();
+    let image = finish(pathmark(folder.path(), &together)).with_code(0);
+    assert_eq!(checksum(&image), checksum(&whole));
+    let with_image = [&RENDER[..], &devices, &["--json", "-o", "lost.pfm"]].concat();
+    let finished = with_failing_loader(folder.path(), &loader, ("PATHMARK_TEST_LAUNCHES", 14), &with_image);
+    if finished.code == Some(0) {
+        assert_eq!(checksum(&finished), checksum(&whole));
+    } else {
+        says(&finished.with_code(3), &["opencl:0", "clEnqueueNDRangeKernel", "the device may be lost"]);
+        assert!(!folder.path().join("lost.pfm").exists());
+    }
+}
+
 #[test]
 fn a_device_without_memory_is_the_systems_fault() {
     let Some(loader) = loader() else { return skip("there is no OpenCL device") };

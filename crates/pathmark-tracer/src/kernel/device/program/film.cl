@@ -57,15 +57,26 @@ FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words
     pixel_sum block, subtrees[LEVELS];
     clear_sum(&block);
     u32 in_block = 0, blocks = 0;
-    for (; sample < end; sample++) {
-        sample_key key = key_of(words, y * words[AT_WIDTH] + x, sample);
-        w.key = &key;
-        rgb radiance = sample_radiance(&w, camera_ray(&s, x, y, &key), &e);
+    // Neighbours take the same steps at a time: the one whose path ends begins its next sample, and waits for nobody's longer path.
+    sample_key key;
+    w.key = &key;
+    path p;
+    int goes_on = 0;
+    for (;;) {
+        if (!goes_on) {
+            if (sample == end) break;
+            key = key_of(words, y * words[AT_WIDTH] + x, sample);
+            begin(&p, camera_ray(&s, x, y, &key));
+        }
+        goes_on = follow(&w, &p, &e);
+        if (goes_on) continue;
+        rgb radiance = p.collected;
         if (!(is_finite_from_zero(radiance.r) && is_finite_from_zero(radiance.g) && is_finite_from_zero(radiance.b))) {
             radiance = grey(0.0);
             e.invalid += 1;
         }
         add_sample(&block, radiance);
+        sample++;
         if (++in_block == SAMPLE_BLOCK) {
             u32 level = 0;
             for (; blocks & (1U << level); level++) add_later(&subtrees[level], &block);

@@ -104,98 +104,105 @@ FN rgb aimed_light(const walk *w, const part *p, const surface *of, const surfac
 }
 #endif
 
-FN rgb sample_radiance(const walk *w, ray start, events *e) {
+// A path and the branches of it that wait for their turn.
+typedef struct {
+    part now, waiting[SPLITS + 1];
+    int depth;
+    rgb collected;
+} path;
+
+FN void begin(path *p, ray start) {
+    p->now.way = start;
+    p->now.from = on_nothing();
+    p->now.is_rival = 0;
+    p->now.density = 0.0;
+    p->now.throughput = grey(1.0);
+    p->now.vertices = p->now.branch = 0;
+    p->depth = 0;
+    p->collected = grey(0.0);
+}
+
+FN int next_branch(path *p) {
+    if (p->depth == 0) return 0;
+    p->depth--;
+    p->now = p->waiting[p->depth];
+    return 1;
+}
+
+FN void collect(path *p, rgb radiance) {
+    p->collected = mixed(p->collected, filtered(p->now.throughput, radiance));
+}
+
+// Follows the path to its next vertex; whether it goes on from there, or a branch of it does.
+FN int follow(const walk *w, path *p, events *e) {
     const scene *s = w->s;
-    rgb collected = grey(0.0);
-    part waiting[3];
-    int depth = 0;
-    part p;
-    p.way = start;
-    p.from = on_nothing();
-    p.is_rival = 0;
-    p.density = 0.0;
-    p.throughput = grey(1.0);
-    p.vertices = p.branch = 0;
-    for (;;) {
-        int goes_on = 0;
-        e->rays += 1;
-        surface_hit hit = first_hit(s, p.way, p.from, INFINITE, &e->tested);
-        if (hit.primitive == NOTHING) {
+    e->rays += 1;
+    surface_hit hit = first_hit(s, p->now.way, p->now.from, INFINITE, &e->tested);
+    if (hit.primitive == NOTHING) {
 #if HAS_BACKGROUND
-            rgb background = rgb_at(s->numbers + VIEW_BACKGROUND);
-            if (!is_black(background)) collected = mixed(collected, filtered(p.throughput, background));
+        rgb background = rgb_at(s->numbers + VIEW_BACKGROUND);
+        if (!is_black(background)) collect(p, background);
 #endif
-            e->escaped += 1;
-        } else {
-            surface of = surface_of(s, hit.object);
-            collected = mixed(collected, filtered(p.throughput, light_at(w, &p, of.emission, &hit)));
-            if (p.vertices == w->max_depth) {
-                e->truncated += 1;
-            } else {
-                u32 vertices = p.vertices + 1U;
-                frame around = frame_around(hit.inside ? negated(hit.normal) : hit.normal);
-                vec wo = to_local(&around, negated(p.way.direction));
-#if HAS_POINT_LIGHT
-                if (s->words[AT_POINT_LIGHT_COUNT] > 0U)
-                    collected = mixed(collected, filtered(p.throughput, point_light(w, &of, &hit, &around, wo, e)));
-#endif
-#if AIMS
-                int found;
-                rgb aimed = aimed_light(w, &p, &of, &hit, &around, wo, e, &found);
-                if (found) collected = mixed(collected, filtered(p.throughput, aimed));
-#endif
-                rgb throughput = p.throughput;
-                int lives = 1;
-                if (vertices > w->roulette_after) {
-                    real chance = w->roulette_chance;
-                    if (w->roulette_by == ROULETTE_ALBEDO) {
-                        chance = largest_channel(of.albedo);
-                    } else if (w->roulette_by == ROULETTE_THROUGHPUT) {
-                        real carried = largest_channel(filtered(throughput, of.albedo));
-                        chance = carried < 1.0 ? carried : 1.0;
-                    }
-                    lives = !(draw(w, &p, PURPOSE_ROULETTE).u >= chance);
-                    if (lives) throughput = dimmed(throughput, 1.0 / chance);
-                }
-                if (lives) {
-                    bsdf_sample first, second;
-#if SPLITS > 0
-                    if (vertices <= SPLITS && two_lobes(&of, wo, hit.inside, &first, &second)) {
-                        waiting[depth] = left_by(w, &p, &hit, &around, throughput, second,
-                            p.branch | (1U << (vertices - 1U)));
-                        depth++;
-                        p = left_by(w, &p, &hit, &around, throughput, first, p.branch);
-                        continue;
-                    }
-#endif
-                    pair numbers = draw(w, &p, PURPOSE_BSDF);
-#if AIMS
-                    if (two_lobes(&of, wo, hit.inside, &first, &second)) {
-                        real one = max_channel(first.weight), other = max_channel(second.weight);
-                        real both = one + other;
-                        real chance = both > 0.0 ? one / both : 0.5;
-                        if (!(numbers.u < chance)) {
-                            first = second;
-                            chance = 1.0 - chance;
-                        }
-                        first.weight = dimmed(first.weight, 1.0 / chance);
-                    } else {
-                        first = sample_bsdf(&of, wo, hit.inside, numbers);
-                    }
-#else
-                    first = sample_bsdf(&of, wo, hit.inside, numbers);
-#endif
-                    if (first.found) {
-                        p = left_by(w, &p, &hit, &around, throughput, first, p.branch);
-                        goes_on = !is_spent(p.throughput);
-                    }
-                }
-            }
-        }
-        if (!goes_on) {
-            if (depth == 0) return collected;
-            depth--;
-            p = waiting[depth];
-        }
+        e->escaped += 1;
+        return next_branch(p);
     }
+    surface of = surface_of(s, hit.object);
+    collect(p, light_at(w, &p->now, of.emission, &hit));
+    if (p->now.vertices == w->max_depth) {
+        e->truncated += 1;
+        return next_branch(p);
+    }
+    u32 vertices = p->now.vertices + 1U;
+    frame around = frame_around(hit.inside ? negated(hit.normal) : hit.normal);
+    vec wo = to_local(&around, negated(p->now.way.direction));
+#if HAS_POINT_LIGHT
+    if (s->words[AT_POINT_LIGHT_COUNT] > 0U) collect(p, point_light(w, &of, &hit, &around, wo, e));
+#endif
+#if AIMS
+    int found;
+    rgb aimed = aimed_light(w, &p->now, &of, &hit, &around, wo, e, &found);
+    if (found) collect(p, aimed);
+#endif
+    rgb throughput = p->now.throughput;
+    if (vertices > w->roulette_after) {
+        real chance = w->roulette_chance;
+        if (w->roulette_by == ROULETTE_ALBEDO) {
+            chance = largest_channel(of.albedo);
+        } else if (w->roulette_by == ROULETTE_THROUGHPUT) {
+            real carried = largest_channel(filtered(throughput, of.albedo));
+            chance = carried < 1.0 ? carried : 1.0;
+        }
+        if (draw(w, &p->now, PURPOSE_ROULETTE).u >= chance) return next_branch(p);
+        throughput = dimmed(throughput, 1.0 / chance);
+    }
+    bsdf_sample first, second;
+#if SPLITS > 0
+    if (vertices <= SPLITS && two_lobes(&of, wo, hit.inside, &first, &second)) {
+        p->waiting[p->depth] = left_by(w, &p->now, &hit, &around, throughput, second,
+            p->now.branch | (1U << (vertices - 1U)));
+        p->depth++;
+        p->now = left_by(w, &p->now, &hit, &around, throughput, first, p->now.branch);
+        return 1;
+    }
+#endif
+    pair numbers = draw(w, &p->now, PURPOSE_BSDF);
+#if AIMS
+    if (two_lobes(&of, wo, hit.inside, &first, &second)) {
+        real one = max_channel(first.weight), other = max_channel(second.weight);
+        real both = one + other;
+        real chance = both > 0.0 ? one / both : 0.5;
+        if (!(numbers.u < chance)) {
+            first = second;
+            chance = 1.0 - chance;
+        }
+        first.weight = dimmed(first.weight, 1.0 / chance);
+    } else {
+        first = sample_bsdf(&of, wo, hit.inside, numbers);
+    }
+#else
+    first = sample_bsdf(&of, wo, hit.inside, numbers);
+#endif
+    if (!first.found) return next_branch(p);
+    p->now = left_by(w, &p->now, &hit, &around, throughput, first, p->now.branch);
+    return is_spent(p->now.throughput) ? next_branch(p) : 1;
 }
