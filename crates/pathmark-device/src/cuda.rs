@@ -38,10 +38,10 @@ const MULTIPROCESSORS: c_int = 16;
 const CAPABILITY_MAJOR: c_int = 75;
 const CAPABILITY_MINOR: c_int = 76;
 
-/// Items of a group: enough for two groups of a multiprocessor to hide each other's waits, few enough to leave each item its registers.
+/// Items of a group, as the program's entry has it (`dialect/cuda_entry.cl`).
 const GROUP: u32 = 128;
-/// Items that keep a multiprocessor busy.
-const ITEMS_PER_MULTIPROCESSOR: u32 = 2048;
+/// Items that keep a multiprocessor busy: those that it has registers for. With more, items of fewer samples come back, and their copies take time.
+const ITEMS_PER_MULTIPROCESSOR: u32 = 4 * GROUP;
 
 /// Why there is no driver to ask.
 struct NoDriver {
