@@ -57,7 +57,6 @@
 // A test may unwrap; the library tells its user what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
-pub mod analysis;
 #[doc(hidden)]
 pub mod atomic_file;
 pub mod check;
@@ -90,6 +89,8 @@ pub mod simulate;
 mod temporary;
 
 pub use lab::Lab;
+#[doc(inline)]
+pub use pathmark_analysis as analysis;
 #[doc(inline)]
 pub use pathmark_strategy as strategy;
 #[doc(hidden)]

@@ -29,13 +29,13 @@
 mod analytic;
 pub mod bare_scene;
 pub mod cases_file;
-mod chi_square;
 mod double_double;
 pub mod exact;
 #[cfg(test)]
 mod fixed_point;
 pub mod guards;
 mod image_mean;
+mod level;
 pub mod materials;
 mod meshes;
 mod path;

@@ -224,7 +224,7 @@ fn free_paths(trials: &mut Trials) {
         trials.never(name, "free paths that are negative or endless", wrong, n.into());
         // Mean 1/2 and, being exponential, standard deviation 1/2.
         let z = (sum / f64::from(n) - 0.5) / (0.5 / f64::from(n).sqrt());
-        trials.deviates_below(format!("{name}: mean free path"), crate::check::chi_square::critical(3), z);
+        trials.deviates_below(format!("{name}: mean free path"), crate::check::level::critical(3), z);
     }
     let by_unit = (0..1000).map(|k| fog(1.0).free_path(|| unit(u64::MAX - (k << 11)))).all(f64::is_finite);
     trials.holds("the largest 1000 numbers", "finite", by_unit, by_unit);

@@ -2,6 +2,7 @@
 
 use super::first;
 use super::unguarded::{fmix64, key_of_32_bits, wang_hash, xorshift32};
+use crate::analysis::randomness::repeats::{repeated, repeated_words};
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
 use crate::measure::LARGEST_SEED;
@@ -73,19 +74,11 @@ fn bits([u, v]: [f64; 2]) -> u128 {
     u128::from(u.to_bits()) << 64 | u128::from(v.to_bits())
 }
 
-/// How many of some pairs have come before. By chance one in 1e16 such sets has any.
-fn repeated(mut all: Vec<u128>) -> u64 {
-    all.sort_unstable();
-    all.windows(2).filter(|two| two[0] == two[1]).count() as u64
-}
-
 /// Exhaustively: every pixel and sample of an image, every use along a path with its branches, and two images of a seed and of a
 /// reference. Keys of 32 bits are shared by 72 pairs of the pixels of such an image.
 fn collisions(trials: &mut Trials) {
     bijection(trials);
-    let mut short: Vec<u32> = (0..786_432).map(key_of_32_bits).collect();
-    short.sort_unstable();
-    let pairs = short.windows(2).filter(|two| two[0] == two[1]).count();
+    let pairs = repeated_words((0..786_432).map(key_of_32_bits).collect());
     // 786432²/2/2^32, give or take five roots of it.
     trials.close("keys of 32 bits: pairs that share one", 72.0, pairs as f64, 5.0 * 72.0_f64.sqrt());
     trials.same("every seed is an image's or a reference's", &REFERENCE_SEEDS, &(LARGEST_SEED + 1));

@@ -2,7 +2,6 @@
 
 mod conversion;
 mod extremes;
-mod fourier;
 mod keys;
 mod ledger;
 mod pixels;
@@ -35,11 +34,4 @@ pub(super) const SECTION: Section = Section {
 /// The pair of one use of numbers on the main path.
 fn first(sampler: &dyn Sampler, seed: u64, pixel: u32, sample: u32, (bounce, purpose): (u16, Purpose)) -> [f64; 2] {
     sampler.pair(Address { key: SampleKey { seed, pixel, sample }, bounce, branch: 0, purpose })
-}
-
-/// sqrt(n) times the correlation of two sequences of uniform numbers less 1/2, up to the end of the shorter: standard normal if they are
-/// independent.
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let sum: f64 = a.iter().zip(b).map(|(a, b)| a * b).sum();
-    12.0 * sum / (a.len().min(b.len()) as f64).sqrt()
 }

@@ -1,8 +1,10 @@
 //! Numbers across the pixels of an image: R04.
 
+use super::first;
 use super::unguarded::{draw, sequential_state, sequential_stream};
-use super::{correlation, first};
-use crate::check::chi_square::{critical, even, score};
+use crate::analysis::chi_square::{even, score};
+use crate::analysis::randomness::correlation::of_uniform as correlation;
+use crate::check::level::critical;
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
 use crate::sampling::{Purpose, is_spread};

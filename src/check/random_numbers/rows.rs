@@ -1,8 +1,10 @@
 //! Generators seeded by row or pixel: R01, R02, R03.
 
+use super::first;
 use super::unguarded::{erand48, lcg_of_pixel, smallpt_row};
-use super::{correlation, first};
-use crate::check::chi_square::{critical, even};
+use crate::analysis::chi_square::even;
+use crate::analysis::randomness::correlation::of_uniform as correlation;
+use crate::check::level::critical;
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
 use crate::sampling::{Address, Purpose, SampleKey};

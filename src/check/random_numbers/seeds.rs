@@ -1,10 +1,10 @@
 //! Images of different seeds have nothing in common: R07.
 
 use super::first;
-use super::fourier::{Square, correlations};
 use super::unguarded::seed_plus_pixel;
-use crate::check::chi_square::critical;
+use crate::analysis::randomness::fourier::{Square, correlations};
 use crate::check::image_mean::run;
+use crate::check::level::critical;
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
 use crate::kernel::{KERNELS, Spec};

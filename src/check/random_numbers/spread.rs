@@ -1,7 +1,8 @@
 //! Samplers that spread a pixel's samples: R15, tried for every keyed sampler.
 
 use super::first;
-use crate::check::chi_square::{critical, even};
+use crate::analysis::chi_square::even;
+use crate::check::level::critical;
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
 use crate::sampling::{Purpose, Sampler};

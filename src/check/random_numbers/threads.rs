@@ -1,6 +1,6 @@
 //! Who draws must not matter, or must be told: R08, R12.
 
-use crate::check::chi_square::critical;
+use crate::check::level::critical;
 use crate::check::run::on_threads;
 use crate::check::{Case, Trials};
 use crate::kernel::{KERNELS, Spec};

@@ -1,7 +1,7 @@
 //! Ways of finding light agree, with each other and with closed forms: H35, H36.
 
-use crate::check::chi_square::critical;
 use crate::check::image_mean::{Moments, difference, exact, render};
+use crate::check::level::critical;
 use crate::check::stage::{camera, diffuse, object, plane, scene, sphere};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;

@@ -1,7 +1,7 @@
 //! Light that goes back the way it came, and light that comes back at all: H26.
 
 use super::unguarded::{albedo_by_cosines, albedo_by_normals, albedo_by_visible_normals};
-use crate::check::chi_square::critical;
+use crate::check::level::critical;
 use crate::check::materials::{every_material, towards};
 use crate::check::refusals::material;
 use crate::check::{Case, Trials};

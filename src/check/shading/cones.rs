@@ -1,8 +1,9 @@
 //! The cone under which a sphere is seen: H30, H31, H32.
 
 use super::unguarded::{naive_one_minus_cos, naive_one_minus_cos_f32};
-use crate::check::chi_square::{against, critical};
+use crate::analysis::chi_square::against;
 use crate::check::double_double::two_product;
+use crate::check::level::critical;
 use crate::check::stage::{camera_above, diffuse, object, scene, sphere};
 use crate::check::{Case, Trials};
 use crate::math::{Vec3, dot};

@@ -1,6 +1,7 @@
 //! Directions go where their density says: G7, for every material, roughness and angle.
 
-use crate::check::chi_square::{against, critical};
+use crate::analysis::chi_square::against;
+use crate::check::level::critical;
 use crate::check::materials::{every_material, towards};
 use crate::check::quadrature::integral;
 use crate::check::{Case, Trials};

@@ -1,8 +1,8 @@
 //! Glass and other choices between lobes: H13, H14.
 
 use super::unguarded::schlick;
-use crate::check::chi_square::critical;
 use crate::check::image_mean::{Moments, render};
+use crate::check::level::critical;
 use crate::check::materials::{every_material, towards};
 use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;

@@ -1,8 +1,8 @@
 //! Smooth surfaces are mirrors by type: H23, H29.
 
 use super::unguarded::mirror_of_report_b;
-use crate::check::chi_square::critical;
 use crate::check::image_mean::{Moments, difference, render};
+use crate::check::level::critical;
 use crate::check::materials::{every_material, towards};
 use crate::check::refusals::{material, refused};
 use crate::check::stage::{camera_above, diffuse, object, scene, sphere};

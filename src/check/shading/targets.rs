@@ -1,8 +1,9 @@
 //! Where aims at lights go, as cells of equal probability.
 
 use super::unguarded::crowded_triangle;
+use crate::analysis::chi_square::against;
 use crate::check::Trials;
-use crate::check::chi_square::{against, critical};
+use crate::check::level::critical;
 use crate::check::stage::{camera_above, diffuse, object, scene, sphere};
 use crate::math::{Frame, Vec3, dot};
 use crate::sampling::{mix, unit};

@@ -1,7 +1,8 @@
 //! From the unit square to directions and points: H03, H04, H05.
 
 use super::targets::{cones, triangles};
-use crate::check::chi_square::{against, critical};
+use crate::analysis::chi_square::against;
+use crate::check::level::critical;
 use crate::check::{Case, Trials};
 use crate::math::{Vec3, dot};
 use crate::sampling::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, mix, tent, uniform_sphere, unit};

@@ -1,21 +1,16 @@
 //! Numbers of different uses have nothing to do with each other: every two of the first 64.
 
 use super::{LEVEL, Use, all_keyed, first_uses};
+use pathmark::analysis::randomness::correlation::of_uniform;
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::sampling::{REFERENCE_SEEDS, Sampler};
 
 const NUMBERS: usize = 64;
 const PAIRS: usize = NUMBERS * (NUMBERS - 1) / 2;
 
-/// The first 64 numbers of a sample.
+/// The first 64 numbers of a sample, less 1/2.
 fn numbers(sampler: &dyn Sampler, uses: &[Use], seed: u64, pixel: u32, sample: u32) -> Vec<f64> {
-    uses.iter().flat_map(|used| sampler.pair(used.of(seed, pixel, sample))).collect()
-}
-
-/// sqrt(n) times the correlation of two sequences of uniform numbers.
-fn correlation(pairs: impl ExactSizeIterator<Item = [f64; 2]>) -> f64 {
-    let n = pairs.len() as f64;
-    12.0 * pairs.map(|[u, v]| (u - 0.5) * (v - 0.5)).sum::<f64>() / n.sqrt()
+    uses.iter().flat_map(|used| sampler.pair(used.of(seed, pixel, sample))).map(|u| u - 0.5).collect()
 }
 
 /// Within a pixel, two uses go together no more than chance has it: over the pixels their correlation has mean 0 and a variance near that
@@ -30,11 +25,13 @@ fn uses_do_not_go_together_within_a_pixel() {
     for (name, sampler) in samplers {
         let mut scores = vec![Vec::new(); PAIRS];
         for pixel in 0..PIXELS {
-            let all: Vec<Vec<f64>> = (0..SAMPLES).map(|k| numbers(&*sampler, &uses, 2, pixel, k)).collect();
+            let samples: Vec<Vec<f64>> = (0..SAMPLES).map(|k| numbers(&*sampler, &uses, 2, pixel, k)).collect();
+            let column = |index: usize| samples.iter().map(|sample| sample[index]).collect();
+            let all: Vec<Vec<f64>> = (0..NUMBERS).map(column).collect();
             let mut score = scores.iter_mut();
             for index in 0..NUMBERS {
                 for (other, score) in (0..index).zip(score.by_ref()) {
-                    score.push(correlation(all.iter().map(|sample| [sample[index], sample[other]])));
+                    score.push(of_uniform(&all[index], &all[other]));
                 }
             }
         }
@@ -64,12 +61,12 @@ fn pixels_and_seeds_share_no_noise() {
         for used in &uses {
             for sample in [0, 5] {
                 let noise = |seed: u64, first: u32| -> Vec<f64> {
-                    (first..first + PIXELS).map(|pixel| sampler.pair(used.of(seed, pixel, sample))[0]).collect()
+                    (first..first + PIXELS).map(|pixel| sampler.pair(used.of(seed, pixel, sample))[0] - 0.5).collect()
                 };
                 let image = noise(seeds[0], 0);
                 let others = [noise(seeds[0], 1), noise(seeds[0], WIDTH)].into_iter();
                 for (index, other) in others.chain(seeds[1..].iter().map(|seed| noise(*seed, 0))).enumerate() {
-                    let z = correlation(image.iter().zip(&other).map(|(u, v)| [*u, *v]));
+                    let z = of_uniform(&image, &other);
                     assert!(z.abs() < limit, "{name} {used:?} sample {sample}, against {index}: {z} deviations");
                 }
             }

@@ -1,10 +1,10 @@
 //! Correlations of two square images at all lags at once, by Fourier's transform (Cooley and Tukey, 1965).
 
-use crate::math::sin_cos_turns;
+use std::f64::consts::TAU;
 
 /// A square of complex numbers, row by row; its side is a power of two.
 #[derive(Clone)]
-pub(super) struct Square {
+pub struct Square {
     side: usize,
     values: Vec<[f64; 2]>,
 }
@@ -16,7 +16,7 @@ fn times([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
 /// The powers of the n-th root of 1, the first half of them.
 fn roots(n: usize) -> Vec<[f64; 2]> {
     let root = |k: usize| {
-        let (sin, cos) = sin_cos_turns(k as f64 / n as f64);
+        let (sin, cos) = libm::sincos(TAU * k as f64 / n as f64);
         [cos, -sin]
     };
     (0..n / 2).map(root).collect()
@@ -47,8 +47,8 @@ fn transform(line: &mut [[f64; 2]], roots: &[[f64; 2]]) {
 }
 
 impl Square {
-    /// A square of real numbers.
-    pub(super) fn new(side: usize, values: impl Iterator<Item = f64>) -> Self {
+    /// A square of real numbers, `side` rows of them.
+    pub fn new(side: usize, values: impl Iterator<Item = f64>) -> Self {
         debug_assert!(side.is_power_of_two());
         Self { side, values: values.map(|x| [x, 0.0]).collect() }
     }
@@ -60,7 +60,8 @@ impl Square {
     }
 
     /// Its transform.
-    pub(super) fn transformed(mut self) -> Self {
+    #[must_use]
+    pub fn transformed(mut self) -> Self {
         let roots = roots(self.side);
         for _ in 0..2 {
             self.values.chunks_exact_mut(self.side).for_each(|line| transform(line, &roots));
@@ -71,7 +72,7 @@ impl Square {
 }
 
 /// The sums of products of two images, one of them moved by every lag in turn and coming in again on the other side, from their transforms.
-pub(super) fn correlations(a: &Square, b: &Square) -> Vec<f64> {
+pub fn correlations(a: &Square, b: &Square) -> Vec<f64> {
     let values = a.values.iter().zip(&b.values).map(|(a, b)| times([a[0], -a[1]], *b)).collect();
     // Backwards is forwards up to the sign of the lag and a factor; the signs are both there.
     let lags = Square { side: a.side, values }.transformed();

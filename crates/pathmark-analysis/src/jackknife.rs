@@ -120,7 +120,7 @@ impl Spread {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::mean::Moments;
+    use crate::mean::Moments;
 
     #[test]
     fn the_interval_of_a_mean_is_the_t_interval() {

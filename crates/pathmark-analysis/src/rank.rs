@@ -21,7 +21,7 @@ pub const EXACT: usize = 9;
 /// Psychology 15, 1904).
 ///
 /// ```
-/// use pathmark::analysis::rank::spearman;
+/// use pathmark_analysis::rank::spearman;
 /// let falling = spearman(&[(1.0, 9.0), (2.0, 7.0), (3.0, 1.0), (4.0, 0.5)]).unwrap();
 /// // Of the 24 orders of four values only the two monotone ones are as far from 0.
 /// assert_eq!((falling.rho, falling.p), (-1.0, 2.0 / 24.0));

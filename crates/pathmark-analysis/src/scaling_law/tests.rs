@@ -108,7 +108,7 @@ fn a_true_law_is_rejected_as_often_as_stated() {
 fn one_worker_count_gives_karp_flatt_unchecked() {
     let points = vec![(1, vec![1.0, 1.0, 1.0]), (2, vec![1.8, 1.7, 1.9, 1.75, 1.85])];
     let fitted = found(Law::Amdahl, &points);
-    let karp_flatt = crate::analysis::speedup::serial_fraction(1.8, 2).unwrap();
+    let karp_flatt = crate::speedup::serial_fraction(1.8, 2).unwrap();
     assert!((fitted.parameters[0].estimate.value - karp_flatt).abs() < 0.005);
     assert_eq!((fitted.check, fitted.worker_counts), (Check::NotPossible, 1));
 }

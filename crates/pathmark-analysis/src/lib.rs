@@ -6,6 +6,7 @@
 pub mod aa_test;
 pub mod balance;
 pub mod bootstrap;
+pub mod chi_square;
 pub mod confidence_sequence;
 pub mod fit;
 pub mod interval;
@@ -15,6 +16,7 @@ pub mod metg;
 pub mod mse;
 pub mod price;
 pub mod quantile;
+pub mod randomness;
 pub mod rank;
 pub mod rank_sum;
 pub mod ranking;

@@ -1,20 +1,12 @@
 //! Counts against what was expected of them, as scores that are standard normal if the counts are right: above 0 if they are scattered too
 //! much, below 0 if they are too even, which is wrong too.
 
-use crate::analysis::z_test::{critical_value, normal_quantile, sidak};
+use super::z_test::normal_quantile;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// The chance that any of a case's tests fails though all is right.
-pub(super) const LEVEL: f64 = 1e-3;
-
-/// How large the score of one of so many tests may be, on either side.
-pub(super) fn critical(tests: usize) -> f64 {
-    sidak(LEVEL, tests).and_then(critical_value).unwrap_or(f64::INFINITY)
-}
-
-/// The score of a value of chi-square with so many degrees of freedom.
-pub(super) fn score(statistic: f64, freedom: f64) -> f64 {
-    let Ok(law) = ChiSquared::new(freedom) else { return f64::NAN };
+/// The score of a value of chi-square with so many degrees of freedom; endless if there are none.
+pub fn score(statistic: f64, freedom: f64) -> f64 {
+    let Ok(law) = ChiSquared::new(freedom) else { return f64::INFINITY };
     // By the nearer tail: the other rounds to 1.
     let (below, above) = (law.cdf(statistic), law.sf(statistic));
     if above < below {
@@ -25,7 +17,7 @@ pub(super) fn score(statistic: f64, freedom: f64) -> f64 {
 }
 
 /// The score of counts that should be equal.
-pub(super) fn even(counts: &[u32]) -> f64 {
+pub fn even(counts: &[u32]) -> f64 {
     let mean = counts.iter().map(|count| f64::from(*count)).sum::<f64>() / counts.len() as f64;
     let squares: f64 = counts.iter().map(|count| (f64::from(*count) - mean) * (f64::from(*count) - mean)).sum();
     score(squares / mean, counts.len() as f64 - 1.0)
@@ -33,7 +25,7 @@ pub(super) fn even(counts: &[u32]) -> f64 {
 
 /// The score of counts against expected ones with the same sum. Cells that expect fewer than 5 are put together; what is then still fewer
 /// is judged as a count by itself: endless where more than 25 have come, which chance has not once in 1e10.
-pub(super) fn against(observed: &[f64], expected: &[f64]) -> f64 {
+pub fn against(observed: &[f64], expected: &[f64]) -> f64 {
     let (mut statistic, mut cells, mut pool) = (0.0, 0, (0.0, 0.0));
     for (&seen, &right) in observed.iter().zip(expected) {
         if right < 5.0 {

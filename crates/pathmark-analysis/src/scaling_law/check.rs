@@ -9,7 +9,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 use super::{Law, estimator};
-use crate::analysis::mean::Moments;
+use crate::mean::Moments;
 
 /// The law is rejected if residuals this large are less likely than this while it holds.
 pub const SIGNIFICANCE: f64 = 0.05;

@@ -81,8 +81,8 @@ impl Resampler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::mean::Moments;
-    use crate::analysis::quantile::median;
+    use crate::mean::Moments;
+    use crate::quantile::median;
 
     /// The interval of one number of one sample.
     fn of_sample(values: &[f64], level: f64, statistic: impl Fn(&[f64]) -> Option<f64>) -> Option<Estimate> {

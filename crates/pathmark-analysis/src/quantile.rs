@@ -12,8 +12,8 @@ use super::interval::{Interval, all_finite, is_level};
 /// The median; `None` for no values or one that is not finite.
 ///
 /// ```
-/// assert_eq!(pathmark::analysis::quantile::median(&[5.0, 1.0, 3.0]), Some(3.0));
-/// assert_eq!(pathmark::analysis::quantile::median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
+/// assert_eq!(pathmark_analysis::quantile::median(&[5.0, 1.0, 3.0]), Some(3.0));
+/// assert_eq!(pathmark_analysis::quantile::median(&[4.0, 1.0, 2.0, 3.0]), Some(2.5));
 /// ```
 pub fn median(values: &[f64]) -> Option<f64> {
     quantile(values, 0.5)

@@ -82,7 +82,7 @@ impl Fit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::fit::log_log;
+    use crate::fit::log_log;
     use rand::Rng;
     use rand_pcg::Pcg64Dxsm;
 

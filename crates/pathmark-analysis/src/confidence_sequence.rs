@@ -45,7 +45,7 @@ impl Stopping {
 /// It assumes that no value says anything about whether the next one is above the median.
 ///
 /// ```
-/// use pathmark::analysis::confidence_sequence::median_sequence;
+/// use pathmark_analysis::confidence_sequence::median_sequence;
 /// let values: Vec<f64> = (1..=20).map(f64::from).collect();
 /// let interval = median_sequence(&values, 0.95).unwrap();
 /// assert_eq!((interval.low, interval.high), (4.0, 17.0));

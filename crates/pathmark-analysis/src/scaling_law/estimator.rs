@@ -1,7 +1,7 @@
 //! Weighted least squares for the linear forms of the laws.
 
 use super::Law;
-use crate::analysis::mean::Moments;
+use crate::mean::Moments;
 
 /// The left side of a law's linear form for a speedup: p / S - 1 or p - S.
 pub(super) fn lost(law: Law, workers: f64, speedup: f64) -> f64 {

@@ -16,7 +16,7 @@ const MOST: usize = 200;
 /// values that are not positive and finite.
 ///
 /// ```
-/// use pathmark::analysis::rank_sum::ratio;
+/// use pathmark_analysis::rank_sum::ratio;
 /// let slower = ratio(&[1.0, 1.1, 1.2, 1.3], &[2.0, 2.2, 2.4, 2.6], 0.9).unwrap();
 /// assert!(slower.interval.contains(2.0));
 /// ```

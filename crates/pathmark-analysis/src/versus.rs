@@ -17,9 +17,9 @@ pub fn equal_time(a: &Renderer, b: &Renderer, seconds: f64) -> Option<Estimate> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::Interval;
-    use crate::analysis::jackknife::SeedCurves;
-    use crate::analysis::price::Law;
+    use crate::Interval;
+    use crate::jackknife::SeedCurves;
+    use crate::price::Law;
 
     fn renderer(variance: f64, per_spp: f64) -> Renderer {
         let curve = |factor: f64| vec![(16.0, factor * variance / 16.0)];

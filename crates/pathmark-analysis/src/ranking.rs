@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Blocks in which a thing has no value, or two things have the same, say nothing of them.
 ///
 /// ```
-/// use pathmark::analysis::ranking::told_apart;
+/// use pathmark_analysis::ranking::told_apart;
 /// use std::collections::{BTreeMap, BTreeSet};
 /// let (fast, slow) = ((0..8).map(|block| (block, 1.0)), (0..8).map(|block| (block, 1.5)));
 /// let things: [BTreeMap<u32, f64>; 2] = [slow.collect(), fast.collect()];
@@ -40,8 +40,8 @@ pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(u
 /// the least thing is among them but for its comparisons with the others.
 ///
 /// ```
-/// use pathmark::analysis::confidence_sequence::Stopping;
-/// use pathmark::analysis::ranking::may_be_least;
+/// use pathmark_analysis::confidence_sequence::Stopping;
+/// use pathmark_analysis::ranking::may_be_least;
 /// use std::collections::BTreeMap;
 /// let (fast, slow) = ((0..8).map(|block| (block, 1.0)).collect(), (0..8).map(|block| (block, 1.5)).collect());
 /// let things: [&BTreeMap<u32, f64>; 2] = [&slow, &fast];
