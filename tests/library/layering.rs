@@ -180,8 +180,9 @@ fn the_front_page_lists_the_public_modules() {
     let listed: Vec<&str> = rows.map(|(module, _)| module).collect();
     let (_, tracer) = text.split_once("pub use pathmark_tracer::{").unwrap();
     let (tracer, _) = tracer.split_once("};").unwrap();
-    let mut shown = BTreeSet::from(["strategy"]);
-    shown.extend(tracer.split(',').map(str::trim));
+    let mut shown: BTreeSet<&str> = tracer.split(',').map(str::trim).collect();
+    let of_crates = text.lines().filter_map(|line| line.strip_prefix("pub use pathmark_")?.split_once(" as "));
+    shown.extend(of_crates.map(|(_, module)| module.trim_end_matches(';')));
     let mut is_hidden = false;
     for line in text.lines() {
         if let Some(module) = line.strip_prefix("pub mod ").filter(|_| !is_hidden) {

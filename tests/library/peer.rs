@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::Command;
 
 const SIZE: (u32, u32) = (128, 96);
-const SPP: u32 = 32;
+const SPP: u32 = 16;
 const SEEDS: u64 = 16;
 const BLOCK: u32 = 16;
 

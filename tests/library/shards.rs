@@ -12,7 +12,7 @@ type Change = fn(&mut Settings);
 const CUTS: [ShardCut; 2] = [ShardCut::Samples, ShardCut::Tiles];
 
 fn settings(spp: u32, precision: &str) -> Settings {
-    let spec = Spec { width: 130, height: 70, estimator: "mis".into(), ..Spec::default() };
+    let spec = Spec { width: 97, height: 40, estimator: "mis".into(), ..Spec::default() };
     let spec = Spec { precision: precision.into(), ..spec };
     Settings { spp, spec, threads: 2, decomposition: "tiles:16x16".into(), ..Settings::default() }
 }
@@ -148,7 +148,7 @@ fn a_partial_image_is_of_the_parts_that_there_are() {
         let merged = merge(&parts, true).unwrap();
         assert_eq!(merged.missing, ["2/4", "4/4"]);
         for (index, (pixel, whole)) in merged.film.pixels().iter().zip(whole.pixels()).enumerate() {
-            let (x, y) = (index as u32 % 130, index as u32 / 130);
+            let (x, y) = (index as u32 % 97, index as u32 / 97);
             let owned = [1, 3].iter().any(|part| shard(*part, 4, cut).owns(x, y));
             match cut {
                 ShardCut::Tiles if owned => assert_eq!(pixel, whole),

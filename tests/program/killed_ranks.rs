@@ -94,7 +94,7 @@ fn what_killed_ranks_have_rendered_is_gone_on_with() {
     }
     let watchdog = Watchdog::new(Duration::from_secs(30));
     let folder = tempfile::tempdir().unwrap();
-    let render = ["render", "cornell", "--size", "40x30", "--spp", "2000", "--threads", "1", "--json"];
+    let render = ["render", "cornell", "--size", "40x30", "--spp", "1000", "--threads", "1", "--json"];
     let start = Instant::now();
     let alone = json(&finish(pathmark(folder.path(), &render)).with_code(0).out);
     let whole_s = start.elapsed().as_secs_f64();

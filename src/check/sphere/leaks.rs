@@ -9,7 +9,7 @@ use crate::check::{Case, Trials};
 use crate::estimator::ESTIMATORS;
 use crate::kernel::Spec;
 use crate::math::{Ray, Vec3};
-use crate::scene::{AllEffects, Scene, Standpoint, Tests, load};
+use crate::scene::{Scene, Standpoint, load};
 use std::sync::Arc;
 
 pub(super) const CASES: &[Case] = &[
@@ -122,7 +122,7 @@ fn lights(trials: &mut Trials) {
                     missed += 1;
                     continue;
                 };
-                let is_blocked = |limit: f64| scene.is_blocked::<AllEffects>(&ray, from, limit, &mut Tests::default());
+                let is_blocked = |limit: f64| scene.is_blocked_by_any(&ray, from, limit);
                 // Up to the light itself the way is free; just beyond, the light is in the way.
                 blocked += u64::from(is_blocked(hit.t) || !is_blocked(hit.t.next_up()));
             }

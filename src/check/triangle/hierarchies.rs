@@ -5,7 +5,7 @@ use crate::check::meshes::{grid_cube, star};
 use crate::check::random::Random;
 use crate::check::{Case, Trials};
 use crate::math::{Ray, Vec3, dot};
-use crate::scene::{AllEffects, Hit, Plane, Primitives, Scene, Sphere, Standpoint, Tests, Triangle};
+use crate::scene::{Hit, Plane, Primitives, Scene, Sphere, Standpoint, Triangle};
 
 pub(super) const CASES: &[Case] = &[Case {
     id: "T13",
@@ -90,8 +90,7 @@ fn compare(all: &Scene, accelerated: &Scene, rays: u64, make_ray: MakeRay) -> Ta
             if tally.traced % 8 == 0 {
                 let t = expected.map_or(1.0, |hit| hit.t);
                 let is_otherwise = [t.next_down(), t, t.next_up(), 0.5 * t].into_iter().any(|limit| {
-                    let blocked =
-                        |scene: &Scene| scene.is_blocked::<AllEffects>(&ray, from, limit, &mut Tests::default());
+                    let blocked = |scene: &Scene| scene.is_blocked_by_any(&ray, from, limit);
                     let nearer = expected.is_some_and(|hit| hit.t < limit);
                     blocked(all) != nearer || blocked(accelerated) != nearer
                 });

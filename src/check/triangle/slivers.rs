@@ -9,7 +9,7 @@ use crate::check::stage::{self, diffuse, object, quad, view};
 use crate::check::{Case, Trials};
 use crate::kernel::{KERNELS, Spec};
 use crate::math::{Ray, Vec3, dot};
-use crate::scene::{ACCELERATORS, AllEffects, Hit, Primitives, Scene, Sphere, Standpoint, Tests, Triangle};
+use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, Standpoint, Triangle};
 use crate::simd::Precision;
 
 pub(super) const CASES: &[Case] = &[
@@ -102,7 +102,7 @@ fn compare(trials: &mut Trials, what: &str, scenes: u64, mut primitives: impl Fn
                 let counts = differ.iter_mut().zip(&mut blocked_otherwise);
                 for ((differ, blocked_otherwise), (_, scene)) in counts.zip(&searches) {
                     *differ += u64::from(bits(intersect(scene, &ray, from)) != bits(expected));
-                    let is_blocked = |limit| scene.is_blocked::<AllEffects>(&ray, from, limit, &mut Tests::default());
+                    let is_blocked = |limit| scene.is_blocked_by_any(&ray, from, limit);
                     *blocked_otherwise += u64::from(is_blocked(hit.t) || !is_blocked(hit.t.next_up()));
                 }
                 from = Some(Standpoint { primitive: hit.primitive, inside: false });

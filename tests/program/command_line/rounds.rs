@@ -70,7 +70,7 @@ const FEWEST_KILLS: u64 = 5;
 #[test]
 fn killed_at_any_instant_it_goes_on_to_the_same_image() {
     let folder = tempfile::tempdir().unwrap();
-    for goal in [["--spp", "2200"], ["--target-error", "0.03"]] {
+    for goal in [["--spp", "1100"], ["--target-error", "0.042"]] {
         let expected = render(folder.path(), &goal);
         let options = [SIZE.as_slice(), &goal, &["--checkpoint", "box.checkpoint", "-o", "box.pfm", "--json"]].concat();
         let mut kills = 0;

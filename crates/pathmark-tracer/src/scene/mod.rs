@@ -279,6 +279,11 @@ impl Scene {
         self.first::<X>(ray, from, limit, tests).is_some()
     }
 
+    /// Whether anything of any kind is on the ray nearer than `limit`; compiled as [`Self::first_of_any`] is.
+    pub fn is_blocked_by_any(&self, ray: &Ray, from: Option<Standpoint>, limit: f64) -> bool {
+        self.is_blocked::<AllEffects>(ray, from, limit, &mut Tests::default())
+    }
+
     /// The same scene in thermal equilibrium: every surface gives off exactly what it does not reflect (1 - albedo, by the angle where that
     /// matters), fog glows, the background is white where there is one and point lights are out, so that the radiance is 1 everywhere, in
     /// every direction: an exact expectation for every pixel.
