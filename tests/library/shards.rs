@@ -199,7 +199,7 @@ fn a_part_goes_on_as_itself_alone() {
 
 #[test]
 fn more_shards_than_there_is_work_are_refused() {
-    for (cut, most) in [(ShardCut::Samples, 4), (ShardCut::Tiles, 15)] {
+    for (cut, most) in [(ShardCut::Samples, 4), (ShardCut::Tiles, 8)] {
         let of = |count| Rounds::of(Setup::prepare(settings(64, "f64")).unwrap(), Some(shard(1, count, cut)));
         assert!(of(most).is_ok());
         let error = of(most + 1).err().unwrap();
