@@ -344,3 +344,15 @@ impl Loaded for Bound {
         context.checked("cuMemcpyDtoH", code)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The entry promises the compiler groups as they are launched: of larger ones no launch would succeed.
+    #[test]
+    fn the_entry_has_the_groups_that_are_launched() {
+        let bounds = format!("__launch_bounds__({GROUP}, {})", ITEMS_PER_MULTIPROCESSOR / GROUP);
+        assert!(include_str!("dialect/cuda_entry.cl").contains(&bounds), "{bounds}");
+    }
+}
