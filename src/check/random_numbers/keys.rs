@@ -75,7 +75,7 @@ fn bits([u, v]: [f64; 2]) -> u128 {
 }
 
 /// Exhaustively: every pixel and sample of an image, every use along a path with its branches, and two images of a seed and of a
-/// reference. Keys of 32 bits are shared by 72 pairs of the pixels of such an image.
+/// reference. By chance one in 1e16 sets of such pairs has one twice. Keys of 32 bits are shared by 72 pairs of the pixels of such an image.
 fn collisions(trials: &mut Trials) {
     bijection(trials);
     let pairs = repeated_words((0..786_432).map(key_of_32_bits).collect());

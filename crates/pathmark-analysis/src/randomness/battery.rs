@@ -1,5 +1,6 @@
 //! Tests of the leading 53 bits of numbers, such as batteries of tests of generators are made of (Marsaglia, 1985).
 
+use super::repeats::repeated_words;
 use crate::chi_square::{against, even};
 
 /// Each of the leading six bytes.
@@ -38,9 +39,7 @@ pub fn birthdays(numbers: &[u64]) -> f64 {
     for group in groups {
         let mut days: Vec<u32> = group.iter().map(|number| (number >> 21) as u32).collect();
         days.sort_unstable();
-        let mut spacings: Vec<u32> = days.windows(2).map(|two| two[1] - two[0]).collect();
-        spacings.sort_unstable();
-        repeated += spacings.windows(2).filter(|two| two[0] == two[1]).count() as f64;
+        repeated += repeated_words(days.windows(2).map(|two| two[1] - two[0]).collect()) as f64;
     }
     (repeated - expected) / expected.sqrt()
 }
