@@ -249,6 +249,7 @@ mod tests {
             sampler: _,
             precision: _,
             max_depth: _,
+            camera_rays: _,
             roulette: _,
             ..
         } = base();
@@ -261,6 +262,7 @@ mod tests {
             Spec { sampler: "sobol".into(), ..base() },
             Spec { precision: "f32".into(), ..base() },
             Spec { max_depth: Some(3), ..base() },
+            Spec { camera_rays: Some(4), ..base() },
             Spec { roulette: Some("never".into()), ..base() },
         ];
         for spec in others {

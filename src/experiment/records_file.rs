@@ -11,7 +11,7 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Versions of the columns that are read. The older ones lack columns that may be empty, and nothing else.
-const READABLE: [u32; 2] = [7, SCHEMA];
+const READABLE: [u32; 3] = [7, 8, SCHEMA];
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {

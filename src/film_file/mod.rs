@@ -34,6 +34,9 @@ pub struct FilmKey {
     /// Where paths are cut, if they are.
     #[serde(default)]
     pub max_depth: Option<u16>,
+    /// Camera rays of a sample, if there are several.
+    #[serde(default)]
+    pub camera_rays: Option<u16>,
     /// Russian roulette rule, the estimator's own rule included; films of revision 1 leave that out.
     #[serde(default)]
     pub roulette: Option<String>,

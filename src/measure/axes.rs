@@ -153,12 +153,13 @@ fn all_strategies(lab: &Lab) -> Vec<String> {
 }
 
 /// Every axis, in the order in which an experiment nests them: the first varies slowest. Results on disk depend on the order.
-pub static AXES: [Axis; 23] = [
+pub static AXES: [Axis; 24] = [
     Axis::new("scene", |s| Name(&mut s.scene)).image().all(all_scenes),
     Axis::new("size", |s| Field::Size(&mut s.spec)).image().option("WxH", "Columns and rows").default("512x384"),
     Axis::new("estimator", |s| Name(&mut s.spec.estimator)).image().light().option("NAME", "Estimator [default: the scene's own]"),
     Axis::new("sampler", |s| Name(&mut s.spec.sampler)).image().light().option("NAME", "Sampler").default("independent"),
     Axis::new("max-depth", |s| Field::Count(&mut s.spec.max_depth)).image().light().option("N", "Cut paths after so many bounces; 0 leaves what is seen directly [default: the estimator's own limit, if it has one]"),
+    Axis::new("camera-rays", |s| Field::Count(&mut s.spec.camera_rays)).image().light().option("N", "Camera rays of each sample: the light that they see directly is averaged, and the path goes on from one of them [default: 1]"),
     Axis::new("spp", |s| Field::Samples(&mut s.spp)).image(),
     Axis::new("adaptive", |s| Field::Switch(&mut s.adaptive)).image().light(),
     Axis::new("seed", |s| Field::Seed(&mut s.spec.seed)).image(),

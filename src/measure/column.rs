@@ -20,6 +20,7 @@ const SINCE: &[(u32, &[&str])] = &[
     (6, &["filter", "epsilon", "object_mse", "within_tolerance", "fireflies", "black_pixels", "image_write_s"]),
     (7, &["ranks", "rank_rule", "mpi"]),
     (8, &["device_compile_s", "device_copy_s"]),
+    (9, &["camera_rays"]),
 ];
 
 impl Column {

@@ -28,6 +28,8 @@ pub struct ImageKey {
     pub seed: u64,
     /// Bounces after which paths are cut, the estimator's own limit included.
     pub max_depth: Option<u16>,
+    /// Camera rays of a sample; `None` for one.
+    pub camera_rays: Option<u16>,
     /// Russian roulette rule, the estimator's own rule included; empty if there is none.
     pub roulette: String,
     /// What is clamped; empty if nothing is.
@@ -49,6 +51,9 @@ impl fmt::Display for ImageKey {
         write!(f, "{scene}-{scene_hash}/{estimator}/{sampler}/{width}x{height}/{spp}spp/seed{seed}")?;
         if let Some(depth) = self.max_depth {
             write!(f, "/depth{depth}")?;
+        }
+        if let Some(rays) = self.camera_rays {
+            write!(f, "/{rays}rays")?;
         }
         let parts = [
             ("roulette-", &self.roulette),
@@ -136,6 +141,7 @@ impl Record {
             spp: self.spp,
             seed: self.seed,
             max_depth: self.max_depth,
+            camera_rays: self.camera_rays,
             roulette: self.roulette.clone(),
             clamp: self.clamp.clone(),
             filter: self.filter.clone(),
@@ -188,6 +194,7 @@ impl Setup {
             width: key.width,
             height: key.height,
             max_depth: key.max_depth,
+            camera_rays: key.camera_rays,
             roulette: given(key.roulette),
             clamp: given(key.clamp),
             filter: given(key.filter),

@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 8;
+pub const SCHEMA: u32 = 9;
 
 columns! {
     /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
@@ -56,6 +56,8 @@ columns! {
         pub accelerator: String,
         /// Bounces after which paths were cut; empty if only their throughput ended them.
         pub max_depth: Option<u16>,
+        /// Camera rays of a sample; empty for one.
+        pub camera_rays: Option<u16>,
         /// Russian roulette rule; empty if there was none.
         pub roulette: String,
         /// Whether the noise of each tile decided its samples; `spp` is their mean then.
@@ -242,6 +244,7 @@ fn described(settings: &Settings) -> Record {
         kernel: spec.kernel.clone(),
         precision: spec.precision.clone(),
         max_depth: spec.max_depth,
+        camera_rays: spec.camera_rays,
         roulette: spec.roulette.clone().unwrap_or_default(),
         clamp: spec.clamp.clone().unwrap_or_default(),
         filter: spec.filter.clone().unwrap_or_default(),
@@ -322,6 +325,7 @@ impl Record {
         let mut record = Self { scene: setup.name().to_string(), scene_hash: setup.hash(), ..described };
         let choice = setup.scene().map(|(_, choice)| choice);
         record.max_depth = choice.and_then(Choice::depth);
+        record.camera_rays = choice.map(Choice::camera_rays).filter(|rays| *rays > 1);
         record.roulette = choice.and_then(Choice::roulette).map(|rule| rule.to_string()).unwrap_or_default();
         record.precision = choice.map_or(Precision::F64, Choice::precision).name().to_string();
         record.kernel = choice.map_or(WORKLOAD, Choice::kernel).to_string();

@@ -193,7 +193,8 @@ fn names(rows: &[&Row]) -> Vec<String> {
         |row| if row.biased && row.max_depth.is_none() { "biased".to_string() } else { String::new() },
         |row| crew(strategy(row), row.threads),
     ];
-    let rest: [Part<Row>; 10] = [
+    let rest: [Part<Row>; 11] = [
+        |row| row.camera_rays.map_or_else(String::new, |rays| format!("{rays} camera rays")),
         |row| row.clamp.clone(),
         |row| prefixed("filter ", &row.filter),
         |row| prefixed("epsilon ", &row.epsilon),

@@ -241,9 +241,10 @@ pub(super) fn prefixed(name: &str, value: &str) -> String {
 fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
     let main: [Part<ImageKey>; 3] =
         [|image| image.scene.clone(), |image| image.estimator.clone(), |image| image.sampler.clone()];
-    let rest: [Part<ImageKey>; 8] = [
+    let rest: [Part<ImageKey>; 9] = [
         |image| format!("{}x{}", image.width, image.height),
         |image| image.max_depth.map_or_else(String::new, |depth| format!("depth {depth}")),
+        |image| image.camera_rays.map_or_else(|| "one camera ray".to_string(), |rays| format!("{rays} camera rays")),
         |image| image.roulette.clone(),
         |image| image.clamp.clone(),
         |image| if image.filter.is_empty() { "own filter".to_string() } else { prefixed("filter ", &image.filter) },

@@ -58,7 +58,7 @@ fn at_the_chance(trials: &mut Trials) {
     ] {
         let scene = hollow([albedo; 3], [1.0; 3]);
         for entry in ESTIMATORS.iter().filter(|entry| entry.roulette.is_some()) {
-            let options = Options { max_depth: Some(3), roulette };
+            let options = Options { max_depth: Some(3), roulette, ..Options::default() };
             let found = sample(entry.name, options, &scene, u);
             trials.close(format!("rho {albedo}, u {u:?}, {}", entry.name), exact, found, 1e-14);
         }

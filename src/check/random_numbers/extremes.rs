@@ -152,7 +152,7 @@ impl Sample<'_> {
         let view = scene.camera.view(SIZE[0], SIZE[1]);
         let key = SampleKey { seed: 0, pixel, sample: pixel % 4 };
         let place = [pixel % SIZE[0], pixel / SIZE[0]];
-        let ray = camera_ray::<Stub, AllEffects, ()>(&view, place, key, sampler, &mut ());
+        let ray = camera_ray::<Stub, AllEffects, ()>(&view, place, key, 0, sampler, &mut ());
         estimator.estimate(scene, ray, key, sampler, escapes)
     }
 }
@@ -166,7 +166,7 @@ fn estimators(trials: &mut Trials) {
     for entry in ESTIMATORS {
         // Numbers of 0 survive every roulette, so paths end at the depth that is asked for.
         let depth = entry.max_depth.unwrap_or(trials.times(20, 1000) as u16);
-        let options = Options { max_depth: Some(depth), roulette: None };
+        let options = Options { max_depth: Some(depth), ..Options::default() };
         let (mut tried, mut wrong, mut closed, mut leaks) = (0, 0, 0, 0);
         let estimator = any_estimator(entry.name, options).expect("an estimator of the table");
         for scene in scenes() {

@@ -60,8 +60,8 @@ impl Samples<'_> {
         let mut found = Found::default();
         for pixel in (0..16 * 12).step_by((192 / pixels) as usize) {
             let key = SampleKey { seed: 3, pixel, sample: pixel % 8 };
-            let ray = camera_ray::<Ledger, AllEffects, ()>(&view, [pixel % 16, pixel / 16], key, ledger, &mut ());
-            estimator.estimate(scene, ray, key, ledger, &mut ());
+            let ray = camera_ray::<Ledger, AllEffects, ()>(&view, [pixel % 16, pixel / 16], key, 0, ledger, &mut ());
+            estimator.estimate(scene, ray, key, 0, ledger, &mut ());
             let used = std::mem::take(&mut *ledger.used.lock().unwrap_or_else(PoisonError::into_inner));
             found.used += used.len() as u64;
             found.twice += (used.len() - used.iter().collect::<HashSet<_>>().len()) as u64;
@@ -88,7 +88,7 @@ fn once(trials: &mut Trials) {
         let lit = scene.lit(&scene.camera.view(16, 12));
         for (entry, all) in ESTIMATORS.iter().zip(&mut all) {
             // A mirror room without an end would go on to the cap.
-            let options = Options { max_depth: entry.max_depth.or(Some(100)), roulette: None };
+            let options = Options { max_depth: entry.max_depth.or(Some(100)), ..Options::default() };
             for ((_, ledger), all) in ledgers.iter().zip(all) {
                 let scene = if entry.aims { &lit } else { &scene };
                 let samples = Samples { scene, pixels, is_one_path: entry.is_one_path, ledger };

@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 use std::collections::BTreeSet;
 
 /// Columns that change the image.
-const IMAGE: [&str; 15] = [
+const IMAGE: [&str; 16] = [
     "scene",
     "scene_hash",
     "estimator",
@@ -15,6 +15,7 @@ const IMAGE: [&str; 15] = [
     "spp",
     "seed",
     "max_depth",
+    "camera_rays",
     "roulette",
     "clamp",
     "filter",
@@ -157,12 +158,13 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
 }
 
 /// Another value on each axis than the setups above have.
-const OTHER_VALUES: [(&str, &str); 22] = [
+const OTHER_VALUES: [(&str, &str); 23] = [
     ("scene", "sky"),
     ("size", "9x6"),
     ("estimator", "mis"),
     ("sampler", "sobol"),
     ("max-depth", "3"),
+    ("camera-rays", "4"),
     ("spp", "8"),
     ("adaptive", "true"),
     ("seed", "2"),

@@ -70,7 +70,7 @@ const FOLLOWERS: [(&str, &[&str]); 5] = [
 ];
 
 /// The columns that tell rows apart.
-const IDENTITY: [&str; 24] = [
+const IDENTITY: [&str; 25] = [
     "scene",
     "scene_hash",
     "estimator",
@@ -80,6 +80,7 @@ const IDENTITY: [&str; 24] = [
     "spp",
     "seed",
     "max_depth",
+    "camera_rays",
     "roulette",
     "clamp",
     "precision",

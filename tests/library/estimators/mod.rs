@@ -2,4 +2,5 @@
 
 mod agreement;
 mod aims;
+mod camera_rays;
 mod gain;

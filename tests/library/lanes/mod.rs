@@ -26,7 +26,7 @@ fn without_tests(counts: Counts) -> Counts {
 }
 
 /// Insists that lanes on every level render a piece as the scalar kernel does, and that it is lanes that render.
-fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
+pub(crate) fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
     // Lanes test more primitives before they look into a hierarchy; here both go by the same.
     let accelerator = Some(choose(scene, spec).unwrap().accelerator().to_string());
     let spec = &Spec { accelerator, ..spec.clone() };

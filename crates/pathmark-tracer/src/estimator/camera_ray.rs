@@ -1,23 +1,73 @@
-//! Where a path begins.
+//! Where a path begins, and what other camera rays of its sample see.
 
 use super::Probe;
 use crate::effect::EffectSet;
-use crate::math::Ray;
+use crate::math::{Ray, Rgb, dot};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler};
-use crate::scene::{LENS, View};
+use crate::scene::{AllEffects, BACKGROUND, FOG, LENS, Scene, Tests, View};
 
-/// The ray of a sample through the pixel in column `x` of row `y`, whose index is in the key.
+/// A ray of a sample through the pixel in column `x` of row `y`, whose index is in the key: number 0 is that of the path.
 #[inline(always)]
 pub fn camera_ray<S: Sampler, X: EffectSet, P: Probe>(
     view: &View,
     [x, y]: [u32; 2],
     key: SampleKey,
+    number: u16,
     sampler: &S,
     probe: &mut P,
 ) -> Ray {
-    let pair = |purpose| sampler.pair(Address { key, bounce: 0, branch: 0, purpose });
+    let pair = |purpose| sampler.pair(Address { key, bounce: 0, branch: number, purpose });
     view.ray::<X>(x, y, key.sample, pair(Purpose::Film), || {
         probe.used(LENS);
         pair(Purpose::Lens)
     })
+}
+
+/// The share that each camera ray of a sample has in the light that camera rays see.
+pub fn camera_share(camera_rays: u16) -> f64 {
+    1.0 / f64::from(camera_rays)
+}
+
+/// What a sample sees by its camera rays from number 1 on: their part of the mean over all of them. A path that counts the light at the end of its
+/// own camera ray by [`camera_share`] is then unbiased, as a path is whose first vertex was split (Arvo and Kirk, "Particle transport and image
+/// synthesis", 1990) where nothing but emission is looked for. Compiled once, with every effect and for any sampler.
+pub fn seen_besides(
+    scene: &Scene,
+    view: &View,
+    pixel: [u32; 2],
+    key: SampleKey,
+    camera_rays: u16,
+    sampler: &dyn Sampler,
+    mut probe: &mut dyn Probe,
+) -> Rgb {
+    let mut seen = Rgb::BLACK;
+    for number in 1..camera_rays {
+        let ray =
+            camera_ray::<&dyn Sampler, AllEffects, &mut dyn Probe>(view, pixel, key, number, &sampler, &mut probe);
+        seen += seen_along(scene, &ray, probe);
+    }
+    let seen = seen * camera_share(camera_rays);
+    probe.light(0, seen);
+    seen
+}
+
+/// The radiance that arrives unscattered along a camera ray from what it meets first.
+fn seen_along(scene: &Scene, ray: &Ray, probe: &mut dyn Probe) -> Rgb {
+    let mut tests = Tests::default();
+    let hit = scene.intersect::<AllEffects>(ray, None, &mut tests);
+    probe.ray(tests);
+    let behind = match &hit {
+        Some(hit) => scene.objects[hit.object as usize].emitted::<AllEffects>(dot(ray.direction, hit.normal).abs()),
+        None => {
+            let background = scene.background.unwrap_or(Rgb::BLACK);
+            if !background.is_black() {
+                probe.used(BACKGROUND);
+            }
+            background
+        }
+    };
+    let Some(fog) = &scene.fog else { return behind };
+    probe.used(FOG);
+    let reach = hit.map_or(f64::INFINITY, |hit| hit.t);
+    fog.unhindered_glow(reach) + behind * fog.unhindered(reach)
 }

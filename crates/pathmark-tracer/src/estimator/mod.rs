@@ -23,7 +23,7 @@ use std::sync::Arc;
 
 pub use aimed::power_heuristic;
 pub use bsdf::Bsdf;
-pub use camera_ray::camera_ray;
+pub use camera_ray::{camera_ray, camera_share, seen_besides};
 pub(crate) use direct::HIDING;
 pub use path::{Aimed, MAX_BOUNCES, Path};
 pub(crate) use roulette::By;
@@ -102,6 +102,8 @@ pub struct PathRules {
     pub max_depth: u16,
     /// When and how chance ends paths.
     pub roulette: Roulette,
+    /// Camera rays of a sample, over which what they see is averaged.
+    pub camera_rays: u16,
 }
 
 /// The effect profiles that an estimator's scalar kernels are compiled for. Each is a copy of the whole path, and takes seconds to compile.
@@ -137,6 +139,9 @@ pub trait Estimator: Send + Sync {
 
     /// The largest number of bounces that it can be asked for.
     const LARGEST_DEPTH: u16 = u16::MAX;
+
+    /// Whether it counts the light at the end of a camera ray by [`camera_share`] if a sample has several camera rays.
+    const SHARES_CAMERA_RAYS: bool = false;
 
     /// The effect profiles that its scalar kernels are compiled for.
     const COMPILED: Compiled = Compiled::WithAllEffects;
@@ -236,6 +241,8 @@ pub struct Entry {
     pub is_one_path: bool,
     /// The largest number of bounces that it can be asked for.
     pub largest_depth: u16,
+    /// Whether a sample can have several camera rays.
+    pub shares_camera_rays: bool,
     /// The effect profiles that its scalar kernels are compiled for.
     pub compiled: Compiled,
 }
@@ -252,6 +259,7 @@ impl Entry {
             roulette: E::ROULETTE,
             is_one_path: E::IS_ONE_PATH,
             largest_depth: E::LARGEST_DEPTH,
+            shares_camera_rays: E::SHARES_CAMERA_RAYS,
             compiled: E::COMPILED,
         }
     }
@@ -269,6 +277,15 @@ pub struct Options {
     pub max_depth: Option<u16>,
     /// When and how chance ends paths; `None` leaves it to the estimator.
     pub roulette: Option<Roulette>,
+    /// Camera rays of a sample; `None` for one.
+    pub camera_rays: Option<u16>,
+}
+
+impl Options {
+    /// Camera rays of a sample.
+    pub fn camera_rays(&self) -> u16 {
+        self.camera_rays.unwrap_or(1)
+    }
 }
 
 macro_rules! estimators {

@@ -6,7 +6,7 @@
 use super::aimed::{aimed_at_fog, aimed_at_surface, share_of_arrival};
 use super::direct::{light_at_fog, light_at_surface};
 use super::medium::Medium;
-use super::{Compiled, Estimator, Options, PathRules, Probe, Roulette};
+use super::{Compiled, Estimator, Options, PathRules, Probe, Roulette, camera_share};
 use crate::effect::EffectSet;
 use crate::material::{BsdfSample, Density};
 use crate::math::{Ray, Rgb, Vec3, dot};
@@ -56,6 +56,7 @@ pub(super) enum Light {
 pub struct Path<R> {
     max_depth: u16,
     roulette: Roulette,
+    camera_rays: u16,
     light: Light,
     rules: PhantomData<R>,
 }
@@ -66,6 +67,7 @@ impl<R> Path<R> {
         Self {
             max_depth: options.max_depth.unwrap_or(MAX_BOUNCES),
             roulette: options.roulette.unwrap_or(Roulette::SMALLPT),
+            camera_rays: options.camera_rays(),
             // Not looked at by what does not aim.
             light: Light::Weighted,
             rules: PhantomData,
@@ -83,7 +85,8 @@ impl<R: Rules> Estimator for Path<R> {
     fn course(&self) -> Option<PathRules> {
         let is_weighted = self.light == Light::Weighted;
         let aims = R::AIMS.then_some(is_weighted);
-        Some(PathRules { splits: R::SPLITS, aims, max_depth: self.max_depth, roulette: self.roulette })
+        let Self { max_depth, roulette, camera_rays, .. } = *self;
+        Some(PathRules { splits: R::SPLITS, aims, max_depth, roulette, camera_rays })
     }
 
     const SPP_MULTIPLE: u32 = R::SPP_MULTIPLE;
@@ -91,6 +94,7 @@ impl<R: Rules> Estimator for Path<R> {
     const AIMS: bool = R::AIMS;
     const COMPILED: Compiled = R::COMPILED;
     const IS_ONE_PATH: bool = R::SPLITS == 0;
+    const SHARES_CAMERA_RAYS: bool = true;
 
     #[inline(always)]
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
@@ -101,7 +105,9 @@ impl<R: Rules> Estimator for Path<R> {
         sampler: &S,
         probe: &mut P,
     ) -> Rgb {
-        let walk = Walk { scene, key, sampler, max_depth: self.max_depth, roulette: self.roulette, light: self.light };
+        let Self { max_depth, roulette, light, .. } = *self;
+        let seen_share = camera_share(self.camera_rays);
+        let walk = Walk { scene, key, sampler, max_depth, roulette, light, seen_share };
         let mut collected = Rgb::BLACK;
         let mut part = Part {
             ray,
@@ -158,6 +164,8 @@ struct Walk<'a, S> {
     max_depth: u16,
     roulette: Roulette,
     light: Light,
+    /// The share of light that the camera ray sees.
+    seen_share: f64,
 }
 
 /// A part of a path that waits to be followed.
@@ -188,6 +196,12 @@ impl<S: Sampler> Walk<'_, S> {
         self.sampler.pair(part.address(self.key, purpose))
     }
 
+    /// What counts of light that a part arrives at.
+    #[inline(always)]
+    fn counted(&self, part: &Part, light: Rgb) -> Rgb {
+        if part.vertices == 0 { light * self.seen_share } else { light }
+    }
+
     /// A direction towards a light from the vertex that a part arrived at.
     #[inline(always)]
     fn aim<R: Rules>(&self, part: &Part, point: Vec3, from: Option<Standpoint>) -> Option<Aim> {
@@ -213,7 +227,7 @@ impl<S: Sampler> Walk<'_, S> {
             let reach = hit.map_or(f64::INFINITY, |hit| hit.t);
             let free = fog.free_path(|| self.pair(&part, Purpose::Medium)[0]);
             let way = reach.min(free);
-            let glow = part.throughput * fog.glow(way);
+            let glow = self.counted(&part, part.throughput * fog.glow(way));
             probe.light(part.vertices, glow);
             *collected += glow;
             let transmittance = fog.transmittance(way);
@@ -228,8 +242,9 @@ impl<S: Sampler> Walk<'_, S> {
                 && let Some(background) = scene.background.filter(|radiance| !radiance.is_black())
             {
                 probe.used(BACKGROUND);
-                probe.light(part.vertices, part.throughput * background);
-                *collected += part.throughput * background;
+                let found = self.counted(&part, part.throughput * background);
+                probe.light(part.vertices, found);
+                *collected += found;
             }
             probe.escaped();
             probe.ended(part.vertices);
@@ -257,8 +272,9 @@ impl<S: Sampler> Walk<'_, S> {
         {
             emission = emission * share_of_arrival(self.light, lights, &part.ray, part.from, hit, density);
         }
-        probe.light(part.vertices, part.throughput * emission);
-        *collected += part.throughput * emission;
+        let found = self.counted(&part, part.throughput * emission);
+        probe.light(part.vertices, found);
+        *collected += found;
         if part.vertices == self.max_depth {
             probe.truncated();
             probe.ended(part.vertices);

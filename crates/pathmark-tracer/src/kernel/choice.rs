@@ -89,6 +89,11 @@ impl Choice {
         self.options.max_depth.or(self.estimator.max_depth)
     }
 
+    /// Camera rays of a sample.
+    pub fn camera_rays(&self) -> u16 {
+        self.options.camera_rays()
+    }
+
     /// Whether an option is on that changes what the image converges to.
     pub fn is_biased(&self) -> bool {
         self.clamp.is_some() || self.depth().is_some() || self.filter.is_some() || self.epsilon.is_some()
@@ -307,7 +312,21 @@ fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Opti
         let problem = format!("is no option of {}, which ends no path by chance", estimator.name);
         return Err(InputError::new("roulette", rule, problem).allowed("none").into());
     }
-    Ok(Options { max_depth: spec.max_depth, roulette })
+    Ok(Options { max_depth: spec.max_depth, roulette, camera_rays: camera_rays(spec, estimator, is_own)? })
+}
+
+/// The number of camera rays that the spec asks for, if it is not one.
+fn camera_rays(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Option<u16>> {
+    let Some(number) = spec.camera_rays.filter(|number| *number != 1) else { return Ok(None) };
+    let error = |problem: &str, allowed| InputError::new("camera-rays", number.to_string(), problem).allowed(allowed);
+    if number == 0 {
+        return Err(error("is no number of rays", "1 to 65535").into());
+    }
+    if is_own || !estimator.shares_camera_rays {
+        let problem = format!("is more than {} can share what it sees with", estimator.name);
+        return Err(error(&problem, "1").into());
+    }
+    Ok(Some(number))
 }
 
 /// The filter that the spec names, if it is not the camera's own.

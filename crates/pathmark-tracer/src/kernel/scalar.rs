@@ -2,7 +2,7 @@
 
 use super::{Choice, Clamp, Clamped, Counts, Kernel};
 use crate::effect::EffectSet;
-use crate::estimator::{Estimator, Probe, camera_ray};
+use crate::estimator::{Estimator, Probe, camera_ray, seen_besides};
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
 use crate::math::Rgb;
 use crate::sampling::{SampleKey, Sampler};
@@ -17,6 +17,7 @@ pub(super) struct Scalar<E, S, X> {
     width: u32,
     seed: u64,
     subpixel_limit: Option<f64>,
+    camera_rays: u16,
     estimator: E,
     sampler: S,
     profile: PhantomData<X>,
@@ -48,6 +49,7 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
                 .clamp
                 .filter(|clamp| clamp.what == Clamped::Subpixel)
                 .map(|clamp: Clamp| clamp.limit),
+            camera_rays: choice.options.camera_rays(),
             estimator,
             sampler,
             profile: PhantomData,
@@ -58,8 +60,11 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
     #[inline(always)]
     fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
         let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
-        let ray = camera_ray::<S, X, Counts>(&self.view, [x, y], key, &self.sampler, counts);
-        let radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
+        let ray = camera_ray::<S, X, Counts>(&self.view, [x, y], key, 0, &self.sampler, counts);
+        let mut radiance = self.estimator.sample::<S, X, Counts>(&self.scene, ray, key, &self.sampler, counts);
+        if self.camera_rays > 1 {
+            radiance += seen_besides(&self.scene, &self.view, [x, y], key, self.camera_rays, &self.sampler, counts);
+        }
         counts.paths += 1;
         if radiance.is_valid_radiance() {
             return radiance;

@@ -31,6 +31,9 @@ pub struct Spec {
     pub accelerator: Option<String>,
     /// After so many bounces a path is cut; `None` leaves it to the estimator.
     pub max_depth: Option<u16>,
+    /// Camera rays of a sample, over which the light that they see is averaged; `None` for one.
+    #[serde(default)]
+    pub camera_rays: Option<u16>,
     /// When and how chance ends paths, as [`Roulette`](crate::estimator::Roulette) reads it; `None` leaves it to the estimator.
     #[serde(default)]
     pub roulette: Option<String>,
@@ -65,6 +68,7 @@ impl Default for Spec {
             effects: None,
             accelerator: None,
             max_depth: None,
+            camera_rays: None,
             roulette: None,
             clamp: None,
             filter: None,

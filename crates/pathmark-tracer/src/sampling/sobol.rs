@@ -170,7 +170,7 @@ pub(super) fn pair_by(
     let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
     let key = mix(pixel ^ dimension);
     let place = match (at.bounce, at.branch, at.purpose) {
-        (0, 0, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
+        (0, _, Purpose::Film) => u64::from(joined(pixel, at.key.sample)[0]),
         (1, 0, Purpose::Bsdf | Purpose::Light) => u64::from(joined(pixel, at.key.sample)[1]),
         _ => own_place(key, u64::from(at.key.sample)),
     };

@@ -130,6 +130,7 @@ fn definitions(effects: Effects, course: &PathRules, precision: Precision) -> St
     }
     all.add("SPLITS", course.splits);
     all.add("AIMS", u8::from(course.aims.is_some()));
+    all.add("HAS_CAMERA_RAYS", u8::from(course.camera_rays > 1));
     all.add_numbered(SAMPLERS.iter().map(|(_, name)| *name));
     all.add_numbered(MATERIALS.iter().copied());
     for names in KINDS {
@@ -270,9 +271,10 @@ mod tests {
     /// Every program as CUDA's compiler makes it: no operation is fused with another, estimated, or rounded as the assembler likes.
     #[test]
     fn no_code_for_gpus_fuses_or_estimates() {
-        let rules = |splits, aims| PathRules { splits, aims, max_depth: u16::MAX, roulette: Roulette::SMALLPT };
+        let (max_depth, roulette) = (u16::MAX, Roulette::SMALLPT);
+        let rules = |splits, aims, camera_rays| PathRules { splits, aims, max_depth, roulette, camera_rays };
         for profile in PROFILES {
-            let rules = [rules(0, None), rules(2, None), rules(0, Some(true))];
+            let rules = [rules(0, None, 1), rules(2, None, 1), rules(0, Some(true), 4)];
             for (rules, precision) in
                 rules.into_iter().flat_map(|rules| Precision::ALL.map(|precision| (rules, precision)))
             {

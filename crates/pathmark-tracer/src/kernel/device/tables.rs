@@ -3,7 +3,7 @@
 use super::super::Choice;
 use super::super::lanes::{Singles, surfaces};
 use super::choice::ForDevice;
-use crate::estimator::By;
+use crate::estimator::{By, camera_share};
 use crate::material::{Dielectric, Facets, Fresnel, Material, Sampling};
 use crate::math::{Curved, Rgb, Vec3};
 use crate::sampling::{ORDERS, mix};
@@ -26,6 +26,7 @@ pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_WIDTH", 1),
     ("AT_FILTER", 1),
     ("AT_MAX_DEPTH", 1),
+    ("AT_CAMERA_RAYS", 1),
     ("AT_ROULETTE", 2),
     ("AT_IS_WEIGHTED", 1),
     ("AT_SPHERE_COUNT", 1),
@@ -73,6 +74,7 @@ pub(super) const NUMBERS: &[(&str, usize)] = &[
     ("VIEW_LENS_UP", 3),
     ("VIEW_BACKGROUND", 3),
     ("VIEW_ROULETTE", 1),
+    ("VIEW_CAMERA_SHARE", 1),
 ];
 
 /// Numbers of an object, of a light and of a point light.
@@ -314,6 +316,8 @@ impl Tables {
         self.set_words("AT_ROULETTE", &[by, u32::from(chosen.course.roulette.after())]);
         self.set_numbers("VIEW_ROULETTE", &[chance]);
         self.set_words("AT_MAX_DEPTH", &[u32::from(chosen.course.max_depth)]);
+        self.set_words("AT_CAMERA_RAYS", &[u32::from(chosen.course.camera_rays)]);
+        self.set_numbers("VIEW_CAMERA_SHARE", &[camera_share(chosen.course.camera_rays)]);
         self.set_words("AT_IS_WEIGHTED", &[u32::from(chosen.course.aims == Some(true))]);
         let seed = mix(choice.seed);
         self.set_words("AT_SEED_KEY", &[seed as u32, (seed >> 32) as u32]);

@@ -7,7 +7,7 @@ mod path_log;
 
 use super::{Choice, prepared};
 use crate::error::{InputError, Result};
-use crate::estimator::{AnyEstimator, Probe, camera_ray};
+use crate::estimator::{AnyEstimator, Probe, camera_ray, seen_besides};
 use crate::math::Rgb;
 use crate::sampling::{SAMPLERS, SampleKey, Sampler, keyed_sampler};
 use crate::scene::{AllEffects, Scene, View};
@@ -22,6 +22,7 @@ pub struct Inspector {
     view: View,
     width: u32,
     seed: u64,
+    camera_rays: u16,
     estimator: Arc<dyn AnyEstimator>,
     sampler: Box<dyn Sampler>,
 }
@@ -45,6 +46,7 @@ impl Inspector {
             view: choice.view(scene),
             width: choice.width,
             seed: choice.seed,
+            camera_rays: choice.options.camera_rays(),
             estimator: choice.any_estimator()?,
             sampler,
         })
@@ -58,9 +60,14 @@ impl Inspector {
             &self.view,
             [x, y],
             key,
+            0,
             &self.sampler,
             &mut probe,
         );
-        self.estimator.estimate(&self.scene, ray, key, &*self.sampler, probe)
+        let radiance = self.estimator.estimate(&self.scene, ray, key, &*self.sampler, probe);
+        if self.camera_rays == 1 {
+            return radiance;
+        }
+        radiance + seen_besides(&self.scene, &self.view, [x, y], key, self.camera_rays, &*self.sampler, probe)
     }
 }

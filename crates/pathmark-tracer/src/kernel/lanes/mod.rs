@@ -129,7 +129,7 @@ impl Lanes {
         out: &mut TileBuffer,
     ) -> Counts {
         let mut counts = Counts::default();
-        let mut window = Window::over(piece, out);
+        let mut window = Window::over(piece, out, self.course.camera_rays > 1);
         let mut packet = Packet::<V>::new(waiting, stacks);
         let mut supply = Supply::<V>::new();
         // Lanes whose part of a path has ended, and that still hold it.

@@ -1,8 +1,11 @@
 //! Camera rays made ahead, a whole packet of them at a time, so that lanes which end one by one can be given their next one by one.
 
 use super::Lanes;
-use super::packet::{LanesOf, Packet};
+use super::packet::{LanesOf, Packet, Rays, colour};
+use super::tables::GIVES_OFF;
+use super::wide::Scratch;
 use super::window::{Handed, Window};
+use crate::estimator::camera_share;
 use crate::kernel::Counts;
 use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::{PathWords, Purpose, SampleKey};
@@ -43,19 +46,29 @@ impl<V: Float> Supply<V> {
 
 /// Rays made ahead. A function of its own, because a call for as many rays as there are lanes costs nothing, every kind of kernel shares it, and
 /// the time to compile a function grows with the square of its length.
-struct Produce<'a, 'w, V: Float> {
+struct Produce<'a, 'w, 's, V: Float> {
     kernel: &'a Lanes,
     supply: &'a mut Supply<V>,
     window: &'a mut Window<'w>,
+    scratch: &'a mut Scratch<'s, V>,
+    counts: &'a mut Counts,
 }
 
-impl<V: Float> Apart for Produce<'_, '_, V> {
+impl<V: Float> Apart for Produce<'_, '_, '_, V> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
-        self.kernel.produce::<V>(self.supply, self.window);
+        self.kernel.produce::<V>(self.supply, self.window, self.scratch, self.counts);
     }
+}
+
+/// The samples whose rays are being made.
+struct Batch<V: Float> {
+    pixel: [V; 2],
+    subpixel: V,
+    words: PathWords<V::Bits>,
+    count: usize,
 }
 
 impl Lanes {
@@ -72,7 +85,7 @@ impl Lanes {
         while free != 0 {
             if supply.count == 0 {
                 window.settle(counts);
-                V::apart(Produce { kernel: self, supply, window });
+                V::apart(Produce { kernel: self, supply, window, scratch: &mut packet.scratch, counts });
                 if supply.count == 0 {
                     return;
                 }
@@ -83,7 +96,13 @@ impl Lanes {
 
     /// Makes as many rays as there are lanes, or samples left.
     #[inline(always)]
-    fn produce<V: Float>(&self, supply: &mut Supply<V>, window: &mut Window<'_>) {
+    fn produce<V: Float>(
+        &self,
+        supply: &mut Supply<V>,
+        window: &mut Window<'_>,
+        scratch: &mut Scratch<'_, V>,
+        counts: &mut Counts,
+    ) {
         supply.first = 0;
         while supply.count < V::LANES {
             let Some(Handed { first, count }) = window.hand_out(V::LANES - supply.count) else { break };
@@ -103,10 +122,16 @@ impl Lanes {
         let samples = V::Bits::load(samples);
         let joined = [V::Bits::load(film), V::Bits::load(first)];
         let words = self.sampler.words(self.seed, V::Bits::load(pixels), samples, joined);
-        let film = self.sampler.pair::<V>(&words, none, none, Purpose::Film);
         let subpixel = V::number(samples & V::Bits::splat(u64::from(SUBPIXELS - 1)));
         let pixel = [V::number(V::Bits::load(columns)), V::number(V::Bits::load(rows))];
-        let Ray { origin, direction } = self.view.rays(pixel, subpixel, film);
+        let batch = Batch { pixel, subpixel, words, count: supply.count };
+        if self.course.camera_rays > 1 && batch.count > 0 {
+            let seen = self.seen_besides(&batch, scratch, counts);
+            for lane in 0..batch.count {
+                window.add_beforehand(supply.slot + lane as u64, colour(&seen, lane));
+            }
+        }
+        let Ray { origin, direction } = self.camera_rays(&batch, none);
         origin.x.store(&mut supply.rays[0]);
         origin.y.store(&mut supply.rays[1]);
         origin.z.store(&mut supply.rays[2]);
@@ -117,6 +142,37 @@ impl Lanes {
         words.sample.store(&mut supply.words[1]);
         words.joined[0].store(&mut supply.words[2]);
         words.joined[1].store(&mut supply.words[3]);
+    }
+
+    /// The camera rays of that number.
+    #[inline(always)]
+    fn camera_rays<V: Float>(&self, batch: &Batch<V>, number: V::Bits) -> Ray<V> {
+        let film = self.sampler.pair::<V>(&batch.words, V::Bits::splat(0), number, Purpose::Film);
+        self.view.rays(batch.pixel, batch.subpixel, film)
+    }
+
+    /// What samples see by their other camera rays, as [`crate::estimator::seen_besides`] has it.
+    #[inline(always)]
+    fn seen_besides<V: Float>(&self, batch: &Batch<V>, scratch: &mut Scratch<'_, V>, counts: &mut Counts) -> Rgb<V> {
+        let wanted = u32::MAX >> (MOST_LANES - batch.count);
+        let mut seen = Rgb::splat(Rgb::BLACK);
+        for number in 1..self.course.camera_rays {
+            let ray = self.camera_rays(batch, V::Bits::splat(number.into()));
+            let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
+            let (_, primitive) = self.nearest(&rays, wanted, scratch, counts);
+            counts.rays += batch.count as u64;
+            let met = V::splat(0.0).le(primitive);
+            if met.any() {
+                let row = self.tables.rows(primitive);
+                let [.., kind] = V::rows(&self.tables.materials, row);
+                let [r, g, b, _] = V::rows(&self.tables.emissions, row);
+                seen = Rgb::select(met & V::splat(GIVES_OFF).le(kind), seen + Rgb { r, g, b }, seen);
+            }
+            if let Some(background) = self.scene.background {
+                seen = Rgb::select(met, seen, seen + Rgb::splat(background));
+            }
+        }
+        seen * V::splat(camera_share(self.course.camera_rays))
     }
 
     /// Puts rays that wait into free lanes, the first into the lowest. The lanes that got one.

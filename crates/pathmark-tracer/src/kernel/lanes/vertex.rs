@@ -4,6 +4,7 @@ use super::Lanes;
 use super::light::ArrivedAtLight;
 use super::packet::{LanesOf, Packet, Part, colour, differ, vector};
 use super::tables::{GIVES_OFF, Kind};
+use crate::estimator::camera_share;
 use crate::kernel::Counts;
 use crate::material::Density;
 use crate::math::{
@@ -96,6 +97,7 @@ impl Lanes {
             if let Some(at) = &early {
                 emission = emission * V::apart(ArrivedAtLight { kernel: self, packet, at, lit });
             }
+            emission = self.counted(packet, emission);
             // A ray that met nothing has looked up some surface or other.
             let found = packet.collected + packet.throughput * emission;
             packet.collected = Rgb::select(lit, found, packet.collected);
@@ -117,12 +119,22 @@ impl Lanes {
         ended
     }
 
+    /// What counts of light that paths arrive at.
+    #[inline(always)]
+    fn counted<V: Float>(&self, packet: &Packet<'_, V>, light: Rgb<V>) -> Rgb<V> {
+        if self.course.camera_rays == 1 {
+            return light;
+        }
+        let is_seen = packet.vertices.equal(V::Bits::splat(0));
+        Rgb::select(is_seen, light * V::splat(camera_share(self.course.camera_rays)), light)
+    }
+
     /// Rays that meet nothing find the background.
     #[inline(always)]
     fn escape<V: Float>(&self, packet: &mut Packet<'_, V>, escaped: u32, counts: &mut Counts) {
         counts.escaped += u64::from(escaped.count_ones());
         if let Some(background) = self.scene.background {
-            let found = packet.collected + packet.throughput * Rgb::splat(background);
+            let found = packet.collected + packet.throughput * self.counted(packet, Rgb::splat(background));
             packet.collected = Rgb::select(V::Mask::from_bits(escaped), found, packet.collected);
         }
     }

@@ -36,6 +36,8 @@ pub(super) struct Window<'a> {
     /// A bit for each slot that was given back.
     done: [u64; SIZE / 64],
     radiances: [Rgb; SIZE],
+    /// Whether something is added to each sample beforehand.
+    has_more: bool,
     sum: SampleSum,
 }
 
@@ -56,7 +58,7 @@ impl Place {
 }
 
 impl<'a> Window<'a> {
-    pub(super) fn over(piece: &Piece, out: &'a mut TileBuffer) -> Self {
+    pub(super) fn over(piece: &Piece, out: &'a mut TileBuffer, has_more: bool) -> Self {
         let Piece { bounds, samples } = piece.clone();
         // A piece without samples has nothing to hand out.
         let first =
@@ -76,6 +78,7 @@ impl<'a> Window<'a> {
             taken: 0,
             done: [0; SIZE / 64],
             radiances: [Rgb::BLACK; SIZE],
+            has_more,
             sum: SampleSum::default(),
         }
     }
@@ -95,11 +98,17 @@ impl<'a> Window<'a> {
         Some(Handed { first, count: count as usize })
     }
 
+    /// What is to be added to a sample that was handed out and is not given back yet.
+    #[inline(always)]
+    pub(super) fn add_beforehand(&mut self, slot: u64, radiance: Rgb) {
+        self.radiances[slot as usize % SIZE] = radiance;
+    }
+
     /// Gives a sample back; [`Window::settle`] adds it.
     #[inline(always)]
     pub(super) fn give_back(&mut self, slot: u64, radiance: Rgb) {
         let slot = slot as usize % SIZE;
-        self.radiances[slot] = radiance;
+        self.radiances[slot] = if self.has_more { radiance + self.radiances[slot] } else { radiance };
         self.done[slot / 64] |= 1 << (slot % 64);
     }
 

@@ -1,9 +1,10 @@
 // Where a path begins: `scene/camera/`.
 
-FN ray camera_ray(const scene *s, u32 x, u32 y, const sample_key *key) {
+// A ray of a sample: number 0 is that of the path.
+FN ray camera_ray(const scene *s, u32 x, u32 y, const sample_key *key, u32 ray_number) {
     GLOBAL const stored *view = s->numbers;
     u32 filter = s->words[AT_FILTER], number = key->sample % 4U;
-    pair film = numbers_of(s->words, key, 0U, 0U, PURPOSE_FILM);
+    pair film = numbers_of(s->words, key, 0U, ray_number, PURPOSE_FILM);
     real dx = 0.5, dy = 0.5;
     if (filter == FILTER_TENT) {
         dx = ((real)(number % 2U) + 0.5 + tent(film.u)) / 2.0;
@@ -21,7 +22,7 @@ FN ray camera_ray(const scene *s, u32 x, u32 y, const sample_key *key) {
     ray start;
 #if HAS_LENS
     if (view[VIEW_LENS_RADIUS] > 0) {
-        pair lens = concentric_disk(numbers_of(s->words, key, 0U, 0U, PURPOSE_LENS));
+        pair lens = concentric_disk(numbers_of(s->words, key, 0U, ray_number, PURPOSE_LENS));
         real radius = (real)view[VIEW_LENS_RADIUS];
         vec offset = plus(times(vec_at(view + VIEW_LENS_RIGHT), lens.u * radius),
             times(vec_at(view + VIEW_LENS_UP), lens.v * radius));

@@ -5,11 +5,12 @@ typedef struct { exact sum[3], square[3]; } pixel_sum;
 FN void clear_sum(pixel_sum *p) {
     for (int channel = 0; channel < 3; channel++) p->sum[channel] = p->square[channel] = 0;
 }
-FN void add_sample(pixel_sum *p, rgb c) {
-    exact channels[3];
-    channels[0] = c.r;
-    channels[1] = c.g;
-    channels[2] = c.b;
+FN int is_valid_radiance(const exact *channels) {
+    for (int channel = 0; channel < 3; channel++)
+        if (!(channels[channel] >= 0 && channels[channel] < INFINITE)) return 0;
+    return 1;
+}
+FN void add_sample(pixel_sum *p, const exact *channels) {
     for (int channel = 0; channel < 3; channel++) {
         p->sum[channel] += channels[channel];
         p->square[channel] += channels[channel] * channels[channel];
@@ -61,21 +62,35 @@ FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words
     sample_key key;
     w.key = &key;
     path p;
+    exact channels[3];
+#if HAS_CAMERA_RAYS
+    rgb seen = grey(0.0);
+#endif
     int goes_on = 0;
     for (;;) {
         if (!goes_on) {
             if (sample == end) break;
             key = key_of(words, y * words[AT_WIDTH] + x, sample);
-            begin(&p, camera_ray(&s, x, y, &key));
+            begin(&p, camera_ray(&s, x, y, &key, 0U));
+#if HAS_CAMERA_RAYS
+            seen = seen_besides(&s, x, y, &key, &e);
+#endif
         }
         goes_on = follow(&w, &p, &e);
         if (goes_on) continue;
-        rgb radiance = p.collected;
-        if (!(is_finite_from_zero(radiance.r) && is_finite_from_zero(radiance.g) && is_finite_from_zero(radiance.b))) {
-            radiance = grey(0.0);
+        channels[0] = p.collected.r;
+        channels[1] = p.collected.g;
+        channels[2] = p.collected.b;
+#if HAS_CAMERA_RAYS
+        channels[0] += (exact)seen.r;
+        channels[1] += (exact)seen.g;
+        channels[2] += (exact)seen.b;
+#endif
+        if (!is_valid_radiance(channels)) {
+            channels[0] = channels[1] = channels[2] = 0;
             e.invalid += 1;
         }
-        add_sample(&block, radiance);
+        add_sample(&block, channels);
         sample++;
         if (++in_block == SAMPLE_BLOCK) {
             u32 level = 0;

@@ -9,7 +9,6 @@ typedef struct { real u, v; } pair;
 
 // Comparisons as Rust's `f64::max`: a number beats NaN.
 FN real larger(real a, real b) { return (a < b || a != a) ? b : a; }
-FN int is_finite_from_zero(real x) { return x >= 0.0 && x < INFINITE; }
 
 FN vec vec_of(real x, real y, real z) { vec v; v.x = x; v.y = y; v.z = z; return v; }
 FN vec plus(vec a, vec b) { return vec_of(a.x + b.x, a.y + b.y, a.z + b.z); }

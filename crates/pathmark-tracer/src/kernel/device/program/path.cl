@@ -133,6 +133,30 @@ FN void collect(path *p, rgb radiance) {
     p->collected = mixed(p->collected, filtered(p->now.throughput, radiance));
 }
 
+// Likewise, where the path arrives at light: of what its camera ray sees, a share.
+FN void collect_arrived(const walk *w, path *p, rgb radiance) {
+#if HAS_CAMERA_RAYS
+    if (p->now.vertices == 0U) radiance = dimmed(radiance, (real)w->s->numbers[VIEW_CAMERA_SHARE]);
+#endif
+    collect(p, radiance);
+}
+
+#if HAS_CAMERA_RAYS
+// What a sample sees by its other camera rays.
+FN rgb seen_besides(const scene *s, u32 x, u32 y, const sample_key *key, events *e) {
+    rgb seen = grey(0.0);
+    for (u32 number = 1U; number < s->words[AT_CAMERA_RAYS]; number++) {
+        e->rays += 1;
+        surface_hit hit = first_hit(s, camera_ray(s, x, y, key, number), on_nothing(), INFINITE, &e->tested);
+        if (hit.primitive != NOTHING) seen = mixed(seen, surface_of(s, hit.object).emission);
+#if HAS_BACKGROUND
+        else seen = mixed(seen, rgb_at(s->numbers + VIEW_BACKGROUND));
+#endif
+    }
+    return dimmed(seen, (real)s->numbers[VIEW_CAMERA_SHARE]);
+}
+#endif
+
 // Follows the path to its next vertex; whether it goes on from there, or a branch of it does.
 FN int follow(const walk *w, path *p, events *e) {
     const scene *s = w->s;
@@ -141,13 +165,13 @@ FN int follow(const walk *w, path *p, events *e) {
     if (hit.primitive == NOTHING) {
 #if HAS_BACKGROUND
         rgb background = rgb_at(s->numbers + VIEW_BACKGROUND);
-        if (!is_black(background)) collect(p, background);
+        if (!is_black(background)) collect_arrived(w, p, background);
 #endif
         e->escaped += 1;
         return next_branch(p);
     }
     surface of = surface_of(s, hit.object);
-    collect(p, light_at(w, &p->now, of.emission, &hit));
+    collect_arrived(w, p, light_at(w, &p->now, of.emission, &hit));
     if (p->now.vertices == w->max_depth) {
         e->truncated += 1;
         return next_branch(p);

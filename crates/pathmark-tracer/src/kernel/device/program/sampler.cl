@@ -126,8 +126,8 @@ FN word_pair words_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce
         return result;
     }
     u64 place;
-    int leads = branch == 0U && ((bounce == 0U && purpose == PURPOSE_FILM)
-        || (bounce == 1U && (purpose == PURPOSE_BSDF || purpose == PURPOSE_LIGHT)));
+    int leads = (bounce == 0U && purpose == PURPOSE_FILM)
+        || (bounce == 1U && branch == 0U && (purpose == PURPOSE_BSDF || purpose == PURPOSE_LIGHT));
     if (leads) {
         u32 common = leading_place(key->sample, mix64(~key->pixel_key), mix64(key->pixel_key ^ ~1UL), words + AT_ORDERS);
         place = (u64)(bounce == 0U ? common : pascal_to_omega(common));

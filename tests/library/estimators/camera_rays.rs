@@ -1,0 +1,86 @@
+//! Several camera rays of a sample: what they see is averaged, whatever renders, and nothing is counted twice or left out.
+
+use crate::lanes::assert_same;
+use pathmark::analysis::{chi_square, z_test::critical_value};
+use pathmark::estimator::ESTIMATORS;
+use pathmark::film::{Bounds, Piece};
+use pathmark::kernel::{Spec, build, choose, one_sample};
+use pathmark::scene::{Scene, load};
+use pathmark::simd::levels;
+use std::sync::Arc;
+
+const LEVEL: f64 = 1e-3;
+const SAMPLERS: [&str; 4] = ["independent", "hash", "sobol", "sobol-burley"];
+
+/// The sky is white, and the ground is black: half of the rays of the only pixel see light.
+const HORIZON: &str = r#"
+    about = "the horizon halves the image"
+    background = [1.0, 1.0, 1.0]
+    [camera.pinhole]
+    position = [0.0, 1.0, 0.0]
+    look-at = [0.0, 1.0, -1.0]
+    field-of-view = 40.0
+    [[objects]]
+    name = "ground"
+    shape = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
+    material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
+"#;
+
+/// With `rays` camera rays a sample has light of the binomial distribution, a half each: the path's own ray counts no more and no less than the
+/// others, and their random numbers are independent of its own (chi-square tests of 20,000 samples, two-sided, family-wise level 1e-3).
+#[test]
+fn a_sample_has_the_mean_of_what_its_camera_rays_see() {
+    const SAMPLES: u32 = 20_000;
+    let scene = Arc::new(Scene::from_toml(HORIZON).unwrap());
+    for sampler in ["independent", "hash"] {
+        for (rays, weights) in [(1_u16, vec![1.0, 1.0]), (4, vec![1.0, 4.0, 6.0, 4.0, 1.0])] {
+            let (estimator, sampler, filter) = ("bsdf".to_string(), sampler.to_string(), Some("box".to_string()));
+            let spec = Spec { width: 1, height: 1, seed: 5, estimator, sampler, filter, ..Spec::default() };
+            let spec = Spec { camera_rays: Some(rays), ..spec };
+            let kernel = build(&scene, &spec).unwrap();
+            let mut found = vec![0.0; weights.len()];
+            for sample in 0..SAMPLES {
+                let ([light, ..], counts) = one_sample(&*kernel, [0, 0], sample);
+                assert_eq!(counts.rays, rays.into());
+                found[(light * f64::from(rays)).round() as usize] += 1.0;
+            }
+            let all = f64::from(1 << rays);
+            let expected: Vec<f64> = weights.iter().map(|weight| weight / all * f64::from(SAMPLES)).collect();
+            let score = chi_square::against(&found, &expected);
+            assert!(score.abs() < critical_value(LEVEL / 4.0).unwrap(), "{rays} rays: {found:?}, {score:.2}");
+        }
+    }
+}
+
+/// Scenes of spheres, of triangles, with a sky, and with many primitives in a tree; samples whose number is no multiple of the lanes.
+#[test]
+fn lanes_have_the_scalar_kernels_bits() {
+    let bounds = Bounds { x0: 0, y0: 0, x1: 13, y1: 7 };
+    for name in ["cornell", "cornell-mesh", "nightsky", "spheres:300", "sky"] {
+        let scene = Arc::new(load(name).unwrap());
+        for entry in ESTIMATORS.iter().filter(|entry| entry.shares_camera_rays) {
+            for (sampler, rays) in SAMPLERS.into_iter().zip([2, 3, 8, 5]) {
+                let (estimator, sampler, camera_rays) = (entry.name.to_string(), sampler.to_string(), Some(rays));
+                let spec = Spec { width: 13, height: 7, estimator, sampler, camera_rays, ..Spec::default() };
+                let pieces = [0..4, 3..12].map(|samples| Piece { bounds, samples });
+                assert_same(&scene, &spec, &pieces);
+                let single = |level: &str| {
+                    let (precision, simd) = ("f32".to_string(), Some(level.to_string()));
+                    let kernel = build(&scene, &Spec { precision, simd, ..spec.clone() }).unwrap();
+                    [1, 6].map(|x| one_sample(&*kernel, [x, 5], 3).0)
+                };
+                let all: Vec<_> = levels().map(|level| single(level.name())).collect();
+                assert!(all.iter().all(|sums| *sums == all[0]), "{name}, {}, f32: {all:?}", entry.name);
+            }
+        }
+    }
+}
+
+/// One is what is rendered where nothing is said.
+#[test]
+fn one_camera_ray_is_none_to_speak_of() {
+    let scene = load("cornell").unwrap();
+    let spec = Spec { camera_rays: Some(1), ..Spec::default() };
+    let [one, none] = [&spec, &Spec::default()].map(|spec| choose(&scene, spec).unwrap().camera_rays());
+    assert_eq!((one, none), (1, 1));
+}
