@@ -61,7 +61,7 @@ impl Samples<'_> {
         for pixel in (0..16 * 12).step_by((192 / pixels) as usize) {
             let key = SampleKey { seed: 3, pixel, sample: pixel % 8 };
             let ray = camera_ray::<Ledger, AllEffects, ()>(&view, [pixel % 16, pixel / 16], key, 0, ledger, &mut ());
-            estimator.estimate(scene, ray, key, 0, ledger, &mut ());
+            estimator.estimate(scene, ray, key, ledger, &mut ());
             let used = std::mem::take(&mut *ledger.used.lock().unwrap_or_else(PoisonError::into_inner));
             found.used += used.len() as u64;
             found.twice += (used.len() - used.iter().collect::<HashSet<_>>().len()) as u64;

@@ -28,7 +28,7 @@ fn a_cut_takes_later_bounces_and_nothing_else() {
         let mut later = 0.0;
         for pixel in 0..24 * 18 {
             let key = SampleKey { seed: 5, pixel, sample: pixel % 4 };
-            let ray = camera_ray::<_, AllEffects, ()>(&view, [pixel % 24, pixel / 24], key, &Independent, &mut ());
+            let ray = camera_ray::<_, AllEffects, ()>(&view, [pixel % 24, pixel / 24], key, 0, &Independent, &mut ());
             let sample = |max_depth, probe: &mut ByBounce| {
                 let options = Options { max_depth, ..Options::default() };
                 Bsdf::new(options).sample::<_, AllEffects, _>(&scene, ray, key, &Independent, probe)

@@ -46,7 +46,7 @@ fn look(scene: &Scene, estimator: &dyn AnyEstimator) -> (Effects, [u64; 2]) {
     for pixel in 0..SIDE * SIDE {
         let key = SampleKey { seed: 11, pixel, sample: pixel % 4 };
         let at = [pixel % SIDE, pixel / SIDE];
-        let ray = camera_ray::<_, AllEffects, _>(&view, at, key, &drawn, &mut used);
+        let ray = camera_ray::<_, AllEffects, _>(&view, at, key, 0, &drawn, &mut used);
         estimator.estimate(scene, ray, key, &drawn, &mut used);
     }
     (used.0, [drawn.lens.into_inner(), drawn.medium.into_inner()])

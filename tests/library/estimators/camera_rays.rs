@@ -41,7 +41,7 @@ fn a_sample_has_the_mean_of_what_its_camera_rays_see() {
             let mut found = vec![0.0; weights.len()];
             for sample in 0..SAMPLES {
                 let ([light, ..], counts) = one_sample(&*kernel, [0, 0], sample);
-                assert_eq!(counts.rays, rays.into());
+                assert_eq!(counts.rays, u64::from(rays));
                 found[(light * f64::from(rays)).round() as usize] += 1.0;
             }
             let all = f64::from(1 << rays);

@@ -5,12 +5,12 @@ use super::packet::{LanesOf, Packet, Rays, vector};
 use super::tables::Kind;
 use super::targets::{Met, Start};
 use super::vertex::{Arrival, Vertex, own_root};
-use crate::estimator::power_heuristic;
+use crate::estimator::{camera_share, power_heuristic};
 use crate::kernel::Counts;
-use crate::math::{Ray, Rgb, Vec3};
+use crate::math::{Bits, Ray, Rgb, Vec3};
 use crate::sampling::Purpose;
 use crate::scene::AllEffects;
-use crate::simd::{Apart, Float, Mask};
+use crate::simd::{Apart, Float, Mask, Words};
 use std::f64::consts::FRAC_1_PI;
 
 /// What a surface does with the light of some directions.
@@ -41,6 +41,16 @@ impl<V: Float> Apart for ArrivedAtLight<'_, V> {
 }
 
 impl Lanes {
+    /// What counts of light that paths arrive at: a share of what their camera rays see.
+    #[inline(always)]
+    pub(super) fn counted<V: Float>(&self, packet: &Packet<'_, V>, light: Rgb<V>) -> Rgb<V> {
+        if self.course.camera_rays == 1 {
+            return light;
+        }
+        let is_seen = packet.vertices.equal(V::Bits::splat(0));
+        Rgb::select(is_seen, light * V::splat(camera_share(self.course.camera_rays)), light)
+    }
+
     /// The share of emission that counts where rays arrived whose start aimed at light, too.
     #[inline(always)]
     fn share_of_arrival<V: Float>(&self, packet: &Packet<'_, V>, at: &Arrival<V>, lit: V::Mask) -> V {

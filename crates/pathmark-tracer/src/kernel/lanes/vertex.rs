@@ -4,7 +4,6 @@ use super::Lanes;
 use super::light::ArrivedAtLight;
 use super::packet::{LanesOf, Packet, Part, colour, differ, vector};
 use super::tables::{GIVES_OFF, Kind};
-use crate::estimator::camera_share;
 use crate::kernel::Counts;
 use crate::material::Density;
 use crate::math::{
@@ -117,16 +116,6 @@ impl Lanes {
         ended |= scattered.absorbed;
         leave::<V, MATT>(packet, &at, number, &scattered, split, &mut ended);
         ended
-    }
-
-    /// What counts of light that paths arrive at.
-    #[inline(always)]
-    fn counted<V: Float>(&self, packet: &Packet<'_, V>, light: Rgb<V>) -> Rgb<V> {
-        if self.course.camera_rays == 1 {
-            return light;
-        }
-        let is_seen = packet.vertices.equal(V::Bits::splat(0));
-        Rgb::select(is_seen, light * V::splat(camera_share(self.course.camera_rays)), light)
     }
 
     /// Rays that meet nothing find the background.
