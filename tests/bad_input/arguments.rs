@@ -55,6 +55,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--camera-rays", "0"], &["camera-rays", "0", "1 to 65535"]),
     (&["--camera-rays", "65536"], &["camera-rays", "65536"]),
     (&["--estimator", "whitted", "--camera-rays", "2"], &["camera-rays", "2", "whitted"]),
+    (&["--estimator", "bsdf", "--clamp", "recursion", "--camera-rays", "2"], &["camera-rays", "2", "recursion"]),
     (&["--roulette", "luck:3"], &["roulette", "luck:3", "throughput:N"]),
     (&["--estimator", "whitted", "--roulette", "albedo:5"], &["roulette", "albedo:5", "whitted"]),
     (&["--roulette", "constant:1.5"], &["roulette", "constant:1.5", "0 < P < 1"]),

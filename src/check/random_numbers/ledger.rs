@@ -2,7 +2,7 @@
 
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
-use crate::estimator::{AnyEstimator, ESTIMATORS, Options, any_estimator, camera_ray};
+use crate::estimator::{AnyEstimator, ESTIMATORS, Options, any_estimator, camera_ray, seen_besides};
 use crate::sampling::{Address, SampleKey, Sampler};
 use crate::scene::{AllEffects, SCENES, Scan, Scene, accelerator, load};
 use std::collections::HashSet;
@@ -60,13 +60,16 @@ impl Samples<'_> {
         let mut found = Found::default();
         for pixel in (0..16 * 12).step_by((192 / pixels) as usize) {
             let key = SampleKey { seed: 3, pixel, sample: pixel % 8 };
-            let ray = camera_ray::<Ledger, AllEffects, ()>(&view, [pixel % 16, pixel / 16], key, 0, ledger, &mut ());
+            let place = [pixel % 16, pixel / 16];
+            let ray = camera_ray::<Ledger, AllEffects, ()>(&view, place, key, 0, ledger, &mut ());
             estimator.estimate(scene, ray, key, ledger, &mut ());
+            seen_besides(scene, &view, place, key, 3, ledger, &mut ());
             let used = std::mem::take(&mut *ledger.used.lock().unwrap_or_else(PoisonError::into_inner));
             found.used += used.len() as u64;
             found.twice += (used.len() - used.iter().collect::<HashSet<_>>().len()) as u64;
             found.foreign += used.iter().filter(|at| at.key != key).count() as u64;
-            let branches = used.iter().filter(|at| at.branch > 0).count() as u64;
+            // At the camera they are other rays.
+            let branches = used.iter().filter(|at| at.bounce > 0 && at.branch > 0).count() as u64;
             found.branches += branches;
             found.foreign += if is_one_path { branches } else { 0 };
         }

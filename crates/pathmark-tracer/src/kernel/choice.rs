@@ -312,7 +312,12 @@ fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Opti
         let problem = format!("is no option of {}, which ends no path by chance", estimator.name);
         return Err(InputError::new("roulette", rule, problem).allowed("none").into());
     }
-    Ok(Options { max_depth: spec.max_depth, roulette, camera_rays: camera_rays(spec, estimator, is_own)? })
+    let camera_rays = camera_rays(spec, estimator, is_own)?;
+    if let Some(number) = camera_rays.filter(|_| clamp.is_some_and(|clamp| clamp.what == Clamped::Recursion)) {
+        let problem = "cannot be combined with the recursion clamp, which knows of one";
+        return Err(InputError::new("camera-rays", number.to_string(), problem).allowed("1").into());
+    }
+    Ok(Options { max_depth: spec.max_depth, roulette, camera_rays })
 }
 
 /// The number of camera rays that the spec asks for, if it is not one.
