@@ -70,6 +70,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         return print_json(&json!({
             "scene": scene.name, "width": spec.width, "height": spec.height, "spp": arguments.samples.spp, "seed": spec.seed,
             "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
+            "camera_rays": choice.camera_rays(),
             "mean": total(&found).map(number), "samples": found.samples, "rays": found.rays, "invalid_samples": found.invalid,
             "parts": found.parts(), "mean_length": found.mean_length().map(number), "longest": found.longest(),
             "bounces": rows.iter().map(object).collect::<Vec<Value>>(),

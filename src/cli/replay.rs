@@ -62,6 +62,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         return print_json(&json!({
             "scene": scene.name, "width": spec.width, "height": spec.height, "seed": spec.seed,
             "estimator": spec.estimator, "sampler": spec.sampler, "max_depth": choice.depth(),
+            "camera_rays": choice.camera_rays(),
             "roulette": choice.roulette().map(|rule| rule.to_string()), "precision": precision.name(),
             "pixel": [x, y], "sample": sample, "rays": counts.rays, "valid": is_valid,
             "radiance": radiance.map(output::number), "events": events,
@@ -157,6 +158,8 @@ fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let mut why = "nothing goes on from here";
     let mut fresh_surface = false;
+    // The first ray of the path comes before any other camera ray.
+    let mut has_ended = false;
     let word = |bounces: u16, text: String| -> Line {
         [bounces.to_string(), text, String::new(), String::new(), String::new(), String::new()]
     };
@@ -190,7 +193,8 @@ fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
                 }
             }
             Event::Light { bounces, radiance } => {
-                let mut line = word(bounces, "light".into());
+                let is_seen_besides = has_ended && bounces == 0;
+                let mut line = word(bounces, if is_seen_besides { "other camera rays" } else { "light" }.into());
                 line[5] = triple(radiance.channels());
                 lines.push(line);
             }
@@ -201,6 +205,7 @@ fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
             Event::Ended { bounces } => {
                 lines.push(word(bounces, format!("ends: {why}")));
                 why = "nothing goes on from here";
+                has_ended = true;
             }
         }
     }

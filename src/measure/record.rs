@@ -146,7 +146,7 @@ columns! {
         pub box_tests: Option<u64>,
         /// Tests of a ray against a primitive.
         pub primitive_tests: Option<u64>,
-        /// Rays that left the scene.
+        /// Rays of paths that left the scene.
         pub escaped: Option<u64>,
         /// Paths cut at the bounce limit.
         pub truncated: Option<u64>,

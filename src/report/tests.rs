@@ -107,8 +107,9 @@ fn rows_that_nothing_tells_apart_are_refused() {
 }
 
 /// One value in each axis of images that figures once forgot.
-const FORGOTTEN: [fn(&mut Record); 5] = [
+const FORGOTTEN: [fn(&mut Record); 6] = [
     |row| row.max_depth = Some(3),
+    |row| row.camera_rays = Some(4),
     |row| row.roulette = "throughput:2".to_string(),
     |row| row.clamp = "subpixel".to_string(),
     |row| row.precision = "f32".to_string(),

@@ -5,7 +5,7 @@ use pathmark::analysis::{chi_square, z_test::critical_value};
 use pathmark::estimator::ESTIMATORS;
 use pathmark::film::{Bounds, Piece};
 use pathmark::kernel::{Spec, build, choose, one_sample};
-use pathmark::scene::{Scene, load};
+use pathmark::scene::{AngularEmission, Scene, load};
 use pathmark::simd::levels;
 use std::sync::Arc;
 
@@ -32,11 +32,12 @@ const HORIZON: &str = r#"
 fn a_sample_has_the_mean_of_what_its_camera_rays_see() {
     const SAMPLES: u32 = 20_000;
     let scene = Arc::new(Scene::from_toml(HORIZON).unwrap());
-    for sampler in ["independent", "hash"] {
+    for (sampler, kernel) in [("independent", "scalar"), ("hash", "lanes")] {
         for (rays, weights) in [(1_u16, vec![1.0, 1.0]), (4, vec![1.0, 4.0, 6.0, 4.0, 1.0])] {
             let (estimator, sampler, filter) = ("bsdf".to_string(), sampler.to_string(), Some("box".to_string()));
             let spec = Spec { width: 1, height: 1, seed: 5, estimator, sampler, filter, ..Spec::default() };
-            let spec = Spec { camera_rays: Some(rays), ..spec };
+            let spec = Spec { camera_rays: Some(rays), kernel: kernel.to_string(), ..spec };
+            assert_eq!(choose(&scene, &spec).unwrap().kernel(), kernel);
             let kernel = build(&scene, &spec).unwrap();
             let mut found = vec![0.0; weights.len()];
             for sample in 0..SAMPLES {
@@ -71,6 +72,52 @@ fn lanes_have_the_scalar_kernels_bits() {
                 };
                 let all: Vec<_> = levels().map(|level| single(level.name())).collect();
                 assert!(all.iter().all(|sums| *sums == all[0]), "{name}, {}, f32: {all:?}", entry.name);
+            }
+        }
+    }
+}
+
+/// All rays through the middle of a pixel are one ray, so a sample sees the same by four of them as by one: lamps, the sky, what fog gives off and leaves
+/// of both, a lamp that is not as bright from all sides; in single precision nearly the same.
+#[test]
+fn rays_that_are_one_ray_see_the_same() {
+    let lit = r#"
+        about = "a lamp in glowing fog"
+        background = [0.25, 0.5, 0.75]
+        [camera.pinhole]
+        position = [0.0, 0.0, 5.0]
+        look-at = [0.0, 0.0, 0.0]
+        field-of-view = 40.0
+        [fog]
+        absorption = [0.1, 0.2, 0.3]
+        scattering = 0.0
+        emission = [3.0, 2.0, 1.0]
+        [[objects]]
+        name = "lamp"
+        shape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1.0 } }
+        material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
+        emission = [5.0, 6.0, 7.0]
+    "#;
+    let lamp = Scene::from_toml(lit).unwrap();
+    let mut spot = lamp.clone();
+    spot.objects[0].angular_emission = AngularEmission::tabulate(|cos| Some(lamp.objects[0].emission * cos));
+    assert!(spot.objects[0].angular_emission.is_some());
+    let shipped = ["cornell", "nightsky", "cornell-mesh"].map(|name| load(name).unwrap());
+    for scene in [lamp, spot].into_iter().chain(shipped) {
+        let scene = Arc::new(scene);
+        for (kernel, precision, tolerance) in [("scalar", "f64", 1e-14), ("lanes", "f32", 1e-6)] {
+            let seen = |rays: u16| {
+                let (estimator, filter, max_depth) = ("bsdf".to_string(), Some("center".to_string()), Some(0));
+                let (kernel, precision) = (kernel.to_string(), precision.to_string());
+                let spec = Spec { width: 16, height: 12, estimator, filter, max_depth, ..Spec::default() };
+                let kernel = build(&scene, &Spec { kernel, precision, camera_rays: Some(rays), ..spec }).unwrap();
+                let lights = (0..16 * 12).map(|pixel| one_sample(&*kernel, [pixel % 16, pixel / 16], 0).0);
+                lights.collect::<Vec<_>>()
+            };
+            let (one, four) = (seen(1), seen(4));
+            assert!(one.iter().flatten().any(|light| *light > 0.0), "{}: nothing to see", scene.name);
+            for (one, four) in one.iter().flatten().zip(four.iter().flatten()) {
+                assert!((four - one).abs() <= tolerance * one, "{}, {precision}: {four} for {one}", scene.name);
             }
         }
     }

@@ -150,6 +150,7 @@ fn a_checkpoint_is_of_one_render() {
         (["--size", "32x48", "--seed", "1"], "height"),
         (["--size", "48x32", "--estimator", "bsdf"], "estimator"),
         (["--size", "48x32", "--max-depth", "9"], "max_depth"),
+        (["--size", "48x32", "--camera-rays", "4"], "camera_rays"),
     ] {
         let arguments = [&["render", "cornell", "--checkpoint", "c", "--spp", "120"], options.as_slice()].concat();
         let before = fs::read(folder.path().join("c")).unwrap();

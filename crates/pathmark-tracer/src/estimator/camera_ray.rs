@@ -28,9 +28,9 @@ pub fn camera_share(camera_rays: u16) -> f64 {
     1.0 / f64::from(camera_rays)
 }
 
-/// What a sample sees by its camera rays from number 1 on: their part of the mean over all of them. A path that counts the light at the end of its
-/// own camera ray by [`camera_share`] is then unbiased, as a path is whose first vertex was split (Arvo and Kirk, "Particle transport and image
-/// synthesis", 1990) where nothing but emission is looked for. Compiled once, with every effect and for any sampler.
+/// The light that the camera rays of a sample from number 1 on see, as their part of the mean over all of them. The path counts what its own ray sees
+/// by [`camera_share`], so the sum is unbiased: splitting (Arvo and Kirk, "Particle transport and image synthesis", 1990) at the camera, where the
+/// other rays look for emission only. Compiled once, with every effect and for any sampler.
 pub fn seen_besides(
     scene: &Scene,
     view: &View,
@@ -56,15 +56,14 @@ fn seen_along(scene: &Scene, ray: &Ray, probe: &mut dyn Probe) -> Rgb {
     let mut tests = Tests::default();
     let hit = scene.intersect::<AllEffects>(ray, None, &mut tests);
     probe.ray(tests);
-    let behind = match &hit {
-        Some(hit) => scene.objects[hit.object as usize].emitted::<AllEffects>(dot(ray.direction, hit.normal).abs()),
-        None => {
-            let background = scene.background.unwrap_or(Rgb::BLACK);
-            if !background.is_black() {
-                probe.used(BACKGROUND);
-            }
-            background
+    let behind = if let Some(hit) = &hit {
+        scene.objects[hit.object as usize].emitted::<AllEffects>(dot(ray.direction, hit.normal).abs())
+    } else {
+        let background = scene.background.unwrap_or(Rgb::BLACK);
+        if !background.is_black() {
+            probe.used(BACKGROUND);
         }
+        background
     };
     let Some(fog) = &scene.fog else { return behind };
     probe.used(FOG);

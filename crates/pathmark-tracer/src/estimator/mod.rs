@@ -151,7 +151,8 @@ pub trait Estimator: Send + Sync {
         None
     }
 
-    /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as sample `key` estimates it.
+    /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as sample `key` estimates it. Where a sample has several camera rays, light at the end of this
+    /// one counts by [`camera_share`], and [`seen_besides`] adds the rest.
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
         &self,
         scene: &Scene,
@@ -196,6 +197,7 @@ impl<E: Estimator> Estimator for Arc<E> {
     const ROULETTE: Option<Roulette> = E::ROULETTE;
     const IS_ONE_PATH: bool = E::IS_ONE_PATH;
     const LARGEST_DEPTH: u16 = E::LARGEST_DEPTH;
+    const SHARES_CAMERA_RAYS: bool = E::SHARES_CAMERA_RAYS;
 
     fn course(&self) -> Option<PathRules> {
         (**self).course()
@@ -284,7 +286,7 @@ pub struct Options {
 impl Options {
     /// Camera rays of a sample.
     pub fn camera_rays(&self) -> u16 {
-        self.camera_rays.unwrap_or(1)
+        self.camera_rays.unwrap_or(1).max(1)
     }
 }
 

@@ -222,11 +222,20 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name)).into());
     };
     let (estimator, own) = estimator_named(&spec.estimator, own)?;
-    let options = options(spec, &estimator, own.is_some())?;
+    let mut options = options(spec, &estimator, own.is_some())?;
     let course = match &own {
         Some(own) => own.any().any_course(),
         None => any_estimator(estimator.name, options).and_then(|estimator| estimator.any_course()),
     };
+    if own.is_some() {
+        // It was made with its own.
+        options.camera_rays = course.map(|course| course.camera_rays).filter(|number| *number != 1);
+    }
+    let clamp = spec.clamp.as_deref().map(Clamp::parse).transpose()?;
+    if let Some(number) = options.camera_rays.filter(|_| clamp.is_some_and(|clamp| clamp.what == Clamped::Recursion)) {
+        let problem = "cannot be combined with the recursion clamp, which allows one camera ray";
+        return Err(InputError::new("camera-rays", number.to_string(), problem).allowed("1").into());
+    }
     let epsilon = epsilon(spec)?;
     let way = way_for(scene, spec, course, epsilon)?;
     let scan = match way.lanes() {
@@ -255,7 +264,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         width: spec.width,
         height: spec.height,
         seed: spec.seed,
-        clamp: spec.clamp.as_deref().map(Clamp::parse).transpose()?,
+        clamp,
         filter: filter(scene, spec)?,
         epsilon,
         profile: profile(effects, spec.effects.as_deref(), &estimator, sampler)?,
@@ -312,12 +321,7 @@ fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Opti
         let problem = format!("is no option of {}, which ends no path by chance", estimator.name);
         return Err(InputError::new("roulette", rule, problem).allowed("none").into());
     }
-    let camera_rays = camera_rays(spec, estimator, is_own)?;
-    if let Some(number) = camera_rays.filter(|_| clamp.is_some_and(|clamp| clamp.what == Clamped::Recursion)) {
-        let problem = "cannot be combined with the recursion clamp, which knows of one";
-        return Err(InputError::new("camera-rays", number.to_string(), problem).allowed("1").into());
-    }
-    Ok(Options { max_depth: spec.max_depth, roulette, camera_rays })
+    Ok(Options { max_depth: spec.max_depth, roulette, camera_rays: camera_rays(spec, estimator, is_own)? })
 }
 
 /// The number of camera rays that the spec asks for, if it is not one.
@@ -325,11 +329,10 @@ fn camera_rays(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<
     let Some(number) = spec.camera_rays.filter(|number| *number != 1) else { return Ok(None) };
     let error = |problem: &str, allowed| InputError::new("camera-rays", number.to_string(), problem).allowed(allowed);
     if number == 0 {
-        return Err(error("is no number of rays", "1 to 65535").into());
+        return Err(error("must be at least 1", "1 to 65535").into());
     }
     if is_own || !estimator.shares_camera_rays {
-        let problem = format!("is more than {} can share what it sees with", estimator.name);
-        return Err(error(&problem, "1").into());
+        return Err(error(&format!("{} allows one camera ray", estimator.name), "1").into());
     }
     Ok(Some(number))
 }

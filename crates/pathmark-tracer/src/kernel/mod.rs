@@ -53,7 +53,7 @@ pub struct Counts {
     pub rays: u64,
     /// Samples that were NaN, infinite or negative; they contribute nothing.
     pub invalid: u64,
-    /// Rays that met nothing.
+    /// Rays of paths that met nothing.
     pub escaped: u64,
     /// Paths cut at the bounce limit.
     pub truncated: u64,

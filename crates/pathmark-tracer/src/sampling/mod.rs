@@ -75,7 +75,7 @@ pub struct Address {
     pub key: SampleKey,
     /// The vertex of the path, the camera's being 0.
     pub bounce: u16,
-    /// 0 for the main path; each part of a split path has its own.
+    /// 0 for the main path; each part of a split path has its own. At the camera: the number of the camera ray.
     pub branch: u16,
     /// What for.
     pub purpose: Purpose,

@@ -36,8 +36,8 @@ pub(super) struct Window<'a> {
     /// A bit for each slot that was given back.
     done: [u64; SIZE / 64],
     radiances: [Rgb; SIZE],
-    /// Whether something is added to each sample beforehand.
-    has_more: bool,
+    /// Whether light that other camera rays saw is added to each sample.
+    has_seen_light: bool,
     sum: SampleSum,
 }
 
@@ -58,7 +58,7 @@ impl Place {
 }
 
 impl<'a> Window<'a> {
-    pub(super) fn over(piece: &Piece, out: &'a mut TileBuffer, has_more: bool) -> Self {
+    pub(super) fn over(piece: &Piece, out: &'a mut TileBuffer, has_seen_light: bool) -> Self {
         let Piece { bounds, samples } = piece.clone();
         // A piece without samples has nothing to hand out.
         let first =
@@ -78,7 +78,7 @@ impl<'a> Window<'a> {
             taken: 0,
             done: [0; SIZE / 64],
             radiances: [Rgb::BLACK; SIZE],
-            has_more,
+            has_seen_light,
             sum: SampleSum::default(),
         }
     }
@@ -98,7 +98,7 @@ impl<'a> Window<'a> {
         Some(Handed { first, count: count as usize })
     }
 
-    /// What is to be added to a sample that was handed out and is not given back yet.
+    /// Stores what is added to a sample when it is given back.
     #[inline(always)]
     pub(super) fn add_beforehand(&mut self, slot: u64, radiance: Rgb) {
         self.radiances[slot as usize % SIZE] = radiance;
@@ -108,7 +108,7 @@ impl<'a> Window<'a> {
     #[inline(always)]
     pub(super) fn give_back(&mut self, slot: u64, radiance: Rgb) {
         let slot = slot as usize % SIZE;
-        self.radiances[slot] = if self.has_more { radiance + self.radiances[slot] } else { radiance };
+        self.radiances[slot] = if self.has_seen_light { radiance + self.radiances[slot] } else { radiance };
         self.done[slot / 64] |= 1 << (slot % 64);
     }
 
