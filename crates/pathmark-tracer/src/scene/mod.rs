@@ -21,10 +21,10 @@ pub use feature::{
 };
 pub use fog::Fog;
 pub use generator::GENERATORS;
-pub(crate) use hierarchy::DEEPEST;
 pub use hierarchy::{
     ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Gathered, Hierarchy, Scan, Tests, accelerator, padding,
 };
+pub(crate) use hierarchy::{DEEPEST, Slabs};
 pub use library::{Library, load};
 pub use light::{Aim, Lights, one_minus_cos};
 pub use light::{AnyTarget, NO_LIGHT, TriangleTarget, per_steradian, point_of, towards_cap};
@@ -221,18 +221,7 @@ impl Scene {
     /// The distance and the number of the first primitive along a ray, which is as exact as numbers of so many digits. [`Scene::intersect`]
     /// finds the same with those of double precision, sooner.
     pub fn nearest(&self, ray: &Ray, from: Option<Standpoint>, digits: u32, tests: &mut Tests) -> Nearest {
-        self.nearest_in(self.hierarchy.as_ref(), ray, from, digits, tests)
-    }
-
-    /// Likewise, by another hierarchy than the scene's own.
-    pub(crate) fn nearest_in(
-        &self,
-        hierarchy: Option<&Hierarchy>,
-        ray: &Ray,
-        from: Option<Standpoint>,
-        digits: u32,
-        tests: &mut Tests,
-    ) -> Nearest {
+        let hierarchy = self.hierarchy.as_ref();
         if self.primitives.triangles.is_empty() {
             return self.primitives.nearest::<AllEffects>(hierarchy, ray, from, f64::INFINITY, tests);
         }

@@ -157,6 +157,14 @@ impl Numbers {
         self.doubles.len() + self.singles.len()
     }
 
+    /// The number in that place, as it is in its format.
+    pub fn at(&self, place: usize) -> f64 {
+        match self.precision {
+            Precision::F64 => self.doubles[place],
+            Precision::F32 => self.singles[place].into(),
+        }
+    }
+
     /// How many bytes they have.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.doubles) + size_of_val(&*self.singles)

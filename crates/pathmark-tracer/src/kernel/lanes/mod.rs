@@ -23,7 +23,7 @@ use crate::film::{Piece, TileBuffer};
 use crate::kernel::in_lanes::InLanes;
 use crate::math::Rgb;
 use crate::sampling::InLanes as Sampler;
-use crate::scene::{Hierarchy, Scene, View};
+use crate::scene::{Scene, View};
 use crate::simd::{Float, Level, MOST_LANES, Precision, Work, on_level, sizes_of};
 use filter::Filter;
 use packet::{LanesOf, NO_PARTS, NextPart, Packet, Parts};
@@ -39,8 +39,6 @@ use window::Window;
 /// The kernel.
 pub(super) struct Lanes {
     scene: Arc<Scene>,
-    /// What rays that the scene is asked for are searched in. The scene has none, because it would have to be copied for one.
-    hierarchy: Option<Hierarchy>,
     view: View,
     width: u32,
     seed: u64,
@@ -75,15 +73,13 @@ impl Lanes {
         let hierarchy = scene.hierarchy_by(choice.accelerator()).or_else(|| scene.hierarchy.clone());
         let search = match precision {
             _ if !is_round || hierarchy.is_some() => {
-                Search::Wide(Box::new(Wide::of(scene, hierarchy.as_ref(), level, precision, &scene.enclosing(&view))))
+                Search::Wide(Box::new(Wide::of(scene, hierarchy, level, precision, &scene.enclosing(&view))))
             }
             Precision::F64 => Search::Filter(Filter::of(scene)),
             Precision::F32 => Search::Singles(Singles::of(scene, &scene.enclosing(&view))),
         };
         let lights = choice.estimator.aims.then(|| scene.lights_for(&view));
         Self {
-            // Nobody asks for the nearest of spheres that are in a tree of their own.
-            hierarchy: hierarchy.filter(|_| !is_round),
             targets: lights.as_ref().and_then(|lights| Targets::of(lights, precision)).map(Box::new),
             tables: Tables::of(scene, precision),
             search,

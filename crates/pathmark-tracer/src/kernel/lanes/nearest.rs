@@ -5,7 +5,7 @@ use super::wide::{Nearest, Scratch};
 use super::{Lanes, Search};
 use crate::kernel::Counts;
 use crate::math::{Ray, Vec3};
-use crate::scene::{Hierarchy, Scene, Standpoint, Tests};
+use crate::scene::{Standpoint, Tests};
 use crate::simd::{Apart, Float, MOST_LANES, Mask};
 
 impl Lanes {
@@ -25,7 +25,9 @@ impl Lanes {
                 (found, wanted & !is_sure.bits())
             }
             Search::Singles(singles) if !V::IS_DOUBLE => (singles.scan(rays), 0),
-            Search::Wide(wide) => Nearest { wide, tables: &self.tables, rays, wanted, scratch, counts }.run(),
+            Search::Wide(wide) => {
+                Nearest { scene: &self.scene, wide, tables: &self.tables, rays, wanted, scratch, counts }.run()
+            }
             // What is of the other precision is not looked at by this one.
             _ => (Found::nothing(), wanted),
         };
@@ -35,7 +37,7 @@ impl Lanes {
         (found.nearest, found.primitive)
     }
 
-    /// Asks the scene for each ray.
+    /// Searches along each ray by itself.
     #[inline(always)]
     fn one_by_one<V: Float>(&self, rays: &Rays<V>, wanted: u32, found: &mut Found<V>, counts: &mut Counts) {
         let Ray { origin, direction } = rays.ray;
@@ -47,13 +49,7 @@ impl Lanes {
         let [mut nearest, mut primitive] = [[V::One::default(); MOST_LANES]; 2];
         found.nearest.store(&mut nearest);
         found.primitive.store(&mut primitive);
-        all.ask(
-            (&self.scene, self.hierarchy.as_ref()),
-            wanted,
-            [&mut nearest, &mut primitive],
-            (V::one, V::SIGNIFICAND),
-            counts,
-        );
+        all.ask(self, wanted, [&mut nearest, &mut primitive], (V::one, V::SIGNIFICAND), counts);
         found.nearest = V::load(&nearest);
         found.primitive = V::load(&primitive);
     }
@@ -69,7 +65,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
     #[inline(never)]
     fn ask(
         &self,
-        (scene, hierarchy): (&Scene, Option<&Hierarchy>),
+        lanes: &Lanes,
         wanted: u32,
         [nearest, primitive]: [&mut [T; MOST_LANES]; 2],
         (one, digits): (fn(f64) -> T, u32),
@@ -82,7 +78,10 @@ impl<T: Copy + Into<f64>> AllRays<T> {
             // Only what goes inside has another root; what is flat has none on either side.
             let inside = !own_root.is_nan();
             let from = (from >= 0.0).then_some(Standpoint { primitive: from as u32, inside });
-            let found = scene.nearest_in(hierarchy, &ray, from, digits, &mut tests);
+            let found = match &lanes.search {
+                Search::Wide(wide) => wide.surely_nearest(&lanes.scene, &ray, from, digits, &mut tests),
+                _ => lanes.scene.nearest(&ray, from, digits, &mut tests),
+            };
             nearest[lane] = one(found.t);
             primitive[lane] = one(if found.primitive == u32::MAX { -1.0 } else { found.primitive.into() });
         }

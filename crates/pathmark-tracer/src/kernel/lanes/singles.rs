@@ -61,9 +61,13 @@ impl Singles {
 
     /// Whether the sphere with that number is among them.
     pub(in crate::kernel) fn contains(&self, number: u32) -> bool {
-        let number = number as f32;
-        let curved = self.enclosing.iter().chain(&self.curved).map(|(number, _)| *number);
-        curved.chain(self.centred.iter().map(|(number, ..)| *number)).any(|own| own == number)
+        self.numbers().any(|own| own == number)
+    }
+
+    /// The numbers of their primitives.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = u32> {
+        let curved = self.enclosing.iter().chain(&self.curved).map(|(number, _)| *number as u32);
+        curved.chain(self.centred.iter().map(|(number, ..)| *number as u32))
     }
 
     /// The first sphere along each ray. Among equally near ones the lowest number wins; of large ones, those that enclose all win first. A tree

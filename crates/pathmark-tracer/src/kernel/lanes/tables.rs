@@ -56,15 +56,16 @@ pub(in crate::kernel) fn surfaces(scene: &Scene, precision: Precision) -> impl I
     }))
 }
 
-/// Up to so many primitives have rows of their own instead of their objects', which takes less time.
-const MOST_ROWS: usize = 1 << 14;
+/// Up to so many primitives have rows of their own for what is known of their objects, of their corners or of the lights that they are, which takes
+/// less time.
+pub(super) const MOST_ROWS: usize = 1 << 14;
 
 /// The tables of a scene.
 pub(super) struct Tables {
     /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of a plane; the normal of
     /// a triangle and its largest coordinate, below 0.
     pub(super) surfaces: Table,
-    /// The lowest and the highest coordinates of triangles, in double precision.
+    /// The lowest and the highest coordinates of triangles, in double precision and where there are not too many of them.
     pub(super) boxes: Option<[Table; 2]>,
     /// The object of each primitive, where the tables below are of objects because there are too many primitives for rows of their own.
     owners: Option<Column>,
@@ -86,7 +87,8 @@ impl Tables {
         let first_flat = primitives.spheres.len() as u32;
         let everywhere = Bounds { low: [f64::NEG_INFINITY; 3], high: [f64::INFINITY; 3] };
         let surfaces = Table::new(surfaces(scene, precision), precision);
-        let boxes = (precision == Precision::F64 && !primitives.triangles.is_empty()).then(|| {
+        let are_many = scene.owners.len() > MOST_ROWS;
+        let boxes = (precision == Precision::F64 && !primitives.triangles.is_empty() && !are_many).then(|| {
             let of_triangles = || {
                 primitives.bounds().enumerate().map(|(primitive, bounds)| match bounds {
                     Some(bounds) if primitive >= first_flat as usize => bounds,
@@ -100,8 +102,8 @@ impl Tables {
             [side(|bounds| bounds.low), side(|bounds| bounds.high)]
         });
 
-        let are_many = scene.owners.len() > MOST_ROWS && scene.objects.len() < scene.owners.len();
-        let owners = are_many.then(|| Column::new(scene.owners.iter().map(|owner| *owner as f32)));
+        let owners = (are_many && scene.objects.len() < scene.owners.len())
+            .then(|| Column::new(scene.owners.iter().map(|owner| *owner as f32)));
         let of_objects = |row: fn(&Object) -> [f64; 4]| match &owners {
             Some(_) => Table::new(scene.objects.iter().map(row), precision),
             None => Table::new(scene.owners.iter().map(|owner| row(&scene.objects[*owner as usize])), precision),

@@ -87,7 +87,7 @@ pub(crate) type Faces = [[f64; 3]; 2];
 
 /// A ray, made ready for boxes.
 #[derive(Clone, Copy)]
-pub(super) struct Slabs {
+pub(crate) struct Slabs {
     /// The origin, moved back and forth by its share of the padding: where distances to near and far faces are taken from.
     near: [f64; 3],
     far: [f64; 3],
@@ -99,7 +99,7 @@ pub(super) struct Slabs {
 
 impl Slabs {
     #[inline(always)]
-    pub(super) fn new(ray: &Ray) -> Self {
+    pub(crate) fn new(ray: &Ray) -> Self {
         let origin = [ray.origin.x, ray.origin.y, ray.origin.z];
         let direction = [ray.direction.x, ray.direction.y, ray.direction.z];
         let padding = padding(f64::MANTISSA_DIGITS) * origin[0].abs().max(origin[1].abs()).max(origin[2].abs());
@@ -118,7 +118,7 @@ impl Slabs {
     ///
     /// A ray along a face gives 0 times infinity, NaN, for that axis, and the comparisons then keep what the other axes say: it is let in.
     #[inline(always)]
-    pub(super) fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
+    pub(crate) fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);
         for (axis, backward) in self.backward.into_iter().enumerate() {
             let first = (faces[usize::from(backward)][axis] - self.near[axis]) * self.inverse[axis];

@@ -27,18 +27,18 @@ pub enum Content {
 }
 
 /// A tree whose nodes have many children; the first node is the root, and each stands behind its parent.
-pub struct Gathered<'a> {
+pub struct Gathered {
     /// Of each node the first of its children, and how many it has.
     nodes: Vec<[u32; 2]>,
     children: Vec<Child>,
     /// Primitives in the order of the leaves.
-    order: &'a [u32],
+    order: Vec<u32>,
 }
 
-impl<'a> Gathered<'a> {
+impl Gathered {
     /// A tree of nodes with these children over primitives in that order.
     #[cfg(test)]
-    pub(crate) fn new(nodes: impl IntoIterator<Item = Vec<Child>>, order: &'a [u32]) -> Self {
+    pub(crate) fn new(nodes: impl IntoIterator<Item = Vec<Child>>, order: Vec<u32>) -> Self {
         let mut made = Self { nodes: Vec::new(), children: Vec::new(), order };
         for children in nodes {
             made.nodes.push([made.children.len() as u32, children.len() as u32]);
@@ -58,7 +58,7 @@ impl<'a> Gathered<'a> {
     }
 
     /// The primitives in these places.
-    pub fn primitives(&self, first: u32, count: u32) -> &'a [u32] {
+    pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
         &self.order[first as usize..][..count as usize]
     }
 }
@@ -147,14 +147,14 @@ fn least([first, second]: [&Costs; 2], count: usize) -> (f32, u8) {
 
 impl Hierarchy {
     /// Nodes of at most `width` children, which must be 2 or more; the first is the root. Of all such trees over this one it is the one that rays are
-    /// expected to go through at the least cost.
-    pub fn gathered(&self, width: usize) -> Gathered<'_> {
-        let choices = Choices::of(self, width);
-        let mut gathered = Gathered { nodes: vec![[0; 2]], children: Vec::new(), order: &self.order };
+    /// expected to go through at the least cost. Nobody needs the binary one any more, so its nodes are gone before the primitives are laid out anew.
+    pub fn gathered(self, width: usize) -> Gathered {
+        let choices = Choices::of(&self, width);
+        let (mut nodes, mut children) = (vec![[0; 2]], Vec::new());
         let mut waiting = vec![(0, 0)];
         let mut parts = Vec::new();
         while let Some((root, place)) = waiting.pop() {
-            let first = gathered.children.len();
+            let first = children.len();
             parts.push((root, if choices.is_node(root) { choices.width } else { 1 }));
             while let Some((index, count)) = parts.pop() {
                 if count > 1 {
@@ -168,18 +168,18 @@ impl Hierarchy {
                     continue;
                 }
                 let content = if choices.is_node(index) {
-                    let number = gathered.nodes.len();
-                    gathered.nodes.push([0; 2]);
+                    let number = nodes.len();
+                    nodes.push([0; 2]);
                     waiting.push((index, number));
                     Content::Node(number as u32)
                 } else {
                     self.primitives(index)
                 };
-                gathered.children.push(Child { bounds: self.bounds(index), content });
+                children.push(Child { bounds: self.bounds(index), content });
             }
-            gathered.nodes[place] = [first as u32, (gathered.children.len() - first) as u32];
+            nodes[place] = [first as u32, (children.len() - first) as u32];
         }
-        gathered
+        Gathered { nodes, children, order: self.order }
     }
 
     /// The primitives below each node.
@@ -261,7 +261,7 @@ mod tests {
         for (name, width) in [("spheres:9", 2), ("spheres:11", 3), ("spheres:13", 4), ("cornell-tall", 3)] {
             for accelerator in ["median", "sah"] {
                 let tree = load(name).unwrap().accelerated(accelerator).unwrap().hierarchy.unwrap();
-                let gathered = tree.gathered(width);
+                let gathered = tree.clone().gathered(width);
                 let nodes: Vec<&[Child]> = gathered.nodes().collect();
                 let found = cost(&nodes, 0, tree.bounds(0).half_area(), width);
                 let expected = least_of_all(&tree, &tree.sizes(), 0, width);

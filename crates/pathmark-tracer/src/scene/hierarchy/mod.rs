@@ -16,6 +16,7 @@ mod sah;
 mod sorted;
 mod traverse;
 
+pub(crate) use bounds::Slabs;
 pub use bounds::{Bounds, padding};
 pub(crate) use build::DEEPEST;
 pub use gather::{Child, Content, Gathered};

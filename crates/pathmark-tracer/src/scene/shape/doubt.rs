@@ -73,7 +73,9 @@ impl Triangle {
 }
 
 impl Primitives {
-    fn triangle(&self, primitive: u32) -> Option<&Triangle> {
+    /// The triangle of that number, if it is one.
+    #[inline(always)]
+    pub(crate) fn triangle(&self, primitive: u32) -> Option<&Triangle> {
         self.triangles.get((primitive as usize).checked_sub(self.spheres.len() + self.planes.len())?)
     }
 
@@ -97,17 +99,7 @@ impl Primitives {
         (limit, digits): (f64, u32),
         tests: &mut Tests,
     ) -> Nearest {
-        let prepared = Self::prepare(ray);
-        let own = from.and_then(|from| self.triangle(from.primitive));
-        let distance = |primitive: u32| {
-            let t = self.distance::<AllEffects>(primitive, ray, &prepared, from);
-            let is_sure = self.triangle(primitive).is_none_or(|triangle| {
-                let normal = triangle.normal(triangle.corners[0]);
-                let Looks { is_near, is_inside } = triangle.looks(ray, t, normal, digits);
-                is_inside && (!is_near || own.is_none_or(|own| own.can_reach(ray.direction, triangle)))
-            });
-            if is_sure { t } else { f64::NAN }
-        };
+        let distance = self.sure_distances(ray, from, digits);
         let none = Nearest::than(limit);
         if let Some(hierarchy) = hierarchy {
             let endless = self.endless::<AllEffects>(ray, from, none);
@@ -115,5 +107,20 @@ impl Primitives {
         }
         let all = 0..self.counts().iter().sum::<usize>() as u32;
         all.fold(none, |nearest, primitive| nearest.or_in_any_order(distance(primitive), primitive))
+    }
+
+    /// The distance along a ray, which is as exact as numbers of so many digits, to the primitive of each number; NaN where it is not surely met.
+    pub(crate) fn sure_distances(&self, ray: &Ray, from: Option<Standpoint>, digits: u32) -> impl Fn(u32) -> f64 {
+        let prepared = Self::prepare(ray);
+        let own = from.and_then(|from| self.triangle(from.primitive));
+        move |primitive| {
+            let t = self.distance::<AllEffects>(primitive, ray, &prepared, from);
+            let is_sure = self.triangle(primitive).is_none_or(|triangle| {
+                let normal = triangle.normal(triangle.corners[0]);
+                let Looks { is_near, is_inside } = triangle.looks(ray, t, normal, digits);
+                is_inside && (!is_near || own.is_none_or(|own| own.can_reach(ray.direction, triangle)))
+            });
+            if is_sure { t } else { f64::NAN }
+        }
     }
 }

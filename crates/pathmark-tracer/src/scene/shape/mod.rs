@@ -237,7 +237,7 @@ shapes! {
 impl Nearest {
     /// Nothing nearer than `t`.
     #[inline(always)]
-    pub(super) fn than(t: f64) -> Self {
+    pub(crate) fn than(t: f64) -> Self {
         Self { t, primitive: u32::MAX }
     }
 
@@ -254,7 +254,7 @@ impl Nearest {
 
     /// Likewise, for primitives in any order. What is exactly as far as a limit, at which no primitive is, does not beat it.
     #[inline(always)]
-    pub(super) fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
+    pub(crate) fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
         let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
         let comes_first = primitive < self.primitive && self.primitive != u32::MAX;
         let wins = ahead < self.t || (ahead == self.t && comes_first);

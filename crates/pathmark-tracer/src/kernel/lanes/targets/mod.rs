@@ -3,9 +3,10 @@
 mod sphere;
 mod triangle;
 
+use super::tables::MOST_ROWS;
 use crate::math::{Ray, Vec3};
 use crate::scene::{AnyTarget, Lights, NO_LIGHT};
-use crate::simd::{Float, Precision, Table};
+use crate::simd::{Column, Float, Precision, Table};
 use sphere::Spheres;
 use triangle::Triangles;
 
@@ -17,8 +18,35 @@ pub(super) struct Targets {
     all: Table,
     /// How often each light or one before it is chosen.
     up_to: Vec<f64>,
-    /// The light of each primitive, or -1.
-    of_primitive: Table,
+    of_primitive: OfPrimitive,
+}
+
+/// The light of each primitive, or -1.
+enum OfPrimitive {
+    Rows(Table),
+    /// Of many, which takes more time and an eighth of the memory.
+    Column(Column),
+}
+
+impl OfPrimitive {
+    fn of(lights: &[u32], precision: Precision) -> Self {
+        let numbers = lights.iter().map(|light| if *light == NO_LIGHT { -1.0 } else { f64::from(*light) });
+        if lights.len() > MOST_ROWS {
+            return Self::Column(Column::new(numbers.map(|number| number as f32)));
+        }
+        Self::Rows(Table::new(numbers.map(|number| [number, 0.0, 0.0, 0.0]), precision))
+    }
+
+    #[inline(always)]
+    fn at<V: Float>(&self, primitives: V) -> V {
+        match self {
+            Self::Rows(table) => {
+                let [light, ..] = V::rows(table, primitives);
+                light
+            }
+            Self::Column(column) => column.at(primitives),
+        }
+    }
 }
 
 /// Directions towards lights.
@@ -94,14 +122,12 @@ impl Targets {
             let is_triangle = matches!(light.target, AnyTarget::Triangle(_));
             [f64::from(light.primitive), light.chance, light.target.area(), f64::from(u8::from(is_triangle))]
         });
-        let number = |light: &u32| if *light == NO_LIGHT { -1.0 } else { f64::from(*light) };
-        let of_primitive = lights.of_primitive.iter().map(|light| [number(light), 0.0, 0.0, 0.0]);
         Some(Self {
             spheres: Spheres::of(lights, precision),
             triangles: Triangles::of(lights, precision),
             all: Table::new(all, precision),
             up_to: lights.lights.iter().map(|light| light.up_to).collect(),
-            of_primitive: Table::new(of_primitive, precision),
+            of_primitive: OfPrimitive::of(&lights.of_primitive, precision),
         })
     }
 
@@ -158,7 +184,7 @@ impl Targets {
     #[inline(always)]
     pub(super) fn density<V: Float>(&self, start: &Start<V>, ray: &Ray<V>, met: &Met<V>) -> V {
         let zero = V::splat(0.0);
-        let [light, ..] = V::rows(&self.of_primitive, met.primitive);
+        let light = self.of_primitive.at(met.primitive);
         let is_target = zero.le(light);
         let light = self.chosen::<V>(light);
         let density = match (&self.spheres, &self.triangles) {

@@ -30,6 +30,8 @@ pub(super) struct Blocks {
     /// double precision, which tests them one by one, they are in the table of surfaces.
     exact: Aligned<f32>,
     triangles: Numbers,
+    /// Spheres in a block, and triangles in one.
+    widths: [usize; 2],
     pub(super) has_triangles: bool,
     pub(super) scale: Scale,
 }
@@ -164,6 +166,7 @@ impl<'a> Making<'a> {
     pub(super) fn made(self) -> Blocks {
         Blocks {
             has_triangles: !self.primitives.triangles.is_empty(),
+            widths: self.widths,
             spheres: self.spheres,
             exact: self.exact,
             triangles: self.triangles,
@@ -210,6 +213,18 @@ impl Blocks {
     #[inline(always)]
     pub(super) fn has_spheres(&self) -> bool {
         !self.spheres.is_empty()
+    }
+
+    /// The numbers of the primitives in a leaf.
+    pub(super) fn numbers(&self, leaf: &Leaf) -> impl Iterator<Item = u32> {
+        let [of_spheres, of_triangles] = self.widths;
+        let places = |[first, end]: [u32; 2], of_one: usize, width: usize| {
+            (first..end)
+                .flat_map(move |block| (0..width).map(move |lane| ((block as usize + 1) * of_one - 1) * width + lane))
+        };
+        let spheres = places(leaf.spheres, OF_SPHERE, of_spheres).map(|place| f64::from(self.spheres[place]));
+        let triangles = places(leaf.triangles, OF_TRIANGLE, of_triangles).map(|place| self.triangles.at(place));
+        spheres.chain(triangles).filter(|number| *number >= 0.0).map(|number| number as u32)
     }
 
     /// How large they are.

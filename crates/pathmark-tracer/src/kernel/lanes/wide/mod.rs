@@ -10,6 +10,7 @@ mod blocks;
 mod bundle;
 mod coarse;
 mod doubt;
+mod sure;
 mod tree;
 
 use super::nearest::Found;
@@ -47,7 +48,7 @@ enum Search {
 impl Search {
     /// A search of so many primitives by a tree of these nodes. One so deep that a ray may leave more for later than there is place for is not used:
     /// to ask for place at each node costs every search a tenth of its time, and such trees are of scenes made for it.
-    fn of(gathered: Option<&Gathered<'_>>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
+    fn of(gathered: Option<&Gathered>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
         match gathered.filter(|gathered| is_shallow(gathered)) {
             Some(gathered) => Self::Tree(Tree::of(gathered, width, scale, making)),
             None => Self::All(making.all()),
@@ -57,6 +58,7 @@ impl Search {
 
 /// A search, which takes so long that it need not be part of the loop over vertices.
 pub(in crate::kernel::lanes) struct Nearest<'a, 's, V: Float> {
+    pub(in crate::kernel::lanes) scene: &'a Scene,
     pub(in crate::kernel::lanes) wide: &'a Wide,
     pub(in crate::kernel::lanes) tables: &'a Tables,
     pub(in crate::kernel::lanes) rays: &'a Rays<V>,
@@ -71,10 +73,10 @@ impl<V: Float> Apart for Nearest<'_, '_, V> {
 
     #[inline(always)]
     fn run(self) -> (Found<V>, u32) {
-        let Self { wide, tables, rays, wanted, scratch, counts } = self;
+        let Self { scene, wide, tables, rays, wanted, scratch, counts } = self;
         let found = wide.nearest(rays, wanted, &tables.surfaces, scratch, counts);
         let has_triangles = wide.blocks.has_triangles;
-        let left = if has_triangles { wanted & are_doubtful(tables, &rays.ray, &found).bits() } else { 0 };
+        let left = if has_triangles { are_doubtful(scene, tables, &rays.ray, &found, wanted) } else { 0 };
         (found, left)
     }
 }
@@ -83,7 +85,7 @@ impl Wide {
     /// The primitives of a scene, in a tree that is made of the hierarchy, if there is one.
     pub(in crate::kernel::lanes) fn of(
         scene: &Scene,
-        hierarchy: Option<&Hierarchy>,
+        hierarchy: Option<Hierarchy>,
         level: Level,
         precision: Precision,
         enclosing: &[u32],
@@ -227,7 +229,8 @@ mod tests {
                 let rays = side_by_side::<V>(scene, starts);
                 let counts = &mut Counts::default();
                 let scratch = &mut Scratch::new(&mut stacks.0);
-                let (found, left) = Nearest { wide, tables: &tables, rays: &rays, wanted, scratch, counts }.run();
+                let (found, left) =
+                    Nearest { scene, wide, tables: &tables, rays: &rays, wanted, scratch, counts }.run();
                 all_left += left.count_ones() as usize;
                 for (lane, start) in starts.iter().enumerate().filter(|(lane, _)| left >> lane & 1 == 0) {
                     let (t, primitive) = nearest(scene, start);
@@ -269,7 +272,7 @@ mod tests {
                 }
                 let (walks, edges) = walks(&scene, 4000);
                 for level in levels() {
-                    let wide = Wide::of(&scene, scene.hierarchy.as_ref(), level, Precision::F64, &[]);
+                    let wide = Wide::of(&scene, scene.hierarchy.clone(), level, Precision::F64, &[]);
                     for starts in [&walks, &edges] {
                         left += on_level(level, Precision::F64, Compare(&scene, &wide, starts));
                         compared += starts.len();
@@ -289,7 +292,7 @@ mod tests {
                 let scene = load(name).unwrap().scaled(libm::exp2(f64::from(exponent))).accelerated("sah").unwrap();
                 let (walks, edges) = walks(&scene, 1000);
                 for level in levels() {
-                    let wide = Wide::of(&scene, scene.hierarchy.as_ref(), level, Precision::F64, &[]);
+                    let wide = Wide::of(&scene, scene.hierarchy.clone(), level, Precision::F64, &[]);
                     for starts in [&walks, &edges] {
                         let left = on_level(level, Precision::F64, Compare(&scene, &wide, starts));
                         assert!(left < starts.len() / 10, "{left} left");
@@ -322,7 +325,7 @@ mod tests {
         };
         assert!(starts.iter().filter(line_passes).count() > 500);
         for level in levels() {
-            let wide = Wide::of(&scene, scene.hierarchy.as_ref(), level, Precision::F64, &[]);
+            let wide = Wide::of(&scene, scene.hierarchy.clone(), level, Precision::F64, &[]);
             assert_eq!(on_level(level, Precision::F64, Compare(&scene, &wide, &starts)), 0);
         }
     }

@@ -11,23 +11,23 @@ use crate::simd::{Aligned, Apart, Float, MOST_LANES, Mask, Table, prefetch};
 /// The tree; its root is the first node.
 pub(super) struct Tree {
     /// Of each node the lowest x, y and z of all children, then the highest.
-    faces: Aligned<f32>,
+    pub(super) faces: Aligned<f32>,
     /// Of each node as many as there are lanes, as bits of a number: numbers of nodes, or with [`IS_LEAF`] of leaves.
-    children: Aligned<f32>,
+    pub(super) children: Aligned<f32>,
     /// How many of them there are.
-    counts: Vec<u32>,
-    leaves: Vec<Leaf>,
+    pub(super) counts: Vec<u32>,
+    pub(super) leaves: Vec<Leaf>,
 }
 
 /// Bytes of primitives that a processor keeps near: where there are no more, to ask for the next ones costs more than to wait for them.
 const CACHED: usize = 16 << 20;
 
-const IS_LEAF: u32 = 1 << 31;
+pub(super) const IS_LEAF: u32 = 1 << 31;
 /// No leaf has this number.
 const NOTHING: u32 = u32::MAX;
 
 impl Tree {
-    pub(super) fn of(gathered: &Gathered<'_>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
+    pub(super) fn of(gathered: &Gathered, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
         let of_leaf = |child: &Child| match child.content {
             Content::Node(_) => None,
             Content::Primitives { count, .. } => Some(count as usize),
@@ -217,7 +217,7 @@ impl Tree {
 const MOST_WAITING: usize = 160;
 
 /// Whether there is place for all children that may wait for a ray at a time in a tree of these nodes, each of which stands behind its parent.
-pub(super) fn is_shallow(gathered: &Gathered<'_>) -> bool {
+pub(super) fn is_shallow(gathered: &Gathered) -> bool {
     let mut below = vec![0; gathered.nodes().len()];
     for (index, node) in gathered.nodes().enumerate().rev() {
         let deepest = node.iter().map(|child| match child.content {
@@ -260,7 +260,7 @@ impl Stacks {
 }
 
 /// The children of one node come on top of those that wait, all together.
-const PLACES: usize = MOST_WAITING + 2 * MOST_LANES;
+pub(super) const PLACES: usize = MOST_WAITING + 2 * MOST_LANES;
 
 impl Stack {
     /// Nothing.
@@ -371,8 +371,8 @@ mod tests {
                 let Sizes { register, single: width, .. } = sizes_of(level, precision);
                 let (spheres, nodes) = row(width);
                 let order: Vec<u32> = (0..spheres.len() as u32).collect();
-                assert!(is_shallow(&Gathered::new(nodes[DEPTH - 1..].to_vec(), &order)));
-                let gathered = Gathered::new(nodes, &order);
+                assert!(is_shallow(&Gathered::new(nodes[DEPTH - 1..].to_vec(), order.clone())));
+                let gathered = Gathered::new(nodes, order);
                 assert!(spheres.len() > MOST_WAITING + width && !is_shallow(&gathered));
                 let bounds = spheres.iter().filter_map(Primitive::bounds);
                 let scale = Scale::of(&bounds.fold(Bounds::EMPTY, |all, own| all.and(&own)));
