@@ -48,7 +48,7 @@ impl Assembly {
     pub fn add_all(&mut self, pieces: Vec<(Range<u32>, TileBuffer)>, threads: usize) {
         let (whole, parts): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|(samples, _)| *samples == self.samples);
         let whole: Vec<TileBuffer> = whole.into_iter().map(|(_, tile)| tile).collect();
-        self.film.place_all(&whole, threads);
+        self.film.place_all(whole, threads);
         for (samples, tile) in parts {
             self.add(&samples, tile);
         }
@@ -112,30 +112,36 @@ mod tests {
         }
     }
 
-    /// Tiles of any size, some of which cross the bands of the threads.
+    /// Tiles of any size, some of which cross the bands of the threads, in films that are put together at once, in parts, and that nobody has touched.
     #[test]
     fn threads_place_what_one_places() {
-        let (width, height) = (37, 29);
-        let mut tiles = Vec::new();
-        for y0 in (0..height).step_by(6) {
-            for x0 in (0..width).step_by(5) {
-                let bounds = Bounds { x0, y0, x1: (x0 + 5).min(width), y1: (y0 + 6).min(height) };
-                let mut tile = TileBuffer::new(bounds);
-                for y in bounds.y0..bounds.y1 {
-                    for (x, pixel) in (x0..).zip(tile.row_mut(y)) {
-                        pixel.count = 1;
-                        pixel.sum = [f64::from(x), f64::from(y), 1.0];
+        let all: [([u32; 2], [u32; 2], &[usize]); 3] = [
+            ([37, 29], [5, 6], &[1, 2, 3, 8, 29, 100]),
+            ([1100, 1000], [301, 97], &[1, 3]),
+            ([2100, 2000], [32, 32], &[2]),
+        ];
+        for ([width, height], [columns, rows], threads) in all {
+            let mut tiles = Vec::new();
+            for y0 in (0..height).step_by(rows as usize) {
+                for x0 in (0..width).step_by(columns as usize) {
+                    let bounds = Bounds { x0, y0, x1: (x0 + columns).min(width), y1: (y0 + rows).min(height) };
+                    let mut tile = TileBuffer::new(bounds);
+                    for y in bounds.y0..bounds.y1 {
+                        for (x, pixel) in (x0..).zip(tile.row_mut(y)) {
+                            pixel.count = 1;
+                            pixel.sum = [f64::from(x), f64::from(y), 1.0];
+                        }
                     }
+                    tiles.push((0..1, tile));
                 }
-                tiles.push((0..1, tile));
             }
-        }
-        for threads in [1, 2, 3, 8, 29, 100] {
-            let mut assembly = Assembly::new(width, height, 0..1).unwrap();
-            assembly.add_all(tiles.clone(), threads);
-            for (index, pixel) in (0..).zip(assembly.finish().pixels()) {
-                let [x, y] = [index % width, index / width].map(f64::from);
-                assert_eq!((pixel.sum, pixel.count), ([x, y, 1.0], 1), "{threads} threads");
+            for threads in threads {
+                let mut assembly = Assembly::new(width, height, 0..1).unwrap();
+                assembly.add_all(tiles.clone(), *threads);
+                for (index, pixel) in (0..).zip(assembly.finish().pixels()) {
+                    let [x, y] = [index % width, index / width].map(f64::from);
+                    assert_eq!((pixel.sum, pixel.count), ([x, y, 1.0], 1), "{width}x{height}, {threads} threads");
+                }
             }
         }
     }

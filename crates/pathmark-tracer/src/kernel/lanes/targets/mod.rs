@@ -23,7 +23,7 @@ pub(super) struct Targets {
 
 /// The light of each primitive, or -1.
 enum OfPrimitive {
-    Rows(Table),
+    Rows(Box<Table>),
     /// Of many, which takes more time and an eighth of the memory.
     Column(Column),
 }
@@ -34,7 +34,7 @@ impl OfPrimitive {
         if lights.len() > MOST_ROWS {
             return Self::Column(Column::new(numbers.map(|number| number as f32)));
         }
-        Self::Rows(Table::new(numbers.map(|number| [number, 0.0, 0.0, 0.0]), precision))
+        Self::Rows(Box::new(Table::new(numbers.map(|number| [number, 0.0, 0.0, 0.0]), precision)))
     }
 
     #[inline(always)]

@@ -65,7 +65,7 @@ fn outside<V: Float>(scene: &Scene, point: Vec3<V>, slack: V, triangles: V, want
 fn is_beside(x: f64, [a, b, c]: [f64; 3], slack: f64) -> bool {
     let (low, high) = if a < b { (a, b) } else { (b, a) };
     let (low, high) = (if c < low { c } else { low }, if high < c { c } else { high });
-    (x < low - slack) | (high + slack < x)
+    x < low - slack || high + slack < x
 }
 
 #[cfg(test)]
