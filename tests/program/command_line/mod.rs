@@ -2,6 +2,7 @@
 
 mod check;
 mod files;
+mod memory;
 mod names;
 mod rounds;
 mod scenes;

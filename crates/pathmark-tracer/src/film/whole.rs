@@ -62,9 +62,9 @@ const AT_A_TIME: usize = 1 << 20;
 
 /// Puts what rectangles have of some rows, from the `first` on, where it belongs, by up to so many threads: each has some of the rows.
 fn place_in(pixels: &mut [PixelSum], first: u32, width: usize, tiles: &[TileBuffer], threads: usize) {
-    let height = pixels.len() / width;
+    let height = pixels.len() / width.max(1);
     let rows = height.div_ceil(threads.max(1)).max(1);
-    let bands = (first..).step_by(rows).zip(pixels.chunks_mut(rows * width));
+    let bands = (first..).step_by(rows).zip(pixels.chunks_mut((rows * width).max(1)));
     let fill = |(first, band): (u32, &mut [PixelSum])| {
         let end = first + (band.len() / width) as u32;
         for tile in tiles.iter().filter(|tile| tile.bounds().y0 < end && first < tile.bounds().y1) {
@@ -153,18 +153,25 @@ impl Film {
         }
     }
 
+    /// Touches the memory of a large film now, because it will be put together where somebody waits.
+    pub(super) fn touch(&mut self) {
+        if self.pixels.len() > MOST_TOUCHED {
+            self.pixels.fill(PixelSum::default());
+        }
+    }
+
     /// Likewise, the pixels of many rectangles, none of which overlap, by up to so many threads. From the last row up, and what has been placed is let
-    /// go: the memory of a large film is touched here for the first time, and the system gets that of the rectangles back, so both together never take
-    /// much more than one of them.
+    /// go: the memory of a large film is touched here for the first time. If that of the last rectangles was taken last, the C library gives it back to
+    /// the system, and both together never take much more than one of them.
     pub(super) fn place_all(&mut self, mut tiles: Vec<TileBuffer>, threads: usize) {
         let width = self.width as usize;
-        let rows = (AT_A_TIME / width).max(threads) as u32;
+        let rows = (AT_A_TIME / width.max(1)).clamp(1, self.height.max(1) as usize) as u32;
         let mut end = self.height;
         while end > 0 {
             let first = end.saturating_sub(rows);
             let band = &mut self.pixels[first as usize * width..end as usize * width];
             place_in(band, first, width, &tiles, threads);
-            tiles.retain(|tile| tile.bounds().y0 < first);
+            tiles.retain_mut(|tile| tile.keep_above(first));
             end = first;
         }
     }

@@ -65,7 +65,7 @@ pub(super) struct Tables {
     /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of a plane; the normal of
     /// a triangle and its largest coordinate, below 0.
     pub(super) surfaces: Table,
-    /// The lowest and the highest coordinates of triangles, in double precision and where there are not too many of them.
+    /// The lowest and the highest coordinates of triangles, in double precision and up to [`MOST_ROWS`] primitives.
     pub(super) boxes: Option<[Table; 2]>,
     /// The object of each primitive, where the tables below are of objects because there are too many primitives for rows of their own.
     owners: Option<Column>,

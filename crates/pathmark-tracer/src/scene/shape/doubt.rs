@@ -9,11 +9,12 @@
 //! come from the side on which the other one is; so much follows from corners alone, and does not ask how exactly the ray's origin is known.
 //!
 //! The first hit of all that are sure, F, is what every search finds. A search returns its nearest hit; if that is near or not in its box
-//! ([`Primitives::is_doubtful`]), [`Primitives::surely_nearest`] searches again for sure ones alone. A search without a hierarchy looks at every hit, so a sure
-//! one that it returns is F. One by a hierarchy may pass by hits that are not in their boxes, but none that is sure: its point, at distance t, is
-//! at most 32 u (|b| + |o|) outside of its box, rounding that point moves it by 6 u (|b| + |o|), and boxes are padded by 64 u (|b| + |o|), so that
-//! after another 6 u for their own test they begin no farther than t. (u is the unit of rounding, |o| and |b| are the largest coordinates of the ray's
-//! origin and of the box.) If its nearest hit is sure, F was not farther than any limit on the way, was found and is what it returns.
+//! ([`Primitives::is_doubtful`]), [`Primitives::surely_nearest`] searches again for sure ones alone; lanes do so by a tree whose boxes are larger.
+//! A search without a hierarchy looks at every hit, so a sure one that it returns is F. One by a hierarchy may pass by hits that are not in their
+//! boxes, but none that is sure: its point, at distance t, is at most 32 u (|b| + |o|) outside of its box, rounding that point moves it by 6 u (|b| +
+//! |o|), and boxes are padded by 64 u (|b| + |o|), so that after another 6 u for their own test they begin no farther than t. (u is the unit of
+//! rounding, |o| and |b| are the largest coordinates of the ray's origin and of the box.) If its nearest hit is sure, F was not farther than any
+//! limit on the way, was found and is what it returns.
 
 use super::{Bounds, Nearest, Primitive, Primitives, Standpoint, Triangle};
 use crate::math::{Ray, Vec3, dot};

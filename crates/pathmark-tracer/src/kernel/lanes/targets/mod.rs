@@ -24,7 +24,7 @@ pub(super) struct Targets {
 /// The light of each primitive, or -1.
 enum OfPrimitive {
     Rows(Box<Table>),
-    /// Of many, which takes more time and an eighth of the memory.
+    /// Of many: 4 bytes each instead of 16 or 32, and a little slower.
     Column(Column),
 }
 

@@ -40,8 +40,8 @@ pub(super) fn are_doubtful<V: Float>(
     wanted & (is_near | below | above).bits()
 }
 
-/// The `wanted` lanes whose points are not in the boxes of their triangles, by the corners of each: many triangles have no boxes in tables, where two
-/// would be as large as the triangle.
+/// The `wanted` lanes whose points are not in the boxes of their triangles, by the corners of each. Scenes of many primitives have no tables of boxes:
+/// two rows would take 64 bytes, nearly as much as the corners.
 #[inline(always)]
 fn outside<V: Float>(scene: &Scene, point: Vec3<V>, slack: V, triangles: V, wanted: u32) -> u32 {
     let mut rows = [[V::One::default(); MOST_LANES]; 5];

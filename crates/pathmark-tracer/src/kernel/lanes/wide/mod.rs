@@ -243,7 +243,7 @@ mod tests {
     }
 
     /// The scene with everything in it twice, so that every hit is a tie.
-    fn twice(scene: &Scene) -> Scene {
+    pub(super) fn twice(scene: &Scene) -> Scene {
         let mut twice = scene.clone();
         let primitives = &mut twice.primitives;
         let (spheres, planes) = (primitives.spheres.len(), primitives.planes.len());

@@ -7,8 +7,8 @@ use crate::math::Ray;
 use crate::scene::{Nearest, Scene, Slabs, Standpoint, Tests};
 
 impl Wide {
-    /// What [`Scene::nearest`] finds, by the tree of the lanes. Its boxes have a padding for single precision and are tested in double precision, so they
-    /// are left out no sooner than those of the scene's own tree would be.
+    /// What [`Scene::nearest`] finds for rays in double precision: boxes with the padding of single precision, tested in double precision, leave out
+    /// nothing that is surely met. Without a tree the scene is asked.
     #[cold]
     #[inline(never)]
     pub(in crate::kernel::lanes) fn surely_nearest(
@@ -90,32 +90,59 @@ impl Waiting {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::twice;
     use super::*;
     use crate::kernel::lanes::walks::walks;
     use crate::scene::{SCENES, load};
     use crate::simd::{Precision, levels};
 
-    /// In both precisions it is what the scene's own search finds, for rays of walks and rays down to the edges between things.
-    #[test]
-    fn what_is_found_is_what_the_scene_finds() {
-        let mut compared = 0;
-        for name in SCENES.iter().map(|(name, _)| *name).chain(["spheres:5000", "imbalance:40", "bumpy-ball:20000"]) {
-            let scene = load(name).unwrap().accelerated("sah").unwrap();
-            let view = scene.camera.view(8, 6);
-            let (walks, edges) = walks(&scene, 1000);
-            for (level, precision) in levels().flat_map(|level| Precision::ALL.map(|precision| (level, precision))) {
-                let wide = Wide::of(&scene, scene.hierarchy.clone(), level, precision, &scene.enclosing(&view));
-                for (ray, from) in walks.iter().chain(&edges) {
-                    for digits in [f32::MANTISSA_DIGITS, f64::MANTISSA_DIGITS] {
-                        let [mut own, mut others] = [Tests::default(); 2];
-                        let found = wide.surely_nearest(&scene, ray, *from, digits, &mut own);
-                        assert_eq!(found, scene.nearest(ray, *from, digits, &mut others), "{name}: {ray:?}, {from:?}");
-                        assert_eq!(own.boxes > 0, others.boxes > 0, "{name}");
-                        compared += 1;
-                    }
+    /// Compares with the scene's own search for rays of walks and rays down to the edges between things, in both precisions. How many rays there were,
+    /// and how many primitives they were tested against.
+    fn compare(scene: &Scene) -> [u64; 2] {
+        let view = scene.camera.view(8, 6);
+        let (walks, edges) = walks(scene, 1000);
+        let (mut rays, mut tests) = (0, Tests::default());
+        for (level, precision) in levels().flat_map(|level| Precision::ALL.map(|precision| (level, precision))) {
+            let wide = Wide::of(scene, scene.hierarchy.clone(), level, precision, &scene.enclosing(&view));
+            assert!(wide.has_tree(), "{}", scene.name);
+            for (ray, from) in walks.iter().chain(&edges) {
+                for digits in [f32::MANTISSA_DIGITS, f64::MANTISSA_DIGITS] {
+                    let found = wide.surely_nearest(scene, ray, *from, digits, &mut tests);
+                    let expected = scene.nearest(ray, *from, digits, &mut Tests::default());
+                    assert_eq!(found, expected, "{}: {ray:?}, {from:?}", scene.name);
+                    rays += 1;
                 }
             }
         }
+        [rays, tests.primitives]
+    }
+
+    #[test]
+    fn what_is_found_is_what_the_scene_finds() {
+        let mut compared = 0;
+        for name in SCENES.iter().map(|(name, _)| *name).chain(["imbalance:40"]) {
+            let scene = load(name).unwrap();
+            for scene in [twice(&scene), scene] {
+                compared += compare(&scene.accelerated("sah").unwrap())[0];
+            }
+        }
         assert!(compared > 100_000, "{compared}");
+    }
+
+    #[test]
+    fn size_does_not_matter() {
+        for exponent in [-300, -40, 40, 300] {
+            let factor = libm::exp2(f64::from(exponent));
+            compare(&load("cornell-mesh").unwrap().scaled(factor).accelerated("sah").unwrap());
+        }
+    }
+
+    /// Where there are many, most are left out.
+    #[test]
+    fn few_primitives_are_tested() {
+        for name in ["spheres:5000", "bumpy-ball:20000"] {
+            let [rays, tests] = compare(&load(name).unwrap().accelerated("sah").unwrap());
+            assert!(tests < 100 * rays, "{name}: {tests} tests of {rays} rays");
+        }
     }
 }
