@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub(super) const ENTRY: Entry = Entry {
     name: "locked",
     about: "one framebuffer behind one lock",
-    new: |Delivery { plan, films, .. }| Ok(Box::new(Locked { plan, films: Mutex::new(films.touched()) })),
+    new: |Delivery { plan, films, .. }| Ok(Box::new(Locked { plan, films: Mutex::new(films) })),
 };
 
 struct Locked {

@@ -29,8 +29,7 @@ pub(super) trait Output: Send + Sync {
 pub(super) struct Delivery {
     /// The pieces.
     pub(super) plan: Arc<Plan>,
-    /// Empty films for them: made before the run, so that a refusal of the system comes before the work. Memory that it promises and does not have
-    /// ends the program when it is touched, that of large films after the run.
+    /// Empty films for them: made before the run, so that the system's refusal comes before the work.
     pub(super) films: Sections,
     /// Threads that may put them together.
     pub(super) threads: usize,

@@ -19,16 +19,10 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    /// Empty buffers for every piece: allocated and touched here, so that no job does, and row by row, whatever the order of the jobs, as the film
-    /// will want to let them go.
+    /// Empty buffers for every piece: allocated and touched here, so that no job does.
     pub(super) fn new(delivery: Delivery) -> Result<Self> {
-        let pieces = delivery.plan.pieces();
-        let mut in_rows: Vec<(usize, &Piece)> = pieces.iter().enumerate().collect();
-        in_rows.sort_by_key(|(_, piece)| piece.bounds.y0);
-        let cells: Vec<AtomicCell<_>> = pieces.iter().map(|_| AtomicCell::new(None)).collect();
-        for (index, piece) in in_rows {
-            cells[index].store(Some(Box::new(TileBuffer::try_new(piece.bounds)?)));
-        }
+        let buffer = |piece: &Piece| Ok(AtomicCell::new(Some(Box::new(TileBuffer::try_new(piece.bounds)?))));
+        let cells = delivery.plan.pieces().iter().map(buffer).collect::<Result<_>>()?;
         Ok(Self { delivery, cells })
     }
 

@@ -2,7 +2,6 @@
 
 mod check;
 mod files;
-mod memory;
 mod names;
 mod rounds;
 mod scenes;

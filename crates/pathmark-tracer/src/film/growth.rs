@@ -43,13 +43,6 @@ impl Sections {
         Ok(Self { ends: sections.iter().map(|samples| samples.end).collect(), assemblies })
     }
 
-    /// The same, whose memory has been touched: for pieces that are added while somebody waits.
-    #[must_use]
-    pub fn touched(mut self) -> Self {
-        self.assemblies.iter_mut().for_each(Assembly::touch);
-        self
-    }
-
     /// Adds a piece that was rendered into `tile`, all of whose samples lie in one section. Every piece must come once.
     pub fn add(&mut self, samples: &Range<u32>, tile: TileBuffer) {
         let section = self.ends.partition_point(|end| *end <= samples.start);

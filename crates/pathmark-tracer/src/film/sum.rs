@@ -6,13 +6,12 @@
 //! Floating Point Summation", 1993).
 
 use crate::math::Rgb;
-use bytemuck::Zeroable;
 
 /// Samples that are added one after the other.
 pub const SAMPLE_BLOCK: u32 = 16;
 
 /// What is kept of a pixel: sum and sum of squares per channel, and how many samples they are of.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Zeroable)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PixelSum {
     /// Sum of radiances.
     pub sum: [f64; 3],

@@ -36,16 +36,6 @@ impl TileBuffer {
         &mut self.pixels[start..start + width]
     }
 
-    /// Gives back the memory of row `end` of the image and those below. Whether any are left.
-    pub(super) fn keep_above(&mut self, end: u32) -> bool {
-        if end < self.bounds.y1 {
-            self.bounds.y1 = end.max(self.bounds.y0);
-            self.pixels.truncate(self.bounds.area());
-            self.pixels.shrink_to_fit();
-        }
-        !self.pixels.is_empty()
-    }
-
     /// The sum of two ranges of samples of the same pixels; `self` is the earlier one.
     #[must_use]
     pub fn plus(mut self, later: &Self) -> Self {

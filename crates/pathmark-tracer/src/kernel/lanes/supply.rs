@@ -2,7 +2,6 @@
 
 use super::Lanes;
 use super::packet::{LanesOf, Packet, Rays, colour};
-use super::tables::GIVES_OFF;
 use super::wide::Scratch;
 use super::window::{Handed, Window};
 use crate::estimator::camera_share;
@@ -163,10 +162,8 @@ impl Lanes {
             counts.rays += batch.count as u64;
             let met = V::splat(0.0).le(primitive);
             if met.any() {
-                let row = self.tables.rows(primitive);
-                let [.., kind] = V::rows(&self.tables.materials, row);
-                let [r, g, b, _] = V::rows(&self.tables.emissions, row);
-                seen = Rgb::select(met & V::splat(GIVES_OFF).le(kind), seen + Rgb { r, g, b }, seen);
+                let [r, g, b, _] = V::rows(&self.tables.emissions, self.tables.rows(primitive));
+                seen = Rgb::select(met, seen + Rgb { r, g, b }, seen);
             }
             if let Some(background) = self.scene.background {
                 seen = Rgb::select(met, seen, seen + Rgb::splat(background));
