@@ -136,7 +136,7 @@ columns! {
         pub involuntary_switches: Option<i64>,
         /// CPU seconds of everything else on the machine during the makespan.
         pub foreign_cpu_s: Option<f64>,
-        /// Peak resident memory of the process.
+        /// Peak resident memory of the process until the last job has returned; the merge and the writing of pictures are not in it.
         pub peak_rss_bytes: Option<i64>,
         /// Paths, which is samples over all pixels.
         pub paths: Option<u64>,
