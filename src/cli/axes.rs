@@ -9,10 +9,14 @@ use clap::builder::ValueParser;
 use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The values of the options that choose *what* is rendered, or of those that choose pieces and workers.
-pub(super) struct Options<const WHAT: bool>(Vec<(&'static Axis, String)>);
+pub(super) struct Options<const WHAT: bool> {
+    values: Vec<(&'static Axis, String)>,
+    /// Folder of hierarchies, which change no image.
+    cache: Option<PathBuf>,
+}
 
 /// *What* is rendered.
 pub(super) type What = Options<true>;
@@ -60,6 +64,14 @@ fn device_option() -> Arg {
     Arg::new(DEVICE).long(DEVICE).value_name("ID").help(about).help_heading("Image")
 }
 
+const CACHE: &str = "cache";
+
+fn cache_option() -> Arg {
+    let about = "Keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next time";
+    let option = Arg::new(CACHE).long(CACHE).value_name("FOLDER").help(about).help_heading("Image");
+    option.value_parser(value_parser!(PathBuf))
+}
+
 /// What clap refuses before the program looks at a value.
 fn parser(axis: &Axis) -> ValueParser {
     match (axis.field)(&mut Settings::default()) {
@@ -78,17 +90,17 @@ impl<const WHAT: bool> Options<WHAT> {
     }
 
     fn value(&self, name: &str) -> Option<&str> {
-        self.0.iter().find(|(axis, _)| axis.name == name).map(|(_, value)| value.as_str())
+        self.values.iter().find(|(axis, _)| axis.name == name).map(|(_, value)| value.as_str())
     }
 
     fn apply(&self, settings: &mut Settings) -> Result<()> {
-        self.0.iter().try_for_each(|(axis, value)| axis.set(settings, value))
+        self.values.iter().try_for_each(|(axis, value)| axis.set(settings, value))
     }
 }
 
 impl<const WHAT: bool> Args for Options<WHAT> {
     fn augment_args(command: Command) -> Command {
-        let command = if WHAT { command.arg(device_option()) } else { command };
+        let command = if WHAT { command.args([device_option(), cache_option()]) } else { command };
         command.args(Self::axes().map(|axis| {
             let option = Arg::new(axis.name).long(axis.name).value_name(axis.value_name).help(axis.about);
             let option = option.help_heading(if WHAT { "Image" } else { "Schedule" });
@@ -116,7 +128,8 @@ impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
                 _ => Some((axis, value)),
             }
         };
-        let options = Self(Self::axes().filter_map(given).collect());
+        let cache = if WHAT { matches.get_one::<PathBuf>(CACHE).cloned() } else { None };
+        let options = Self { values: Self::axes().filter_map(given).collect(), cache };
         match (device, options.value("kernel")) {
             (Some(id), Some(kernel)) if !kernel.starts_with(DEVICE) => {
                 let problem = format!("--device {id} is for the kernel {DEVICE}, and --kernel is {kernel}\n");
@@ -168,7 +181,8 @@ impl What {
     /// Settings under which samples are looked into, by nobody in particular.
     pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let spec = Spec { seed, estimator: String::new(), ..Spec::default() };
-        let mut settings = Settings { scene: scene.to_string(), spp, spec, ..Settings::default() };
+        let cache = self.cache.clone();
+        let mut settings = Settings { scene: scene.to_string(), spp, spec, cache, ..Settings::default() };
         self.apply(&mut settings)?;
         if seed > LARGEST_SEED {
             let problem = "belongs to the references";

@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if let Some(path) = &arguments.export {
         atomic_file::write(path, |file| export(scene, &rays, file))?;
     }
-    let search = RaySearch::new(scene, choice, rays);
+    let search = RaySearch::new(scene, choice, rays)?;
     let found = search.run();
     let rates: Vec<f64> = (0..arguments.repetitions)
         .map(|_| {

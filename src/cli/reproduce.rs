@@ -50,6 +50,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         until: None,
         rerun_doubtful: false,
         count_instructions: false,
+        cache: None,
         command: command_line(),
     };
     let mut definitions =

@@ -59,6 +59,10 @@ pub(super) struct Arguments {
     /// With --until: begin no repetition later than that, as 60s
     #[arg(long, value_name = "TIME", requires = "until")]
     within: Option<String>,
+    /// Keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next time;
+    /// the column `build_s` is empty then
+    #[arg(long, value_name = "FOLDER", conflicts_with = "against")]
+    cache: Option<PathBuf>,
     #[command(flatten)]
     size: profile::Choice,
     #[command(flatten)]
@@ -80,6 +84,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         until: arguments.until.as_deref().map(|limit| Until::parse(limit, arguments.within.as_deref())).transpose()?,
         rerun_doubtful: arguments.rerun_doubtful,
         count_instructions: arguments.count_instructions,
+        cache: arguments.cache.clone(),
         command: command_line(),
     };
     let mut files = Files::default();

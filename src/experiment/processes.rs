@@ -76,7 +76,8 @@ fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
         }
     }
     options.extend(["--ranks".to_string(), rule.to_string()]);
-    options.into_iter().map(OsString::from).collect()
+    let cache = settings.cache.iter().flat_map(|folder| [OsString::from("--cache"), folder.clone().into_os_string()]);
+    options.into_iter().map(OsString::from).chain(cache).collect()
 }
 
 /// The record in what the first process printed, with the time that gathering took among that of putting pieces together.

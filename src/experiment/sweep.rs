@@ -21,7 +21,7 @@ use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{Doubts, Machine, Record};
+use crate::measure::{Doubts, Machine, Record, Settings};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -56,6 +56,8 @@ pub struct Options {
     pub rerun_doubtful: bool,
     /// The instructions of each cell are counted besides.
     pub count_instructions: bool,
+    /// Folder in which cells look for hierarchies of large scenes, and keep them.
+    pub cache: Option<PathBuf>,
     /// The command as the user gave it.
     pub command: String,
 }
@@ -272,7 +274,7 @@ impl<'a> Sweep<'a> {
             points: cell.points.iter().map(point_job).collect(),
             repetition,
             order,
-            settings: cell.settings.clone(),
+            settings: Settings { cache: self.options.cache.clone(), ..cell.settings.clone() },
             scene: cell.scene.clone(),
             references: halves,
             object: definition.object().map(str::to_string),

@@ -33,6 +33,7 @@ mod setup;
 mod share;
 mod trace;
 mod trace_file;
+mod tree_folder;
 mod usage;
 mod warning;
 

@@ -7,6 +7,7 @@ use crate::lab::{SERIAL, THREAD_PER_ROW};
 use crate::sampling::REFERENCE_SEEDS;
 use serde::{Deserialize, Serialize};
 use std::num::NonZeroUsize;
+use std::path::PathBuf;
 use std::sync::LazyLock;
 
 /// Most workers that can be asked for, and most threads that a strategy may start by its own rule: systems refuse some tens of
@@ -44,6 +45,9 @@ pub struct Settings {
     /// How many processes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ranks: Option<u16>,
+    /// Folder in which hierarchies of large scenes are looked for and kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cache: Option<PathBuf>,
 }
 
 impl Default for Settings {
@@ -59,6 +63,7 @@ impl Default for Settings {
             threads: available_threads(),
             rank_rule: None,
             ranks: None,
+            cache: None,
         }
     }
 }

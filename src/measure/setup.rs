@@ -2,6 +2,7 @@
 
 use super::output::{self, Delivery, OUTPUTS, Output};
 use super::settings::{LARGEST_THREADS, check_spp};
+use super::tree_folder::TreeFolder;
 use super::{Settings, Warning, available_threads, pilot};
 use crate::digest;
 use crate::error::{Error, InputError, Result};
@@ -70,7 +71,7 @@ impl Lab {
 
     /// Likewise, for a scene that is already there; `settings.scene` is not looked at.
     pub fn prepare_scene(&self, scene: Arc<Scene>, settings: Settings) -> Result<Setup> {
-        let choice = Box::new(kernel::choose_among(&scene, &settings.spec, self.own_estimators())?);
+        let choice = chosen(&scene, &settings, self.own_estimators())?;
         Setup::new(self, Subject::Scene { scene, choice }, settings)
     }
 }
@@ -172,7 +173,7 @@ impl Setup {
     pub fn with<E: Estimator + 'static>(mut self, name: &'static str, estimator: E) -> Result<Self> {
         self.settings.spec.estimator = name.to_string();
         if let Subject::Scene { scene, choice } = &mut self.subject {
-            **choice = kernel::choose_among(scene, &self.settings.spec, &[OwnEstimator::new(name, estimator)])?;
+            *choice = chosen(scene, &self.settings, &[OwnEstimator::new(name, estimator)])?;
         }
         check_spp(self.settings.spp, name, self.spp_multiple())?;
         self.built = OnceLock::new();
@@ -375,6 +376,13 @@ impl Subject {
             Self::Workload(workload) => Ok(workload.kernel(spec.width, spec.height, spec.seed)),
         }
     }
+}
+
+/// The kernel of a scene, with its trees out of the folder of the settings.
+fn chosen(scene: &Scene, settings: &Settings, own: &[OwnEstimator]) -> Result<Box<Choice>> {
+    let choice = kernel::choose_among(scene, &settings.spec, own)?;
+    let Some(folder) = &settings.cache else { return Ok(Box::new(choice)) };
+    Ok(Box::new(choice.with_trees(Arc::new(TreeFolder::open(folder)?))))
 }
 
 /// Refuses more jobs than a strategy with a thread for each may start.

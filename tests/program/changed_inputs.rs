@@ -134,6 +134,7 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
             until: None,
             rerun_doubtful: false,
             count_instructions: false,
+            cache: None,
             command: String::new(),
         };
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();

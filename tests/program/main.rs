@@ -1,5 +1,6 @@
 //! What the program `pathmark` does as a user runs it: one test program for all verbs.
 
+mod cache;
 mod changed_inputs;
 mod claims;
 mod command_line;

@@ -7,8 +7,8 @@ use crate::error::{InputError, Result};
 use crate::estimator::{AnyEstimator, Compiled, ESTIMATORS, Entry as EstimatorEntry, Options, Roulette, any_estimator};
 use crate::sampling::{Entry as SamplerEntry, SAMPLERS};
 use crate::scene::{
-    ACCELERATORS, Accelerator, AllEffects, DiffuseOnly, EPSILON, FILTERS, Filter, HIERARCHY, PROFILES, ProfileEntry,
-    SUBPIXELS, Scan, Scene, SmallptEffects, Sphere, View, accelerator, effect_names,
+    ACCELERATORS, Accelerator, AllEffects, DiffuseOnly, EPSILON, FILTERS, Filter, HIERARCHY, Hierarchy, PROFILES,
+    ProfileEntry, SUBPIXELS, Scan, Scene, SmallptEffects, Sphere, TreeStore, View, accelerator, effect_names,
 };
 use crate::simd::{Precision, Sizes, sizes_of};
 use std::sync::Arc;
@@ -34,6 +34,8 @@ pub struct Choice {
     pub(super) sampler: &'static SamplerEntry,
     pub(super) profile: &'static ProfileEntry,
     accelerator: &'static Accelerator,
+    /// Where trees are looked for and kept.
+    trees: Option<Arc<dyn TreeStore>>,
     pub(super) way: Way,
 }
 
@@ -52,6 +54,17 @@ impl Choice {
     #[must_use]
     pub fn pilot(self, seed: u64) -> Self {
         Self { seed, clamp: None, ..self }
+    }
+
+    /// The same with trees from the store, which keeps those that it does not have.
+    #[must_use]
+    pub fn with_trees(self, store: Arc<dyn TreeStore>) -> Self {
+        Self { trees: Some(store), ..self }
+    }
+
+    /// The scene's tree; `None` if there is to be none.
+    pub(super) fn hierarchy(&self, scene: &Scene) -> Result<Option<Hierarchy>> {
+        scene.hierarchy_by(self.accelerator(), self.trees.as_deref())
     }
 
     /// What is clamped.
@@ -273,6 +286,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         options,
         sampler,
         accelerator,
+        trees: None,
         way,
     })
 }

@@ -130,15 +130,19 @@ const LANES: &str = "lanes";
 const SCALAR: &str = "scalar";
 
 /// The scene with what the accelerator and the estimator need of it.
-fn prepared(scene: &Arc<Scene>, choice: &Choice) -> Arc<Scene> {
-    let mut prepared = scene.accelerated(choice.accelerator()).map_or_else(|| Arc::clone(scene), Arc::new);
+fn prepared(scene: &Arc<Scene>, choice: &Choice) -> Result<Arc<Scene>> {
+    let mut prepared = Arc::clone(scene);
+    let hierarchy = choice.hierarchy(scene)?;
+    if hierarchy.is_some() {
+        Arc::make_mut(&mut prepared).hierarchy = hierarchy;
+    }
     if choice.estimator.aims {
         Arc::make_mut(&mut prepared).add_lights(&choice.view(scene));
     }
     if choice.epsilon.is_some() {
         Arc::make_mut(&mut prepared).epsilon = choice.epsilon;
     }
-    prepared
+    Ok(prepared)
 }
 
 /// Builds the kernel for a scene, and what accelerates it, from names of what is built in.
@@ -154,10 +158,13 @@ pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Inspector> {
 /// Builds the kernel for a scene, and what accelerates it.
 pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>> {
     match &choice.way {
-        Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(scene, choice, *chosen))),
-        Way::Device(chosen) => return Ok(Box::new(OnDevice::new(&prepared(scene, choice), choice, chosen)?)),
+        Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(scene, choice, *chosen)?)),
+        Way::Device(chosen) => {
+            let prepared = prepared(scene, choice)?;
+            return Ok(Box::new(OnDevice::new(&prepared, choice, chosen)?));
+        }
         Way::Beside { own, devices, .. } => {
-            let prepared = prepared(scene, choice);
+            let prepared = prepared(scene, choice)?;
             let devices =
                 devices.iter().map(|device| OnDevice::new(&prepared, choice, device)).collect::<Result<_>>()?;
             return Ok(Box::new(Beside { own: construct(scene, &choice.by(own))?, devices }));
@@ -167,7 +174,7 @@ pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>>
     if let Some(Clamp { what: Clamped::Recursion, limit }) = choice.clamp {
         return Ok(Box::new(RecursionClamp { inspector: Inspector::new(scene, choice)?, limit }));
     }
-    let scene = prepared(scene, choice);
+    let scene = prepared(scene, choice)?;
     let name = choice.sampler.name;
     if let Some(own) = &choice.own {
         let sampler = keyed_sampler(name).or_else(|| stateful_sampler(name, choice.seed));

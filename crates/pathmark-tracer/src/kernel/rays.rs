@@ -82,17 +82,17 @@ enum Way {
 
 impl RaySearch {
     /// The way that a kernel of this choice searches.
-    pub fn new(scene: &Arc<Scene>, choice: &Choice, rays: Vec<Start>) -> Self {
+    pub fn new(scene: &Arc<Scene>, choice: &Choice, rays: Vec<Start>) -> Result<Self> {
         let count = rays.len();
         let way = match choice.way.lanes().copied() {
             Some(chosen) => {
-                let lanes = Box::new(Lanes::new(scene, choice, chosen));
+                let lanes = Box::new(Lanes::new(scene, choice, chosen)?);
                 let rays = lanes.side_by_side(&rays);
                 Way::Lanes { lanes, rays }
             }
-            None => Way::Scalar { scene: prepared(scene, choice), rays },
+            None => Way::Scalar { scene: prepared(scene, choice)?, rays },
         };
-        Self { way, count }
+        Ok(Self { way, count })
     }
 
     /// How many rays there are.

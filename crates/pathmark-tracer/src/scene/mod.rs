@@ -22,7 +22,8 @@ pub use feature::{
 pub use fog::Fog;
 pub use generator::GENERATORS;
 pub use hierarchy::{
-    ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Gathered, Hierarchy, Scan, Tests, accelerator, padding,
+    ACCELERATORS, Bounds, Child, Content, Entry as Accelerator, Gathered, Hierarchy, Scan, Tests, TreeStore,
+    accelerator, padding,
 };
 pub(crate) use hierarchy::{DEEPEST, Slabs};
 pub use library::{Library, load};
@@ -37,6 +38,7 @@ pub use shape::{Nearest, PRIMITIVES, Plane, Primitive, Primitives, SHAPES, Spher
 pub use source::{OwnScene, SCENES};
 
 use crate::effect::{EffectSet, Effects};
+use crate::error::Result;
 use crate::material::Material;
 use crate::math::{Frame, Ray, Rgb, Vec3, dot};
 use std::path::PathBuf;
@@ -323,12 +325,14 @@ impl Scene {
 
     /// The same scene with the search structure of that name; `None` if it is to have none.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
-        let hierarchy = self.hierarchy_by(name)?;
+        // Without a store nothing can fail.
+        let hierarchy = self.hierarchy_by(name, None).ok()??;
         Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 
-    /// The search structure of that name over its primitives; `None` if there is to be none.
-    pub(crate) fn hierarchy_by(&self, name: &str) -> Option<Hierarchy> {
-        accelerator(Some(name), 0, Scan::OneByOne)?.build(self.primitives.bounds())
+    /// The search structure of that name over its primitives, from the store if it is there; `None` if there is to be none.
+    pub(crate) fn hierarchy_by(&self, name: &str, store: Option<&dyn TreeStore>) -> Result<Option<Hierarchy>> {
+        let accelerator = accelerator(Some(name), 0, Scan::OneByOne);
+        accelerator.map_or(Ok(None), |accelerator| accelerator.build(self.primitives.bounds(), store))
     }
 }

@@ -16,7 +16,7 @@ fn search(scene: &str, kernel: &str, precision: &str) -> FoundRays {
     };
     let choice = choose(&scene, &spec).unwrap();
     let rays = path_rays(&scene, &choice, &(0..2)).unwrap();
-    let search = RaySearch::new(&scene, &choice, rays);
+    let search = RaySearch::new(&scene, &choice, rays).unwrap();
     assert!(search.count() > 100);
     search.run()
 }

@@ -42,7 +42,7 @@ impl Inspector {
             return Err(InputError::new("sampler", choice.sampler.name, problem).allowed(names.join(", ")).into());
         };
         Ok(Self {
-            scene: prepared(scene, choice),
+            scene: prepared(scene, choice)?,
             view: choice.view(scene),
             width: choice.width,
             seed: choice.seed,

@@ -18,6 +18,7 @@ mod wide;
 mod window;
 
 use super::{Choice, Counts, Kernel};
+use crate::error::Result;
 use crate::estimator::PathRules;
 use crate::film::{Piece, TileBuffer};
 use crate::kernel::in_lanes::InLanes;
@@ -67,10 +68,10 @@ impl Lanes {
         scene: &Arc<Scene>,
         choice: &Choice,
         InLanes { level, precision, course, sampler, is_matt }: InLanes,
-    ) -> Self {
+    ) -> Result<Self> {
         let view = choice.view(scene);
         let is_round = scene.is_round();
-        let hierarchy = scene.hierarchy_by(choice.accelerator()).or_else(|| scene.hierarchy.clone());
+        let hierarchy = choice.hierarchy(scene)?.or_else(|| scene.hierarchy.clone());
         let search = match precision {
             _ if !is_round || hierarchy.is_some() => {
                 Search::Wide(Box::new(Wide::of(scene, hierarchy, level, precision, &scene.enclosing(&view))))
@@ -79,7 +80,7 @@ impl Lanes {
             Precision::F32 => Search::Singles(Singles::of(scene, &scene.enclosing(&view))),
         };
         let lights = choice.estimator.aims.then(|| scene.lights_for(&view));
-        Self {
+        Ok(Self {
             targets: lights.as_ref().and_then(|lights| Targets::of(lights, precision)).map(Box::new),
             tables: Tables::of(scene, precision),
             search,
@@ -92,7 +93,7 @@ impl Lanes {
             sampler,
             level,
             is_matt,
-        }
+        })
     }
 
     /// Room for searches, where there is a tree.

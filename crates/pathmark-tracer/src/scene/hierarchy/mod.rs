@@ -11,6 +11,7 @@
 mod bounds;
 mod build;
 mod gather;
+mod kept;
 mod median;
 mod sah;
 mod sorted;
@@ -20,7 +21,9 @@ pub(crate) use bounds::Slabs;
 pub use bounds::{Bounds, padding};
 pub(crate) use build::DEEPEST;
 pub use gather::{Child, Content, Gathered};
+pub use kept::TreeStore;
 
+use crate::error::Result;
 use bounds::Faces;
 
 /// Boxes and primitives that rays were tested against.
@@ -127,13 +130,20 @@ impl Entry {
         self.build.is_some()
     }
 
-    /// Builds the structure over primitives with these boxes; `None` if there is nothing to build.
-    pub fn build(&self, bounds: impl Iterator<Item = Option<Bounds>>) -> Option<Hierarchy> {
-        let build = self.build?;
+    /// Builds the structure over primitives with these boxes, or takes it from the store; `None` if there is nothing to build.
+    pub fn build(
+        &self,
+        bounds: impl Iterator<Item = Option<Bounds>>,
+        store: Option<&dyn TreeStore>,
+    ) -> Result<Option<Hierarchy>> {
+        let Some(build) = self.build else { return Ok(None) };
         let mut items = Vec::with_capacity(bounds.size_hint().1.unwrap_or_default());
         let with_box = (0..).zip(bounds).filter_map(|(number, bounds)| Some(Item { bounds: bounds?.padded(), number }));
         items.extend(with_box);
-        build(items)
+        match store {
+            Some(store) => kept::found_or_built(self.name, items, store, build),
+            None => Ok(build(items)),
+        }
     }
 }
 

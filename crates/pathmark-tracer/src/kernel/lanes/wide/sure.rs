@@ -145,4 +145,35 @@ mod tests {
             assert!(tests < 100 * rays, "{name}: {tests} tests of {rays} rays");
         }
     }
+
+    /// Primitives in all leaves whose boxes a ray enters, however far away.
+    fn in_entered_leaves(wide: &Wide, ray: &Ray) -> u64 {
+        let Search::Tree(tree) = &wide.search else { return 0 };
+        let slabs = Slabs::new(&Ray { origin: ray.origin * wide.blocks.scale.0, ..*ray });
+        let (mut primitives, mut waiting) = (0, vec![0]);
+        while let Some(child) = waiting.pop() {
+            if child < IS_LEAF {
+                waiting.extend(tree.entered(child as usize, &slabs, f64::INFINITY).map(|(_, child)| child));
+            } else {
+                primitives += u64::from(tree.leaves[(child & !IS_LEAF) as usize].primitives);
+            }
+        }
+        primitives
+    }
+
+    /// Boxes beyond the nearest hit so far are not looked into: of spheres in space a ray enters more of those than others.
+    #[test]
+    fn what_is_behind_the_nearest_is_not_tested() {
+        let scene = load("spheres:5000").unwrap().accelerated("sah").unwrap();
+        let (walks, _) = walks(&scene, 1000);
+        for level in levels() {
+            let wide = Wide::of(&scene, scene.hierarchy.clone(), level, Precision::F64, &[]);
+            let (mut tests, mut entered) = (Tests::default(), 0);
+            for (ray, from) in &walks {
+                wide.surely_nearest(&scene, ray, *from, f64::MANTISSA_DIGITS, &mut tests);
+                entered += in_entered_leaves(&wide, ray);
+            }
+            assert!(3 * tests.primitives < 2 * entered, "{} of {entered} at {}", tests.primitives, level.name());
+        }
+    }
 }
