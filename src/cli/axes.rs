@@ -67,8 +67,8 @@ fn device_option() -> Arg {
 const CACHE: &str = "cache";
 
 fn cache_option() -> Arg {
-    let about = "Keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next time";
-    let option = Arg::new(CACHE).long(CACHE).value_name("FOLDER").help(about).help_heading("Image");
+    let about = "Keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next time; the time to build is not recorded then";
+    let option = Arg::new(CACHE).long(CACHE).value_name("FOLDER").help(about).help_heading("Output");
     option.value_parser(value_parser!(PathBuf))
 }
 
@@ -167,6 +167,10 @@ fn check_for_workload(settings: &Settings) -> Result<()> {
     let mut base = Settings::default();
     base.spec.estimator.clear();
     let mut of_light = AXES.iter().filter(|axis| axis.of_light);
+    if let Some(folder) = &settings.cache {
+        let problem = format!("has no meaning for {}, which is a workload", settings.scene);
+        return Err(InputError::new(CACHE, folder.display().to_string(), problem).allowed("none").into());
+    }
     match of_light.find(|axis| axis.show(settings) != axis.show(&base)) {
         None => Ok(()),
         Some(axis) => {

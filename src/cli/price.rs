@@ -185,7 +185,10 @@ fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], talk: 
     let Some(first) = rows.first().filter(|_| unbiased(lab, own).any(|other| other == *own)) else { return Ok(None) };
     let mut others = Vec::new();
     for other in unbiased(lab, own).filter(|other| other != own) {
-        let fewest = lab.prepare(Settings { spp: arguments.pilot_spp, ..other.clone() })?.fewest_spp();
+        // The pilot's own samples may be too few for it.
+        let entry = lab.estimators().find(|entry| entry.name == other.spec.estimator);
+        let multiple = entry.map_or(1, |entry| entry.spp_multiple);
+        let fewest = lab.prepare(Settings { spp: multiple, ..other.clone() })?.fewest_spp();
         let spp = (arguments.pilot_spp / SHORTER).next_multiple_of(fewest).max(fewest);
         // A scene may leave too few samples for a law; then nothing is claimed.
         let Ok(found) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, talk) else { continue };

@@ -59,8 +59,8 @@ pub(super) struct Arguments {
     /// With --until: begin no repetition later than that, as 60s
     #[arg(long, value_name = "TIME", requires = "until")]
     within: Option<String>,
-    /// Keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next time;
-    /// the column `build_s` is empty then
+    /// Cells keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next
+    /// time; the column `build_s` is empty then
     #[arg(long, value_name = "FOLDER", conflicts_with = "against")]
     cache: Option<PathBuf>,
     #[command(flatten)]

@@ -8,6 +8,7 @@ use super::cell_process::{CellJob, PointJob};
 use super::{Cell, Progress, Sweep, folder_against, process_group};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::measure::Settings;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::env;
@@ -62,7 +63,9 @@ impl Sweep<'_> {
 fn count(job: &CellJob, program: &Path) -> std::result::Result<u64, String> {
     // Nothing is read, written or compared beside the image itself.
     let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
-    let job = CellJob { points, references: None, object: None, trace: None, ..job.clone() };
+    // Whether another run has built the hierarchy would change the count.
+    let settings = Settings { cache: None, ..job.settings.clone() };
+    let job = CellJob { points, settings, references: None, object: None, trace: None, ..job.clone() };
     let text = serde_json::to_string(&job).map_err(|e| format!("describing the cell: {e}"))?;
     let mut command = Command::new(COUNTER);
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).arg("cell");

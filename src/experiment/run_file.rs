@@ -30,6 +30,9 @@ pub struct RunFile {
     /// Whether the command said how often, so that the limits of matrices did not hold.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub uncapped: bool,
+    /// Whether cells took hierarchies from a `--cache`, so that they did not all build them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub cached: bool,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
     /// Where and with what.
@@ -46,7 +49,8 @@ impl RunFile {
     pub fn of_now(command: String) -> Self {
         let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
         let machine = Machine::look();
-        Self { command, profile, shard: None, against: None, until: None, uncapped: false, definition_hash, machine }
+        let (shard, against, until) = (None, None, None);
+        Self { command, profile, shard, against, until, uncapped: false, cached: false, definition_hash, machine }
     }
 
     /// Writes it.
@@ -73,10 +77,12 @@ impl RunFile {
             (Some(_), Some(_)) => "some goal".to_string(),
             (None, _) => "none".to_string(),
         };
+        let cache = |run: &Self| if run.cached { "a folder" } else { "none" }.to_string();
         let mut pairs = vec![
             ("profile", self.profile.clone(), now.profile.clone()),
             ("shard", part(self), part(now)),
             ("until", until(self, now), until(now, self)),
+            ("cache", cache(self), cache(now)),
         ];
         let (then, here) = (self.machine.identity(), now.machine.identity());
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));

@@ -21,7 +21,7 @@ use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{Doubts, Machine, Record, Settings};
+use crate::measure::{Doubts, Machine, Record, Settings, check_cache};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -311,6 +311,7 @@ fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -
         against: options.against.as_ref().map(|program| program.display().to_string()),
         until: until.map(|until| until.text.clone()),
         uncapped: options.say_how_often(),
+        cached: options.cache.is_some(),
         definition_hash: digest::of_text(&definition.text),
         machine: Machine::look(),
     }
@@ -377,10 +378,13 @@ fn references<'a>(
 
 /// Refuses paths that no cell's process could be told, and names that no file can have.
 fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Result<()> {
-    if options.out.to_str().is_none() {
-        let problem = "is not UTF-8 text, which the cells of a sweep are told it in";
-        return Err(InputError::new("out", options.out.to_string_lossy(), problem).into());
+    for (option, path) in [("out", Some(&options.out)), ("cache", options.cache.as_ref())] {
+        if let Some(path) = path.filter(|path| path.to_str().is_none()) {
+            let problem = "is not UTF-8 text, which the cells of a sweep are told it in";
+            return Err(InputError::new(option, path.to_string_lossy(), problem).into());
+        }
     }
+    options.cache.as_deref().map_or(Ok(()), check_cache)?;
     for cell in cells {
         if definition.keeps(Keep::Traces) {
             // No repetition has a longer number.

@@ -64,4 +64,5 @@ pub use setup::Setup;
 pub use share::{DoneJob, Gathered, Share};
 pub use trace::{JobSpan, Trace};
 pub use trace_file::{TraceFile, TraceHeader, TraceRow};
+pub use tree_folder::check_cache;
 pub use warning::{WARNINGS, Warning, WarningEntry};

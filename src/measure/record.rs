@@ -98,7 +98,7 @@ columns! {
         pub jobs: usize,
         /// Workers that did at least one job; empty, like all measurements, if the run failed.
         pub workers_used: Option<u32>,
-        /// Seconds to build the kernel and the scene's acceleration structure; empty with `--cache`, which may find it built.
+        /// Seconds to build the kernel and the scene's acceleration structure; empty where `--cache` may have found that.
         pub build_s: Option<f64>,
         /// Seconds of `build_s` to compile programs for devices; empty without devices.
         pub device_compile_s: Option<f64>,
@@ -346,8 +346,7 @@ impl Record {
     pub fn new(setup: &Setup, outcome: &Outcome, errors: Measured) -> Self {
         let durations = outcome.trace.durations_s();
         let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
-        let counts = &outcome.counts;
-        let mut record = Self::of(setup).with_errors(errors);
+        let (counts, mut record) = (&outcome.counts, Self::of(setup).with_errors(errors));
         record.spp = outcome.spp;
         record.rounds = Some(outcome.rounds);
         record.estimated_rmse = outcome.film.noise().map(|noise| noise.mse.sqrt());
@@ -358,7 +357,8 @@ impl Record {
             let all = counts.rays * scene.owners.len() as u64;
             record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
         }
-        record.build_s = setup.settings().cache.is_none().then_some(outcome.build_s);
+        let is_built = setup.scene().is_none_or(|(scene, choice)| !choice.asks_store(scene));
+        record.build_s = is_built.then_some(outcome.build_s);
         record.device_compile_s = outcome.device.map(|device| device.compile_s);
         record.device_copy_s = outcome.device.map(|device| device.copy_s);
         record.jobs = durations.len();

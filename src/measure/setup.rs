@@ -378,11 +378,11 @@ impl Subject {
     }
 }
 
-/// The kernel of a scene, with its trees out of the folder of the settings.
+/// The kernel of a scene, with hierarchies out of the folder of the settings.
 fn chosen(scene: &Scene, settings: &Settings, own: &[OwnEstimator]) -> Result<Box<Choice>> {
     let choice = kernel::choose_among(scene, &settings.spec, own)?;
     let Some(folder) = &settings.cache else { return Ok(Box::new(choice)) };
-    Ok(Box::new(choice.with_trees(Arc::new(TreeFolder::open(folder)?))))
+    Ok(Box::new(choice.with_trees(Arc::new(TreeFolder::new(folder)?))))
 }
 
 /// Refuses more jobs than a strategy with a thread for each may start.

@@ -2,25 +2,38 @@
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
+use crate::file_id::folder_of;
 use crate::scene::TreeStore;
 use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// A folder of trees.
+/// A folder of hierarchies.
 #[derive(Debug)]
 pub(super) struct TreeFolder(PathBuf);
 
+/// Refuses what is no folder and cannot be made one. Makes nothing.
+pub fn check_cache(folder: &Path) -> Result<()> {
+    let refuse = |problem: &str| Err(InputError::new("cache", folder.display().to_string(), problem).into());
+    match fs::metadata(folder) {
+        Ok(found) if found.is_dir() => Ok(()),
+        Ok(_) => refuse("is not a folder"),
+        Err(e) => match e.kind() {
+            ErrorKind::NotFound if folder_of(folder).is_dir() => Ok(()),
+            ErrorKind::NotFound => refuse("the folder above it does not exist"),
+            ErrorKind::NotADirectory => refuse("a part of the path is not a folder"),
+            ErrorKind::InvalidFilename => refuse("the name is too long"),
+            ErrorKind::InvalidInput => refuse("the name holds a zero byte"),
+            _ => Err(Error::system("looking for", folder, e)),
+        },
+    }
+}
+
 impl TreeFolder {
-    /// Makes the folder if it is not there. Refuses one into which no file can be written.
-    pub(super) fn open(folder: &Path) -> Result<Self> {
-        if fs::metadata(folder).is_ok_and(|found| !found.is_dir()) {
-            return Err(InputError::new("cache", folder.display().to_string(), "is not a folder").into());
-        }
-        fs::create_dir_all(folder).map_err(|e| Error::system("making", folder, e))?;
-        let folder = Self(folder.to_path_buf());
-        atomic_file::check_writable("cache", &folder.file("key"))?;
-        Ok(folder)
+    /// The folder is made with the first file in it.
+    pub(super) fn new(folder: &Path) -> Result<Self> {
+        check_cache(folder)?;
+        Ok(Self(folder.to_path_buf()))
     }
 
     fn file(&self, key: &str) -> PathBuf {
@@ -31,15 +44,28 @@ impl TreeFolder {
 impl TreeStore for TreeFolder {
     fn find(&self, key: &str, read: &mut dyn FnMut(&mut dyn Read) -> io::Result<()>) -> Result<bool> {
         let path = self.file(key);
-        let file = match File::open(&path) {
-            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(false),
-            other => other,
+        let damaged = |problem: &str| {
+            let problem = format!("is damaged: {problem}; without the file its hierarchy is built again");
+            Error::from(InputError::new("cache", path.display().to_string(), problem))
         };
-        let found = file.and_then(|file| read(&mut BufReader::new(file)));
-        found.map(|()| true).map_err(|e| Error::system("reading", &path, e))
+        match fs::metadata(&path) {
+            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(false),
+            Ok(found) if !found.is_file() => return Err(damaged("it is not a regular file")),
+            _ => {}
+        }
+        let found = File::open(&path).and_then(|file| read(&mut BufReader::new(file)));
+        found.map(|()| true).map_err(|e| match e.kind() {
+            ErrorKind::InvalidData => damaged(&e.to_string()),
+            ErrorKind::UnexpectedEof => damaged("it ends too soon"),
+            _ => Error::system("reading", &path, e),
+        })
     }
 
     fn keep(&self, key: &str, write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+        match fs::create_dir(&self.0) {
+            Err(e) if e.kind() != ErrorKind::AlreadyExists => return Err(Error::system("making", &self.0, e)),
+            _ => {}
+        }
         atomic_file::write(&self.file(key), write)
     }
 }

@@ -50,19 +50,21 @@ fn a_tree_is_built_once_and_the_image_is_the_same() {
     assert_eq!(files(&trees).len(), 2);
 }
 
-/// A damaged file may be all that is left of something: it is told and not replaced.
+/// A damaged file may be all that is left of something: the program says so and does not replace it.
 #[test]
-fn a_damaged_tree_is_told_and_left_alone() {
+fn a_damaged_file_is_refused_and_left_alone() {
     let folder = tempfile::tempdir().unwrap();
     render(folder.path(), &[]).with_code(0);
     fs::remove_file(folder.path().join("x.pfm")).unwrap();
     let [file] = files(&folder.path().join("trees")).try_into().unwrap();
     let whole = fs::read(&file).unwrap();
-    for damaged in [whole[..1000].to_vec(), [&whole[..1000], b"x", &whole[1001..]].concat(), Vec::new()] {
+    let other = [&whole[..1000], b"x", &whole[1001..]].concat();
+    let cases = [(whole[..1000].to_vec(), "ends too soon"), (other, "SHA-256"), (Vec::new(), "ends too soon")];
+    for (damaged, problem) in cases {
         fs::write(&file, &damaged).unwrap();
-        let refused = render(folder.path(), &[]).with_code(3);
-        let name = file.file_name().unwrap().to_str().unwrap();
-        assert!(refused.err.contains(name), "{}", refused.err);
+        let refused = render(folder.path(), &[]).with_code(2);
+        let words = [file.file_name().unwrap().to_str().unwrap(), problem, "without the file"];
+        assert!(words.iter().all(|word| refused.err.contains(word)), "{words:?}: {}", refused.err);
         assert!(fs::read(&file).unwrap() == damaged && !folder.path().join("x.pfm").exists());
     }
     fs::remove_file(&file).unwrap();
@@ -71,12 +73,48 @@ fn a_damaged_tree_is_told_and_left_alone() {
 }
 
 #[test]
-fn a_cache_that_is_no_folder_is_refused() {
+fn what_can_be_no_folder_is_refused_before_any_work() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("trees"), "mine").unwrap();
-    let refused = render(folder.path(), &[]).with_code(2);
-    assert!(refused.err.contains("cache = trees: is not a folder"), "{}", refused.err);
-    assert_eq!(fs::read(folder.path().join("trees")).unwrap(), b"mine");
+    write_tiny(folder.path(), TINY);
+    fs::write(folder.path().join("file"), "mine").unwrap();
+    let long = "x".repeat(300);
+    let cases =
+        [("file", "is not a folder"), ("file/x", "not a folder"), ("no/x", "does not exist"), (&long, "too long")];
+    for (cache, problem) in cases {
+        let render = ["render", "spheres:5000", "--size", "16x12", "--cache", cache, "-o", "x.pfm"];
+        let run = ["run", "tiny.toml", "--out", "out", "--cache", cache];
+        for arguments in [&render[..], &run] {
+            let refused = finish(pathmark(folder.path(), arguments)).with_code(2);
+            assert!(refused.err.contains("cache = ") && refused.err.contains(problem), "{}", refused.err);
+        }
+    }
+    // Where other input is refused, no folder is made, and none where nothing is kept.
+    render(folder.path(), &["--strategy", "nonsense"]).with_code(2);
+    render(folder.path(), &["--accelerator", "none"]).with_code(0);
+    finish(pathmark(folder.path(), &["render", "mandelbrot", "--cache", "trees"])).with_code(2);
+    let small = ["render", "cornell", "--size", "16x12", "--spp", "4", "--cache", "trees", "--json", "-o", "x.pfm"];
+    let small = record(&finish(pathmark(folder.path(), &small)).with_code(0));
+    assert!(small["build_s"].is_number());
+    let names: Vec<_> = files(folder.path()).iter().map(|path| path.file_name().unwrap().to_owned()).collect();
+    assert_eq!(names, ["file", "tiny.toml", "x.pfm"]);
+}
+
+/// Every command that builds a hierarchy takes the kept one.
+#[test]
+fn all_commands_share_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = ["spheres:5000", "--size", "16x12", "--estimator", "bsdf", "--cache", "trees"];
+    let commands: [&[&str]; 5] = [
+        &["render", "--spp", "1", "-o", "x.pfm"],
+        &["rays", "--repetitions", "1"],
+        &["bounces", "--spp", "2"],
+        &["replay", "--pixel", "8,6"],
+        &["price", "--rmse", "1", "--pilot-spp", "1", "--pilot-seeds", "3"],
+    ];
+    for command in commands {
+        finish(pathmark(folder.path(), &[command, &scene].concat())).with_code(0);
+        assert_eq!(files(&folder.path().join("trees")).len(), 1, "{command:?}");
+    }
 }
 
 /// Cells are processes of their own, and each would build the tree again.
@@ -91,4 +129,7 @@ fn cells_of_a_sweep_share_trees() {
     let build_s = rows.headers().unwrap().iter().position(|name| name == "build_s").unwrap();
     let rows: Vec<_> = rows.records().map(Result::unwrap).collect();
     assert!(rows.len() > 1 && rows.iter().all(|row| row[build_s].is_empty()));
+    // Rows that were measured otherwise are not added.
+    let without = finish(pathmark(folder.path(), &[&large[..], &["--resume"]].concat())).with_code(2);
+    assert!(without.err.contains("cache"), "{}", without.err);
 }

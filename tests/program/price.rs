@@ -93,3 +93,13 @@ fn what_cannot_be_priced_is_refused() {
         assert!(refused.out.is_empty());
     }
 }
+
+/// A pilot of one sample is whole for an estimator that needs no more, whatever those need that it is compared with.
+#[test]
+fn a_short_pilot_is_compared_with_estimators_that_need_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments =
+        ["price", "spheres:50", "--size", "16x12", "--rmse", "1", "--estimator", "bsdf", "--pilot-spp", "1"];
+    let priced = finish(pathmark(folder.path(), &arguments)).with_code(0);
+    assert!(priced.out.contains("spheres:50, bsdf"), "{}", priced.out);
+}

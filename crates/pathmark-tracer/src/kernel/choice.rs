@@ -34,7 +34,7 @@ pub struct Choice {
     pub(super) sampler: &'static SamplerEntry,
     pub(super) profile: &'static ProfileEntry,
     accelerator: &'static Accelerator,
-    /// Where trees are looked for and kept.
+    /// Where hierarchies are looked for and kept.
     trees: Option<Arc<dyn TreeStore>>,
     pub(super) way: Way,
 }
@@ -56,13 +56,19 @@ impl Choice {
         Self { seed, clamp: None, ..self }
     }
 
-    /// The same with trees from the store, which keeps those that it does not have.
+    /// The same with hierarchies from the store, which keeps those that it does not have.
     #[must_use]
     pub fn with_trees(self, store: Arc<dyn TreeStore>) -> Self {
         Self { trees: Some(store), ..self }
     }
 
-    /// The scene's tree; `None` if there is to be none.
+    /// Whether the scene's hierarchy may have been built before.
+    pub fn asks_store(&self, scene: &Scene) -> bool {
+        let with_box = scene.primitives.spheres.len() + scene.primitives.triangles.len();
+        self.trees.is_some() && self.accelerator.is_kept(with_box)
+    }
+
+    /// The scene's hierarchy; `None` if there is to be none.
     pub(super) fn hierarchy(&self, scene: &Scene) -> Result<Option<Hierarchy>> {
         scene.hierarchy_by(self.accelerator(), self.trees.as_deref())
     }

@@ -16,6 +16,7 @@ mod median;
 mod sah;
 mod sorted;
 mod traverse;
+mod tree_file;
 
 pub(crate) use bounds::Slabs;
 pub use bounds::{Bounds, padding};
@@ -128,6 +129,11 @@ impl Entry {
     /// Whether it needs the code of a hierarchy.
     pub fn is_hierarchy(&self) -> bool {
         self.build.is_some()
+    }
+
+    /// Whether a store is asked for a hierarchy over so many primitives.
+    pub fn is_kept(&self, primitives: usize) -> bool {
+        self.is_hierarchy() && primitives >= kept::WORTH_KEEPING
     }
 
     /// Builds the structure over primitives with these boxes, or takes it from the store; `None` if there is nothing to build.
