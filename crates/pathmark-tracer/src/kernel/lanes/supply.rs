@@ -180,7 +180,8 @@ impl Lanes {
             taken &= !(1 << (u32::BITS - 1 - taken.leading_zeros()));
         }
         let mask = V::Mask::from_bits(taken);
-        let first = supply.first;
+        // There are no more than that; said again, what is read below needs no check.
+        let first = supply.first.min(MOST_LANES);
         let Ray { origin, direction } = packet.rays.ray;
         let rays = &supply.rays;
         packet.rays.ray = Ray {

@@ -175,20 +175,21 @@ impl<'a> Making<'a> {
     }
 }
 
-/// What the triangles of a block have in one place, and what other blocks have behind it.
+/// What the triangles of a block have in one place.
 #[inline(always)]
-fn column<V: Float>(triangles: &[V::One], block: u32, place: usize) -> &[V::One] {
-    &triangles[(block as usize * OF_TRIANGLE + place) * V::LANES..]
+fn column<V: Float>(block: &[V::One], place: usize) -> &[V::One] {
+    &block[place * V::LANES..][..V::LANES]
 }
 
 /// Corners as the ray sees them, the first of whose coordinates is in that place.
 #[inline(always)]
-fn corner<V: Float>(triangles: &[V::One], block: u32, first: usize, ray: &Turned<V>) -> [V; 3] {
-    let [x, y, z] = ray.shear.axes;
+fn corner<V: Float>(block: &[V::One], first: usize, ray: &Turned<V>) -> [V; 3] {
+    // None is above 2; said again, places in a block need no check.
+    let [x, y, z] = ray.shear.axes.map(|axis| axis.min(2));
     let [ox, oy, oz] = ray.origin;
-    let x = V::load(column::<V>(triangles, block, first + x)) - ox;
-    let y = V::load(column::<V>(triangles, block, first + y)) - oy;
-    let z = V::load(column::<V>(triangles, block, first + z)) - oz;
+    let x = V::load(column::<V>(block, first + x)) - ox;
+    let y = V::load(column::<V>(block, first + y)) - oy;
+    let z = V::load(column::<V>(block, first + z)) - oz;
     sheared([x, y, z], ray.shear.by)
 }
 
@@ -240,14 +241,14 @@ impl Blocks {
         prefetch::<V, _>(V::One::all(&self.triangles), leaf.triangles[0] as usize * of_block, of_block);
     }
 
-    /// The spheres of a block that a ray comes near, as bits.
+    /// The spheres of a block that a ray comes near not beyond `limit`, in sizes of the scene, as bits.
     #[inline(always)]
-    pub(super) fn near<V: Float>(&self, block: u32, ray: &Single<V>, nearest: f64) -> u32 {
+    pub(super) fn near<V: Float>(&self, block: u32, ray: &Single<V>, limit: f32) -> u32 {
         let lanes = V::Single::LANES;
         let spheres = &self.spheres[block as usize * OF_SPHERE * lanes..][..OF_SPHERE * lanes];
         let numbers = V::Single::load(&spheres[(OF_SPHERE - 1) * lanes..]);
         let is_own = V::Single::splat(ray.from).equal(numbers);
-        (!(ray.coarse.passes(spheres, nearest * self.scale.0) | is_own)).bits()
+        (!(ray.coarse.passes(spheres, limit) | is_own)).bits()
     }
 
     /// Tests a ray against those spheres of a block.
@@ -281,7 +282,7 @@ impl Blocks {
     #[inline(always)]
     pub(super) fn test_rest<V: Float>(&self, leaf: &Leaf, surfaces: &Table, ray: &Single<V>, best: &mut Best) {
         for block in leaf.spheres[0] + 1..leaf.spheres[1] {
-            let near = self.near(block, ray, best.nearest);
+            let near = self.near(block, ray, (best.nearest * self.scale.0) as f32);
             if near != 0 {
                 self.test_near(block, near, surfaces, ray, best);
             }
@@ -289,9 +290,11 @@ impl Blocks {
         let Some(turned) = &ray.turned else { return };
         let triangles = V::One::all(&self.triangles);
         for block in leaf.triangles[0]..leaf.triangles[1] {
-            let corner = |first| corner::<V::Register>(triangles, block, first, turned);
+            let of_block = OF_TRIANGLE * V::Register::LANES;
+            let block = &triangles[block as usize * of_block..][..of_block];
+            let corner = |first| corner::<V::Register>(block, first, turned);
             let crossing = Crossing::of([corner(0), corner(3), corner(6)]);
-            let numbers = column::<V::Register>(triangles, block, OF_TRIANGLE - 1);
+            let numbers = column::<V::Register>(block, OF_TRIANGLE - 1);
             let is_own = V::Register::splat(ray.from).equal(V::Register::load(numbers));
             let is_met = crossing.is_met & !is_own;
             if is_met.any() {

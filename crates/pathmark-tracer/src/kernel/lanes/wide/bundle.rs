@@ -21,6 +21,8 @@ pub(super) struct Bundle<V: Float> {
     /// Distances and numbers of the first primitives so far.
     pub(super) nearest: [V::One; MOST_LANES],
     pub(super) primitive: [V::One; MOST_LANES],
+    /// The distances in sizes of the scene: how far boxes may begin that are still of interest.
+    pub(super) limits: [f32; MOST_LANES],
 }
 
 impl<V: Float> Bundle<V> {
@@ -35,6 +37,7 @@ impl<V: Float> Bundle<V> {
             has_triangles: false,
             nearest: none,
             primitive: none,
+            limits: [0.0; MOST_LANES],
         }
     }
 
@@ -47,6 +50,10 @@ impl<V: Float> Bundle<V> {
         }
         found.nearest.store(&mut self.nearest);
         found.primitive.store(&mut self.primitive);
+        for (limit, nearest) in self.limits.iter_mut().zip(&self.nearest).take(V::LANES) {
+            let nearest: f64 = (*nearest).into();
+            *limit = (nearest * scale.0) as f32;
+        }
         self.coarse.fill(&rays.ray, scale);
         self.has_triangles = has_triangles;
         if has_triangles {

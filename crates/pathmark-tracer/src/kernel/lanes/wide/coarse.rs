@@ -112,11 +112,6 @@ impl AllCoarse {
     /// One of the rays, the same in every lane.
     #[inline(always)]
     pub(super) fn of_lane<W: Float<One = f32>>(&self, lane: usize) -> Coarse<W> {
-        let backward = [
-            usize::from(self.rows[3][lane] < 0.0),
-            usize::from(self.rows[4][lane] < 0.0),
-            usize::from(self.rows[5][lane] < 0.0),
-        ];
         Coarse {
             direction: self.three(0, lane),
             inverse: self.three(3, lane),
@@ -124,8 +119,7 @@ impl AllCoarse {
             far: self.three(9, lane),
             origin: self.three(12, lane),
             padding: W::splat(self.rows[15][lane].into()),
-            first: [3 * backward[0], 1 + 3 * backward[1], 2 + 3 * backward[2]],
-            last: [3 - 3 * backward[0], 4 - 3 * backward[1], 5 - 3 * backward[2]],
+            backward: [self.rows[3][lane] < 0.0, self.rows[4][lane] < 0.0, self.rows[5][lane] < 0.0],
         }
     }
 }
@@ -138,9 +132,8 @@ pub(super) struct Coarse<W> {
     far: [W; 3],
     origin: [W; 3],
     padding: W,
-    /// Which of the six faces of a box it meets first and last along each axis.
-    first: [usize; 3],
-    last: [usize; 3],
+    /// Whether it goes towards smaller coordinates, so that it meets the high face of a box first.
+    backward: [bool; 3],
 }
 
 impl<W: Float<One = f32>> Coarse<W> {
@@ -148,13 +141,16 @@ impl<W: Float<One = f32>> Coarse<W> {
     ///
     /// A ray along a face gives NaN for that axis, and the comparisons then keep what the other axes say: it is let in.
     #[inline(always)]
-    pub(super) fn enter(&self, faces: &[f32], limit: f64) -> (W, W::Mask) {
-        let (mut enter, mut leave) = (W::splat(0.0), W::splat(limit));
+    pub(super) fn enter(&self, faces: &[f32], limit: f32) -> (W, W::Mask) {
+        let (mut enter, mut leave) = (W::splat(0.0), W::splat(limit.into()));
+        // Of that length and in places that are constants, nothing is checked again at each load.
+        let faces = &faces[..6 * W::LANES];
         for axis in 0..3 {
-            let first = W::load(&faces[self.first[axis] * W::LANES..]);
-            let last = W::load(&faces[self.last[axis] * W::LANES..]);
-            enter = first.about_times_plus(self.inverse[axis], self.near[axis]).larger(enter);
-            leave = last.about_times_plus(self.inverse[axis], self.far[axis]).smaller(leave);
+            let (low, high) = (&faces[axis * W::LANES..], &faces[(3 + axis) * W::LANES..]);
+            let (low, high) = (&low[..W::LANES], &high[..W::LANES]);
+            let (first, last) = if self.backward[axis] { (high, low) } else { (low, high) };
+            enter = W::load(first).about_times_plus(self.inverse[axis], self.near[axis]).larger(enter);
+            leave = W::load(last).about_times_plus(self.inverse[axis], self.far[axis]).smaller(leave);
         }
         (enter, enter.le(leave))
     }
@@ -162,14 +158,14 @@ impl<W: Float<One = f32>> Coarse<W> {
     /// Whether the ray passes the spheres with these centres and radii, one row of numbers after the other: its line passes them, or they are behind its
     /// start, or beyond `limit`. `false` for a sphere where NaN came up.
     #[inline(always)]
-    pub(super) fn passes(&self, spheres: &[f32], limit: f64) -> W::Mask {
+    pub(super) fn passes(&self, spheres: &[f32], limit: f32) -> W::Mask {
         let [dx, dy, dz] = self.direction;
         let x = self.origin[0] - W::load(spheres);
         let y = self.origin[1] - W::load(&spheres[W::LANES..]);
         let z = self.origin[2] - W::load(&spheres[2 * W::LANES..]);
         let radius = W::load(&spheres[3 * W::LANES..]) + self.padding;
         let back = -x.about_times_plus(dx, y.about_times_plus(dy, z * dz));
-        let is_off = back.lt(-radius) | W::splat(limit).lt(back - radius);
+        let is_off = back.lt(-radius) | W::splat(limit.into()).lt(back - radius);
         let (x, y, z) = (dx.about_times_plus(back, x), dy.about_times_plus(back, y), dz.about_times_plus(back, z));
         is_off | (radius * radius).lt(x.about_times_plus(x, y.about_times_plus(y, z * z)))
     }
@@ -244,12 +240,12 @@ mod tests {
                 let rows = |numbers: &[f64]| -> Vec<f32> {
                     numbers.iter().flat_map(|number| vec![*number as f32; V::Single::LANES]).collect()
                 };
-                let (_, met) = coarse.enter(&rows(&[padded.low, padded.high].concat()), distance * scale.0);
+                let (_, met) = coarse.enter(&rows(&[padded.low, padded.high].concat()), (distance * scale.0) as f32);
                 wrong += usize::from(!met.any());
                 let sphere = scale.sphere(&bounds, center, radius);
                 // Where it is met: what is found at that very distance must not be left out.
                 let root = first_root(ray.origin - center, ray.direction, 1.0, radius);
-                wrong += usize::from(root > 0.0 && coarse.passes(&rows(&sphere), root * scale.0).any());
+                wrong += usize::from(root > 0.0 && coarse.passes(&rows(&sphere), (root * scale.0) as f32).any());
             }
             wrong
         }

@@ -137,6 +137,7 @@ impl Wide {
             Search::Tree(tree) => tree,
         };
         let Scratch { stacks, bundle } = scratch;
+        let stacks = stacks.first_chunk_mut().expect("who has a tree has stacks");
         bundle.fill(rays, &found, self.blocks.scale, self.blocks.has_triangles);
         let mut tests = Tests::default();
         V::apart(Descent { tree, blocks: &self.blocks, surfaces, rays: bundle, wanted, stacks, tests: &mut tests });

@@ -73,7 +73,7 @@ pub(super) struct Descent<'a, V: Float> {
     pub(super) surfaces: &'a Table,
     pub(super) rays: &'a mut Bundle<V>,
     pub(super) wanted: u32,
-    pub(super) stacks: &'a mut [Stack],
+    pub(super) stacks: &'a mut [Stack; MOST_LANES],
     pub(super) tests: &'a mut Tests,
 }
 
@@ -114,12 +114,6 @@ impl<V: Float> Apart for Descent<'_, V> {
 }
 
 impl<V: Float> Descent<'_, V> {
-    /// How far the boxes may begin that are still of interest to a ray.
-    #[inline(always)]
-    fn limit(&self, lane: usize) -> f64 {
-        self.rays.nearest[lane].into() * self.blocks.scale.0
-    }
-
     #[inline(always)]
     fn leaf(&self, lane: usize) -> &Leaf {
         &self.tree.leaves[(self.stacks[lane].next & !IS_LEAF) as usize]
@@ -134,26 +128,28 @@ impl<V: Float> Descent<'_, V> {
     fn keep(&mut self, lane: usize, best: &Best) {
         self.rays.nearest[lane] = V::one(best.nearest);
         self.rays.primitive[lane] = V::one(best.primitive);
+        self.rays.limits[lane] = (self.rays.nearest[lane].into() * self.blocks.scale.0) as f32;
     }
 
     /// Tests rays against the boxes of the nodes that they are at, and keeps the children that they meet.
     #[inline(always)]
     fn enter_nodes(&mut self, at_nodes: u32) {
         let (tree, lanes) = (self.tree, V::Single::LANES);
+        let mut boxes = 0;
         for lane in LanesOf(at_nodes) {
             let node = self.stacks[lane].next as usize;
-            self.tests.boxes += u64::from(tree.counts[node]);
+            boxes += u64::from(tree.counts[node]);
             let coarse = self.rays.coarse.of_lane::<V::Single>(lane);
-            let (enter, met) = coarse.enter(&tree.faces[node * 6 * lanes..], self.limit(lane));
+            let (enter, met) = coarse.enter(&tree.faces[node * 6 * lanes..], self.rays.limits[lane]);
             self.stacks[lane].push(V::Single::load(&tree.children[node * lanes..]), enter, met);
         }
+        self.tests.boxes += boxes;
     }
 
     /// A ray goes on to what comes next.
     #[inline(always)]
     fn go_on(&mut self, lane: usize, is_large: bool) {
-        let limit = self.limit(lane) as f32;
-        self.stacks[lane].pop(limit);
+        self.stacks[lane].pop(self.rays.limits[lane]);
         if is_large {
             self.tree.prefetch::<V>(&self.stacks[lane]);
         }
@@ -166,7 +162,7 @@ impl<V: Float> Descent<'_, V> {
         for lane in LanesOf(at_leaves) {
             let block = self.leaf(lane).spheres;
             if block[0] < block[1] {
-                let of_block = self.blocks.near(block[0], &self.rays.of_lane(lane), self.rays.nearest[lane].into());
+                let of_block = self.blocks.near(block[0], &self.rays.of_lane(lane), self.rays.limits[lane]);
                 self.stacks[lane].near = of_block;
                 near |= u32::from(of_block != 0) << lane;
             }
@@ -280,17 +276,19 @@ impl Stack {
     /// Keeps a node's children that are met, the nearest of them last. The others are not sorted: to look at them in the wrong order costs less.
     #[inline(always)]
     fn push<W: Float<One = f32>>(&mut self, children: W, enter: W, met: W::Mask) {
-        children.pack(met, &mut self.children[self.count..]);
-        enter.pack(met, &mut self.distances[self.count..]);
+        // There is place for more than can wait (`is_shallow`); said again, nothing below is checked.
+        let count = self.count.min(PLACES - MOST_LANES - 1);
+        children.pack(met, &mut self.children[count..]);
+        enter.pack(met, &mut self.distances[count..]);
         let nearest = W::splat(W::select(met, enter, W::splat(f64::INFINITY)).least());
         let (met, is_first) = (met.bits(), (met & enter.equal(nearest)).bits());
         // The lanes below the nearest; all of them if there is none.
         let before = is_first.wrapping_sub(1) & !is_first;
-        let place = self.count + (met & before).count_ones() as usize;
-        let last = self.count + (met.count_ones().max(1) - 1) as usize;
+        let place = count + (met & before).count_ones() as usize;
+        let last = count + (met.count_ones().max(1) - 1) as usize;
         self.children.swap(place, last);
         self.distances.swap(place, last);
-        self.count += met.count_ones() as usize;
+        self.count = count + met.count_ones() as usize;
     }
 
     /// Goes on with the last child whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
