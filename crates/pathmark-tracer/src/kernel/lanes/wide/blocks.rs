@@ -282,7 +282,7 @@ impl Blocks {
     #[inline(always)]
     pub(super) fn test_rest<V: Float>(&self, leaf: &Leaf, surfaces: &Table, ray: &Single<V>, best: &mut Best) {
         for block in leaf.spheres[0] + 1..leaf.spheres[1] {
-            let near = self.near(block, ray, (best.nearest * self.scale.0) as f32);
+            let near = self.near(block, ray, self.scale.limit(best.nearest));
             if near != 0 {
                 self.test_near(block, near, surfaces, ray, best);
             }

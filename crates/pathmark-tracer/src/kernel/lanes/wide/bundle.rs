@@ -51,8 +51,7 @@ impl<V: Float> Bundle<V> {
         found.nearest.store(&mut self.nearest);
         found.primitive.store(&mut self.primitive);
         for (limit, nearest) in self.limits.iter_mut().zip(&self.nearest).take(V::LANES) {
-            let nearest: f64 = (*nearest).into();
-            *limit = (nearest * scale.0) as f32;
+            *limit = scale.limit((*nearest).into());
         }
         self.coarse.fill(&rays.ray, scale);
         self.has_triangles = has_triangles;

@@ -39,6 +39,12 @@ impl Scale {
         Self(libm::ldexp(1.0, -exponent.clamp(-1000, 1000)))
     }
 
+    /// A distance in sizes of the scene. What begins farther along the ray than the nearest hit so far is of no interest.
+    #[inline(always)]
+    pub(super) fn limit(self, distance: f64) -> f32 {
+        (distance * self.0) as f32
+    }
+
     fn padding(bounds: &Bounds) -> f64 {
         padding(f32::MANTISSA_DIGITS) * bounds.largest().max(SMALLEST)
     }
@@ -240,12 +246,12 @@ mod tests {
                 let rows = |numbers: &[f64]| -> Vec<f32> {
                     numbers.iter().flat_map(|number| vec![*number as f32; V::Single::LANES]).collect()
                 };
-                let (_, met) = coarse.enter(&rows(&[padded.low, padded.high].concat()), (distance * scale.0) as f32);
+                let (_, met) = coarse.enter(&rows(&[padded.low, padded.high].concat()), scale.limit(distance));
                 wrong += usize::from(!met.any());
                 let sphere = scale.sphere(&bounds, center, radius);
                 // Where it is met: what is found at that very distance must not be left out.
                 let root = first_root(ray.origin - center, ray.direction, 1.0, radius);
-                wrong += usize::from(root > 0.0 && coarse.passes(&rows(&sphere), (root * scale.0) as f32).any());
+                wrong += usize::from(root > 0.0 && coarse.passes(&rows(&sphere), scale.limit(root)).any());
             }
             wrong
         }

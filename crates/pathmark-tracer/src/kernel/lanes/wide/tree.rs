@@ -128,7 +128,7 @@ impl<V: Float> Descent<'_, V> {
     fn keep(&mut self, lane: usize, best: &Best) {
         self.rays.nearest[lane] = V::one(best.nearest);
         self.rays.primitive[lane] = V::one(best.primitive);
-        self.rays.limits[lane] = (self.rays.nearest[lane].into() * self.blocks.scale.0) as f32;
+        self.rays.limits[lane] = self.blocks.scale.limit(self.rays.nearest[lane].into());
     }
 
     /// Tests rays against the boxes of the nodes that they are at, and keeps the children that they meet.
