@@ -33,27 +33,7 @@ impl<F: Write + ?Sized> Hashed<'_, F> {
         self.hash.update(bytes);
         self.file.write_all(bytes)
     }
-}
 
-impl<F: Read + ?Sized> Hashed<'_, F> {
-    fn fill(&mut self, bytes: &mut [u8]) -> io::Result<()> {
-        self.file.read_exact(bytes)?;
-        self.hash.update(bytes);
-        Ok(())
-    }
-
-    fn number(&mut self) -> io::Result<u64> {
-        let mut bytes = [0; 8];
-        self.fill(&mut bytes)?;
-        Ok(u64::from_le_bytes(bytes))
-    }
-}
-
-fn damaged(problem: &str) -> io::Error {
-    io::Error::new(ErrorKind::InvalidData, problem)
-}
-
-impl<F: Write + ?Sized> Hashed<'_, F> {
     fn put_all(&mut self, numbers: impl Iterator<Item = u32>) -> io::Result<()> {
         let mut bytes = Vec::with_capacity(BLOCK * size_of::<u32>());
         for number in numbers {
@@ -68,6 +48,18 @@ impl<F: Write + ?Sized> Hashed<'_, F> {
 }
 
 impl<F: Read + ?Sized> Hashed<'_, F> {
+    fn fill(&mut self, bytes: &mut [u8]) -> io::Result<()> {
+        self.file.read_exact(bytes)?;
+        self.hash.update(bytes);
+        Ok(())
+    }
+
+    fn number(&mut self) -> io::Result<u64> {
+        let mut bytes = [0; 8];
+        self.fill(&mut bytes)?;
+        Ok(u64::from_le_bytes(bytes))
+    }
+
     fn take_all(&mut self, count: usize) -> io::Result<Vec<u32>> {
         let mut numbers = Vec::with_capacity(count);
         let mut bytes = vec![0; BLOCK * size_of::<u32>()];
@@ -78,6 +70,10 @@ impl<F: Read + ?Sized> Hashed<'_, F> {
         }
         Ok(numbers)
     }
+}
+
+fn damaged(problem: &str) -> io::Error {
+    io::Error::new(ErrorKind::InvalidData, problem)
 }
 
 impl Hierarchy {
