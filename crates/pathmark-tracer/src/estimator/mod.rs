@@ -147,7 +147,7 @@ pub trait Estimator: Send + Sync {
     const COMPILED: Compiled = Compiled::WithAllEffects;
 
     /// How it follows paths, for kernels that follow many at once; `None` if it does something else.
-    fn course(&self) -> Option<PathRules> {
+    fn rules(&self) -> Option<PathRules> {
         None
     }
 
@@ -166,16 +166,16 @@ pub trait Estimator: Send + Sync {
 /// An estimator behind a pointer, with every effect in it: for whoever looks into samples and does not count seconds. One instance serves every
 /// sampler and probe; an effect that a scene does not call for changes no bit.
 pub trait AnyEstimator: Send + Sync {
-    /// [`Estimator::course`].
-    fn any_course(&self) -> Option<PathRules>;
+    /// [`Estimator::rules`].
+    fn any_rules(&self) -> Option<PathRules>;
 
     /// [`Estimator::sample`].
     fn estimate(&self, scene: &Scene, ray: Ray, key: SampleKey, sampler: &dyn Sampler, probe: &mut dyn Probe) -> Rgb;
 }
 
 impl<E: Estimator> AnyEstimator for E {
-    fn any_course(&self) -> Option<PathRules> {
-        self.course()
+    fn any_rules(&self) -> Option<PathRules> {
+        self.rules()
     }
 
     fn estimate(
@@ -199,8 +199,8 @@ impl<E: Estimator> Estimator for Arc<E> {
     const LARGEST_DEPTH: u16 = E::LARGEST_DEPTH;
     const SHARES_CAMERA_RAYS: bool = E::SHARES_CAMERA_RAYS;
 
-    fn course(&self) -> Option<PathRules> {
-        (**self).course()
+    fn rules(&self) -> Option<PathRules> {
+        (**self).rules()
     }
 
     #[inline(always)]

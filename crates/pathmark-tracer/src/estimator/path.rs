@@ -82,7 +82,7 @@ impl Path<Aimed> {
 }
 
 impl<R: Rules> Estimator for Path<R> {
-    fn course(&self) -> Option<PathRules> {
+    fn rules(&self) -> Option<PathRules> {
         let is_weighted = self.light == Light::Weighted;
         let aims = R::AIMS.then_some(is_weighted);
         let Self { max_depth, roulette, camera_rays, .. } = *self;

@@ -184,7 +184,7 @@ impl Choice {
         match &self.way {
             Way::Device(_) | Way::Scalar { .. } => self.profile.name,
             way => match way.lanes() {
-                Some(lanes) if lanes.is_matt => DiffuseOnly::NAME,
+                Some(lanes) if lanes.is_diffuse_only => DiffuseOnly::NAME,
                 Some(_) => AT_RUN_TIME,
                 None => self.profile.name,
             },
@@ -242,13 +242,13 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
     };
     let (estimator, own) = estimator_named(&spec.estimator, own)?;
     let mut options = options(spec, &estimator, own.is_some())?;
-    let course = match &own {
-        Some(own) => own.any().any_course(),
-        None => any_estimator(estimator.name, options).and_then(|estimator| estimator.any_course()),
+    let rules = match &own {
+        Some(own) => own.any().any_rules(),
+        None => any_estimator(estimator.name, options).and_then(|estimator| estimator.any_rules()),
     };
     if own.is_some() {
         // It was made with its own.
-        options.camera_rays = course.map(|course| course.camera_rays).filter(|number| *number != 1);
+        options.camera_rays = rules.map(|rules| rules.camera_rays).filter(|number| *number != 1);
     }
     let clamp = spec.clamp.as_deref().map(Clamp::parse).transpose()?;
     if let Some(number) = options.camera_rays.filter(|_| clamp.is_some_and(|clamp| clamp.what == Clamped::Recursion)) {
@@ -256,7 +256,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         return Err(InputError::new("camera-rays", number.to_string(), problem).allowed("1").into());
     }
     let epsilon = epsilon(spec)?;
-    let way = way_for(scene, spec, course, epsilon)?;
+    let way = way_for(scene, spec, rules, epsilon)?;
     let scan = match way.lanes() {
         None => Scan::OneByOne,
         Some(chosen) => {

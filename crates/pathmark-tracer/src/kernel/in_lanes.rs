@@ -14,10 +14,10 @@ use crate::simd::{Entry as LevelEntry, LEVELS, Level, Precision};
 pub(super) struct InLanes {
     pub(super) level: Level,
     pub(super) precision: Precision,
-    pub(super) course: PathRules,
+    pub(super) rules: PathRules,
     pub(super) sampler: LaneSampler,
     /// Whether they are compiled for diffuse surfaces alone.
-    pub(super) is_matt: bool,
+    pub(super) is_diffuse_only: bool,
 }
 
 /// As many primitives as single precision has whole numbers for are more than lanes tell apart.
@@ -40,17 +40,17 @@ fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static
 pub(super) fn lanes_for(
     scene: &Scene,
     spec: &Spec,
-    course: Option<PathRules>,
+    rules: Option<PathRules>,
     epsilon: Option<f64>,
 ) -> Result<std::result::Result<InLanes, &'static str>> {
     let level = level(LEVELS, spec.simd.as_deref())?;
     let precision = precision(spec)?;
-    Ok(Err(match (obstacle(scene, spec, epsilon), course, LaneSampler::find(&spec.sampler)) {
-        (None, Some(course), Some(sampler)) => {
+    Ok(Err(match (obstacle(scene, spec, epsilon), rules, LaneSampler::find(&spec.sampler)) {
+        (None, Some(rules), Some(sampler)) => {
             let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
             // Where most of the time goes to lights, being compiled for it would gain 3 %, and takes as long to compile as the others.
-            let is_matt = is_diffuse && course.aims.is_none() && !level.is_fallback();
-            return Ok(Ok(InLanes { level, precision, course, sampler, is_matt }));
+            let is_diffuse_only = is_diffuse && rules.aims.is_none() && !level.is_fallback();
+            return Ok(Ok(InLanes { level, precision, rules, sampler, is_diffuse_only }));
         }
         (Some(reason), ..) => reason,
         (None, None, _) => "estimator",

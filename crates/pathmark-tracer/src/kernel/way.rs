@@ -44,14 +44,14 @@ impl Way {
 }
 
 /// The kernel for a scene with these settings.
-pub(super) fn way_for(scene: &Scene, spec: &Spec, course: Option<PathRules>, epsilon: Option<f64>) -> Result<Way> {
+pub(super) fn way_for(scene: &Scene, spec: &Spec, rules: Option<PathRules>, epsilon: Option<f64>) -> Result<Way> {
     let instead = |reason| Way::Scalar { instead_because: reason };
     if let Some((own, devices)) = spec.kernel.split_once('+') {
-        return beside(scene, spec, (own, devices), course, epsilon);
+        return beside(scene, spec, (own, devices), rules, epsilon);
     }
     match spec.kernel.split_once(':').map_or(spec.kernel.as_str(), |(kernel, _)| kernel) {
-        DEVICE => Ok(device_for(scene, spec, course, epsilon)?.map_or_else(instead, Way::Device)),
-        _ if spec.kernel == LANES => Ok(lanes_for(scene, spec, course, epsilon)?.map_or_else(instead, Way::Lanes)),
+        DEVICE => Ok(device_for(scene, spec, rules, epsilon)?.map_or_else(instead, Way::Device)),
+        _ if spec.kernel == LANES => Ok(lanes_for(scene, spec, rules, epsilon)?.map_or_else(instead, Way::Lanes)),
         _ if spec.kernel == SCALAR => {
             level(LEVELS, spec.simd.as_deref())?;
             precision(spec)?;
@@ -69,12 +69,12 @@ fn beside(
     scene: &Scene,
     spec: &Spec,
     (own, devices): (&str, &str),
-    course: Option<PathRules>,
+    rules: Option<PathRules>,
     epsilon: Option<f64>,
 ) -> Result<Way> {
     let by = |kernel: &str, simd: Option<&String>| {
         let spec = Spec { kernel: kernel.to_string(), simd: simd.cloned(), ..spec.clone() };
-        way_for(scene, &spec, course, epsilon)
+        way_for(scene, &spec, rules, epsilon)
     };
     let (own_name, own) = (own, by(own, spec.simd.as_ref())?);
     if !matches!(own, Way::Lanes(_) | Way::Scalar { instead_because: "" }) {

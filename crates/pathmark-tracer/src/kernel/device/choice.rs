@@ -18,7 +18,7 @@ pub(in crate::kernel) struct ForDevice {
     pub(in crate::kernel) kernel: String,
     /// The device's own name; `None` where any GPU would do and there is none.
     pub(in crate::kernel) id: Option<String>,
-    pub(super) course: PathRules,
+    pub(super) rules: PathRules,
     pub(in crate::kernel) precision: Precision,
     /// The sampler's place among [`SAMPLERS`].
     pub(super) sampler: u32,
@@ -81,7 +81,7 @@ pub(in crate::kernel) fn missing(kernel: &str) -> Error {
 pub(in crate::kernel) fn device_for(
     scene: &Scene,
     spec: &Spec,
-    course: Option<PathRules>,
+    rules: Option<PathRules>,
     epsilon: Option<f64>,
 ) -> Result<std::result::Result<ForDevice, &'static str>> {
     if let Some(level) = &spec.simd {
@@ -94,10 +94,10 @@ pub(in crate::kernel) fn device_for(
     let is_there = precision == Precision::F64 || LaneSampler::find(&spec.sampler).is_some();
     let sampler = (0..).zip(SAMPLERS).find(|(_, (name, _))| is_there && *name == spec.sampler);
     let sampler = sampler.map(|(number, _)| number);
-    Ok(match (obstacle(scene, spec, epsilon, precision), course, sampler) {
-        (None, Some(course), Some(sampler)) => {
+    Ok(match (obstacle(scene, spec, epsilon, precision), rules, sampler) {
+        (None, Some(rules), Some(sampler)) => {
             let kernel = id.as_ref().map_or_else(|| DEVICE.to_string(), |id| format!("{DEVICE}:{id}"));
-            Ok(ForDevice { kernel, id, course, precision, sampler })
+            Ok(ForDevice { kernel, id, rules, precision, sampler })
         }
         (Some(reason), ..) => Err(reason),
         (None, None, _) => Err("estimator"),

@@ -56,7 +56,7 @@ impl OnDevice {
         let failed = |error: DeviceError| system(&id, &error);
         let device = pathmark_device::open(&id).map_err(failed)?;
         let (numbers, words) = tables::of(scene, choice, chosen);
-        let text = program::text(choice.profile.effects, &chosen.course, chosen.precision);
+        let text = program::text(choice.profile.effects, &chosen.rules, chosen.precision);
         let uses_single = chosen.precision == Precision::F32;
         let loaded = device.load(&text, uses_single, &numbers, &words).map_err(failed)?;
         let width = device.width();

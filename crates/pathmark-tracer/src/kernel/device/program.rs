@@ -123,14 +123,14 @@ fn numbers(precision: Precision) -> Vec<(&'static str, f64)> {
     ]
 }
 
-fn definitions(effects: Effects, course: &PathRules, precision: Precision) -> String {
+fn definitions(effects: Effects, rules: &PathRules, precision: Precision) -> String {
     let mut all = Definitions(String::new());
     for entry in PRIMITIVES.iter().chain(crate::material::MATERIALS).chain(FEATURES) {
         all.add(&format!("HAS_{}", constant(entry.name)), u8::from(effects.cover(entry.effect)));
     }
-    all.add("SPLITS", course.splits);
-    all.add("AIMS", u8::from(course.aims.is_some()));
-    all.add("HAS_CAMERA_RAYS", u8::from(course.camera_rays > 1));
+    all.add("SPLITS", rules.splits);
+    all.add("AIMS", u8::from(rules.aims.is_some()));
+    all.add("HAS_CAMERA_RAYS", u8::from(rules.camera_rays > 1));
     all.add_numbered(SAMPLERS.iter().map(|(_, name)| *name));
     all.add_numbered(MATERIALS.iter().copied());
     for names in KINDS {
@@ -234,8 +234,8 @@ fn in_single(text: &str, names: &BTreeSet<&str>) -> String {
 }
 
 /// The program for scenes with these effects and paths by these rules.
-pub(super) fn text(effects: Effects, course: &PathRules, precision: Precision) -> String {
-    let definitions = definitions(effects, course, precision);
+pub(super) fn text(effects: Effects, rules: &PathRules, precision: Precision) -> String {
+    let definitions = definitions(effects, rules, precision);
     let double = [&[definitions.as_str()], DOUBLE].concat().concat();
     if precision == Precision::F64 {
         return [&[double.as_str()], PATH].concat().concat();

@@ -308,17 +308,17 @@ impl Tables {
     }
 
     fn set_rules(&mut self, choice: &Choice, chosen: &ForDevice) {
-        let (by, chance) = match chosen.course.roulette.by {
+        let (by, chance) = match chosen.rules.roulette.by {
             By::Albedo => (0, 0.0),
             By::Throughput => (1, 0.0),
             By::Constant(chance) => (2, chance),
         };
-        self.set_words("AT_ROULETTE", &[by, u32::from(chosen.course.roulette.after())]);
+        self.set_words("AT_ROULETTE", &[by, u32::from(chosen.rules.roulette.after())]);
         self.set_numbers("VIEW_ROULETTE", &[chance]);
-        self.set_words("AT_MAX_DEPTH", &[u32::from(chosen.course.max_depth)]);
-        self.set_words("AT_CAMERA_RAYS", &[u32::from(chosen.course.camera_rays)]);
-        self.set_numbers("VIEW_CAMERA_SHARE", &[camera_share(chosen.course.camera_rays)]);
-        self.set_words("AT_IS_WEIGHTED", &[u32::from(chosen.course.aims == Some(true))]);
+        self.set_words("AT_MAX_DEPTH", &[u32::from(chosen.rules.max_depth)]);
+        self.set_words("AT_CAMERA_RAYS", &[u32::from(chosen.rules.camera_rays)]);
+        self.set_numbers("VIEW_CAMERA_SHARE", &[camera_share(chosen.rules.camera_rays)]);
+        self.set_words("AT_IS_WEIGHTED", &[u32::from(chosen.rules.aims == Some(true))]);
         let seed = mix(choice.seed);
         self.set_words("AT_SEED_KEY", &[seed as u32, (seed >> 32) as u32]);
         self.set_words("AT_SAMPLER", &[chosen.sampler]);

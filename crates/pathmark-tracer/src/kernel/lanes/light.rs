@@ -44,11 +44,11 @@ impl Lanes {
     /// What counts of light that paths arrive at: a share of what their camera rays see.
     #[inline(always)]
     pub(super) fn counted<V: Float>(&self, packet: &Packet<'_, V>, light: Rgb<V>) -> Rgb<V> {
-        if self.course.camera_rays == 1 {
+        if self.rules.camera_rays == 1 {
             return light;
         }
         let is_seen = packet.vertices.equal(V::Bits::splat(0));
-        Rgb::select(is_seen, light * V::splat(camera_share(self.course.camera_rays)), light)
+        Rgb::select(is_seen, light * V::splat(camera_share(self.rules.camera_rays)), light)
     }
 
     /// The share of emission that counts where rays arrived whose start aimed at light, too.
@@ -68,7 +68,7 @@ impl Lanes {
             }
             None => zero,
         };
-        let share = match self.course.aims {
+        let share = match self.rules.aims {
             Some(true) => power_heuristic(packet.density, aimed),
             _ => V::select(zero.lt(aimed), zero, one),
         };
@@ -105,7 +105,7 @@ impl Lanes {
         let (_, met) = self.nearest(&rays, lit.lanes.bits(), &mut packet.scratch, counts);
         counts.rays += u64::from(lit.lanes.bits().count_ones());
         let [r, g, b, _] = V::rows(&self.tables.emissions, self.tables.rows(aims.primitive));
-        let weight = match self.course.aims {
+        let weight = match self.rules.aims {
             Some(true) => power_heuristic(aims.density, lit.density),
             _ => V::splat(1.0),
         };

@@ -43,13 +43,13 @@ pub(super) struct Lanes {
     view: View,
     width: u32,
     seed: u64,
-    course: PathRules,
+    rules: PathRules,
     sampler: Sampler,
     tables: Tables,
     targets: Option<Box<Targets>>,
     level: Level,
     precision: Precision,
-    is_matt: bool,
+    is_diffuse_only: bool,
     search: Search,
 }
 
@@ -67,7 +67,7 @@ impl Lanes {
     pub(super) fn new(
         scene: &Arc<Scene>,
         choice: &Choice,
-        InLanes { level, precision, course, sampler, is_matt }: InLanes,
+        InLanes { level, precision, rules, sampler, is_diffuse_only }: InLanes,
     ) -> Result<Self> {
         let view = choice.view(scene);
         let is_round = scene.is_round();
@@ -89,10 +89,10 @@ impl Lanes {
             scene: Arc::clone(scene),
             width: choice.width,
             seed: choice.seed,
-            course,
+            rules,
             sampler,
             level,
-            is_matt,
+            is_diffuse_only,
         })
     }
 
@@ -103,13 +103,18 @@ impl Lanes {
 
     /// Gives back the samples whose paths have ended; paths that have another part go on with that.
     #[inline(always)]
-    fn retire<V: Float, const MATT: bool>(&self, packet: &mut Packet<'_, V>, ended: u32, window: &mut Window<'_>) {
+    fn retire<V: Float, const DIFFUSE_ONLY: bool>(
+        &self,
+        packet: &mut Packet<'_, V>,
+        ended: u32,
+        window: &mut Window<'_>,
+    ) {
         let [mut r, mut g, mut b] = [[V::One::default(); MOST_LANES]; 3];
         packet.collected.r.store(&mut r);
         packet.collected.g.store(&mut g);
         packet.collected.b.store(&mut b);
         for lane in LanesOf(ended) {
-            if !MATT && self.course.splits > 0 && V::apart(NextPart { packet, lane }) {
+            if !DIFFUSE_ONLY && self.rules.splits > 0 && V::apart(NextPart { packet, lane }) {
                 packet.alive |= 1 << lane;
             } else {
                 window.give_back(packet.slots[lane], Rgb { r: r[lane].into(), g: g[lane].into(), b: b[lane].into() });
@@ -118,7 +123,7 @@ impl Lanes {
     }
 
     #[inline(always)]
-    fn follow<V: Float, const AIMS: bool, const MATT: bool>(
+    fn follow<V: Float, const AIMS: bool, const DIFFUSE_ONLY: bool>(
         &self,
         piece: &Piece,
         waiting: &mut [Parts],
@@ -126,7 +131,7 @@ impl Lanes {
         out: &mut TileBuffer,
     ) -> Counts {
         let mut counts = Counts::default();
-        let mut window = Window::over(piece, out, self.course.camera_rays > 1);
+        let mut window = Window::over(piece, out, self.rules.camera_rays > 1);
         let mut packet = Packet::<V>::new(waiting, stacks);
         let mut supply = Supply::<V>::new();
         // Lanes whose part of a path has ended, and that still hold it.
@@ -134,14 +139,14 @@ impl Lanes {
         loop {
             let idle = V::LANES as u32 - packet.alive.count_ones();
             if ended != 0 && idle >= held::<V>() || packet.alive == 0 {
-                self.retire::<V, MATT>(&mut packet, ended, &mut window);
+                self.retire::<V, DIFFUSE_ONLY>(&mut packet, ended, &mut window);
                 ended = 0;
                 self.refill(&mut packet, &mut supply, &mut window, &mut counts);
                 if packet.alive == 0 {
                     return counts;
                 }
             }
-            let now = self.advance::<V, AIMS, MATT>(&mut packet, &mut counts) & packet.alive;
+            let now = self.advance::<V, AIMS, DIFFUSE_ONLY>(&mut packet, &mut counts) & packet.alive;
             packet.alive &= !now;
             ended |= now;
         }
@@ -155,7 +160,7 @@ const fn held<V: Float>() -> u32 {
 }
 
 /// A piece to render: by paths that aim at light or by paths that do not, in a scene in which every surface is diffuse or in any.
-struct Render<'a, const AIMS: bool, const MATT: bool> {
+struct Render<'a, const AIMS: bool, const DIFFUSE_ONLY: bool> {
     kernel: &'a Lanes,
     piece: &'a Piece,
     waiting: &'a mut [Parts],
@@ -163,22 +168,22 @@ struct Render<'a, const AIMS: bool, const MATT: bool> {
     out: &'a mut TileBuffer,
 }
 
-impl<const AIMS: bool, const MATT: bool> Work for Render<'_, AIMS, MATT> {
-    const IS_SHORTCUT: bool = MATT;
+impl<const AIMS: bool, const DIFFUSE_ONLY: bool> Work for Render<'_, AIMS, DIFFUSE_ONLY> {
+    const IS_SHORTCUT: bool = DIFFUSE_ONLY;
     type Output = Counts;
 
     #[inline(always)]
     fn run<V: Float>(self) -> Counts {
-        self.kernel.follow::<V, AIMS, MATT>(self.piece, self.waiting, self.stacks, self.out)
+        self.kernel.follow::<V, AIMS, DIFFUSE_ONLY>(self.piece, self.waiting, self.stacks, self.out)
     }
 }
 
 impl Lanes {
-    fn render_by<const AIMS: bool, const MATT: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        let splitting = if self.course.splits > 0 { sizes_of(self.level, self.precision).lanes } else { 0 };
+    fn render_by<const AIMS: bool, const DIFFUSE_ONLY: bool>(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
+        let splitting = if self.rules.splits > 0 { sizes_of(self.level, self.precision).lanes } else { 0 };
         let mut waiting = vec![NO_PARTS; splitting];
         let mut stacks = self.stacks();
-        let work = Render::<AIMS, MATT> {
+        let work = Render::<AIMS, DIFFUSE_ONLY> {
             kernel: self,
             piece,
             waiting: &mut waiting,
@@ -191,7 +196,7 @@ impl Lanes {
 
 impl Kernel for Lanes {
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts {
-        match (self.course.aims.is_some(), self.is_matt) {
+        match (self.rules.aims.is_some(), self.is_diffuse_only) {
             (true, _) => self.render_by::<true, false>(piece, out),
             (false, true) => self.render_by::<false, true>(piece, out),
             (false, false) => self.render_by::<false, false>(piece, out),

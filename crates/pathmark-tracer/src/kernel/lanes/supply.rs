@@ -124,7 +124,7 @@ impl Lanes {
         let subpixel = V::number(samples & V::Bits::splat(u64::from(SUBPIXELS - 1)));
         let pixel = [V::number(V::Bits::load(columns)), V::number(V::Bits::load(rows))];
         let batch = Batch { pixel, subpixel, words, count: supply.count };
-        if self.course.camera_rays > 1 && batch.count > 0 {
+        if self.rules.camera_rays > 1 && batch.count > 0 {
             let seen = self.seen_besides(&batch, scratch, counts);
             for lane in 0..batch.count {
                 window.add_beforehand(supply.slot + lane as u64, colour(&seen, lane));
@@ -155,7 +155,7 @@ impl Lanes {
     fn seen_besides<V: Float>(&self, batch: &Batch<V>, scratch: &mut Scratch<'_, V>, counts: &mut Counts) -> Rgb<V> {
         let wanted = u32::MAX >> (MOST_LANES - batch.count);
         let mut seen = Rgb::splat(Rgb::BLACK);
-        for number in 1..self.course.camera_rays {
+        for number in 1..self.rules.camera_rays {
             let ray = self.camera_rays(batch, V::Bits::splat(number.into()));
             let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
             let (_, primitive) = self.nearest(&rays, wanted, scratch, counts);
@@ -169,7 +169,7 @@ impl Lanes {
                 seen = Rgb::select(met, seen, seen + Rgb::splat(background));
             }
         }
-        seen * V::splat(camera_share(self.course.camera_rays))
+        seen * V::splat(camera_share(self.rules.camera_rays))
     }
 
     /// Puts rays that wait into free lanes, the first into the lowest. The lanes that got one.
@@ -214,10 +214,10 @@ impl Lanes {
         packet.collected = Rgb::select(mask, Rgb::splat(Rgb::BLACK), packet.collected);
         let none = V::Bits::splat(0);
         packet.vertices = V::Bits::choose(mask, none, packet.vertices);
-        if self.course.splits > 0 {
+        if self.rules.splits > 0 {
             packet.branch = V::Bits::choose(mask, none, packet.branch);
         }
-        if self.course.aims.is_some() {
+        if self.rules.aims.is_some() {
             packet.density = V::select(mask, V::splat(-1.0), packet.density);
         }
         packet.alive |= taken;

@@ -63,7 +63,7 @@ struct Split<V: Float> {
 impl Lanes {
     /// Traces each path to its next vertex and on from there. The lanes whose part of a path has ended.
     #[inline(always)]
-    pub(super) fn advance<V: Float, const AIMS: bool, const MATT: bool>(
+    pub(super) fn advance<V: Float, const AIMS: bool, const DIFFUSE_ONLY: bool>(
         &self,
         packet: &mut Packet<'_, V>,
         counts: &mut Counts,
@@ -101,7 +101,7 @@ impl Lanes {
             let found = packet.collected + packet.throughput * emission;
             packet.collected = Rgb::select(lit, found, packet.collected);
         }
-        let cut = (packet.vertices.equal(V::Bits::splat(u64::from(self.course.max_depth))) & met).bits();
+        let cut = (packet.vertices.equal(V::Bits::splat(u64::from(self.rules.max_depth))) & met).bits();
         counts.truncated += u64::from(cut.count_ones());
         ended |= cut;
         if let Some(at) = &early {
@@ -112,9 +112,9 @@ impl Lanes {
             Some(at) => at,
             None => self.arrive(packet, met, t, primitive),
         };
-        let (scattered, split) = self.scatter::<V, AIMS, MATT>(packet, &at, &vertex, numbers, ended);
+        let (scattered, split) = self.scatter::<V, AIMS, DIFFUSE_ONLY>(packet, &at, &vertex, numbers, ended);
         ended |= scattered.absorbed;
-        leave::<V, MATT>(packet, &at, number, &scattered, split, &mut ended);
+        leave::<V, DIFFUSE_ONLY>(packet, &at, number, &scattered, split, &mut ended);
         ended
     }
 
@@ -151,11 +151,11 @@ impl Lanes {
     /// The lanes that chance ends.
     #[inline(always)]
     fn roulette<V: Float>(&self, packet: &mut Packet<'_, V>, lanes: V::Mask, vertex: &Vertex<V>) -> u32 {
-        let begun = lanes & V::Bits::splat(u64::from(self.course.roulette.after())).less(vertex.number);
+        let begun = lanes & V::Bits::splat(u64::from(self.rules.roulette.after())).less(vertex.number);
         if !begun.any() {
             return 0;
         }
-        let survival = self.course.roulette.chance(packet.throughput, vertex.albedo);
+        let survival = self.rules.roulette.chance(packet.throughput, vertex.albedo);
         let [number, _] = self.sampler.pair::<V>(&packet.words, vertex.number, packet.branch, Purpose::Roulette);
         let raised = packet.throughput * (V::splat(1.0) / survival);
         packet.throughput = Rgb::select(begun, raised, packet.throughput);
@@ -164,7 +164,7 @@ impl Lanes {
 
     /// The directions in which paths go on.
     #[inline(always)]
-    fn scatter<V: Float, const AIMS: bool, const MATT: bool>(
+    fn scatter<V: Float, const AIMS: bool, const DIFFUSE_ONLY: bool>(
         &self,
         packet: &Packet<'_, V>,
         at: &Arrival<V>,
@@ -177,7 +177,7 @@ impl Lanes {
         let density = wi.z * V::splat(std::f64::consts::FRAC_1_PI);
         let mut scattered = Scattered { wi, weight: vertex.albedo, is_delta: none, density, absorbed: 0 };
         let mut split = None;
-        if MATT {
+        if DIFFUSE_ONLY {
             return (scattered, split);
         }
         let going_on = at.lanes & !V::Mask::from_bits(ended);
@@ -226,7 +226,7 @@ impl Lanes {
             reflectance = V::select(is_exact, exact, reflectance);
         }
         let transmittance = one - reflectance;
-        let goes_both_ways = lanes & !is_total & vertex.number.less(V::Bits::splat(u64::from(self.course.splits) + 1));
+        let goes_both_ways = lanes & !is_total & vertex.number.less(V::Bits::splat(u64::from(self.rules.splits) + 1));
 
         let (chance, reflects, weight);
         if AIMS {
@@ -326,7 +326,7 @@ impl<T: Number> AllScattered<T> {
 
 /// Sets out in the new directions.
 #[inline(always)]
-fn leave<V: Float, const MATT: bool>(
+fn leave<V: Float, const DIFFUSE_ONLY: bool>(
     packet: &mut Packet<'_, V>,
     at: &Arrival<V>,
     vertices: V::Bits,
@@ -335,7 +335,7 @@ fn leave<V: Float, const MATT: bool>(
     ended: &mut u32,
 ) {
     let mut direction = at.frame.to_world(scattered.wi);
-    if !MATT && scattered.is_delta.any() {
+    if !DIFFUSE_ONLY && scattered.is_delta.any() {
         direction = Vec3::select(scattered.is_delta, direction.normalized(), direction);
     }
     let mut splits = 0;
