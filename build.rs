@@ -1,18 +1,18 @@
-//! Stamps the binary with what it was built from, and embeds every experiment in `experiments/`.
+//! Stamps the binary with its commit and build settings, and embeds every experiment in `experiments/`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-/// What a render depends on: an uncommitted change elsewhere does not make a measurement dirty.
+/// Sources that a render depends on: an uncommitted change elsewhere does not mark a measurement as dirty.
 const SOURCES: [&str; 7] = ["src", "crates", "experiments", "Cargo.toml", "Cargo.lock", "build.rs", "assets"];
 
 fn main() -> io::Result<()> {
     for source in SOURCES {
         println!("cargo::rerun-if-changed={source}");
     }
-    // A file that is not there would make every build run this again.
+    // Naming a missing file would make every build run this script again.
     if Path::new(".git/logs/HEAD").exists() {
         println!("cargo::rerun-if-changed=.git/logs/HEAD");
     }

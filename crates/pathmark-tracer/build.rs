@@ -1,4 +1,4 @@
-//! Embeds every scene of `experiments/scenes`, to which the link `scenes` leads.
+//! Embeds every scene of `experiments/scenes`, the target of the symbolic link `scenes`.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -12,8 +12,8 @@ fn main() -> io::Result<()> {
     embed("obj", &out.join("meshes.rs"))
 }
 
-/// Writes an array of (name, text) over the scenes or their meshes, sorted by name. Scenes go by their stems; files that scenes name keep their
-/// extension.
+/// Writes an array of (name, text) over the scenes or their meshes, sorted by name. Scenes are named by file stem;
+/// meshes keep their extension, as scenes refer to them by file name.
 fn embed(extension: &str, target: &Path) -> io::Result<()> {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join("scenes");
     let mut files: Vec<PathBuf> =

@@ -1,4 +1,4 @@
-//! GPUs by CUDA: `libcuda`, which comes with the driver, runs what `libnvrtc` compiles.
+//! GPUs by CUDA: `libnvrtc` compiles programs, and the driver's library `libcuda` runs them.
 #![expect(unsafe_code, reason = "calls of the driver; each has the arguments that CUDA's documentation asks for")]
 
 use super::library::{functions, open};
@@ -31,22 +31,23 @@ functions! { Driver;
     error_text = c"cuGetErrorString" (c_int, *mut *const c_char) -> c_int;
 }
 
-// Numbers of CUDA's header.
+// Constants of CUDA's header.
 const SUCCESS: c_int = 0;
 const NO_DEVICE: c_int = 100;
 const MULTIPROCESSORS: c_int = 16;
 const CAPABILITY_MAJOR: c_int = 75;
 const CAPABILITY_MINOR: c_int = 76;
 
-/// Items of a group, as the program's entry has it (`dialect/cuda_entry.cl`).
+/// Items of a group, as in the program's entry (`dialect/cuda_entry.cl`).
 const GROUP: u32 = 128;
-/// Items that keep a multiprocessor busy: those that it has registers for. With more, items of fewer samples come back, and their copies take time.
+/// Items that keep a multiprocessor busy: as many as its registers allow. More would mean items of fewer samples, whose
+/// results take time to copy.
 const ITEMS_PER_MULTIPROCESSOR: u32 = 4 * GROUP;
 
-/// Why there is no driver to ask.
+/// The reason why the driver cannot be used.
 struct NoDriver {
     why: String,
-    /// Whether there is one that refuses.
+    /// Whether a driver exists but refuses.
     is_broken: bool,
 }
 
@@ -61,10 +62,10 @@ static DRIVER: LazyLock<std::result::Result<Driver, NoDriver>> = LazyLock::new(|
     }
 });
 
-/// The driver's words for an error.
+/// The driver's text for an error.
 fn text_of(driver: &Driver, code: c_int) -> String {
     let mut text = null();
-    // SAFETY: the driver gives a text of its own, which stays, or leaves null.
+    // SAFETY: the driver sets the pointer to a static text, or leaves it null.
     unsafe { (driver.error_text)(code, &raw mut text) };
     if text.is_null() {
         return format!("error {code}");
@@ -129,7 +130,7 @@ pub(crate) fn list() -> Vec<Listed> {
     listed.collect()
 }
 
-/// A handle that may go from thread to thread.
+/// A handle that may move between threads.
 #[derive(Clone, Copy)]
 struct Shared(Handle);
 
@@ -153,7 +154,7 @@ impl Context {
         Err(DeviceError::Call { call, why: text_of(self.driver, code) })
     }
 
-    /// Makes the context the calling thread's.
+    /// Makes this the calling thread's current context.
     fn enter(&self) -> Result<()> {
         // SAFETY: the context stays to the end of the process.
         self.checked("cuCtxSetCurrent", unsafe { (self.driver.set_current)(self.handle.0) })
@@ -192,15 +193,15 @@ impl Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        // A context that is lost has no memory to give back.
+        // A lost context has no memory to free.
         if self.context.enter().is_ok() {
-            // SAFETY: the address is this one's own.
+            // SAFETY: this value owns the address.
             unsafe { (self.context.driver.free)(self.address) };
         }
     }
 }
 
-/// A GPU by CUDA.
+/// A CUDA GPU.
 pub(crate) struct Cuda {
     about: String,
     width: u32,
@@ -277,18 +278,18 @@ impl Device for Cuda {
     }
 }
 
-/// A function with its inputs.
+/// A compiled function with its inputs.
 struct Bound {
     context: Arc<Context>,
     function: Shared,
     numbers: Buffer,
     words: Buffer,
-    /// Room for a task and its results, kept from run to run.
+    /// Buffers for a task and its results, reused from run to run.
     kept: Mutex<[Option<Buffer>; 2]>,
     costs: Costs,
 }
 
-/// The address of a buffer of at least that size, made anew if the one there is is smaller.
+/// Returns a buffer of at least this size; replaces the existing one if that is smaller.
 fn kept<'a>(context: &Arc<Context>, place: &'a mut Option<Buffer>, bytes: usize) -> Result<&'a Buffer> {
     if place.as_ref().is_none_or(|buffer| buffer.bytes < bytes) {
         *place = None;
@@ -303,7 +304,7 @@ impl Loaded for Bound {
     }
 
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
-        // One run at a time: they share the room for their results.
+        // One run at a time, because runs share the buffer for results.
         let mut room = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         let context = &self.context;
         context.enter()?;
@@ -338,7 +339,7 @@ impl Loaded for Bound {
             )
         };
         context.checked("cuLaunchKernel", code)?;
-        // SAFETY: `out` has this size. The copy waits for the launch before it, whose failure it tells.
+        // SAFETY: `out` has this size. The copy waits for the previous launch and reports its failure.
         let code =
             unsafe { (context.driver.from_device)(out.as_mut_ptr().cast(), out_buffer.address, size_of_val(out)) };
         context.checked("cuMemcpyDtoH", code)
@@ -349,7 +350,7 @@ impl Loaded for Bound {
 mod tests {
     use super::*;
 
-    /// The entry promises the compiler groups as they are launched: of larger ones no launch would succeed.
+    /// The entry's launch bounds must match the launched groups: a launch of larger groups would fail.
     #[test]
     fn the_entry_has_the_groups_that_are_launched() {
         let bounds = format!("__launch_bounds__({GROUP}, {})", ITEMS_PER_MULTIPROCESSOR / GROUP);

@@ -1,9 +1,9 @@
-//! What stands before and after a program, so that a compiler takes it for its own language.
+//! Dialects: the text before and after a program that makes it valid in a compiler's language.
 
-/// A language of the three.
+/// One of the three languages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
-    /// C of 1999, as GCC and Clang know it.
+    /// C99 with the extensions of GCC and Clang.
     C,
     /// OpenCL C 1.2 with double precision.
     OpenCl,
@@ -12,7 +12,7 @@ pub enum Dialect {
 }
 
 impl Dialect {
-    /// The whole text for the compiler.
+    /// Returns the complete text for the compiler.
     pub fn whole(self, program: &str) -> String {
         let (words, entry) = match self {
             Self::C => (include_str!("dialect/c.cl"), include_str!("dialect/c_entry.cl")),

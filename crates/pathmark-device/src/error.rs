@@ -1,41 +1,41 @@
-//! What can go wrong with a device.
+//! Errors of devices.
 
 use thiserror::Error;
 
-/// Why there is no device, or why it failed.
+/// The reason why there is no device, or why it failed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum DeviceError {
-    /// Nothing is called that.
+    /// No device can have this name.
     #[error("{id} is no device (there is cuda:N, opencl:N with a number N from 0, or host)")]
     NoName {
-        /// As it was written.
+        /// The name as it was written.
         id: String,
     },
-    /// There is no such device here.
+    /// This machine has no such device.
     #[error("there is no {id} here: {why}")]
     Missing {
         /// Its name.
         id: String,
-        /// What was tried.
+        /// The attempts that failed.
         why: String,
     },
     /// The compiler refused the program.
     #[error("{compiler} refused the program:\n{log}")]
     Compiler {
-        /// Whose compiler.
+        /// The compiler's name.
         compiler: String,
-        /// What it said.
+        /// The compiler's messages.
         log: String,
     },
     /// A call of the device's driver failed.
     #[error("{call} failed: {why}")]
     Call {
-        /// The function.
+        /// The driver's function.
         call: &'static str,
-        /// What the driver says of it.
+        /// The driver's text for the error.
         why: String,
     },
-    /// It does not round as IEEE 754 demands.
+    /// The device does not round as IEEE 754 demands.
     #[error("it does not compute as IEEE 754 demands: {operation}")]
     Inexact {
         /// The operation and its operands.

@@ -1,4 +1,5 @@
-//! The host's C compiler as a device: `cc`, or what `CC` names. Every thread that runs items computes them itself.
+//! The host's C compiler as a device: `cc`, or the compiler that `CC` names. The thread that calls `run` computes the
+//! items.
 #![expect(unsafe_code, reason = "a function that was compiled a moment ago is called; its text is in this crate")]
 
 use super::library::in_full;
@@ -14,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// `pathmark_run` of `dialect/c_entry.cl`.
 type Run = unsafe extern "C" fn(*const *const c_void, *const u32, u32, *mut u64);
 
-/// No operation is fused with another or put in another order; nobody asks for `errno`.
+/// Operations are neither fused nor reordered; nothing reads `errno`.
 const OPTIONS: &[&str] = &[
     "-x",
     "c",
@@ -32,7 +33,7 @@ fn compiler() -> OsString {
     env::var_os("CC").filter(|name| !name.is_empty()).unwrap_or_else(|| "cc".into())
 }
 
-/// The compiler's first line about itself.
+/// The first line of the compiler's version text.
 fn version() -> Result<String> {
     let missing = |why: String| DeviceError::Missing { id: HOST.to_string(), why };
     let name = compiler();
@@ -50,7 +51,7 @@ pub(crate) fn list() -> Vec<Listed> {
     vec![Listed { id: HOST.to_string(), about, is_there, is_broken: false, is_accelerator: false }]
 }
 
-/// The processor by the C compiler.
+/// The host processor, programmed with the C compiler.
 pub(crate) struct Host {
     about: String,
     compiled: Mutex<HashMap<String, Arc<Library>>>,
@@ -78,7 +79,7 @@ impl Host {
         if !said.status.success() {
             return Err(refused(String::from_utf8_lossy(&said.stderr).into_owned()));
         }
-        // SAFETY: the library has no code that runs when it is loaded. Its file may go: it is mapped.
+        // SAFETY: the library runs no code when it is loaded. Its file may be deleted, because it is mapped.
         unsafe { Library::new(&library) }.map_err(|e| refused(in_full(&e)))
     }
 }
@@ -115,13 +116,13 @@ impl Device for Host {
     }
 }
 
-/// A function with its inputs.
+/// A compiled function with its inputs.
 struct Bound {
     run: Run,
     numbers: Vec<f64>,
     words: Vec<u32>,
     costs: Costs,
-    /// Where the function lives.
+    /// The library that contains the function.
     _library: Arc<Library>,
 }
 
@@ -132,7 +133,7 @@ impl Loaded for Bound {
 
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()> {
         let inputs = [self.numbers.as_ptr().cast::<c_void>(), self.words.as_ptr().cast()];
-        // SAFETY: the function reads its inputs, and writes so many words for each item as the caller has made room for.
+        // SAFETY: the function reads its inputs, and writes only the words of each item for which the caller made room.
         unsafe { (self.run)(inputs.as_ptr(), task.as_ptr(), items, out.as_mut_ptr()) };
         Ok(())
     }

@@ -1,16 +1,20 @@
-//! One program text for three kinds of device: a GPU by CUDA, whatever OpenCL finds, and the processor by the host's C compiler.
+//! One program text for three kinds of device: GPUs by CUDA, all devices of OpenCL, and the processor by the host's C
+//! compiler.
 //!
-//! A program is written in what C, OpenCL C and CUDA C have in common, with the words of the [dialects](Dialect): `real`, `u32`, `u64`, `GLOBAL`,
-//! `FN`, `SQUARE_ROOT`, `MAGNITUDE`, `WITH_SIGN`, `COUNT_ONES`, `INFINITE`, and of `float` those with `SINGLE_` before them and `FUSED`. It defines
+//! A program uses only the common part of C, OpenCL C and CUDA C, and the words of the [dialects](Dialect): `real`,
+//! `u32`, `u64`, `GLOBAL`, `FN`, `SQUARE_ROOT`, `MAGNITUDE`, `WITH_SIGN`, `COUNT_ONES`, `INFINITE`, and for `float` the
+//! same with the prefix `SINGLE_`, and `FUSED`. It defines
 //!
 //! ```c
 //! FN void run_item(u32 item, GLOBAL const real *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out);
 //! ```
 //!
-//! which is called once for each item. Every operation is rounded once, by IEEE 754: compilers are told to fuse none but `FUSED`, and a device
-//! shows in a table of operations that it obeys (`Device::load` refuses one that does not). So the results have the same bits on every device.
+//! and a device calls it once for each item. Every operation is rounded once, by IEEE 754. Compiler options forbid
+//! fused operations other than `FUSED`, and a device must pass a table of operations (`Device::load` refuses a device
+//! that fails). So the results have the same bits on every device.
 //!
-//! Drivers and compilers are looked for when the program runs. Where there are none, everything builds, and [`list`] says what is missing.
+//! Drivers and compilers are opened at run time. Without them everything still builds, and [`list`] says which is
+//! missing.
 
 mod cuda;
 mod dialect;
@@ -31,61 +35,61 @@ pub use error::DeviceError;
 pub use nvrtc::ptx_of;
 pub use ptx::inexact_instructions;
 
-/// The result of whatever a device can make fail.
+/// The result of an operation that a device can make fail.
 pub type Result<T> = std::result::Result<T, DeviceError>;
 
 /// The processor that this program runs on, by the host's C compiler.
 pub const HOST: &str = "host";
 
-/// A device that was found, or a way to reach devices that leads nowhere.
+/// A device that was found, or an interface without any device.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
-    /// Its name on a command line: `cuda:0`, `opencl:1`, `host`. Of a way that leads nowhere `cuda` or `opencl`.
+    /// Its name on a command line: `cuda:0`, `opencl:1`, `host`. For an interface without device: `cuda` or `opencl`.
     pub id: String,
-    /// What the driver calls it, or why there is none.
+    /// The driver's name for it, or the reason why there is none.
     pub about: String,
     /// Whether it can be opened.
     pub is_there: bool,
-    /// Whether there is a driver that refuses, which is the system's fault, instead of none.
+    /// Whether a driver exists but refuses, which is the system's fault.
     pub is_broken: bool,
-    /// Whether it is a processor of another kind than the one that this program runs on.
+    /// Whether it is a processor of another kind than the host's.
     pub is_accelerator: bool,
 }
 
-/// A device that programs are made for.
+/// A device that can run programs.
 pub trait Device: Send + Sync {
     /// Its name on a command line.
     fn id(&self) -> &str;
 
-    /// What the driver calls it.
+    /// The driver's name for it.
     fn about(&self) -> &str;
 
-    /// How many items keep all of it busy.
+    /// The number of items that keep the whole device busy.
     fn width(&self) -> u32;
 
-    /// Compiles the program, unless it has been before, and puts its inputs on the device.
+    /// Compiles the program, unless it was compiled before, and copies its inputs to the device.
     fn bind(&self, text: &str, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>>;
 }
 
 impl dyn Device {
-    /// [`Device::bind`] on a device that has shown that it computes as it should, also in single precision if the program uses it.
+    /// Calls [`Device::bind`] if the device has passed the self-test, also in single precision if the program uses it.
     pub fn load(&self, text: &str, uses_single: bool, numbers: &[f64], words: &[u32]) -> Result<Box<dyn Loaded>> {
         self_test::passed(self, uses_single)?;
         self.bind(text, numbers, words)
     }
 }
 
-/// Seconds that a program takes before it runs.
+/// Seconds that a program takes before its first run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Costs {
-    /// To compile it; next to nothing if it was compiled before.
+    /// Time to compile it; nearly zero if it was compiled before.
     pub compile_s: f64,
-    /// To copy its inputs.
+    /// Time to copy its inputs.
     pub copy_s: f64,
 }
 
 impl Costs {
-    /// Compiles and copies, and tells how long each took.
+    /// Compiles and copies, and measures both times.
     pub(crate) fn of<A, B>(
         compile: impl FnOnce() -> Result<A>,
         copy: impl FnOnce(A) -> Result<B>,
@@ -100,15 +104,15 @@ impl Costs {
 
 /// A program on a device, with its inputs.
 pub trait Loaded: Send + Sync {
-    /// What it took to get there.
+    /// The time that compilation and copying took.
     fn costs(&self) -> Costs;
 
-    /// Runs so many items. `out` has room for as many words for each as the program writes.
+    /// Runs the program for `items` items. `out` must have room for all words that the program writes for each item.
     fn run(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<()>;
 }
 
 impl dyn Loaded {
-    /// [`Loaded::run`], and the seconds that it took, with what goes to the device and comes back.
+    /// Calls [`Loaded::run`] and returns the seconds that it took, copies to and from the device included.
     pub fn timed(&self, task: &[u32], items: u32, out: &mut [u64]) -> Result<f64> {
         let before = Instant::now();
         self.run(task, items, out)?;
@@ -116,15 +120,15 @@ impl dyn Loaded {
     }
 }
 
-/// Every device there is, and the ways that lead to none.
+/// Returns every available device, and the interfaces without any.
 pub fn list() -> Vec<Listed> {
     [cuda::list(), opencl_driver::list(), host::list()].concat()
 }
 
-/// Devices that are open, each once.
+/// The open devices; each is opened once.
 static OPEN: LazyLock<Mutex<Vec<Arc<dyn Device>>>> = LazyLock::new(Mutex::default);
 
-/// The device of that name: `cuda:N`, `opencl:N` or `host`.
+/// Opens the device of that name: `cuda:N`, `opencl:N` or `host`.
 pub fn open(id: &str) -> Result<Arc<dyn Device>> {
     let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(device) = open.iter().find(|device| device.id() == id) {

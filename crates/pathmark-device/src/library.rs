@@ -4,7 +4,7 @@ use libloading::Library;
 use std::error::Error;
 use std::path::Path;
 
-/// Opens the first library that there is of some names; what the system said of each otherwise.
+/// Opens the first of several libraries that can be opened; otherwise returns the system's error for each.
 pub(crate) fn open(names: &[&str]) -> Result<Library, String> {
     let mut tried = Vec::new();
     for name in names {
@@ -18,17 +18,17 @@ pub(crate) fn open(names: &[&str]) -> Result<Library, String> {
     Err(tried.join("; "))
 }
 
-/// An error with what the system said.
+/// The text of an error, with the system's message.
 pub(crate) fn in_full(error: &libloading::Error) -> String {
     error.source().map_or_else(|| error.to_string(), ToString::to_string)
 }
 
-/// Declares functions of a library with their types in C, and finds all of them when it is opened.
+/// Declares functions of a library with their C types, and looks all of them up when it is opened.
 macro_rules! functions {
     ($Functions:ident; $($field:ident = $symbol:literal ($($argument:ty),*) -> $result:ty;)*) => {
         pub(crate) struct $Functions {
             $(pub(crate) $field: unsafe extern "C" fn($($argument),*) -> $result,)*
-            /// Where they live.
+            /// The library that contains them.
             _library: libloading::Library,
         }
 

@@ -24,7 +24,7 @@ functions! { Compiler;
 
 const SUCCESS: c_int = 0;
 
-/// The compiler of the library that `PATHMARK_NVRTC` names, or of the first that there is.
+/// The compiler from the library that `PATHMARK_NVRTC` names, or from the first usual library that can be opened.
 static COMPILER: LazyLock<std::result::Result<Compiler, String>> = LazyLock::new(|| {
     let named = env::var("PATHMARK_NVRTC").unwrap_or_default();
     let usual = ["libnvrtc.so", "libnvrtc.so.13", "libnvrtc.so.12", "libnvrtc.so.11.2"];
@@ -32,23 +32,24 @@ static COMPILER: LazyLock<std::result::Result<Compiler, String>> = LazyLock::new
     open(names).and_then(Compiler::of)
 });
 
-/// Why there is no compiler, if there is none.
+/// The reason why there is no compiler; `None` if there is one.
 pub(crate) fn missing() -> Option<&'static String> {
     COMPILER.as_ref().err()
 }
 
-/// The newest architecture that the compiler knows and a device of that capability can run.
+/// The newest architecture that the compiler knows and a device of this compute capability can run.
 fn architecture(compiler: &Compiler, capability: u32) -> u32 {
     let mut count = 0;
     // SAFETY: it writes one number.
     unsafe { (compiler.architecture_count)(&raw mut count) };
     let mut known = vec![0; count.max(0) as usize];
-    // SAFETY: there is room for as many as it has said.
+    // SAFETY: there is room for the reported count.
     unsafe { (compiler.architectures)(known.as_mut_ptr()) };
     known.into_iter().map(|known| known as u32).filter(|known| *known <= capability).max().unwrap_or(capability)
 }
 
-/// The code for GPUs of at least that compute capability (80 for 8.0), as `libnvrtc` makes it of a program; needs no GPU.
+/// Compiles a program with `libnvrtc` for GPUs of at least this compute capability (80 for 8.0). Returns PTX code;
+/// needs no GPU.
 pub fn ptx_of(program: &str, capability: u32) -> Result<String> {
     let missing = |why: &String| DeviceError::Missing { id: "libnvrtc".to_string(), why: why.clone() };
     let compiler = COMPILER.as_ref().map_err(missing)?;
@@ -69,19 +70,19 @@ pub fn ptx_of(program: &str, capability: u32) -> Result<String> {
         c"--prec-div=true".as_ptr(),
         c"--prec-sqrt=true".as_ptr(),
     ];
-    // SAFETY: so many options, each of which ends with a zero.
+    // SAFETY: the array has `options.len()` options, each of which ends with a zero.
     let code = unsafe { (compiler.compile)(handle, options.len() as c_int, options.as_ptr()) };
     let made = if code == SUCCESS {
         Ok(text_by(compiler.ptx_size, compiler.ptx, handle))
     } else {
         Err(refused(text_by(compiler.log_size, compiler.log, handle)))
     };
-    // SAFETY: the handle is this function's own.
+    // SAFETY: this function owns the handle.
     unsafe { (compiler.destroy)(&raw mut handle) };
     made
 }
 
-/// A text whose length one function tells and which another one writes.
+/// A text: one function returns its length, and another one writes it.
 fn text_by(
     size: unsafe extern "C" fn(Handle, *mut usize) -> c_int,
     write: unsafe extern "C" fn(Handle, *mut c_char) -> c_int,
@@ -91,7 +92,7 @@ fn text_by(
     // SAFETY: it writes one number.
     unsafe { size(program, &raw mut length) };
     let mut text = vec![0_u8; length];
-    // SAFETY: there is room for as much as it has said.
+    // SAFETY: there is room for the reported length.
     unsafe { write(program, text.as_mut_ptr().cast()) };
     String::from_utf8_lossy(&text).trim_end_matches('\0').to_string()
 }

@@ -1,4 +1,4 @@
-//! Devices by OpenCL 1.2: programs on them.
+//! Programs on devices by OpenCL 1.2.
 #![expect(unsafe_code, reason = "calls of the driver; each has the arguments that OpenCL's specification asks for")]
 
 use super::opencl_driver::{Found, Functions, Handle, INEXACT, LOADER, SUCCESS, found, meaning, number_of, turn};
@@ -8,22 +8,24 @@ use std::ffi::c_char;
 use std::ptr::{null, null_mut};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-// Numbers of OpenCL's header.
+// Constants of OpenCL's header.
 const SINGLE_CONFIG: u32 = 0x101B;
 const BUILD_LOG: u32 = 0x1183;
-/// Divisions and roots in single precision can be rounded to the nearest, if the compiler is asked to.
+/// Divisions and roots in single precision can be rounded to the nearest, if a compiler option demands it.
 const ROUNDS_SINGLES: u64 = 1 << 7;
 const READ_WRITE: u64 = 1;
 const READ_ONLY_COPY: u64 = 4 | 32;
 
-/// Items that keep a processing unit busy; of a processor, one of its cores.
+/// Items that keep a compute unit busy; below, the same for a core of a processor.
 const ITEMS_PER_UNIT: u32 = 1024;
 const ITEMS_PER_CORE: u32 = 16;
-/// Items of a group, the same for all launches, because a driver may compile the program anew for each size; on a processor an item is a loop.
+/// Items of a group, the same for all launches, because a driver may recompile the program for each size. On a
+/// processor an item is a loop.
 const GROUP: usize = 64;
 const GROUP_OF_CORE: usize = 1;
 
-/// A handle that may go from thread to thread: the driver's functions may be called by any, but a kernel's arguments by one at a time.
+/// A handle that may move between threads. Any thread may call the driver's functions, but only one at a time may set a
+/// kernel's arguments.
 #[derive(Clone, Copy)]
 struct Shared(Handle);
 
@@ -32,12 +34,12 @@ unsafe impl Send for Shared {}
 // SAFETY: as above.
 unsafe impl Sync for Shared {}
 
-/// What a call of the driver came to.
+/// Turns the code that a driver's function returned into a result.
 fn checked(call: &'static str, code: i32) -> Result<()> {
     if code == SUCCESS { Ok(()) } else { Err(DeviceError::Call { call, why: meaning(code) }) }
 }
 
-/// A device, a context and a queue on it.
+/// A device with its context and queue.
 struct Queue {
     id: String,
     functions: &'static Functions,
@@ -47,10 +49,10 @@ struct Queue {
 }
 
 impl Queue {
-    /// Room for so many bytes, of which there is at least one.
+    /// Allocates `bytes` bytes of device memory, but at least 8.
     fn buffer<T>(&self, flags: u64, content: *const T, bytes: usize) -> Result<Buffer> {
         let mut code = SUCCESS;
-        // SAFETY: with the flag to copy `content` has so many bytes, without it is null.
+        // SAFETY: with the flag to copy, `content` has `bytes` bytes; without it, `content` is null.
         let handle = unsafe {
             (self.functions.create_buffer)(
                 self.context.0,
@@ -120,12 +122,12 @@ struct Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        // SAFETY: the handle is this one's own.
+        // SAFETY: this value owns the handle.
         unsafe { (self.functions.release_buffer)(self.handle.0) };
     }
 }
 
-/// A device by OpenCL.
+/// An OpenCL device.
 pub(crate) struct OpenCl {
     about: String,
     width: u32,
@@ -148,7 +150,7 @@ impl OpenCl {
         }
         let _turn = turn();
         let mut code = SUCCESS;
-        // SAFETY: one device, no properties, nobody to be told of errors.
+        // SAFETY: one device, no properties, no callback for errors.
         let context =
             unsafe { (functions.create_context)(null(), 1, &raw const handle, null(), null_mut(), &raw mut code) };
         checked("clCreateContext", code)?;
@@ -199,7 +201,7 @@ impl Device for OpenCl {
     }
 }
 
-/// A kernel, and the buffers that are kept from run to run, with their sizes.
+/// A kernel, and the buffers that are reused from run to run, with their sizes.
 struct Kernel {
     handle: Shared,
     is_compiled: bool,
@@ -216,7 +218,7 @@ struct Bound {
     costs: Costs,
 }
 
-/// A buffer of at least that size, made anew if the one there is is smaller.
+/// Returns a buffer of at least this size; replaces the existing one if that is smaller.
 fn kept(queue: &Queue, place: &mut Option<(Buffer, usize)>, bytes: usize) -> Result<Handle> {
     match place {
         Some((buffer, size)) if *size >= bytes => Ok(buffer.handle.0),
@@ -275,7 +277,7 @@ impl Loaded for Bound {
 impl Drop for Bound {
     fn drop(&mut self) {
         let kernel = self.kernel.get_mut().unwrap_or_else(PoisonError::into_inner).handle;
-        // SAFETY: the handle is this one's own.
+        // SAFETY: this value owns the handle.
         unsafe { (self.queue.functions.release_kernel)(kernel.0) };
     }
 }

@@ -29,7 +29,7 @@ functions! { Functions;
     release_kernel = c"clReleaseKernel" (Handle) -> i32;
 }
 
-// Numbers of OpenCL's header.
+// Constants of OpenCL's header.
 pub(crate) const SUCCESS: i32 = 0;
 const NO_DRIVER: i32 = -1001;
 const ALL_DEVICES: u64 = 0xFFFF_FFFF;
@@ -38,22 +38,22 @@ const COMPUTE_UNITS: u32 = 0x1002;
 const DEVICE_NAME: u32 = 0x102B;
 const DOUBLE_CONFIG: u32 = 0x1032;
 const TYPE_CPU: u64 = 2;
-/// Small numbers are kept, infinities and NaN exist, results are rounded to the nearest.
+/// Subnormal numbers are kept, infinities and NaN exist, and results are rounded to the nearest.
 const EXACT_ENOUGH: u64 = 1 | 2 | 4;
 
-/// The loader's functions, or why there are none; it stays open.
+/// The loader's functions, or the reason why there are none. The library stays open.
 pub(crate) static LOADER: LazyLock<std::result::Result<Functions, String>> =
     LazyLock::new(|| open(&["libOpenCL.so.1", "libOpenCL.so"]).and_then(Functions::of));
 
-/// Held by whoever looks for devices, compiles, or launches a kernel for the first time, which is when `PoCL` compiles it: version 3.1 crashes if two
-/// threads do so at a time.
+/// Held while looking for devices, compiling, or launching a kernel for the first time, which is when `PoCL` compiles
+/// it: version 3.1 crashes if two threads do so at the same time.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
 pub(crate) fn turn() -> MutexGuard<'static, ()> {
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A code of OpenCL's header in words, where it is one that users meet.
+/// The text for a code of OpenCL's header, if users may meet it; otherwise its number.
 pub(crate) fn meaning(code: i32) -> String {
     let name = match code {
         -1 => "device not found",
@@ -71,7 +71,7 @@ pub(crate) fn meaning(code: i32) -> String {
     format!("{name} (error {code})")
 }
 
-/// A device that a platform shows.
+/// A device of a platform.
 pub(crate) struct Found {
     pub(crate) handle: Handle,
     pub(crate) name: String,
@@ -80,10 +80,10 @@ pub(crate) struct Found {
     pub(crate) is_exact: bool,
 }
 
-/// A number that a device tells of itself; 0 if it does not.
+/// A numeric property of a device; 0 if the query fails.
 pub(crate) fn number_of(functions: &Functions, device: Handle, what: u32) -> u64 {
     let mut number = 0_u64;
-    // SAFETY: no answer that is asked for here is longer than eight bytes.
+    // SAFETY: every property queried here has at most eight bytes.
     let code = unsafe { (functions.device_info)(device, what, 8, (&raw mut number).cast(), null_mut()) };
     if code == SUCCESS { number } else { 0 }
 }
@@ -96,12 +96,12 @@ fn name_of(functions: &Functions, device: Handle) -> String {
     String::from_utf8_lossy(&text[..end]).trim().to_string()
 }
 
-/// Every device of every platform, in the driver's order; the driver's refusal, if it is more than that it knows no device.
+/// Every device of every platform, in the driver's order. Returns the driver's error, except for a missing driver.
 pub(crate) fn found(functions: &Functions) -> std::result::Result<Vec<Found>, String> {
     const MOST: usize = 64;
     let _turn = turn();
     let (mut platforms, mut count) = ([null_mut(); MOST], 0);
-    // SAFETY: there is room for as many handles as it is told.
+    // SAFETY: there is room for `MOST` handles.
     let code = unsafe { (functions.platforms)(MOST as u32, platforms.as_mut_ptr(), &raw mut count) };
     if code != SUCCESS && code != NO_DRIVER {
         return Err(format!("clGetPlatformIDs: {}", meaning(code)));

@@ -1,7 +1,9 @@
-//! What the code for a GPU may not have: operations that are rounded once where two were meant, and those whose rounding nobody said.
+//! Forbidden GPU instructions: fused operations, which are rounded once instead of twice, and operations without a
+//! stated rounding.
 
-/// The instructions of a PTX text that fuse a multiplication and an addition in floating point, approximate, flush small numbers to zero, or do not
-/// say how they are rounded; but for fused ones in single precision, which a program asks for by name. (Without a suffix `add`, `sub` and `mul` may be fused by the assembler.)
+/// Returns the floating-point instructions of a PTX text that fuse a multiplication and an addition, approximate, flush
+/// subnormal numbers to zero, or state no rounding. Fused ones in single precision are allowed, because a program asks
+/// for them by name. (The assembler may fuse `add`, `sub` and `mul` without a suffix.)
 pub fn inexact_instructions(ptx: &str) -> Vec<&str> {
     let instructions = ptx.lines().map(str::trim).filter(|line| line.ends_with(';'));
     let is_inexact = |line: &&str| {

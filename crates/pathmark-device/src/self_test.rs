@@ -1,27 +1,28 @@
-//! Whether a device computes as IEEE 754 demands: a table of operations on chosen and on random operands, against the processor's bits.
+//! Self-test of a device: whether it computes as IEEE 754 demands. A table of operations on chosen and on random
+//! operands is compared with the host processor's bits.
 
 use super::{Device, DeviceError, Result};
 use std::collections::HashSet;
 use std::ops::Mul;
 use std::sync::{LazyLock, Mutex, PoisonError};
 
-/// An operation, and its result on two numbers and a word.
+/// An operation, with a function that computes its result for two numbers and a word.
 struct Operation {
     name: &'static str,
     kind: Kind,
     of: fn(f64, f64, u64) -> u64,
 }
 
-/// What an operation is on.
+/// The type of an operation's operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Double,
     Integer,
-    /// In single precision, of operands that are rounded to it; the result in double.
+    /// Single precision: the operands are rounded to it, and the result is converted to double.
     Single,
 }
 
-/// A result in single precision.
+/// The bits of a result in single precision, converted to double.
 fn single(result: f32) -> u64 {
     f64::from(result).to_bits()
 }
@@ -66,7 +67,7 @@ const OPERATIONS: &[Operation] = &[
         kind: Kind::Single,
         of: |a, b, _| single(a as f32 * b as f32 + a as f32),
     },
-    // A product of two numbers of 24 digits has 48, so double precision knows what is lost.
+    // The product of two numbers of 24 digits has 48, so double precision holds it exactly.
     Operation {
         name: "what rounding a * b in single precision loses, by a fused operation",
         kind: Kind::Single,
@@ -77,7 +78,8 @@ const OPERATIONS: &[Operation] = &[
     },
 ];
 
-/// Numbers whose results are rounded or out of range: halves, ends of the range, numbers below the normal ones, zeros, infinities.
+/// Operands whose results are rounded or out of range: halfway cases, ends of the range, subnormal numbers, zeros,
+/// infinities.
 const EDGES: [f64; 16] = [
     0.0,
     -0.0,
@@ -97,7 +99,7 @@ const EDGES: [f64; 16] = [
     -3e-23,
 ];
 
-/// Random operands beside those of the edges.
+/// Number of random operand pairs besides the edges.
 const RANDOM: usize = 4096;
 
 /// The next word of Marsaglia's xorshift (2003).
@@ -124,13 +126,13 @@ fn operands() -> (Vec<f64>, Vec<u64>) {
     (numbers, words)
 }
 
-/// Two results are the same if their bits are, or if both are no number.
+/// Whether two results have the same bits or are both NaN.
 fn is_same(found: u64, expected: u64, kind: Kind) -> bool {
     let is_nan = |bits: u64| f64::from_bits(bits).is_nan();
     found == expected || kind != Kind::Integer && is_nan(found) && is_nan(expected)
 }
 
-/// Runs the table on a device, whatever it has shown before: the part in single precision, or all else.
+/// Runs the single-precision part of the table, or the rest, on a device, even if it passed before.
 fn check(device: &dyn Device, in_single: bool) -> Result<()> {
     let (numbers, words) = operands();
     let halves: Vec<u32> = words.iter().flat_map(|word| [*word as u32, (*word >> 32) as u32]).collect();
@@ -154,7 +156,8 @@ fn check(device: &dyn Device, in_single: bool) -> Result<()> {
     Ok(())
 }
 
-/// Refuses a device that computes otherwise. Each is asked once, and once more in single precision where that is used.
+/// Returns an error for a device that computes differently. Each device is tested once, and once in single precision if
+/// that is used.
 pub(crate) fn passed(device: &dyn Device, uses_single: bool) -> Result<()> {
     static PASSED: LazyLock<Mutex<HashSet<(String, bool)>>> = LazyLock::new(Mutex::default);
     let mut passed = PASSED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -206,7 +209,7 @@ mod tests {
         }
     }
 
-    /// Every device here; the host always, others where a driver is installed.
+    /// Tests every available device; the host is always there, others if a driver is installed.
     #[test]
     fn devices_compute_as_they_should() {
         let there: Vec<String> =
@@ -219,7 +222,7 @@ mod tests {
         }
     }
 
-    /// One bit of any operation is enough, and the message names it.
+    /// One wrong bit in any operation fails the test, and the message names the operation.
     #[test]
     fn a_device_that_rounds_otherwise_is_refused() {
         for (number, operation) in (0..).zip(OPERATIONS) {

@@ -1,15 +1,15 @@
-//! The binary interfaces of MPI libraries: the same functions with other constants.
+//! Binary interfaces of MPI libraries: the same functions with different constants.
 //!
-//! Handles are numbers in MPICH (and in Intel's and Cray's libraries, which share its interface) and in the interface that MPI 5.0
-//! standardises, and addresses in Open MPI. All fit a pointer, which is how they are carried. Sources: `mpi.h` of MPICH 4.0 and of Open MPI
-//! 4.1, and MPI 5.0, chapter 20 (2025).
+//! Handles are numbers in MPICH (and in Intel's and Cray's libraries, which share its interface) and in the interface
+//! that MPI 5.0 standardises. In Open MPI they are addresses. All fit into a pointer and are stored as such. Sources:
+//! `mpi.h` of MPICH 4.0 and of Open MPI 4.1, and MPI 5.0, chapter 20 (2025).
 
 use crate::library::Symbols;
 
 /// A handle of MPI, or an address.
 pub(crate) type Handle = usize;
 
-/// What the libraries' headers define.
+/// The constants that the libraries' headers define.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Abi {
     pub(crate) name: &'static str,
@@ -18,7 +18,7 @@ pub(crate) struct Abi {
     pub(crate) sum: Handle,
     pub(crate) no_info: Handle,
     pub(crate) any_source: i32,
-    /// All calls come from one thread, and there are others.
+    /// Thread level: one thread makes all calls, and other threads exist.
     pub(crate) funneled: i32,
 }
 
@@ -36,7 +36,8 @@ const STANDARD: Abi =
     Abi { name: "MPI 5", world: 0x101, int64: 0x258, sum: 0x21, no_info: 0x130, any_source: -1, funneled: 1024 };
 
 impl Abi {
-    /// The interface of an open library. MPICH's libraries with the two other interfaces have the same functions, and differ by name.
+    /// Detects the interface of an open library. MPICH's own interface and MPI 5's have the same functions; the file
+    /// name tells them apart.
     pub(crate) fn of(symbols: &Symbols) -> Self {
         let address = |name| symbols.address(name);
         let open_mpi = (|| {

@@ -1,13 +1,13 @@
 use std::path::PathBuf;
 use thiserror::Error;
 
-/// Why there is no MPI, or why a call failed.
+/// The reason why there is no MPI, or why a call failed.
 #[derive(Debug, Error)]
 pub enum MpiError {
     /// No library was found under any of the usual names.
     #[error("no MPI library was found: {tried}. Install one (Debian: mpich), or name its file")]
     Missing {
-        /// What the system said of each name.
+        /// The system's error for each name.
         tried: String,
     },
     /// The file that the user named cannot be opened as a library.
@@ -15,7 +15,7 @@ pub enum MpiError {
     NoLibrary {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         why: String,
     },
     /// The library lacks a function.
@@ -26,14 +26,14 @@ pub enum MpiError {
         /// The function.
         symbol: &'static str,
     },
-    /// Another library's launcher started this process: each process would be alone in a world of its own.
+    /// The library of another launcher: each process would be the only one in its own world.
     #[error(
         "the launcher started {launched} processes, and {library} knows of {known}: start them with the mpiexec of that library, or name the launcher's library"
     )]
     WrongLauncher {
-        /// Processes, by the launcher.
+        /// Number of processes according to the launcher.
         launched: usize,
-        /// Processes, by the library.
+        /// Number of processes according to the library.
         known: usize,
         /// The library's name.
         library: String,
@@ -43,7 +43,7 @@ pub enum MpiError {
     Call {
         /// The function.
         call: &'static str,
-        /// What it gave back.
+        /// The returned error code.
         code: i32,
     },
     /// A message is longer than MPI can count.

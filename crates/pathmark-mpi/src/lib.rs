@@ -1,7 +1,8 @@
-//! MPI without linking: the library is opened when the program runs, so one binary runs on MPICH and Open MPI, and without either.
+//! MPI without linking: the library is opened at run time, so one binary runs on MPICH and Open MPI, and without
+//! either.
 //!
-//! There are as many calls as self-scheduling between processes needs: ranks, a barrier, messages of numbers, a gather, and a counter that
-//! all ranks share. Messages are of 64-bit words. One thread of each rank makes all calls.
+//! It covers the calls that self-scheduling between processes needs: ranks, a barrier, messages, a gather, and a
+//! counter that all ranks share. Messages are of 64-bit words. One thread of each rank makes all calls.
 
 mod abi;
 mod counter;

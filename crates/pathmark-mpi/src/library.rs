@@ -1,4 +1,4 @@
-//! A library that is opened at run time, and the functions in it.
+//! The MPI library, opened at run time, and its functions.
 #![expect(
     unsafe_code,
     reason = "functions that are found at run time have the types that MPI's standard says; each block says why it is sound"
@@ -12,7 +12,7 @@ use std::mem::transmute_copy;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 
-/// The names of libraries, in the order in which they are tried: those of the launcher's library first.
+/// Names of libraries. The launcher's library is tried first.
 const OPEN_MPI: &[&str] = &["libmpi.so.40"];
 const MPICH: &[&str] = &["libmpich.so.12", "libmpi.so.12", "libmpi_abi.so.1", "libmpi_abi.so.0"];
 
@@ -23,7 +23,8 @@ pub(crate) struct Symbols {
 }
 
 impl Symbols {
-    /// Opens the library that the user names, or the first that there is of the usual ones. It stays open to the end of the process.
+    /// Opens the library that the user names, or the first usual one that can be opened. It stays open to the end of
+    /// the process.
     fn open(named: Option<&Path>) -> Result<Self, MpiError> {
         if let Some(path) = named {
             let no_library = |why| MpiError::NoLibrary { path: path.to_path_buf(), why };
@@ -57,7 +58,7 @@ impl Symbols {
         self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// Where a function or a variable is.
+    /// The address of a function or a variable; `None` if the library lacks it.
     pub(crate) fn address(&self, name: &CStr) -> Option<Handle> {
         // SAFETY: the library is open, and the name ends with a zero.
         let address = unsafe { libc::dlsym(self.handle, name.as_ptr()) };
@@ -65,10 +66,10 @@ impl Symbols {
     }
 }
 
-/// Declares the functions that are called, and finds all of them when the library is opened.
+/// Declares the functions in use, and looks all of them up when the library is opened.
 macro_rules! functions {
     ($($field:ident = $symbol:literal ($($argument:ty),*);)*) => {
-        /// The functions of MPI that are called, with the types of the C interface. They give back 0 if they succeed.
+        /// The MPI functions in use, with the types of the C interface. They return 0 on success.
         pub(crate) struct Functions {
             $(pub(crate) $field: unsafe extern "C" fn($($argument),*) -> c_int,)*
         }

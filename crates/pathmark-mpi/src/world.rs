@@ -1,4 +1,4 @@
-//! All processes of a run.
+//! World: all processes of a run.
 #![expect(
     unsafe_code,
     reason = "calls of C functions with buffers whose lengths are told; each block says why it is sound"
@@ -11,14 +11,15 @@ use std::ffi::{c_char, c_int, c_void};
 use std::path::Path;
 use std::ptr::null_mut;
 
-/// Longer than any library's description of itself (`MPI_MAX_LIBRARY_VERSION_STRING` is 8192 in MPICH, 256 in Open MPI).
+/// Longer than any library's version text (`MPI_MAX_LIBRARY_VERSION_STRING` is 8192 in MPICH, 256 in Open MPI).
 const LONGEST_VERSION: usize = 1 << 16;
-/// More than any library's `MPI_Status`.
+/// Larger than any library's `MPI_Status`.
 const STATUS_WORDS: usize = 16;
-/// Of messages between two ranks.
+/// The tag of messages between two ranks.
 const TAG: c_int = 0x70;
 
-/// The processes that a launcher started together; or one, if nobody started it. It ends with MPI, which can be begun once in a process.
+/// The processes that a launcher started together; only this one without a launcher. MPI can begin only once in a
+/// process.
 pub struct World {
     pub(crate) library: Library,
     rank: usize,
@@ -35,7 +36,7 @@ fn count(words: usize) -> Result<c_int, MpiError> {
 }
 
 impl World {
-    /// Opens the library that the user names, or one of those that systems have, and begins.
+    /// Opens the library that the user names, or one of the usual ones, and starts MPI.
     pub fn begin(named: Option<&Path>) -> Result<Self, MpiError> {
         let library = Library::open(named)?;
         let (mut rank, mut size, mut provided) = (0, 0, 0);
@@ -68,12 +69,12 @@ impl World {
         }
     }
 
-    /// The number of this process, from 0.
+    /// The index of this process, from 0.
     pub fn rank(&self) -> usize {
         self.rank
     }
 
-    /// How many processes there are.
+    /// The number of processes.
     pub fn size(&self) -> usize {
         self.size
     }
@@ -83,33 +84,34 @@ impl World {
         &self.version
     }
 
-    /// Waits until all ranks are here.
+    /// Waits until all ranks have called it.
     pub fn barrier(&self) -> Result<(), MpiError> {
         // SAFETY: MPI has begun.
         checked("MPI_Barrier", unsafe { (self.library.functions.barrier)(self.library.abi.world) })
     }
 
-    /// Sends words to a rank.
+    /// Sends words to rank `to`.
     pub fn send(&self, to: usize, words: &[u64]) -> Result<(), MpiError> {
         let (length, to) = (count(words.len())?, count(to)?);
         let (functions, abi) = (&self.library.functions, &self.library.abi);
-        // SAFETY: the buffer has as many words as are told.
+        // SAFETY: the buffer has `length` words.
         checked("MPI_Send", unsafe { (functions.send)(words.as_ptr().cast(), length, abi.int64, to, TAG, abi.world) })
     }
 
-    /// Waits for words of a rank, or of any.
+    /// Waits for words from rank `from`, or from any rank.
     pub fn receive(&self, from: Option<usize>, words: &mut [u64]) -> Result<(), MpiError> {
         let (functions, abi) = (&self.library.functions, &self.library.abi);
         let (length, from) = (count(words.len())?, from.map_or(Ok(abi.any_source), count)?);
         let mut status = [0_u64; STATUS_WORDS];
-        // SAFETY: the buffer has as many words as are told, and the status more than any library writes.
+        // SAFETY: the buffer has `length` words, and the status is larger than any library's.
         checked("MPI_Recv", unsafe {
             let status = status.as_mut_ptr().cast::<c_void>();
             (functions.receive)(words.as_mut_ptr().cast(), length, abi.int64, from, TAG, abi.world, status)
         })
     }
 
-    /// Whether words of any rank wait to be received. MPICH's probe answers before it takes in what has arrived meanwhile, so it is asked twice.
+    /// Whether words from any rank wait to be received. MPICH's probe returns before it processes messages that have
+    /// arrived meanwhile, so this probes twice.
     pub fn has_message(&self) -> Result<bool, MpiError> {
         Ok(self.probe()? || self.probe()?)
     }
@@ -124,12 +126,12 @@ impl World {
         Ok(flag != 0)
     }
 
-    /// The words of each rank, in the order of ranks; all ranks give as many.
+    /// Returns the words of all ranks, in the order of ranks. All ranks must pass equally many.
     pub fn all_gather(&self, words: &[u64]) -> Result<Vec<u64>, MpiError> {
         let mut all = vec![0; words.len() * self.size];
         let length = count(words.len())?;
         let (functions, abi) = (&self.library.functions, &self.library.abi);
-        // SAFETY: there is room for as many words of each rank as are told.
+        // SAFETY: there is room for `length` words of each rank.
         checked("MPI_Allgather", unsafe {
             let (mine, all) = (words.as_ptr().cast(), all.as_mut_ptr().cast());
             (functions.all_gather)(mine, length, abi.int64, all, length, abi.int64, abi.world)
@@ -137,7 +139,7 @@ impl World {
         Ok(all)
     }
 
-    /// The words of all ranks one after the other, on rank 0; nothing on the others.
+    /// Returns the words of all ranks in the order of ranks, on rank 0; an empty vector on the others.
     pub fn gather(&self, words: &[u64]) -> Result<Vec<u64>, MpiError> {
         let lengths = self.all_gather(&[words.len() as u64])?;
         let total: u64 = lengths.iter().sum();
@@ -153,7 +155,8 @@ impl World {
             .collect();
         let mut all = if self.rank == 0 { vec![0; total as usize] } else { Vec::new() };
         let (functions, abi) = (&self.library.functions, &self.library.abi);
-        // SAFETY: each rank has as many words as it has told all others, and rank 0 has room for all of them.
+        // SAFETY: each rank has the number of words that it has sent to all others, and rank 0 has room for all of
+        // them.
         checked("MPI_Gatherv", unsafe {
             let (mine, all) = (words.as_ptr().cast(), all.as_mut_ptr().cast());
             let (length, counts, starts) = (counts[self.rank], counts.as_ptr(), starts.as_ptr());
@@ -162,14 +165,14 @@ impl World {
         Ok(all)
     }
 
-    /// Ends MPI, when all ranks are here.
+    /// Ends MPI; all ranks must call this.
     pub fn end(self) -> Result<(), MpiError> {
         // SAFETY: MPI has begun, and `self` is gone after this.
         checked("MPI_Finalize", unsafe { (self.library.functions.finalize)() })
     }
 }
 
-/// `MPICH Version: 4.0.2 ...` and `Open MPI v5.0.11, package: ...` without what follows.
+/// Shortens `MPICH Version: 4.0.2 ...` and `Open MPI v5.0.11, package: ...` to name and version.
 fn short_version(text: &str, abi: &str) -> String {
     let number = text.split(|c: char| c.is_whitespace() || c == ',').map(|word| word.trim_start_matches('v'));
     let number = number.into_iter().find(|word| word.contains('.') && word.starts_with(|c: char| c.is_ascii_digit()));

@@ -1,5 +1,6 @@
-//! The kernel for devices gives what the scalar kernel gives, sample by sample and bit for bit, on every device here: the host's C compiler, which a
-//! machine that builds Rust has, and whatever drivers show. The scalar kernel is the oracle.
+//! The device kernel returns the same bits as the scalar kernel, sample by sample, on every available device: the
+//! host's C compiler, which a machine that builds Rust has, and every device that drivers show. The scalar kernel is
+//! the oracle.
 
 use pathmark_tracer::estimator::ESTIMATORS;
 use pathmark_tracer::film::{Bounds, Piece, TileBuffer};
@@ -12,7 +13,7 @@ const SAMPLERS: [&str; 5] = ["independent", "hash", "sobol", "sobol-burley", "st
 
 const HOST: &str = "device:host";
 
-/// The kernels of all devices here.
+/// The kernels of all available devices.
 fn devices() -> Vec<String> {
     let there = pathmark_device::list().into_iter().filter(|listed| listed.is_there);
     there.map(|listed| format!("device:{}", listed.id)).collect()
@@ -25,10 +26,12 @@ fn render(kernel: &dyn Kernel, piece: &Piece) -> (TileBuffer, Counts) {
     (buffer, counts)
 }
 
-/// Insists that a device renders pieces as the scalar kernel does, what rays are tested against included, or in single precision as lanes do, which
-/// test rays against more at a time; `false` if it does not render them.
+/// Asserts that a device renders pieces exactly as the scalar kernel does, with the same counts of ray tests. In single
+/// precision the oracle is the kernel `lanes`. Its counts of box and primitive tests are not compared, because it tests
+/// rays against more of them at a time. Returns `false` if the device does not render them.
 fn is_same(scene: &Arc<Scene>, spec: &Spec, device: &str, pieces: &[Piece]) -> bool {
-    // Drivers take seconds to compile a program, C compilers a part of one: the host has one for each profile, the others one for all.
+    // Drivers take seconds to compile a program, C compilers less: the host has a program per profile, other devices
+    // one for all.
     let effects = (device != HOST).then(|| "all".to_string());
     let on_device = Spec { kernel: device.to_string(), effects, ..spec.clone() };
     if choose(scene, &on_device).unwrap().kernel() != device {
@@ -50,7 +53,7 @@ fn is_same(scene: &Arc<Scene>, spec: &Spec, device: &str, pieces: &[Piece]) -> b
     true
 }
 
-/// Pieces that begin and end anywhere, with parts that are short and parts that are whole, one and many of them.
+/// Pieces with arbitrary first and last samples, with one or many parts, some short and some whole.
 #[test]
 fn devices_add_up_samples_as_a_film_does() {
     let scene = Arc::new(load("cornell").unwrap());
@@ -63,8 +66,8 @@ fn devices_add_up_samples_as_a_film_does() {
     }
 }
 
-/// Every scene with every estimator on a device, in both precisions: one scene with every sampler, the others with one after the other, because
-/// random numbers know nothing of scenes.
+/// Compares every scene with every estimator on a device, in both precisions. One scene gets every sampler. The others
+/// take turns with the samplers, because random numbers do not depend on the scene.
 fn have_the_scalar_kernels_bits(device: &str) {
     let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..8 };
     let (mut compared, mut in_single, mut scenes) = (0, 0, 0);
@@ -89,7 +92,7 @@ fn have_the_scalar_kernels_bits(device: &str) {
     assert!(scenes >= 30 && compared > 230 && in_single > 80, "{compared} comparisons, {in_single}, {scenes} scenes");
 }
 
-/// Several camera rays, on a scene with a sky, one with a lens and one whose glass splits paths.
+/// Several camera rays, on a scene with a sky, on one with a lens and on one whose glass splits paths.
 #[test]
 fn camera_rays_are_those_of_the_scalar_kernel() {
     let piece = Piece { bounds: Bounds { x0: 0, y0: 0, x1: 24, y1: 18 }, samples: 0..8 };

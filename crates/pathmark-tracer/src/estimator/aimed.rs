@@ -1,4 +1,4 @@
-//! Next-event estimation: light from surfaces that a path aims at, by a shadow ray to one point of one light.
+//! Next-event estimation: emission of surfaces, found by a shadow ray to one point of one light.
 
 use super::Probe;
 use super::medium::Medium;
@@ -8,16 +8,16 @@ use crate::math::{Frame, Ray, Real, Rgb, Vec3, dot};
 use crate::sampling::UNIFORM_SPHERE_DENSITY;
 use crate::scene::{Aim, Hit, Lights, Scene, Standpoint, Tests};
 
-/// The share of a way of finding light with density `a`, where another has density `b`: the power heuristic with exponent 2 (Veach and
-/// Guibas 1995), by a ratio, because squares overflow.
+/// The weight of a way to find light with density `a`, if another way has density `b`: the power heuristic with
+/// exponent 2 (Veach and Guibas 1995). It is computed from a ratio, because squares overflow.
 #[inline(always)]
 pub fn power_heuristic<T: Real>(a: T, b: T) -> T {
-    // Both zero cannot be: who found the light had a density for it.
+    // They cannot both be zero: the way that found the light has a positive density.
     let ratio = b / a;
     T::splat(1.0) / (T::splat(1.0) + ratio * ratio)
 }
 
-/// The share of light at the end of a ray that counts, when the ray's direction was chosen by a surface or by fog with `density`.
+/// The weight of a hit of a light, if a surface or fog sampled the ray's direction with `density`.
 #[inline(always)]
 pub(super) fn share_of_arrival(
     rule: Light,
@@ -35,7 +35,7 @@ pub(super) fn share_of_arrival(
     }
 }
 
-/// The share of light at the end of an aim that counts, where chance finds its direction with `density`.
+/// The weight of light that was aimed at, if a surface or fog samples the same direction with `density`.
 #[inline(always)]
 fn share_of_aim(rule: Light, aim: Aim, density: impl FnOnce() -> f64) -> f64 {
     match rule {
@@ -44,7 +44,7 @@ fn share_of_aim(rule: Light, aim: Aim, density: impl FnOnce() -> f64) -> f64 {
     }
 }
 
-/// What is at the end of a shadow ray: the radiance of the light, less what fog takes; `None` if it is hidden.
+/// The light's radiance at the end of a shadow ray, attenuated by fog; `None` if the light is hidden.
 #[inline(always)]
 fn arriving<X: EffectSet, P: Probe>(
     scene: &Scene,
@@ -57,13 +57,15 @@ fn arriving<X: EffectSet, P: Probe>(
     let mut tests = Tests::default();
     let hit = scene.intersect::<X>(ray, from, &mut tests);
     probe.ray(tests);
-    // By its number, not by its distance: so no surface is too near to the light to hide it, and none that is not hides it.
+    // Compared by index, not by distance: a surface very close to the light still hides it, and rounding errors never
+    // do.
     let hit = hit.filter(|hit| hit.primitive == primitive)?;
     let emission = scene.objects[hit.object as usize].emitted::<X>(dot(ray.direction, hit.normal).abs());
     Some(medium.fog::<X>(scene).map_or(emission, |fog| emission * fog.unhindered(hit.t)))
 }
 
-/// The radiance that an aim adds at a surface that a ray of that direction met, back along the ray, which lies in `medium`.
+/// The radiance that an aim adds at a surface, back along the ray that hit it and lies in `medium`; `None` if there is
+/// none.
 #[inline(always)]
 pub(super) fn aimed_at_surface<X: EffectSet, P: Probe>(
     rule: Light,
@@ -87,7 +89,7 @@ pub(super) fn aimed_at_surface<X: EffectSet, P: Probe>(
     Some(scattered * light * (weight / aim.density))
 }
 
-/// Likewise where fog scatters, evenly in all directions.
+/// The same for a scattering event in fog, which is isotropic.
 #[inline(always)]
 pub(super) fn aimed_at_fog<X: EffectSet, P: Probe>(
     rule: Light,

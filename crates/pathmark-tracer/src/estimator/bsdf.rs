@@ -1,4 +1,4 @@
-//! `--estimator bsdf`: one direction at every vertex, chosen by the surface; smallpt's transport without its splitting.
+//! `--estimator bsdf`: one direction at every vertex, sampled from the BSDF; smallpt's transport without its splitting.
 
 use super::Compiled;
 use super::path::{Path, Rules};
@@ -6,7 +6,7 @@ use super::path::{Path, Rules};
 /// The estimator.
 pub type Bsdf = Path<BsdfRules>;
 
-/// What sets it apart.
+/// The rules of `bsdf`.
 #[derive(Debug, Clone, Copy)]
 pub struct BsdfRules;
 

@@ -1,4 +1,4 @@
-//! Where a path begins, and what other camera rays of its sample see.
+//! Camera rays: the start of a path, and the light that further camera rays of its sample see.
 
 use super::Probe;
 use crate::effect::EffectSet;
@@ -6,7 +6,8 @@ use crate::math::{Ray, Rgb, dot};
 use crate::sampling::{Address, Purpose, SampleKey, Sampler};
 use crate::scene::{AllEffects, BACKGROUND, FOG, LENS, Scene, Tests, View};
 
-/// A ray of a sample through the pixel in column `x` of row `y`, whose index is in the key: number 0 is that of the path.
+/// Creates camera ray `number` of a sample through the pixel in column `x` of row `y`, whose index is in the key. The
+/// path starts with number 0.
 #[inline(always)]
 pub fn camera_ray<S: Sampler, X: EffectSet, P: Probe>(
     view: &View,
@@ -23,14 +24,15 @@ pub fn camera_ray<S: Sampler, X: EffectSet, P: Probe>(
     })
 }
 
-/// The share that each camera ray of a sample has in the light that camera rays see.
+/// The weight of each camera ray in the mean of the light that a sample's camera rays see.
 pub fn camera_share(camera_rays: u16) -> f64 {
     1.0 / f64::from(camera_rays)
 }
 
-/// The light that the camera rays of a sample from number 1 on see, as their part of the mean over all of them. The path counts what its own ray sees
-/// by [`camera_share`], so the sum is unbiased: splitting (Arvo and Kirk, "Particle transport and image synthesis", 1990) at the camera, where the
-/// other rays look for emission only. Compiled once, with every effect and for any sampler.
+/// The light that a sample's camera rays from number 1 on see, as their part of the mean over all its camera rays. The
+/// path scales the light that its own ray sees by [`camera_share`], so the sum is unbiased. This is splitting (Arvo and
+/// Kirk, "Particle transport and image synthesis", 1990) at the camera, where the other rays collect only emission.
+/// Compiled once, with every effect and for any sampler.
 pub fn seen_besides(
     scene: &Scene,
     view: &View,
@@ -51,7 +53,8 @@ pub fn seen_besides(
     seen
 }
 
-/// The radiance that arrives unscattered along a camera ray from what it meets first.
+/// The radiance that arrives unscattered along a camera ray: from its first hit or the background, and from the fog
+/// before it.
 fn seen_along(scene: &Scene, ray: &Ray, probe: &mut dyn Probe) -> Rgb {
     let mut tests = Tests::default();
     let hit = scene.intersect::<AllEffects>(ray, None, &mut tests);

@@ -1,4 +1,4 @@
-//! Light that arrives straight from point lights, which no path can hit: a shadow ray to each.
+//! Direct light from point lights, which no path can hit: a shadow ray to each.
 
 use super::Probe;
 use super::medium::Medium;
@@ -7,18 +7,18 @@ use crate::math::{Ray, Rgb, Vec3, dot};
 use crate::sampling::UNIFORM_SPHERE_DENSITY;
 use crate::scene::{Hit, POINT_LIGHT, PointLight, REACH, Scene, Standpoint, Tests};
 
-/// The part of the way to a light on which something can hide it. A light that lies in a surface is not hidden by it: what remains is more
-/// than rounding makes of a distance, and relative, so that it is the same in scenes of any size.
+/// The part of the distance to a light in which a surface can hide it. A light that lies in a surface is not hidden by
+/// it: the rest is larger than a distance's rounding error. It is relative, so it is the same in scenes of any size.
 pub(crate) const HIDING: f64 = 1.0 - 1.0 / (1_u64 << 40) as f64;
 
-/// The straight way to a light.
+/// The straight line to a light.
 struct Way {
     direction: Vec3,
     distance: f64,
 }
 
 impl Way {
-    /// `None` where the light itself is, because there it has no direction, and beyond its reach.
+    /// `None` at the light's own position, where it has no direction, and beyond its reach.
     #[inline(always)]
     fn to<X: EffectSet, P: Probe>(light: &PointLight, point: Vec3, probe: &mut P) -> Option<Self> {
         let towards = light.position - point;
@@ -34,8 +34,8 @@ impl Way {
         (distance > 0.0).then(|| Self { direction: towards * (1.0 / distance), distance })
     }
 
-    /// The irradiance that arrives on a surface that faces the light, if nothing is between: intensity over distance squared, less what fog
-    /// takes.
+    /// The irradiance on a surface that faces the light: intensity over distance squared, attenuated by fog; `None` if
+    /// the light is hidden.
     #[inline(always)]
     fn arriving<X: EffectSet, P: Probe>(
         &self,
@@ -58,8 +58,8 @@ impl Way {
     }
 }
 
-/// The radiance that the point lights cause at a surface that a ray of that direction met, back along the ray, which lies in `medium`;
-/// `None` if there are none.
+/// The radiance that the point lights cause at a surface, back along a ray of `direction` that hit it and lies in
+/// `medium`; `None` if there are no point lights.
 #[inline(always)]
 pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
     scene: &Scene,
@@ -92,7 +92,7 @@ pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
     Some(radiance)
 }
 
-/// Likewise where fog scatters, evenly in all directions.
+/// The same for a scattering event in fog, which is isotropic.
 #[inline(always)]
 pub(super) fn light_at_fog<X: EffectSet, P: Probe>(scene: &Scene, point: Vec3, probe: &mut P) -> Option<Rgb> {
     if !X::EFFECTS.cover(POINT_LIGHT) || scene.point_lights.is_empty() {

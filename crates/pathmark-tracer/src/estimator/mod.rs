@@ -1,7 +1,7 @@
-//! How the radiance along a camera ray is estimated. One estimator a file; this file is their table.
+//! Estimators of the radiance along a camera ray: one file for each, and their table in this file.
 //!
-//! To add one: write its file with a type that implements [`Estimator`] and what makes it from [`Options`], and give it a line in `estimators!`
-//! below.
+//! A new estimator needs a file with a type that implements [`Estimator`] and a function that makes it from
+//! [`Options`], and a line in `estimators!` below.
 
 mod aimed;
 mod bsdf;
@@ -31,25 +31,25 @@ pub use roulette::Roulette;
 pub use smallpt::Smallpt;
 pub use whitted::Whitted;
 
-/// Told what a path does. The empty implementation `()` costs nothing.
+/// An observer of the events of paths. The empty implementation `()` costs nothing.
 pub trait Probe {
-    /// A ray was traced, and this is what it was tested against in the hierarchy, if there is one.
+    /// A ray was traced, with these tests in the hierarchy, if there is one.
     fn ray(&mut self, _tests: Tests) {}
-    /// A ray met nothing: in a closed scene, a leak.
+    /// A ray hit nothing: in a closed scene, a leak.
     fn escaped(&mut self) {}
     /// A path was cut at the bounce limit.
     fn truncated(&mut self) {}
-    /// A vertex of the path: where a ray that set out with this throughput arrived, after so many bounces.
+    /// A vertex of the path: a ray with this throughput hit a surface after this many bounces.
     fn vertex(&mut self, _bounces: u16, _ray: &Ray, _hit: &Hit, _throughput: Rgb) {}
-    /// Light that a vertex after so many bounces adds to the sample.
+    /// Light that a vertex after this many bounces adds to the sample.
     fn light(&mut self, _bounces: u16, _contribution: Rgb) {}
-    /// Fog scattered the path at the end of a ray that set out from `ray.origin`, so far away, with this throughput left.
+    /// Fog scattered the path at this distance from `ray.origin`, where it has this throughput.
     fn scattered(&mut self, _bounces: u16, _ray: &Ray, _distance: f64, _throughput: Rgb) {}
-    /// The path splits: its other part will be followed when this one has ended.
+    /// The path splits: its other part is followed when this one has ended.
     fn split(&mut self, _bounces: u16) {}
-    /// Roulette ends a part.
+    /// Russian roulette ended a part.
     fn roulette(&mut self) {}
-    /// A part of a path ended after so many bounces.
+    /// A part of a path ended after this many bounces.
     fn ended(&mut self, _bounces: u16) {}
     /// The code of an effect ran.
     fn used(&mut self, _effect: Effects) {}
@@ -57,7 +57,7 @@ pub trait Probe {
 
 impl Probe for () {}
 
-/// A probe behind a pointer: what only looks on need not be compiled into a kernel of its own.
+/// A probe behind a pointer: a mere observer needs no kernel compiled for it.
 impl Probe for &mut dyn Probe {
     fn ray(&mut self, tests: Tests) {
         (**self).ray(tests);
@@ -91,68 +91,68 @@ impl Probe for &mut dyn Probe {
     }
 }
 
-/// What tells apart the estimators that follow paths.
+/// The rules in which the path-following estimators differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathRules {
-    /// At this many vertices, counted from the first, a surface that reflects and transmits is followed both ways; at most 2.
+    /// Number of first vertices at which a path follows both reflection and transmission; at most 2.
     pub splits: u16,
-    /// Whether vertices aim at light, and then whether what is found is weighted with what is arrived at.
+    /// `None` without next-event estimation; otherwise whether it is weighted against hits of lights.
     pub aims: Option<bool>,
-    /// After so many bounces a path is cut.
+    /// The bounce limit of a path.
     pub max_depth: u16,
-    /// When and how chance ends paths.
+    /// When and with which probability Russian roulette ends paths.
     pub roulette: Roulette,
-    /// Camera rays of a sample, over which what they see is averaged.
+    /// Camera rays per sample; the light that they see is averaged.
     pub camera_rays: u16,
 }
 
 /// The effect profiles that an estimator's scalar kernels are compiled for. Each is a copy of the whole path, and takes seconds to compile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Compiled {
-    /// The profile with every effect alone.
+    /// Only the profile with all effects.
     WithAllEffects,
-    /// Also the profile of smallpt's effects.
+    /// Also the profile with smallpt's effects.
     Common,
     /// Every profile, so that the cost of an effect can be measured, with the sampler `independent`.
     EveryProfile,
 }
 
-/// An estimate of radiance, one sample at a time: unbiased unless it has a [`Estimator::MAX_DEPTH`] of its own.
+/// An estimator of radiance, one sample at a time: unbiased unless it has its own [`Estimator::MAX_DEPTH`].
 pub trait Estimator: Send + Sync {
-    /// What it is, in a line of `pathmark list estimators`.
+    /// A description, in one line of `pathmark list estimators`.
     const ABOUT: &'static str = "an estimator from outside";
 
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
 
-    /// Whether it aims at lights, which a scene must have been given for it.
+    /// Whether it uses next-event estimation, for which the scene must have been given its lights.
     const AIMS: bool = false;
 
-    /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
+    /// The default bounce limit; `None` if only the throughput ends a path.
     const MAX_DEPTH: Option<u16> = None;
 
-    /// When and how chance ends its paths unless another rule is asked for; `None` if it never does.
+    /// The default rule of Russian roulette; `None` if it has none.
     const ROULETTE: Option<Roulette> = None;
 
     /// Whether a sample is a single path.
     const IS_ONE_PATH: bool = false;
 
-    /// The largest number of bounces that it can be asked for.
+    /// The largest bounce limit that a caller can request.
     const LARGEST_DEPTH: u16 = u16::MAX;
 
-    /// Whether it counts the light at the end of a camera ray by [`camera_share`] if a sample has several camera rays.
+    /// Whether it scales the light at the end of a camera ray by [`camera_share`] if a sample has several camera rays.
     const SHARES_CAMERA_RAYS: bool = false;
 
     /// The effect profiles that its scalar kernels are compiled for.
     const COMPILED: Compiled = Compiled::WithAllEffects;
 
-    /// How it follows paths, for kernels that follow many at once; `None` if it does something else.
+    /// The rules of its paths, for kernels that follow many paths at once; `None` if it does not follow such paths.
     fn rules(&self) -> Option<PathRules> {
         None
     }
 
-    /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as sample `key` estimates it. Where a sample has several camera rays, light at the end of this
-    /// one counts by [`camera_share`], and [`seen_besides`] adds the rest.
+    /// The radiance along `ray` in W sr⁻¹ m⁻² per channel, as estimated by sample `key`. If a sample has several camera
+    /// rays, light at the end of this one is scaled by [`camera_share`], and [`seen_besides`] adds the rest.
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
         &self,
         scene: &Scene,
@@ -163,8 +163,8 @@ pub trait Estimator: Send + Sync {
     ) -> Rgb;
 }
 
-/// An estimator behind a pointer, with every effect in it: for whoever looks into samples and does not count seconds. One instance serves every
-/// sampler and probe; an effect that a scene does not call for changes no bit.
+/// A type-erased estimator, compiled with every effect, for callers that examine single samples and need no speed. One
+/// instance serves every sampler and probe. An effect that a scene does not use changes no bit.
 pub trait AnyEstimator: Send + Sync {
     /// [`Estimator::rules`].
     fn any_rules(&self) -> Option<PathRules>;
@@ -216,11 +216,11 @@ impl<E: Estimator> Estimator for Arc<E> {
     }
 }
 
-/// A function over estimators: how the name on the command line becomes a type in a kernel.
+/// A function that is generic over estimators. Through it a name on the command line becomes a type in a kernel.
 pub trait EstimatorVisitor {
-    /// What it returns.
+    /// The result.
     type Output;
-    /// Called with the estimator that was named.
+    /// Called with the named estimator.
     fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output;
 }
 
@@ -229,19 +229,19 @@ pub trait EstimatorVisitor {
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
     /// Samples per pixel must be a multiple of this.
     pub spp_multiple: u32,
-    /// After so many bounces a path is cut unless another number is asked for; `None` if only its throughput ends it.
+    /// The default bounce limit; `None` if only the throughput ends a path.
     pub max_depth: Option<u16>,
-    /// Whether it aims at lights.
+    /// Whether it uses next-event estimation.
     pub aims: bool,
-    /// When and how chance ends its paths unless another rule is asked for; `None` if it never does.
+    /// The default rule of Russian roulette; `None` if it has none.
     pub roulette: Option<Roulette>,
     /// Whether a sample is a single path.
     pub is_one_path: bool,
-    /// The largest number of bounces that it can be asked for.
+    /// The largest bounce limit that a caller can request.
     pub largest_depth: u16,
     /// Whether a sample can have several camera rays.
     pub shares_camera_rays: bool,
@@ -250,7 +250,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// What is known of an estimator from its type.
+    /// Creates the entry of an estimator from its type's constants.
     pub const fn of<E: Estimator>(name: &'static str, about: &'static str) -> Self {
         Self {
             name,
@@ -267,24 +267,24 @@ impl Entry {
     }
 }
 
-/// The line of the estimator of that name.
+/// The entry of the estimator of that name; `None` if there is none.
 pub fn find(name: &str) -> Option<&'static Entry> {
     ESTIMATORS.iter().find(|entry| entry.name == name)
 }
 
-/// What every estimator can be told.
+/// The options that every estimator accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
-    /// After so many bounces a path is cut, whatever its throughput; `None` leaves it to the estimator.
+    /// The bounce limit, whatever the throughput; `None` for the estimator's default.
     pub max_depth: Option<u16>,
-    /// When and how chance ends paths; `None` leaves it to the estimator.
+    /// The rule of Russian roulette; `None` for the estimator's default.
     pub roulette: Option<Roulette>,
-    /// Camera rays of a sample; `None` for one.
+    /// Camera rays per sample; `None` for one.
     pub camera_rays: Option<u16>,
 }
 
 impl Options {
-    /// Camera rays of a sample.
+    /// Camera rays per sample.
     pub fn camera_rays(&self) -> u16 {
         self.camera_rays.unwrap_or(1).max(1)
     }
@@ -306,7 +306,7 @@ macro_rules! estimators {
     };
 }
 
-/// The estimator of that name behind a pointer; `None` if there is none.
+/// The estimator of that name, boxed as a trait object; `None` if there is none.
 pub fn any_estimator(name: &str, options: Options) -> Option<Box<dyn AnyEstimator>> {
     struct Boxed;
     impl EstimatorVisitor for Boxed {

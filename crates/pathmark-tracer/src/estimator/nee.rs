@@ -1,11 +1,13 @@
-//! `--estimator nee`: next-event estimation. At every vertex light is aimed at; what a path then arrives at by chance is not counted again.
+//! `--estimator nee`: next-event estimation. The path aims at a light from every vertex. Light that it then hits by
+//! chance is not counted again.
 //!
-//! It counts where nothing was aimed at: behind mirrors and glass, seen by the camera, and light that is no target.
+//! A hit counts where no light was aimed at: behind mirrors and glass, for camera rays, and on lights that are no
+//! target.
 
 use super::Options;
 use super::path::{Aimed, Light, Path};
 
-/// The estimator.
+/// Creates the estimator.
 pub(super) fn new(options: Options) -> Path<Aimed> {
     Path::aiming(Light::Aimed, options)
 }

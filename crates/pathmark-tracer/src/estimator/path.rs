@@ -1,7 +1,8 @@
-//! The path that `smallpt`, `bsdf`, `nee` and `mis` share: directions come from the surface, emission is collected where the path arrives or is
-//! aimed at, and point lights, which no path can arrive at, are asked at every vertex.
+//! The path that `smallpt`, `bsdf`, `nee` and `mis` share. The surface's BSDF chooses directions. Emission is collected
+//! where the path hits it or aims at it. Point lights, which no path can hit, are evaluated at every vertex.
 //!
-//! Written as a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the thread's stack.
+//! The path is a loop over a small stack: glass may split a path at its first vertices, and no scene can overflow the
+//! thread's stack.
 
 use super::aimed::{aimed_at_fog, aimed_at_surface, share_of_arrival};
 use super::direct::{light_at_fog, light_at_surface};
@@ -14,25 +15,25 @@ use crate::sampling::{Address, Purpose, SampleKey, Sampler, UNIFORM_SPHERE_DENSI
 use crate::scene::{Aim, BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
 use std::marker::PhantomData;
 
-/// Where a path is cut whatever its throughput: only a closed scene that absorbs nothing comes here, and it is counted.
+/// The default bounce limit. Only a closed scene that absorbs nothing reaches it, and such cuts are counted.
 pub const MAX_BOUNCES: u16 = u16::MAX;
 
 /// Two splits leave at most three unfinished parts.
 const LARGEST_STACK: usize = 3;
 
-/// What tells the estimators of this file apart.
+/// The rules in which the estimators of this file differ.
 pub trait Rules: Send + Sync {
-    /// At this many vertices, counted from the first, a surface that reflects and transmits is followed both ways; at most 2.
+    /// Number of first vertices at which a path follows both reflection and transmission; at most 2.
     const SPLITS: u16;
     /// Samples per pixel must be a multiple of this.
     const SPP_MULTIPLE: u32;
-    /// Whether vertices aim at light.
+    /// Whether vertices aim at lights: next-event estimation.
     const AIMS: bool;
     /// The effect profiles that scalar kernels are compiled for.
     const COMPILED: Compiled = Compiled::Common;
 }
 
-/// The rules of `nee` and `mis`. They differ in a number alone, so one kernel does for both.
+/// The rules of `nee` and `mis`. They differ only in a run-time value, so one kernel serves both.
 #[derive(Debug, Clone, Copy)]
 pub struct Aimed;
 
@@ -42,12 +43,12 @@ impl Rules for Aimed {
     const AIMS: bool = true;
 }
 
-/// How light of surfaces is found by what aims at it.
+/// How the emission of surfaces is counted under next-event estimation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Light {
-    /// Aimed at from every vertex, and by chance only where it cannot be aimed at.
+    /// By aiming from every vertex; a hit counts only where no light can be aimed at.
     Aimed,
-    /// Both ways, weighted by how likely each was.
+    /// By aiming and by hits, weighted by their densities.
     Weighted,
 }
 
@@ -62,13 +63,13 @@ pub struct Path<R> {
 }
 
 impl<R> Path<R> {
-    /// The estimator; without a depth of its own it follows paths to [`MAX_BOUNCES`].
+    /// Creates the estimator; without a requested limit it follows paths to [`MAX_BOUNCES`].
     pub fn new(options: Options) -> Self {
         Self {
             max_depth: options.max_depth.unwrap_or(MAX_BOUNCES),
             roulette: options.roulette.unwrap_or(Roulette::SMALLPT),
             camera_rays: options.camera_rays(),
-            // Not looked at by what does not aim.
+            // Estimators without next-event estimation do not read it.
             light: Light::Weighted,
             rules: PhantomData,
         }
@@ -137,26 +138,27 @@ impl<R: Rules> Estimator for Path<R> {
     }
 }
 
-/// One of two lobes, each as often as its share of the light, so that neither's weight is more than that of both. smallpt refracts more rarely
-/// than that, and every such vertex then adds to the spread.
+/// Chooses one of two lobes with a probability proportional to its weight, so that neither result weighs more than both
+/// lobes together. smallpt refracts more rarely, and every such vertex then increases the variance.
 #[inline(always)]
 fn by_share(lobes: [BsdfSample; 2], u: f64) -> BsdfSample {
     let [first, second] = lobes.map(|lobe| lobe.weight.max_channel());
     let both = first + second;
-    // What is black stays black whichever it is.
+    // If both are black, either choice returns black.
     let chance = if both > 0.0 { first / both } else { 0.5 };
     let (lobe, chance) = if u < chance { (lobes[0], chance) } else { (lobes[1], 1.0 - chance) };
     BsdfSample { weight: lobe.weight * (1.0 / chance), ..lobe }
 }
 
-/// Whether nothing that a part still finds could reach the film. Below the smallest normal number a throughput may never become 0: nine tenths of
-/// 4 units are rounded to 4 units. What is no number goes on, so that it is counted.
+/// Whether a throughput is too small for a part's light to reach the film. Below the smallest normal number a
+/// throughput may never become 0: nine tenths of 4 units are rounded to 4 units. A path with a NaN goes on, so that the
+/// NaN is counted.
 #[inline(always)]
 fn is_spent(throughput: Rgb) -> bool {
     throughput.r < f64::MIN_POSITIVE && throughput.g < f64::MIN_POSITIVE && throughput.b < f64::MIN_POSITIVE
 }
 
-/// What is the same for all parts of a path.
+/// The values that all parts of a path share.
 struct Walk<'a, S> {
     scene: &'a Scene,
     key: SampleKey,
@@ -164,7 +166,7 @@ struct Walk<'a, S> {
     max_depth: u16,
     roulette: Roulette,
     light: Light,
-    /// The share of light that the camera ray sees.
+    /// The share with which light at the end of the camera ray counts.
     seen_share: f64,
 }
 
@@ -173,7 +175,7 @@ struct Walk<'a, S> {
 struct Part {
     ray: Ray,
     from: Option<Standpoint>,
-    /// How likely the ray's direction was, per steradian, if light was aimed at where it starts.
+    /// The density of the ray's direction, per steradian, if its start used next-event estimation.
     density: Option<f64>,
     throughput: Rgb,
     vertices: u16,
@@ -182,8 +184,8 @@ struct Part {
 }
 
 impl Part {
-    /// The numbers of the vertex that this part is on its way to. Behind the last vertex that there can be comes 0, the camera's, which asks
-    /// for none of what a path may still ask for there: how far it gets through fog.
+    /// The address of the random numbers of this part's next vertex. After the last possible vertex it wraps around to
+    /// 0, the camera's. There a path only samples its distance in fog, which the camera never does.
     #[inline(always)]
     fn address(&self, key: SampleKey, purpose: Purpose) -> Address {
         Address { key, bounce: self.vertices.wrapping_add(1), branch: self.branch, purpose }
@@ -196,13 +198,13 @@ impl<S: Sampler> Walk<'_, S> {
         self.sampler.pair(part.address(self.key, purpose))
     }
 
-    /// What counts of light that a part arrives at.
+    /// Scales the light that a part reaches: the end of a camera ray counts by its share.
     #[inline(always)]
     fn counted(&self, part: &Part, light: Rgb) -> Rgb {
         if part.vertices == 0 { light * self.seen_share } else { light }
     }
 
-    /// A direction towards a light from the vertex that a part arrived at.
+    /// Samples a direction towards a light from the vertex that a part has reached.
     #[inline(always)]
     fn aim<R: Rules>(&self, part: &Part, point: Vec3, from: Option<Standpoint>) -> Option<Aim> {
         let lights = if R::AIMS { self.scene.lights.as_ref()? } else { return None };
@@ -210,7 +212,8 @@ impl<S: Sampler> Walk<'_, S> {
         lights.aim(point, from, choice, self.pair(part, Purpose::Light))
     }
 
-    /// Traces a part to its next vertex. What goes on from there, and, after a split, the other way; `None` when the part has ended.
+    /// Traces a part to its next vertex. Returns the part that continues and, after a split, the other one; `None` if
+    /// the part ended.
     #[inline(always)]
     fn advance<R: Rules, X: EffectSet, P: Probe>(
         &self,
@@ -253,7 +256,7 @@ impl<S: Sampler> Walk<'_, S> {
         self.surface::<R, X, P>(part, &hit, probe, collected)
     }
 
-    /// What happens at a point of a surface.
+    /// Processes a hit of a surface: adds its light and samples the next direction.
     #[inline(always)]
     fn surface<R: Rules, X: EffectSet, P: Probe>(
         &self,
@@ -299,7 +302,7 @@ impl<S: Sampler> Walk<'_, S> {
 
         let mut throughput = part.throughput;
         if let Some(survival) = self.roulette.survival(vertices, throughput, || object.material.albedo::<X>()) {
-            // A number equal to the chance ends the path, so a black surface ends every path, whatever the number.
+            // A number equal to the survival probability ends the path, so a black surface ends every path.
             if self.pair(&part, Purpose::Roulette)[0] >= survival {
                 probe.roulette();
                 probe.ended(part.vertices);
@@ -311,7 +314,7 @@ impl<S: Sampler> Walk<'_, S> {
         probe.used(object.material.effect());
         let leave = |sample: BsdfSample, branch: u16| {
             let towards = frame.to_world(sample.wi);
-            // A chain of delta bounces would let the length drift; any other direction is made anew.
+            // Over a chain of delta bounces the length would drift; all other directions are computed afresh.
             let direction = if sample.density == Density::Delta { towards.normalized() } else { towards };
             let ray = Ray { origin: hit.point, direction };
             let from = Some(Standpoint { primitive: hit.primitive, inside: (sample.wi.z < 0.0) != hit.inside });
@@ -344,7 +347,7 @@ impl<S: Sampler> Walk<'_, S> {
         Some((next?, None))
     }
 
-    /// What happens where fog scatters light, evenly in all directions. Absorption on the way is the survival of roulette.
+    /// Processes a scattering event in fog, which is isotropic. Russian roulette uses the transmittance as the albedo.
     #[inline(never)]
     fn scatter<R: Rules, X: EffectSet, P: Probe>(
         &self,

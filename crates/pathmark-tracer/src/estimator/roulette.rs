@@ -1,25 +1,26 @@
-//! Russian roulette: when paths may end, and by which chance. `--roulette albedo:5` is smallpt's: behind the fifth vertex, by the largest
-//! channel of the surface's albedo. `--roulette constant:0.8` is report B's: the same chance behind every vertex.
+//! Russian roulette: when paths may end, and with which probability. `--roulette albedo:5` is smallpt's rule: after the
+//! fifth vertex, by the largest channel of the surface's albedo. `--roulette constant:0.8` is report B's rule: the same
+//! probability after every vertex.
 //!
-//! Whatever the chance, what survives is divided by it, so the mean stays what it is (Arvo and Kirk, "Particle Transport and Image
-//! Synthesis", 1990).
+//! The throughput of a surviving path is divided by its survival probability, so the mean stays the same under every
+//! rule (Arvo and Kirk, "Particle Transport and Image Synthesis", 1990).
 
 use crate::error::{InputError, Result};
 use crate::math::{Real, Rgb};
 use std::fmt;
 
-/// What the chance to survive follows.
+/// The quantity that determines the survival probability.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum By {
-    /// The largest channel of what the vertex lets on.
+    /// The largest channel of the vertex's albedo; in fog, of the transmittance.
     Albedo,
-    /// The largest channel of what the path still carries behind the vertex, at most 1.
+    /// The largest channel of the path's throughput after the vertex, at most 1.
     Throughput,
-    /// Nothing: it is the same everywhere.
+    /// The same probability at every vertex.
     Constant(f64),
 }
 
-/// When and how paths are ended by chance.
+/// A rule of Russian roulette: when and with which probability paths end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Roulette {
     pub(crate) by: By,
@@ -27,13 +28,13 @@ pub struct Roulette {
 }
 
 impl Roulette {
-    /// smallpt's: `if (++depth > 5)`.
+    /// The rule of smallpt: `if (++depth > 5)`.
     pub const SMALLPT: Self = Self { by: By::Albedo, after: 5 };
 
-    /// What `--roulette` allows.
+    /// The values that `--roulette` allows.
     pub const ALLOWED: &str = "albedo:N or throughput:N behind the N-th vertex, N from 0 to 65534, constant:P with the same chance P behind every vertex, 0 < P < 1, or never";
 
-    /// Reads `albedo:5`, `throughput:2`, `constant:0.8` or `never`.
+    /// Parses `albedo:5`, `throughput:2`, `constant:0.8` or `never`.
     pub fn parse(text: &str) -> Result<Self> {
         let unknown = || InputError::new("roulette", text, "is no rule").allowed(Self::ALLOWED);
         if text == "never" {
@@ -53,12 +54,12 @@ impl Roulette {
         Ok(Self { by, after })
     }
 
-    /// Behind so many vertices no path is ended by chance.
+    /// The number of first vertices without roulette.
     pub fn after(self) -> u16 {
         self.after
     }
 
-    /// The chance to survive where a vertex lets on `passed` of what arrives with `throughput`.
+    /// The survival probability at a vertex that passes on `passed` of the light, for a path with `throughput`.
     #[inline(always)]
     pub fn chance<T: Real>(self, throughput: Rgb<T>, passed: Rgb<T>) -> T {
         match self.by {
@@ -71,8 +72,8 @@ impl Roulette {
         }
     }
 
-    /// The chance to go on behind the `vertices`-th vertex, which lets on `passed` of what arrives with `throughput`; `None` before roulette
-    /// begins.
+    /// The survival probability after the `vertices`-th vertex, which passes on `passed` of the light, for a path with
+    /// `throughput`; `None` before roulette begins.
     #[inline(always)]
     pub(super) fn survival(self, vertices: u16, throughput: Rgb, passed: impl FnOnce() -> Rgb) -> Option<f64> {
         if vertices <= self.after {
@@ -126,7 +127,7 @@ mod tests {
         let (throughput, passed) = (Rgb { r: 0.5, g: 4.0, b: 0.1 }, Rgb { r: 0.25, g: 0.5, b: 0.75 });
         let survival = |name: &str, n| Roulette::parse(name).unwrap().survival(n, throughput, || passed);
         assert_eq!([survival("albedo:2", 2), survival("albedo:2", 3)], [None, Some(0.75)]);
-        // The product is (0.125, 2, 0.075): more than 1 is none.
+        // The product is (0.125, 2, 0.075): a probability is at most 1.
         assert_eq!([survival("throughput:0", 1), survival("never", u16::MAX)], [Some(1.0), None]);
         assert_eq!([survival("constant:0.4", 0), survival("constant:0.4", 1)], [None, Some(0.4)]);
     }

@@ -1,7 +1,8 @@
-//! `--estimator smallpt`: the estimator of Kevin Beason's smallpt (2008), which report A took over.
+//! `--estimator smallpt`: the estimator of Kevin Beason's smallpt (2008), which report A adopted.
 //!
-//! Glass is followed both ways at the first two vertices; roulette by the largest albedo channel starts after the fifth vertex; samples
-//! go to 2x2 subpixels in turn, so their number must be a multiple of four (smallpt drops the rest without a word).
+//! Glass is followed both ways at the first two vertices. Russian roulette by the largest albedo channel starts after
+//! the fifth vertex. Samples cycle through 2x2 subpixels, so their number must be a multiple of four (smallpt silently
+//! drops the rest).
 
 use super::Compiled;
 use super::path::{Path, Rules};
@@ -9,7 +10,7 @@ use super::path::{Path, Rules};
 /// The estimator.
 pub type Smallpt = Path<SmallptRules>;
 
-/// What sets it apart.
+/// The rules of `smallpt`.
 #[derive(Debug, Clone, Copy)]
 pub struct SmallptRules;
 

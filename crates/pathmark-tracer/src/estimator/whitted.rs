@@ -1,9 +1,9 @@
-//! `--estimator whitted`: Turner Whitted, "An Improved Illumination Model for Shaded Display", Communications of the ACM 23(6), 1980, which
-//! reports C and D took up. Surfaces are lit by point lights and by what they mirror or let through; light that arrives by way of diffuse
-//! surfaces is left out, so what it converges to is darker than the light of the same scene.
+//! `--estimator whitted`: Turner Whitted, "An Improved Illumination Model for Shaded Display", Communications of the
+//! ACM 23(6), 1980, used by reports C and D. Surfaces receive light from point lights and by ideal reflection and
+//! refraction. Light by way of diffuse surfaces is left out, so the limit is darker than the scene's true radiance.
 //!
-//! Every ideal reflection and refraction is followed, so nothing is left to chance but the place inside the pixel. The tree of rays is
-//! walked depth first in a loop: at most one part of it waits at each depth.
+//! Every ideal reflection and refraction is followed, so only the position inside the pixel is random. A loop walks the
+//! tree of rays depth first: at most one part waits at each depth.
 
 use super::direct::light_at_surface;
 use super::medium::Medium;
@@ -14,10 +14,10 @@ use crate::math::{Frame, Ray, Rgb, dot};
 use crate::sampling::{SampleKey, Sampler};
 use crate::scene::{BACKGROUND, FOG, Hit, Scene, Standpoint, Tests};
 
-/// After so many bounces rays are cut unless another number is asked for.
+/// The default bounce limit.
 const DEFAULT_DEPTH: u16 = 10;
 
-/// The largest number that can be asked for: glass in glass makes up to 2^depth rays of a sample.
+/// The largest bounce limit: glass in glass makes up to 2^depth rays per sample.
 const LARGEST_DEPTH: u16 = 32;
 
 /// The estimator.
@@ -27,7 +27,7 @@ pub struct Whitted {
 }
 
 impl Whitted {
-    /// The estimator; a depth above its largest counts as that.
+    /// Creates the estimator; a limit above the largest is reduced to it.
     pub fn new(options: Options) -> Self {
         Self { max_depth: options.max_depth.unwrap_or(DEFAULT_DEPTH).min(LARGEST_DEPTH) }
     }
@@ -83,7 +83,7 @@ impl Estimator for Whitted {
 }
 
 impl Whitted {
-    /// Traces a part to where it arrives, adds the light from there, and returns what goes on.
+    /// Traces a part to its hit, adds the light from there, and returns the parts that continue.
     #[inline(always)]
     fn follow<X: EffectSet, P: Probe>(
         self,
@@ -142,7 +142,7 @@ impl Whitted {
 }
 
 impl Part {
-    /// What leaves a surface by one of its lobes; `None` if nothing does.
+    /// The part that leaves a surface by one of its lobes; `None` if its throughput is black.
     #[inline(always)]
     fn after<X: EffectSet>(&self, hit: &Hit, frame: &Frame, lobe: &BsdfSample) -> Option<Self> {
         let throughput = self.throughput * lobe.weight;

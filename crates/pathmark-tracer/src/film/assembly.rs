@@ -1,29 +1,30 @@
-//! Pieces put together in whatever order they come, with one result.
+//! Assembly: pieces that arrive in any order are combined into the same film.
 //!
-//! A pixel's samples are summed along a fixed tree ([`super::SampleSum`]). A piece with only some of its pixels' samples is a subtree; it
-//! waits here for the subtree beside it, and both become their parent. So the film depends on the pieces, not on their order.
+//! A pixel's samples are summed along a fixed tree ([`super::SampleSum`]). A piece with only some of its pixels'
+//! samples is a subtree. It waits here for its neighbour, and both are added to form their parent. So the film depends
+//! on the pieces, not on their order.
 
 use super::{Bounds, Film, TileBuffer};
 use crate::error::Result;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
-/// A film that is being put together.
+/// A film during its assembly.
 #[derive(Debug)]
 pub struct Assembly {
     film: Film,
     samples: Range<u32>,
-    /// Subtrees that wait for their neighbours, by rectangle and first sample, with their number of samples.
+    /// Subtrees waiting for their neighbours, by rectangle and first sample, each with its number of samples.
     waiting: HashMap<Bounds, BTreeMap<u32, (u32, TileBuffer)>>,
 }
 
 impl Assembly {
-    /// An empty film whose pixels will have the samples in `samples`, if the system has the memory.
+    /// Creates an empty film whose pixels will have the samples in `samples`. Fails if the system lacks the memory.
     pub fn new(width: u32, height: u32, samples: Range<u32>) -> Result<Self> {
         Ok(Self { film: Film::try_new(width, height)?, samples, waiting: HashMap::new() })
     }
 
-    /// Adds a piece that was rendered into `tile`. Every piece must come once.
+    /// Adds a piece that was rendered into `tile`. Every piece must be added exactly once.
     pub fn add(&mut self, samples: &Range<u32>, mut tile: TileBuffer) {
         if *samples == self.samples {
             self.film.place(&tile);
@@ -44,7 +45,7 @@ impl Assembly {
         parts.insert(start, (length, tile));
     }
 
-    /// Adds many pieces, those with all samples of their pixels by up to so many threads.
+    /// Adds many pieces. Up to `threads` threads place the pieces that have all samples of their pixels.
     pub fn add_all(&mut self, pieces: Vec<(Range<u32>, TileBuffer)>, threads: usize) {
         let (whole, parts): (Vec<_>, Vec<_>) = pieces.into_iter().partition(|(samples, _)| *samples == self.samples);
         let whole: Vec<TileBuffer> = whole.into_iter().map(|(_, tile)| tile).collect();
@@ -54,10 +55,11 @@ impl Assembly {
         }
     }
 
-    /// The film, when all pieces have come.
+    /// Returns the film, once all pieces have been added.
     pub fn finish(mut self) -> Film {
         for parts in self.waiting.into_values() {
-            // What has found no neighbour are the digits of a binary number, summed from the smallest up: the last one first.
+            // The remaining subtrees are the digits of a binary number. They are summed from the smallest up: the last
+            // one first.
             let whole = parts.into_values().map(|(_, tile)| tile).rev().reduce(|later, tile| tile.plus(&later));
             if let Some(tile) = whole {
                 self.film.place(&tile);
@@ -112,7 +114,7 @@ mod tests {
         }
     }
 
-    /// Tiles of any size, some of which cross the bands of the threads.
+    /// Tiles of any size, some of which cross the threads' bands.
     #[test]
     fn threads_place_what_one_places() {
         let (width, height) = (37, 29);

@@ -1,6 +1,6 @@
-//! How a film is cut into jobs: `--decomposition rows | bands:N | grid:N | tiles:WxH[:ORDER] | samples:B[:WxH]`.
+//! Decompositions of a film into jobs: `--decomposition rows | bands:N | grid:N | tiles:WxH[:ORDER] | samples:B[:WxH]`.
 //!
-//! To add one: give it a line in `DECOMPOSITIONS` and a function that reads how it cuts.
+//! A new decomposition needs a line in `DECOMPOSITIONS` and a function that parses its parameters.
 
 use super::order::ORDERS;
 use super::{Plan, SAMPLE_BLOCK, TileOrder};
@@ -11,11 +11,11 @@ use std::ops::Range;
 pub struct Entry {
     /// Its name, the part before the first colon.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
-    /// An example that runs as it is, with its parameters at their defaults.
+    /// An example that can be run as it is, with the default parameters.
     pub example: &'static str,
-    /// Reads the parameters; `None` if they can't be read.
+    /// Parses the parameters; `None` if they are invalid.
     parse: fn(Option<&str>) -> Option<Cut>,
 }
 
@@ -48,26 +48,26 @@ pub const DECOMPOSITIONS: &[Entry] = &[
     },
 ];
 
-/// What a name and its parameters mean.
+/// The meaning of a name and its parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Cut {
     columns: Parts,
     rows: Parts,
     order: TileOrder,
-    /// Samples of a pixel in one job; all of them if `None`.
+    /// Number of a pixel's samples in one job; `None` for all of them.
     block: Option<u32>,
 }
 
-/// How a side of the film is divided.
+/// The division of a side of the film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Parts {
-    /// Into so many parts, no two of which differ by more than one.
+    /// Into this many parts, whose sizes differ by at most one.
     Even(u32),
-    /// After every so many pixels, the last part taking what is left.
+    /// Into parts of this many pixels; the last part takes the rest.
     Every(u32),
 }
 
-/// A way to cut a film.
+/// A way to cut a film into jobs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Decomposition {
     text: String,
@@ -101,7 +101,7 @@ fn parse_tiles(parameter: Option<&str>) -> Option<Cut> {
 fn parse_samples(parameter: Option<&str>) -> Option<Cut> {
     let parameter = parameter.unwrap_or("16");
     let (block, size) = parameter.split_once(':').unwrap_or((parameter, "32x32"));
-    // Other numbers of samples are no subtree of a pixel's sum.
+    // Other numbers of samples would not be a subtree of a pixel's sum.
     let block = count(block).filter(|block| block.is_power_of_two() && *block >= SAMPLE_BLOCK)?;
     Some(Cut { block: Some(block), ..tiles(size)? })
 }
@@ -116,7 +116,7 @@ fn count(text: &str) -> Option<u32> {
 }
 
 impl Decomposition {
-    /// Reads it as it stands on the command line.
+    /// Parses the command line's notation.
     pub fn parse(text: &str) -> Result<Self> {
         let (name, parameter) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
         let entry = DECOMPOSITIONS.iter().find(|entry| entry.name == name);
@@ -145,7 +145,7 @@ impl Decomposition {
         self.sample_block().is_some()
     }
 
-    /// Samples of a pixel in one job, where they may belong to several.
+    /// Number of a pixel's samples in one job, if they may belong to several jobs.
     pub(super) fn sample_block(&self) -> Option<u32> {
         self.cut.block
     }
@@ -160,7 +160,7 @@ impl Decomposition {
 }
 
 impl Parts {
-    /// Where the parts of a side begin, and where the last one ends.
+    /// The start of each part of a side, and the end of the last one.
     fn boundaries(self, length: u32) -> Vec<u32> {
         match self {
             // Boundary k is k · length / parts, rounded up.
@@ -173,7 +173,8 @@ impl Parts {
     }
 }
 
-/// The two factors of `n` that are nearest to each other, the larger first: more columns than rows, as images are wider than high.
+/// The two factors of `n` that are closest to each other, the larger first: more columns than rows, because images are
+/// usually wide.
 fn nearly_square_factors(n: u32) -> (u32, u32) {
     let rows = (1..=n.isqrt()).rev().find(|rows| n.is_multiple_of(*rows)).unwrap_or(1);
     (n / rows, rows)

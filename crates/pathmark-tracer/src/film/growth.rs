@@ -1,15 +1,16 @@
-//! A film that grows: first some samples a pixel, then more, with the bits of all of them at once.
+//! Growing films: samples are added in rounds, and the result has the same bits as all samples at once.
 //!
-//! It keeps finished subtrees of each pixel's sum ([`super::SampleSum`]) for the whole image, like the digits of a binary counter, and the
-//! unfinished block apart. More samples come in sections that are subtrees themselves. The unfinished block cannot be continued
-//! without the samples in it, so its up to 15 samples are rendered again.
+//! A growing film keeps the finished subtrees of each pixel's sum ([`super::SampleSum`]) for the whole image, like the
+//! digits of a binary counter, and the unfinished block apart. More samples come in sections that are subtrees
+//! themselves. The unfinished block cannot be continued without its single samples, so its up to 15 samples are
+//! rendered again.
 
 use super::{Assembly, Film, SAMPLE_BLOCK, TileBuffer};
 use crate::error::Result;
 use std::ops::Range;
 
-/// Cuts samples into subtrees: 16 · 2^k samples that start at a multiple of their number, the largest that fit, and what is left of a
-/// block at the end. `samples` start at a multiple of [`SAMPLE_BLOCK`].
+/// Cuts samples into the largest subtrees that fit: 16 · 2^k samples that start at a multiple of their number. The last
+/// section may be a rest of less than a block. `samples` must start at a multiple of [`SAMPLE_BLOCK`].
 pub fn sections(samples: &Range<u32>) -> Vec<Range<u32>> {
     debug_assert!(samples.start.is_multiple_of(SAMPLE_BLOCK));
     let (mut cut, mut start) = (Vec::new(), samples.start);
@@ -18,7 +19,7 @@ pub fn sections(samples: &Range<u32>) -> Vec<Range<u32>> {
         let length = if left < SAMPLE_BLOCK {
             left
         } else {
-            // The largest power of two in what is left; sample 0 is a multiple of all.
+            // The largest power of two that fits into the rest; sample 0 is a multiple of all.
             let fits = 1 << left.ilog2();
             if start == 0 { fits } else { fits.min(1 << start.trailing_zeros()) }
         };
@@ -28,7 +29,7 @@ pub fn sections(samples: &Range<u32>) -> Vec<Range<u32>> {
     cut
 }
 
-/// Sections that are put together side by side, whichever piece comes first.
+/// Sections that are assembled at the same time, from pieces in any order.
 #[derive(Debug)]
 pub struct Sections {
     ends: Vec<u32>,
@@ -36,20 +37,21 @@ pub struct Sections {
 }
 
 impl Sections {
-    /// Empty films for ranges of samples that follow one another, if the system has the memory.
+    /// Creates empty films for successive ranges of samples. Fails if the system lacks the memory.
     pub fn new(width: u32, height: u32, sections: &[Range<u32>]) -> Result<Self> {
         let assembly = |samples: &Range<u32>| Assembly::new(width, height, samples.clone());
         let assemblies = sections.iter().map(assembly).collect::<Result<_>>()?;
         Ok(Self { ends: sections.iter().map(|samples| samples.end).collect(), assemblies })
     }
 
-    /// Adds a piece that was rendered into `tile`, all of whose samples lie in one section. Every piece must come once.
+    /// Adds a piece that was rendered into `tile`. All its samples must lie in one section. Every piece must be added
+    /// exactly once.
     pub fn add(&mut self, samples: &Range<u32>, tile: TileBuffer) {
         let section = self.ends.partition_point(|end| *end <= samples.start);
         self.assemblies[section].add(samples, tile);
     }
 
-    /// Adds many pieces, by up to so many threads; what is left of the work to one is to add up pieces that share pixels.
+    /// Adds many pieces, with up to `threads` threads; pieces that share pixels are added up by one thread.
     pub fn add_all(&mut self, pieces: impl IntoIterator<Item = (Range<u32>, TileBuffer)>, threads: usize) {
         let mut by_section: Vec<Vec<_>> = self.ends.iter().map(|_| Vec::new()).collect();
         for (samples, tile) in pieces {
@@ -60,31 +62,31 @@ impl Sections {
         }
     }
 
-    /// The films, one for each section, when all pieces have come.
+    /// Returns the films, one per section, once all pieces have been added.
     pub fn finish(self) -> Vec<Film> {
         self.assemblies.into_iter().map(Assembly::finish).collect()
     }
 }
 
-/// A film and what is needed to go on with it.
+/// A film that can be continued with more samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GrowingFilm {
     width: u32,
     height: u32,
     samples: Range<u32>,
-    /// Whole subtrees, from the first samples on, and the unfinished block if there is one.
+    /// The finished subtrees, from the first samples on, then the unfinished block if there is one.
     parts: Vec<(Range<u32>, Film)>,
 }
 
 impl GrowingFilm {
-    /// A film without samples, whose first will be number `start`: a multiple of [`SAMPLE_BLOCK`].
+    /// Creates a film without samples. Its first sample will have the index `start`, a multiple of [`SAMPLE_BLOCK`].
     pub fn new(width: u32, height: u32, start: u32) -> Self {
         debug_assert!(start.is_multiple_of(SAMPLE_BLOCK));
         Self { width, height, samples: start..start, parts: Vec::new() }
     }
 
-    /// A film of parts as [`GrowingFilm::parts`] gives them; `None` if they are not of that kind. `owns` tells which pixels they are of, by
-    /// column and row.
+    /// Creates a film from parts in the form that [`GrowingFilm::parts`] returns; `None` if they lack that form. `owns`
+    /// tells by column and row whether a pixel has samples.
     pub fn from_parts(
         width: u32,
         height: u32,
@@ -105,23 +107,23 @@ impl GrowingFilm {
         is_ours.then_some(Self { width, height, samples, parts })
     }
 
-    /// Samples per pixel, those before the film's first included.
+    /// Samples per pixel, including those before the film's first.
     pub fn spp(&self) -> u32 {
         self.samples.end
     }
 
-    /// The subtrees and what samples they are of.
+    /// The subtrees and their ranges of samples.
     pub fn parts(&self) -> &[(Range<u32>, Film)] {
         &self.parts
     }
 
-    /// The subtrees, when the film does not grow any more.
+    /// Returns the subtrees of a film that will grow no more.
     pub fn into_parts(self) -> Vec<(Range<u32>, Film)> {
         self.parts
     }
 
-    /// What has to be rendered so that there are `spp` samples: to be added in this order. Nothing if there are as many already; a film
-    /// does not shrink.
+    /// The sections to render and add, in this order, to reach `spp` samples. Empty if there are at least as many
+    /// already; a film does not shrink.
     pub fn missing(&self, spp: u32) -> Vec<Range<u32>> {
         Self::missing_after(self.samples.end, spp)
     }
@@ -133,7 +135,7 @@ impl GrowingFilm {
 
     /// Adds the next section.
     pub fn add(&mut self, samples: Range<u32>, mut film: Film) {
-        // What is left is an unfinished block, of which these samples are a longer part.
+        // Parts from here on are an unfinished block; the new samples include it.
         self.parts.retain(|(found, _)| found.start < samples.start);
         self.samples.end = samples.end;
         let mut samples = samples;
@@ -149,7 +151,8 @@ impl GrowingFilm {
         self.parts.push((samples, film));
     }
 
-    /// All samples: the bits of a film that was rendered with them at once, if the first is number 0.
+    /// The sum of all samples: equal, bit for bit, to a film rendered with them at once, if the first sample has index
+    /// 0.
     pub fn film(&self) -> Film {
         let mut parts = self.parts.iter().rev().map(|(_, film)| film);
         let Some(last) = parts.next() else { return Film::new(self.width, self.height) };
@@ -182,7 +185,7 @@ mod tests {
     fn extend(film: &mut GrowingFilm, spp: u32) {
         let missing = film.missing(spp);
         let mut sections = Sections::new(1, 1, &missing).unwrap();
-        // Backwards: they come in any order.
+        // Backwards, because pieces may come in any order.
         missing.iter().rev().for_each(|samples| sections.add(samples, part(samples.clone())));
         for (samples, part) in missing.into_iter().zip(sections.finish()) {
             film.add(samples, part);
@@ -209,7 +212,7 @@ mod tests {
         }
     }
 
-    /// Two and three rounds of any numbers of samples have the bits of one.
+    /// Two and three rounds with any numbers of samples give the same bits as one.
     #[test]
     fn rounds_give_the_undivided_sum() {
         for spp in 1..=140 {
@@ -227,7 +230,7 @@ mod tests {
         }
     }
 
-    /// Films of ranges that follow one another, each rendered in two rounds, put together: the bits of one film.
+    /// Films of successive ranges, each rendered in two rounds, are combined: the result has the bits of one film.
     #[test]
     fn ranges_give_the_undivided_sum() {
         for spp in [33, 64, 100, 160, 200] {

@@ -1,4 +1,4 @@
-//! Pictures in memory.
+//! Images in memory.
 
 /// A picture: linear radiance per colour channel (red, green, blue), row by row from the top.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
-//! The image as sums of samples, and how it is cut into pieces of work.
+//! Films: the image as sums of samples, and its decomposition into pieces.
 //!
-//! Sums have a fixed shape, so that who rendered what, and in which order, cannot change a bit.
+//! Samples are added along a fixed tree, so no bit depends on who rendered which piece or in which order.
 
 mod assembly;
 mod decomposition;

@@ -1,37 +1,37 @@
-//! How far a film is from the truth, told by its own samples.
+//! Noise: a film's error, estimated from its own samples.
 //!
-//! A pixel's estimate of n samples has the variance s²/n, so the mean of s²/n over pixels and channels is what its squared error is
-//! expected to be. The error that this very image has scatters around that. For normal errors with v a pixel's variance, its squared error
-//! has the variance 2v² and its s²/n the variance 2v²/(n - 1); what heavy tails add to the one they add to the other and to their
-//! covariance (with fourth cumulant k: k/n³ each), so that it cancels in the difference. With the channels of a pixel taken as one
-//! number, which is the worst case, the difference of an image's squared error and its estimate has the variance
-//! 2/P² · n/(n - 1) · sum of v² over the P pixels.
+//! A pixel's estimate from n samples has the variance s²/n, so the mean of s²/n over pixels and channels is its
+//! expected squared error. The squared error of one image scatters around that. For normal errors with v a pixel's
+//! variance, its squared error has the variance 2v² and its s²/n the variance 2v²/(n - 1). Heavy tails add the same to
+//! both variances and to the covariance (with fourth cumulant k: k/n³ each), so they cancel in the difference. If the
+//! channels of a pixel are treated as one number, which is the worst case, the difference of an image's squared error
+//! and its estimate has the variance 2/P² · n/(n - 1) · sum of v² over the P pixels.
 //!
-//! Where samples are stratified or of low discrepancy, s²/n is too large: the truth is nearer than said.
+//! For stratified or low-discrepancy samples s²/n is too large: the true error is smaller.
 
 use super::{Film, PixelSum};
 
 /// Fewest pixels whose errors average out enough for a normal bound.
 pub const FEWEST_PIXELS: usize = 64;
 
-/// A film's error as its samples tell it.
+/// A film's error as estimated from its samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// The squared error to expect: mean over pixels and channels.
+    /// The expected squared error: mean over pixels and channels.
     pub mse: f64,
-    /// Standard deviation of what the image's own squared error differs from that.
+    /// Standard deviation of the difference between the image's own squared error and `mse`.
     pub scatter: f64,
 }
 
 impl Noise {
-    /// The squared error that the image stays below with the probability that belongs to the standard normal quantile `z`.
+    /// The upper bound of the image's squared error, with the probability of the standard normal quantile `z`.
     pub fn bound(&self, z: f64) -> f64 {
         self.mse + z * self.scatter
     }
 }
 
 impl PixelSum {
-    /// Variance of the pixel's estimate, averaged over channels; 0 below two samples, which do not tell.
+    /// Variance of the pixel's estimate, averaged over channels; 0 below two samples, which have no variance.
     pub fn variance(&self) -> f64 {
         let n = f64::from(self.count);
         if self.count < 2 {
@@ -43,12 +43,13 @@ impl PixelSum {
 }
 
 impl Film {
-    /// The mean over pixels of the variance of a pixel's estimate, averaged over channels: the square of the RMSE to expect.
+    /// The mean over pixels of the variance of a pixel's estimate, averaged over channels: the square of the expected
+    /// RMSE.
     pub fn mean_variance(&self) -> f64 {
         self.pixels().iter().map(PixelSum::variance).sum::<f64>() / self.pixels().len() as f64
     }
 
-    /// The film's error; `None` if a pixel has fewer than two samples.
+    /// The film's noise; `None` if a pixel has fewer than two samples.
     pub fn noise(&self) -> Option<Noise> {
         let (mut sum, mut squares) = (0.0, 0.0);
         for pixel in self.pixels() {
@@ -68,7 +69,7 @@ impl Film {
 mod tests {
     use super::*;
 
-    /// 3, 5, 7 and 9: variance 20/3 of a sample, 5/3 of the mean. Another pixel without spread.
+    /// Samples 3, 5, 7 and 9: variance 20/3 of a sample, 5/3 of the mean. The other pixel's samples are equal.
     #[test]
     fn known_numbers() {
         let pixel = PixelSum { sum: [24.0; 3], square: [164.0; 3], count: 4 };

@@ -1,4 +1,5 @@
-//! The order in which tiles are handed out. It changes who waits for whom at the end, and what is in the caches, never the image.
+//! Tile orders: the order in which tiles are handed out. It changes idle time at the end and cache contents, but never
+//! the image.
 
 use std::cmp::Reverse;
 
@@ -12,12 +13,12 @@ pub enum TileOrder {
     Hilbert,
     /// From the middle outwards, ring by ring.
     Spiral,
-    /// The dearest first (Graham 1969: at most 4/3 - 1/(3p) of the best makespan, where any order can take twice as long). What a tile
-    /// costs must be found out by whoever has a kernel; until then it is scanline order.
+    /// The most expensive first (Graham 1969: at most 4/3 - 1/(3p) times the best makespan, where any order can take
+    /// twice as long). A caller with a kernel must measure the costs; until then this is scanline order.
     Cost,
 }
 
-/// Name and meaning of each order.
+/// The orders by name.
 pub(super) const ORDERS: [(&str, TileOrder); 4] = [
     ("scanline", TileOrder::Scanline),
     ("hilbert", TileOrder::Hilbert),
@@ -60,7 +61,8 @@ fn hilbert_index(mut x: u64, mut y: u64, side: u64) -> u64 {
     index
 }
 
-/// Ring around the middle, then the angle's order within the ring: right side downwards, bottom leftwards, left upwards, top rightwards.
+/// Sort key: the ring around the middle, then the position in it: right side downwards, bottom leftwards, left upwards,
+/// top rightwards.
 fn spiral_key(x: usize, y: usize, columns: usize, rows: usize) -> (usize, usize, Reverse<i64>) {
     // Doubled coordinates keep the middle of an even grid exact.
     let dx = 2 * x as i64 + 1 - columns as i64;

@@ -1,4 +1,4 @@
-//! A film cut into pieces: every pixel's every sample belongs to exactly one.
+//! Plans: a film cut into pieces, so that every sample of every pixel belongs to exactly one.
 
 use std::ops::Range;
 
@@ -16,28 +16,28 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Columns.
+    /// Number of columns.
     pub const fn width(&self) -> u32 {
         self.x1 - self.x0
     }
 
-    /// Rows.
+    /// Number of rows.
     pub const fn height(&self) -> u32 {
         self.y1 - self.y0
     }
 
-    /// Pixels.
+    /// Number of pixels.
     pub const fn area(&self) -> usize {
         self.width() as usize * self.height() as usize
     }
 }
 
-/// One job: a rectangle and a range of its pixels' samples.
+/// One job: a rectangle of pixels and a range of their samples.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Piece {
     /// The pixels.
     pub bounds: Bounds,
-    /// The samples of each.
+    /// The samples of each pixel.
     pub samples: Range<u32>,
 }
 
@@ -48,7 +48,8 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The rectangles between successive column and row boundaries: disjoint and complete because boundaries are shared.
+    /// The rectangles between successive column and row boundaries. They are disjoint and complete because boundaries
+    /// are shared.
     pub(super) fn from_boundaries(columns: &[u32], rows: &[u32], samples: &Range<u32>) -> Self {
         let mut pieces = Vec::with_capacity((columns.len() - 1) * (rows.len() - 1));
         for row in rows.windows(2) {
@@ -60,7 +61,7 @@ impl Plan {
         Self { pieces }
     }
 
-    /// Pieces that are known to be disjoint and complete.
+    /// A plan of pieces that are known to be disjoint and complete.
     pub(super) fn from_pieces(pieces: Vec<Piece>) -> Self {
         Self { pieces }
     }
@@ -71,7 +72,7 @@ impl Plan {
         Self { pieces: order.iter().map(|&index| self.pieces[index].clone()).collect() }
     }
 
-    /// The same pieces, the dearest first; of equal ones the earlier. `costs` has one for each piece.
+    /// The same pieces, the most expensive first; of equal ones the earlier. `costs` has one entry per piece.
     #[must_use]
     pub fn longest_first(self, costs: &[f64]) -> Self {
         let mut order: Vec<usize> = (0..self.pieces.len()).collect();
@@ -79,7 +80,7 @@ impl Plan {
         self.reordered(&order)
     }
 
-    /// The same pieces, each cut into parts of `block` samples, the last one taking what is left.
+    /// The same pieces, each cut into parts of `block` samples; the last part takes the rest.
     pub(super) fn split_samples(self, block: u32) -> Self {
         let parts = |piece: Piece| {
             let Piece { bounds, samples } = piece;
@@ -89,7 +90,7 @@ impl Plan {
         Self { pieces: self.pieces.into_iter().flat_map(parts).collect() }
     }
 
-    /// Adds another plan's pieces behind these; the two must be disjoint.
+    /// Appends another plan's pieces; the two plans must be disjoint.
     pub fn append(&mut self, later: &Self) {
         self.pieces.extend_from_slice(&later.pieces);
     }
@@ -99,12 +100,12 @@ impl Plan {
         &self.pieces
     }
 
-    /// How many there are.
+    /// The number of pieces.
     pub fn len(&self) -> usize {
         self.pieces.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no pieces.
     pub fn is_empty(&self) -> bool {
         self.pieces.is_empty()
     }

@@ -1,16 +1,17 @@
-//! Numbers of samples that differ over the image: one for each cell of a grid that does not depend on how the film is cut into jobs.
+//! Sample counts that vary over the image: one per cell of a grid that is independent of the film's decomposition into
+//! jobs.
 
 use super::{Bounds, Decomposition, Film, Piece, Plan};
 
-/// Columns and rows of a cell.
+/// Side of a cell, in pixels.
 const SIDE: u32 = 16;
 
-/// How many samples the pixels of each cell have.
+/// The number of samples per pixel in each cell.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SampleGrid {
     width: u32,
     height: u32,
-    /// Row by row.
+    /// Stored row by row.
     counts: Vec<u32>,
 }
 
@@ -23,10 +24,11 @@ fn cells(width: u32, height: u32) -> impl Iterator<Item = Bounds> {
 }
 
 impl SampleGrid {
-    /// Shares out `spp` samples a pixel on average. What is above `least`, which every pixel gets, goes to cells in proportion to the root
-    /// of the mean variance of a sample as `pilot` found it: for a fixed total that makes the mean variance of the pixels smallest
-    /// (Neyman, "On the Two Different Aspects of the Representative Method", 1934). Numbers are multiples of `step`, as are `spp` and
-    /// `least`. The total is never above the average asked for, and below it by less than one step in one cell.
+    /// Distributes `spp` samples a pixel on average. Every pixel gets `least`. The rest goes to cells in proportion to
+    /// the square root of a sample's mean variance in `pilot`: for a fixed total that minimises the mean variance of
+    /// the pixels (Neyman, "On the Two Different Aspects of the Representative Method", 1934). Counts are multiples of
+    /// `step`; `spp` and `least` must be, too. The total is at most `spp` a pixel on average, and less than one step in
+    /// one cell below it.
     pub fn neyman(pilot: &Film, spp: u32, least: u32, step: u32) -> Self {
         let (width, height) = (pilot.width(), pilot.height());
         let bounds: Vec<Bounds> = cells(width, height).collect();
@@ -35,13 +37,13 @@ impl SampleGrid {
         let pixels = f64::from(width) * f64::from(height);
         let mean = areas().zip(&deviations).map(|(area, deviation)| area * deviation).sum::<f64>() / pixels;
         let steps = f64::from((spp - least) / step);
-        // Without any noise all are alike.
+        // Without any noise all cells get the same count.
         let wanted = |deviation: f64| if mean > 0.0 { steps * deviation / mean } else { steps };
         let wanted: Vec<f64> = deviations.into_iter().map(wanted).collect();
         let mut given: Vec<u32> = wanted.iter().map(|wanted| wanted.floor() as u32).collect();
         let spent: f64 = areas().zip(&given).map(|(area, steps)| area * f64::from(*steps)).sum();
         let mut left = pixels * steps - spent;
-        // The largest remainders first; of equal ones the earlier.
+        // Largest remainders first; of equal ones the earlier cell.
         let mut order: Vec<usize> = (0..wanted.len()).collect();
         order.sort_by(|&a, &b| wanted[b].fract().total_cmp(&wanted[a].fract()));
         for cell in order {
@@ -54,12 +56,12 @@ impl SampleGrid {
         Self { width, height, counts: given.into_iter().map(|steps| least + step * steps).collect() }
     }
 
-    /// The most samples that a pixel has.
+    /// The largest number of samples of a pixel.
     pub fn largest(&self) -> u32 {
         self.counts.iter().copied().max().unwrap_or(0)
     }
 
-    /// Samples, over all pixels.
+    /// The number of samples of the whole image.
     pub fn total(&self) -> u64 {
         cells(self.width, self.height)
             .zip(&self.counts)
@@ -67,7 +69,7 @@ impl SampleGrid {
             .sum()
     }
 
-    /// The decomposition's pieces, cut along the cells, each with its cell's number of samples.
+    /// Returns the decomposition's pieces, cut along cell boundaries, each with its cell's number of samples.
     pub fn plan(&self, decomposition: &Decomposition) -> Plan {
         let columns = self.width.div_ceil(SIDE);
         let mut pieces = Vec::new();
@@ -90,7 +92,7 @@ impl SampleGrid {
     }
 }
 
-/// The root of the mean over a cell's pixels and channels of a sample's variance.
+/// The square root of a sample's variance, averaged over a cell's pixels and channels.
 fn deviation(film: &Film, cell: &Bounds) -> f64 {
     let rows = (cell.y0..cell.y1).map(|y| (y * film.width()) as usize);
     let pixels = rows.flat_map(|start| &film.pixels()[start + cell.x0 as usize..start + cell.x1 as usize]);
@@ -104,7 +106,8 @@ mod tests {
     use crate::film::{Assembly, SAMPLE_BLOCK, SampleSum, TileBuffer};
     use crate::math::Rgb;
 
-    /// A film whose pixels have samples 0 and twice `mean`, so that a sample's deviation is proportional to `mean`.
+    /// A film whose pixels have samples 0 and twice `mean`, so that a sample's standard deviation is proportional to
+    /// `mean`.
     fn pilot(width: u32, height: u32, mean: impl Fn(u32, u32) -> f64) -> Film {
         let mut tile = TileBuffer::new(Bounds { x0: 0, y0: 0, x1: width, y1: height });
         for y in 0..height {
@@ -119,7 +122,7 @@ mod tests {
         assembly.finish()
     }
 
-    /// Deviations of 1 and 3 share what is above the least number in that ratio.
+    /// Deviations of 1 and 3: the samples above `least` are shared in that ratio.
     #[test]
     fn shares_follow_the_deviation() {
         let film = pilot(32, 16, |x, _| if x < 16 { 1.0 } else { 3.0 });
@@ -133,7 +136,7 @@ mod tests {
         assert!(grid.counts.len() == 6 && grid.counts.iter().all(|count| *count == 64));
     }
 
-    /// Cells of different sizes: never more than asked for, and as near as a step allows.
+    /// Cells of different sizes: the total never exceeds `spp` and is as close to it as a step allows.
     #[test]
     fn the_total_is_kept() {
         for (width, height) in [(16, 16), (33, 17), (100, 60), (250, 3)] {
@@ -148,7 +151,7 @@ mod tests {
         }
     }
 
-    /// However the film is cut, each pixel has its cell's samples, once.
+    /// For every decomposition, each pixel has its cell's samples exactly once.
     #[test]
     fn every_cut_gives_the_same_samples() {
         let grid = SampleGrid::neyman(&pilot(50, 40, |x, _| f64::from(x)), 64, 8, 4);

@@ -1,8 +1,8 @@
-//! Parts of an image that are rendered apart, on machines that know nothing of each other: `--shard 2/4`.
+//! Shards: parts of an image that machines render without communication: `--shard 2/4`.
 //!
-//! Cut by samples, a part has a range of all pixels' samples that begins and ends with a block of the sum ([`super::SAMPLE_BLOCK`]), so
-//! that its subtrees are subtrees of the whole sum. Cut by tiles, it has all samples of every n-th tile. Either way the parts put
-//! together are the image that is rendered at once, bit for bit.
+//! Cut by samples, a shard has a range of all pixels' samples that begins and ends at a block of the sum
+//! ([`super::SAMPLE_BLOCK`]), so that its subtrees are subtrees of the whole sum. Cut by tiles, it has all samples of
+//! every n-th tile. In both cases the combined shards equal the image rendered at once, bit for bit.
 
 use super::{Bounds, Piece, Plan, SAMPLE_BLOCK};
 use crate::error::{InputError, Result};
@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::Range;
 
-/// Side of the tiles that are dealt to shards, in pixels.
+/// Side of the tiles that shards get in turn, in pixels.
 const TILE: u32 = 32;
 
-/// What is divided among shards.
+/// The property of the film that is divided among shards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ShardCut {
@@ -23,7 +23,7 @@ pub enum ShardCut {
     Tiles,
 }
 
-/// As in files and on the command line.
+/// The name in files and on the command line.
 impl fmt::Display for ShardCut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -33,7 +33,7 @@ impl fmt::Display for ShardCut {
     }
 }
 
-/// One of several parts.
+/// One of several shards of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct Shard {
@@ -42,7 +42,7 @@ pub struct Shard {
     cut: ShardCut,
 }
 
-/// A shard as a file tells it.
+/// A shard as read from a file, unchecked.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Unchecked {
@@ -59,7 +59,7 @@ impl TryFrom<Unchecked> for Shard {
     }
 }
 
-/// As on the command line.
+/// The notation of the command line.
 impl fmt::Display for Shard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.index, self.count)
@@ -67,12 +67,12 @@ impl fmt::Display for Shard {
 }
 
 impl Shard {
-    /// Number `index` of `count`, the first being 1; `None` if there is no such one.
+    /// Shard `index` of `count`, counted from 1; `None` if `index` is out of range.
     pub fn new(index: u32, count: u32, cut: ShardCut) -> Option<Self> {
         (1..=count).contains(&index).then_some(Self { index, count, cut })
     }
 
-    /// Reads `2/4`.
+    /// Parses text such as `2/4`.
     pub fn parse(text: &str, cut: ShardCut) -> Result<Self> {
         let numbers = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
         numbers.and_then(|(index, count)| Self::new(index, count, cut)).ok_or_else(|| {
@@ -80,22 +80,22 @@ impl Shard {
         })
     }
 
-    /// Which one it is; the first is 1.
+    /// The shard's number; the first is 1.
     pub fn index(&self) -> u32 {
         self.index
     }
 
-    /// How many there are.
+    /// The number of shards.
     pub fn count(&self) -> u32 {
         self.count
     }
 
-    /// What is divided among them.
+    /// The property that is divided among them.
     pub fn cut(&self) -> ShardCut {
         self.cut
     }
 
-    /// Refuses more shards than there is something to divide among.
+    /// Returns an error if there are more shards than blocks of samples, or tiles, to divide.
     pub fn check(&self, width: u32, height: u32, spp: u32) -> Result<()> {
         let (most, problem, allowed) = match self.cut {
             ShardCut::Samples => {
@@ -114,7 +114,7 @@ impl Shard {
         Err(InputError::new("shard", self.to_string(), problem).allowed(allowed).into())
     }
 
-    /// The samples of its pixels, where the whole has `spp`: lengths differ by a block at most.
+    /// The range of the shard's samples if the whole image has `spp`: lengths differ by at most one block.
     pub fn samples(&self, spp: u32) -> Range<u32> {
         if self.cut == ShardCut::Tiles {
             return 0..spp;
@@ -127,19 +127,19 @@ impl Shard {
         edge(self.index - 1)..edge(self.index)
     }
 
-    /// Whether it has samples of a pixel. Tiles are dealt along diagonals: with as many columns of tiles as shards, dealing them row by row
-    /// would give each shard a column.
+    /// Whether the shard has samples of this pixel. Tiles are dealt along diagonals: with as many columns of tiles as
+    /// shards, dealing them row by row would give each shard one column.
     pub fn owns(&self, x: u32, y: u32) -> bool {
         self.cut == ShardCut::Samples || (x / TILE + y / TILE) % self.count == self.index - 1
     }
 
-    /// How many pixels it has samples of.
+    /// The number of pixels that the shard has samples of.
     pub fn pixels(&self, width: u32, height: u32) -> u64 {
         let rows = (0..height).map(|y| (0..width).filter(|x| self.owns(*x, y)).count() as u64);
         if self.cut == ShardCut::Samples { u64::from(width) * u64::from(height) } else { rows.sum() }
     }
 
-    /// What it has of the pieces of a plan, in the same order.
+    /// The shard's part of a plan's pieces, in the same order.
     #[must_use]
     pub fn part_of(&self, plan: &Plan) -> Plan {
         if self.cut == ShardCut::Samples {
@@ -153,7 +153,7 @@ impl Shard {
     }
 }
 
-/// A rectangle cut along the edges of tiles.
+/// Cuts a rectangle along tile boundaries.
 fn tiles_in(bounds: Bounds) -> impl Iterator<Item = Bounds> {
     let parts = |from: u32, to: u32| {
         (from / TILE..to.div_ceil(TILE)).map(move |tile| (from.max(tile * TILE), to.min(tile.saturating_add(1) * TILE)))

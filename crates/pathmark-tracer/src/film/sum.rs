@@ -1,4 +1,4 @@
-//! The sum of a pixel's samples, in a shape that depends on their number alone.
+//! The sum of a pixel's samples, in an order of addition that depends only on their number.
 //!
 //! Samples are added in order inside blocks of [`SAMPLE_BLOCK`]; blocks are combined like the digits of a binary counter. A range of
 //! 16 · 2^k samples that starts at a multiple of its length is a subtree, so a pixel's samples can be split among jobs without changing
@@ -7,10 +7,10 @@
 
 use crate::math::Rgb;
 
-/// Samples that are added one after the other.
+/// Samples that are added one after the other within a block.
 pub const SAMPLE_BLOCK: u32 = 16;
 
-/// What is kept of a pixel: sum and sum of squares per channel, and how many samples they are of.
+/// The sums of a pixel: sum and sum of squares per channel, and the number of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PixelSum {
     /// Sum of radiances.
@@ -52,7 +52,7 @@ impl PixelSum {
     }
 }
 
-/// Adds up the samples of one pixel.
+/// Accumulates the samples of one pixel.
 #[derive(Debug, Clone, Default)]
 pub struct SampleSum {
     block: PixelSum,
@@ -62,7 +62,7 @@ pub struct SampleSum {
 }
 
 impl SampleSum {
-    /// Forgets all samples. The subtrees may keep their old values: no bit of `blocks` points at them.
+    /// Removes all samples. The subtrees may keep their old values, because no bit of `blocks` refers to them.
     #[inline(always)]
     pub fn clear(&mut self) {
         self.block = PixelSum::default();
@@ -78,7 +78,8 @@ impl SampleSum {
         }
     }
 
-    /// Adds the sums of the next blocks, which were added up elsewhere. Every part but the last is of equally many blocks, a power of two.
+    /// Adds the sum of the next blocks, which was computed elsewhere. All parts but the last have the same number of
+    /// blocks, a power of two.
     pub(crate) fn add_part(&mut self, part: PixelSum, is_last: bool) {
         self.block = part;
         if !is_last {
@@ -97,7 +98,7 @@ impl SampleSum {
         self.blocks += 1;
     }
 
-    /// The sum of everything added: the unfinished block, then the subtrees from the smallest up.
+    /// The sum of all samples: the unfinished block, then the subtrees from the smallest up.
     pub fn total(&self) -> PixelSum {
         let mut total = self.block;
         for level in 0..32 {
@@ -119,7 +120,7 @@ mod tests {
         sum.total()
     }
 
-    /// The same tree written recursively: what the counter must equal bit for bit.
+    /// The same tree written recursively: the counter must equal it bit for bit.
     fn tree(values: &[f64]) -> f64 {
         if values.len() <= SAMPLE_BLOCK as usize {
             return values.iter().fold(0.0, |sum, value| sum + value);
@@ -149,7 +150,7 @@ mod tests {
         assert_eq!(whole, parts);
     }
 
-    /// Parts of a power of two of blocks, the last of which may be short, are added up to the same bits.
+    /// Parts with a power of two of blocks, the last possibly shorter, add up to the same bits.
     #[test]
     fn parts_are_subtrees() {
         let value = |k: u32| 1.0 / f64::from(k % 97 + 1);

@@ -1,4 +1,4 @@
-//! The sums of one piece's pixels: what a kernel writes, and nobody else.
+//! The sums of one piece's pixels. Only the kernel that renders the piece writes to them.
 
 use super::whole::room;
 use super::{Bounds, PixelSum};
@@ -12,12 +12,12 @@ pub struct TileBuffer {
 }
 
 impl TileBuffer {
-    /// An empty buffer for the rectangle.
+    /// Creates an empty buffer for the rectangle.
     pub fn new(bounds: Bounds) -> Self {
         Self { bounds, pixels: vec![PixelSum::default(); bounds.area()] }
     }
 
-    /// An empty buffer for the rectangle, if the system has the memory.
+    /// Creates an empty buffer for the rectangle. Fails if the system lacks the memory.
     pub fn try_new(bounds: Bounds) -> Result<Self> {
         let mut pixels = room(bounds.width(), bounds.height())?;
         pixels.resize(bounds.area(), PixelSum::default());
@@ -29,7 +29,7 @@ impl TileBuffer {
         self.bounds
     }
 
-    /// The pixels of row `y` of the image, from the rectangle's first column on.
+    /// The pixels of image row `y`, from the rectangle's first column on.
     pub fn row_mut(&mut self, y: u32) -> &mut [PixelSum] {
         let width = self.bounds.width() as usize;
         let start = (y - self.bounds.y0) as usize * width;

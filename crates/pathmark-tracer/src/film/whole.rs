@@ -1,4 +1,4 @@
-//! The whole image as sums.
+//! The film: the sums of all pixels of an image.
 
 use super::{Image, PixelSum, TileBuffer};
 use crate::digest::Fingerprint;
@@ -12,7 +12,7 @@ pub const LARGEST_SIDE: u32 = 1 << 16;
 /// Largest number of pixels: their sums take 3.5 GiB in the film and as much in the pieces.
 const LARGEST_AREA: u64 = 1 << 26;
 
-/// Refuses sizes that no film can have, before anything is allocated.
+/// Refuses sizes that no film can have, before memory is allocated.
 pub fn check_size(width: u32, height: u32) -> Result<()> {
     let sides = (1..=LARGEST_SIDE).contains(&width) && (1..=LARGEST_SIDE).contains(&height);
     if sides && u64::from(width) * u64::from(height) <= LARGEST_AREA {
@@ -23,8 +23,8 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
         .into())
 }
 
-/// Room for a value per pixel of a rectangle of this size. Where the system refuses it, that is an error here; an allocation anywhere else would
-/// end the program.
+/// Reserves memory for one value per pixel of a rectangle of this size. If the system refuses, this returns an error;
+/// an allocation anywhere else would abort the program.
 pub fn room<T>(width: u32, height: u32) -> Result<Vec<T>> {
     let mut room = Vec::new();
     room.try_reserve_exact(width as usize * height as usize).map_err(|e| {
@@ -34,17 +34,17 @@ pub fn room<T>(width: u32, height: u32) -> Result<Vec<T>> {
     Ok(room)
 }
 
-/// Memory that is kept free during hours of rendering for what is made of a film in the end: pictures, and their files.
+/// Memory that is reserved during hours of rendering for the pictures and files made from the film at the end.
 #[derive(Debug, Default)]
 pub struct Reserve(Vec<[PixelSum; 2]>);
 
 impl Reserve {
-    /// As much as is needed for an image of this size, until it is dropped.
+    /// Reserves enough for an image of this size, until it is dropped.
     pub fn new(width: u32, height: u32) -> Result<Self> {
         room(width, height).map(Self)
     }
 
-    /// How many pixels it is for.
+    /// The number of pixels it is enough for.
     pub fn pixels(&self) -> usize {
         self.0.capacity()
     }
@@ -59,19 +59,19 @@ pub struct Film {
 }
 
 impl Film {
-    /// An empty film.
+    /// Creates an empty film.
     pub fn new(width: u32, height: u32) -> Self {
         Self { width, height, pixels: vec![PixelSum::default(); width as usize * height as usize] }
     }
 
-    /// An empty film, if the system has the memory.
+    /// Creates an empty film. Fails if the system lacks the memory.
     pub fn try_new(width: u32, height: u32) -> Result<Self> {
         let mut pixels = room(width, height)?;
         pixels.resize(width as usize * height as usize, PixelSum::default());
         Ok(Self { width, height, pixels })
     }
 
-    /// A film of these sums, row by row.
+    /// Creates a film from these sums, row by row.
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<PixelSum>) -> Self {
         Self { width, height, pixels }
     }
@@ -91,7 +91,7 @@ impl Film {
         &self.pixels
     }
 
-    /// Puts the finished pixels of a rectangle where they belong.
+    /// Copies the finished pixels of a rectangle to their place in the film.
     pub(super) fn place(&mut self, tile: &TileBuffer) {
         let bounds = tile.bounds();
         for (y, row) in (bounds.y0..bounds.y1).zip(tile.rows()) {
@@ -100,7 +100,7 @@ impl Film {
         }
     }
 
-    /// Likewise, the pixels of many rectangles, none of which overlap, by up to so many threads: each has some rows of the film.
+    /// Copies the pixels of many disjoint rectangles, with up to `threads` threads: each fills some rows of the film.
     pub(super) fn place_all(&mut self, tiles: &[TileBuffer], threads: usize) {
         let width = self.width as usize;
         let rows = self.height.div_ceil(threads.max(1) as u32).max(1);
@@ -128,7 +128,7 @@ impl Film {
             }
         };
         scope(|scope| {
-            // Where the system gives no thread, this one does what is left.
+            // If the system refuses a thread, the calling thread does the rest.
             for _ in 1..threads {
                 if Builder::new().spawn_scoped(scope, work).is_err() {
                     break;
@@ -138,7 +138,7 @@ impl Film {
         });
     }
 
-    /// Takes the pixels that `owns` tells of, by column and row, from another film of the same size.
+    /// Copies the pixels for which `owns` is true, by column and row, from another film of the same size.
     pub fn take(&mut self, other: &Self, owns: impl Fn(u32, u32) -> bool) {
         let places = (0..self.height).flat_map(|y| (0..self.width).map(move |x| (x, y)));
         for ((pixel, found), (x, y)) in self.pixels.iter_mut().zip(&other.pixels).zip(places) {
@@ -166,7 +166,8 @@ impl Film {
         image
     }
 
-    /// SHA-256 over size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero does not count.
+    /// SHA-256 over the size and the bits of every sum, shortened to 16 hexadecimal digits. The sign of zero is
+    /// ignored.
     pub fn checksum(&self) -> String {
         let mut hash = Fingerprint::default();
         hash.update(&self.width.to_le_bytes());

@@ -1,10 +1,11 @@
-//! Samplers in SIMD lanes: numbers for several samples at once, the same bits as [`Sampler::pair`](super::Sampler::pair) gives for each.
+//! Samplers in SIMD lanes: random numbers for several samples at once, with the same bits as
+//! [`Sampler::pair`](super::Sampler::pair).
 
 use super::{Purpose, SampleKey, hash, independent, mix, sobol, sobol_burley};
 use crate::math::Bits;
 use crate::simd::{Apart, Float, Words};
 
-/// A sampler that lanes can ask.
+/// A sampler that is available in lanes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InLanes {
     /// `independent`.
@@ -17,19 +18,19 @@ pub enum InLanes {
     SobolBurley,
 }
 
-/// What the numbers of a sample have in common, worked out once for each.
+/// The values that all random numbers of a sample share, computed once per sample.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PathWords<B> {
     /// A mix of the seed, the pixel and, if it matters, the sample.
     pub path: B,
-    /// The sample's index, or what the sampler makes of it.
+    /// The sample's index, or its digits as the sampler needs them.
     pub sample: B,
-    /// Its places in an order that the film and the first vertex share.
+    /// Its positions in the order that the film and the first vertex share.
     pub joined: [B; 2],
 }
 
 impl InLanes {
-    /// The sampler of that name; `None` if lanes cannot ask it.
+    /// The sampler of that name; `None` if it is not available in lanes.
     pub fn find(name: &str) -> Option<Self> {
         match name {
             "independent" => Some(Self::Independent),
@@ -40,13 +41,13 @@ impl InLanes {
         }
     }
 
-    /// Whether a number depends on more of its sample than [`PathWords::path`] tells.
+    /// Whether a number depends on more of its sample than [`PathWords::path`] contains.
     #[inline(always)]
     pub fn is_spread(self) -> bool {
         matches!(self, Self::Sobol | Self::SobolBurley)
     }
 
-    /// The places of a sample that the film and the first vertex share; 0 if there are none.
+    /// The positions of a sample in the order that the film and the first vertex share; 0 if the sampler has none.
     #[inline(always)]
     pub fn joined(self, key: SampleKey) -> [u64; 2] {
         match self {
@@ -57,7 +58,7 @@ impl InLanes {
         }
     }
 
-    /// What the numbers of samples of some pixels have in common.
+    /// Computes the values that all random numbers of each sample share.
     #[inline(always)]
     pub fn words<B: Bits>(self, seed: u64, pixel: B, sample: B, joined: [B; 2]) -> PathWords<B> {
         let path = match self {
@@ -89,9 +90,9 @@ impl InLanes {
     }
 }
 
-/// A pair of `sobol` or `sobol-burley`, by so many operations that a call is nothing beside them.
+/// A pair of `sobol` or `sobol-burley`. It takes so many operations that a function call costs little beside them.
 struct Scrambled<'a, V: Float, const BURLEY: bool> {
-    /// A mix of everything.
+    /// A mix of everything but the sample's index.
     key: V::Bits,
     words: &'a PathWords<V::Bits>,
     bounce: V::Bits,
@@ -114,7 +115,7 @@ impl<V: Float, const BURLEY: bool> Apart for Scrambled<'_, V, BURLEY> {
     fn run(self) -> [V; 2] {
         let Self { key, words, bounce, branch, purpose } = &self;
         let place = match purpose {
-            // Nobody but the camera asks for it.
+            // Only the camera uses this purpose.
             Purpose::Film => words.joined[0],
             Purpose::Bsdf | Purpose::Light => {
                 let is_first = (bounce.up::<16>() | *branch).equal(V::Bits::splat(1 << 16));

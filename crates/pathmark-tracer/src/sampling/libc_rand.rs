@@ -1,8 +1,9 @@
 //! The C library's generator: `--sampler libc-rand`.
 //!
-//! What report A's program (docs/reports.md) really draws from: `rand()` has one state for the whole process, and glibc guards it with a lock,
-//! so threads take turns at every number. Who gets which number depends on who comes first: no two runs with more than one thread are
-//! alike. Here to be measured, not to be used.
+//! Report A's program (docs/reports.md) draws its numbers from `rand()`. That function has one state for the whole
+//! process, and glibc guards it with a lock, so threads wait for each other at every number. The numbers that a sample
+//! gets depend on which thread comes first: no two runs with more than one thread are alike. This sampler exists to be
+//! measured, not to be used.
 
 #![expect(unsafe_code, reason = "rand and srand belong to the C library")]
 
@@ -13,7 +14,7 @@ use super::{Address, Sampler};
 pub struct LibcRand(());
 
 impl LibcRand {
-    /// Starts the process's one generator anew.
+    /// Reseeds the process's single generator.
     pub fn new(seed: u64) -> Self {
         // SAFETY: any number is a seed, and glibc's lock makes it safe to call at any time.
         unsafe { libc::srand(seed as libc::c_uint) };

@@ -1,7 +1,8 @@
-//! Random numbers by address: which number a path uses follows from where it is used, never from what was drawn before.
+//! Random numbers by address: a number depends on the place of its use, never on the numbers drawn before.
 //!
-//! So a sample is a pure function of (scene, seed, pixel, sample index), whoever renders it, and an effect that draws more numbers
-//! shifts nobody else's. `pathmark list samplers` prints the table; `--sampler independent` chooses.
+//! So a sample is a pure function of (scene, seed, pixel, sample index), whichever worker renders it. An effect that
+//! draws more numbers leaves all others unchanged. `pathmark list samplers` prints the table; `--sampler independent`
+//! chooses.
 
 mod hash;
 mod independent;
@@ -28,7 +29,7 @@ pub use sobol_burley::SobolBurley;
 pub use stratified::Stratified;
 pub use warp::{UNIFORM_SPHERE_DENSITY, concentric_disk, cosine_hemisphere, tent, uniform_sphere};
 
-/// Which sample of which pixel of which image.
+/// The identity of a sample: its image's seed, its pixel and its index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SampleKey {
     /// The image's seed; [`REFERENCE_SEEDS`] and above belong to references.
@@ -39,49 +40,49 @@ pub struct SampleKey {
     pub sample: u32,
 }
 
-/// Seeds from here on are for references only: no image under test can share a sample with the reference it is measured against.
+/// Seeds from here on are only for references: an image under test never shares a sample with its reference.
 pub const REFERENCE_SEEDS: u64 = 1 << 63;
 
-/// What a pair of numbers is for. Each bounce has room for 8 purposes, 16 dimensions.
+/// The purpose of a pair of random numbers. Each bounce has room for 8 purposes, 16 dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Purpose {
-    /// The place inside the pixel's filter.
+    /// The position inside the pixel's filter.
     Film = 0,
-    /// The direction that a surface scatters to, and the choice between its lobes.
+    /// The scattered direction at a surface, and the choice between its lobes.
     Bsdf = 1,
     /// Russian roulette.
     Roulette = 2,
-    /// The place on the camera's lens.
+    /// The position on the camera's lens.
     Lens = 3,
-    /// How far light gets through a medium.
+    /// The distance that light travels through a medium.
     Medium = 4,
-    /// The point of a light that is aimed at.
+    /// The point on a light, for next-event estimation.
     Light = 5,
-    /// Which light is aimed at.
+    /// The choice of that light.
     LightChoice = 6,
 }
 
 impl Purpose {
-    /// Every purpose there is.
+    /// All purposes.
     pub const ALL: [Self; 7] =
         [Self::Film, Self::Bsdf, Self::Roulette, Self::Lens, Self::Medium, Self::Light, Self::LightChoice];
 }
 
-/// Where a pair of numbers is used.
+/// The place where a pair of random numbers is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Address {
     /// The sample.
     pub key: SampleKey,
-    /// The vertex of the path, the camera's being 0.
+    /// The index of the path's vertex; the camera's is 0.
     pub bounce: u16,
-    /// 0 for the main path; each part of a split path has its own. At the camera: the number of the camera ray.
+    /// 0 for the main path; each part of a split path has its own number. At the camera: the number of the camera ray.
     pub branch: u16,
-    /// What for.
+    /// The purpose.
     pub purpose: Purpose,
 }
 
-/// A source of numbers by address.
+/// A source of random numbers by address.
 pub trait Sampler: Send + Sync {
     /// Two numbers in [0, 1), the same for the same address unless the table says that the sampler is not deterministic.
     fn pair(&self, at: Address) -> [f64; 2];
@@ -99,11 +100,11 @@ impl Sampler for Box<dyn Sampler> {
     }
 }
 
-/// A function over samplers: how the name on the command line becomes a type in a kernel.
+/// A function that is generic over samplers. Through it a name on the command line becomes a type in a kernel.
 pub trait SamplerVisitor {
-    /// What it returns.
+    /// The result.
     type Output;
-    /// Called with the sampler that was named.
+    /// Called with the named sampler.
     fn visit<S: Sampler + 'static>(self, sampler: S) -> Self::Output;
 }
 
@@ -111,13 +112,14 @@ pub trait SamplerVisitor {
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
     /// Whether a number depends on its address alone. Images of other samplers have no checksum.
     pub deterministic: bool,
-    /// Checksum of `cornell` at 96x64, 8 spp, seed 7, by the estimator `bsdf` and the scalar kernel. It is this program's own output and proves
-    /// nothing about light: case P18 compares it, so a build or a machine that changes a bit is noticed. A deliberate change of the
-    /// arithmetic raises `kernel::REVISION` and replaces it. None if the sampler is not deterministic.
+    /// Checksum of `cornell` at 96x64, 8 spp, seed 7, by the estimator `bsdf` and the scalar kernel. It is this
+    /// program's own output and no evidence of correct light transport. Case P18 compares it, to detect a build or a
+    /// machine that changes a bit. A deliberate change of the arithmetic raises `kernel::REVISION` and replaces it.
+    /// None if the sampler is not deterministic.
     pub checksum: Option<&'static str>,
 }
 
@@ -134,8 +136,8 @@ macro_rules! samplers {
             $(Entry { name: $stateful, about: $stateful_about, deterministic: false, checksum: None },)*
         ];
 
-        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them, and ask which one it is at
-        /// each pair, which costs little beside making it.
+        /// The samplers that spread a pixel's samples, as one type: kernels are compiled once for all of them. They
+        /// branch on the sampler at each pair, which costs little compared with computing the pair.
         #[derive(Debug, Clone, Copy)]
         enum Spread {
             $($Spread($Spread),)*
@@ -160,13 +162,13 @@ macro_rules! samplers {
             Some(visitor.visit(sampler))
         }
 
-        /// Whether the sampler of that name spreads a pixel's samples more evenly than chance does.
+        /// Whether the sampler of that name spreads a pixel's samples more evenly than independent random numbers.
         pub fn is_spread(name: &str) -> bool {
             [$($spread),*].contains(&name)
         }
 
-        /// The sampler of that name that keeps a state, made for an image's seed; `None` if there is none. Kernels are compiled once for
-        /// all of them: what a call through a table costs is little beside their locks.
+        /// Creates the stateful sampler of that name for an image's seed; `None` if there is none. Kernels are compiled
+        /// once for all of them: a virtual call costs little compared with their locks.
         pub fn stateful_sampler(name: &str, seed: u64) -> Option<Box<dyn Sampler>> {
             match name {
                 $($stateful => Some(Box::new($new_stateful(seed))),)*
@@ -193,7 +195,7 @@ samplers! {
     }
 }
 
-/// The deterministic sampler of that name behind a pointer, as one type for all of them; `None` if there is none.
+/// The deterministic sampler of that name, boxed as a trait object; `None` if there is none.
 pub fn keyed_sampler(name: &str) -> Option<Box<dyn Sampler>> {
     struct Boxed;
     impl SamplerVisitor for Boxed {
@@ -205,7 +207,7 @@ pub fn keyed_sampler(name: &str) -> Option<Box<dyn Sampler>> {
     with_keyed_sampler(name, Boxed)
 }
 
-/// Whether the sampler of that name gives the same numbers in each run.
+/// Whether the sampler of that name returns the same numbers in each run.
 pub fn is_deterministic(name: &str) -> bool {
     SAMPLERS.iter().any(|entry| entry.name == name && entry.deterministic)
 }

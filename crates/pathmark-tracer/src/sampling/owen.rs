@@ -1,12 +1,14 @@
-//! Owen's scrambling of binary digits by arithmetic (A. B. Owen, "Randomly permuted (t,m,s)-nets and (t,s)-sequences", 1995).
+//! Owen's scrambling of binary digits, by integer arithmetic (A. B. Owen, "Randomly permuted (t,m,s)-nets and
+//! (t,s)-sequences", 1995).
 
 use crate::math::Bits;
 
-/// Scrambles binary digits, the first in the lowest bit: each is flipped or not by what the keys make of those before it. Zeros beyond the
-/// last digit become random ones.
+/// Scrambles binary digits, the first in the lowest bit. The keys and the digits before a digit decide whether it is
+/// flipped. Zeros beyond the last digit become random digits.
 ///
-/// The idea is that of S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011: sums and products carry upwards
-/// only. Their steps flip digits together that ought to be independent, so these are others, keyed throughout.
+/// The idea is due to S. Laine and T. Karras, "Stratified Sampling for Stochastic Transparency", 2011: sums and
+/// products carry only upwards. Their steps flip some digits together that should be independent, so this function uses
+/// other steps, all of them keyed.
 #[inline(always)]
 pub(super) fn scramble<B: Bits>(digits: B, [a, b]: [B; 2]) -> B {
     let digits = digits ^ digits.times(b.up::<1>());
@@ -15,7 +17,7 @@ pub(super) fn scramble<B: Bits>(digits: B, [a, b]: [B; 2]) -> B {
     digits.plus(b.up::<16>() | b.down::<48>())
 }
 
-/// Puts the numbers of 0..2^32 in another order: each aligned block of 2^k stays together and goes where such a block was.
+/// Permutes the numbers 0..2^32: each aligned block of 2^k numbers stays together and moves to an aligned place.
 #[inline(always)]
 pub(super) fn shuffle<B: Bits>(index: B, keys: [B; 2]) -> B {
     scramble(index.reversed().down::<32>(), keys).up::<32>().reversed()
@@ -23,8 +25,9 @@ pub(super) fn shuffle<B: Bits>(index: B, keys: [B; 2]) -> B {
 
 #[cfg(test)]
 pub(super) mod flips {
-    /// Owen's scrambling flips each digit independently for every way of the digits before it. The 63 flips of six digits, over a million
-    /// keys: even, and no two of them go together. (Laine and Karras's own steps fail by a hundred standard deviations.)
+    /// Checks that `scramble`, like Owen's, flips each digit independently for every combination of the digits before
+    /// it. Over a million keys the 63 flips of six digits must be even and pairwise uncorrelated. (Laine and Karras's
+    /// own steps fail by a hundred standard deviations.)
     pub(in crate::sampling) fn are_independent(scramble: impl Fn(u64, u64) -> u64) {
         const LEVELS: u32 = 6;
         const NODES: usize = (1 << LEVELS) - 1;
@@ -47,7 +50,7 @@ pub(super) mod flips {
         }
         let pairs = (0..NODES).flat_map(|a| (0..a).map(move |b| a * NODES + b)).map(|index| double[index]);
         let sums: Vec<i64> = single.into_iter().chain(pairs).collect();
-        // Two-sided, 1e-3 for all 2016 sums together.
+        // Two-sided, level 1e-3 for all 2016 sums together.
         let limit = 5.03;
         for (index, sum) in sums.iter().enumerate() {
             let z = *sum as f64 / (KEYS as f64).sqrt();
@@ -66,7 +69,7 @@ mod tests {
         super::flips::are_independent(|digits, key| scramble(digits, [mix(2 * key), mix(2 * key + 1)]));
     }
 
-    /// The digits before decide, and none after: what makes it a scrambling of nets.
+    /// A digit's flip depends on the digits before it and on none after it, so a scrambled net is a net.
     #[test]
     fn scrambling_keeps_what_leading_digits_share() {
         for key in 0..1000 {
@@ -81,7 +84,7 @@ mod tests {
         }
     }
 
-    /// A shuffle of 2^12 numbers that keeps all aligned blocks.
+    /// A shuffle of 2^12 numbers keeps all aligned blocks together.
     #[test]
     fn shuffling_keeps_blocks() {
         for key in 0..100 {

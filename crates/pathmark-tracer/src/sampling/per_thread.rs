@@ -1,7 +1,8 @@
 //! A PCG32 generator for each thread: `--sampler per-thread`.
 //!
-//! The usual cure for a shared generator: nobody waits. But which pixel gets which number depends on which thread renders it, so no two runs
-//! with more than one thread are alike, and an error cannot be looked for by rendering a pixel again. Here to be measured, not to be used.
+//! The usual replacement for a shared generator: no thread waits. But a pixel's numbers depend on the thread that
+//! renders it. So no two runs with more than one thread are alike, and rendering a pixel again does not reproduce an
+//! error. This sampler exists to be measured, not to be used.
 
 use super::{Address, Sampler};
 use crate::math::unit;
@@ -14,7 +15,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[derive(Debug)]
 pub struct PerThread {
     seed: u64,
-    /// Tells the generators of one sampler from those that an earlier one left in a pool's threads.
+    /// Distinguishes this sampler's generators from those that an earlier sampler left in a pool's threads.
     id: u64,
     threads: AtomicU64,
 }
@@ -24,7 +25,7 @@ thread_local! {
 }
 
 impl PerThread {
-    /// Generators with this seed, one stream for each thread.
+    /// Creates a sampler with this seed and one generator stream per thread.
     pub fn new(seed: u64) -> Self {
         static SAMPLERS: AtomicU64 = AtomicU64::new(1);
         Self { seed, id: SAMPLERS.fetch_add(1, Ordering::Relaxed), threads: AtomicU64::new(0) }

@@ -1,24 +1,27 @@
 //! Owen-scrambled Sobol pairs: `--sampler sobol`.
 //!
-//! A pair of numbers belongs to the first two dimensions of Sobol's sequence (I. M. Sobol', "On the distribution of points in a cube and
-//! the approximate evaluation of integrals", USSR Computational Mathematics and Mathematical Physics 7(4), 1967), a (0, 2)-sequence in
-//! base 2: of each aligned block of 2^k samples, every one of the 2^k cells of every grid of 2^a by 2^(k - a) cells has exactly one.
-//! Owen's scrambling keeps that and makes each sample uniform by itself. Every use of numbers (pixel, bounce, branch, purpose) has a
-//! scrambling of its own and visits the sequence in an order of its own: the index is scrambled, too. This is the padding of B. Burley,
-//! "Practical Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020. There is no last dimension, and no largest
-//! number of samples but that of the index.
+//! A pair of numbers belongs to the first two dimensions of Sobol's sequence (I. M. Sobol', "On the distribution of
+//! points in a cube and the approximate evaluation of integrals", USSR Computational Mathematics and Mathematical
+//! Physics 7(4), 1967), a (0, 2)-sequence in base 2: of each aligned block of 2^k samples, each of the 2^k cells of
+//! every grid of 2^a by 2^(k - a) cells has exactly one. Owen's scrambling keeps that property and makes each sample
+//! uniform by itself. Every use of random numbers (pixel, bounce, branch, purpose) has its own scrambling and its own
+//! order of the sequence: the index is scrambled, too. This is the padding of B. Burley, "Practical Hash-based Owen
+//! Scrambling", Journal of Computer Graphics Techniques 9(4), 2020. The number of dimensions is unlimited, and only the
+//! index's type limits the number of samples.
 //!
-//! What two uses do together is then left to chance. For the place in the pixel and the first direction, which most of the light of a
-//! pixel depends on, it is not: their four numbers belong to one (0, 4)-sequence in base 4, that of H. Faure ("Discrépance de suites
-//! associées à un système de numération", Acta Arithmetica 41, 1982) taken over the field of four elements, as H. Niederreiter
-//! does ("Low-discrepancy and low-dispersion sequences", Journal of Number Theory 30, 1988). The generating matrix for the element a is
-//! Pascal's triangle to the power a. Powers add up, so those for 0 and 1 are Sobol's two dimensions, and a walk through the same two
-//! in the order that the matrix for ω gives is those for ω and ω + 1: each pair is a (0, 2)-sequence in base 2, and both are one in
-//! base 4. (A. Ahmed and others call such pairs SZ sequences.)
+//! Different uses are then independent of each other. The position in the pixel and the first direction are an
+//! exception, because most of a pixel's light depends on them. Their four numbers belong to one (0, 4)-sequence in base
+//! 4: the sequence of H. Faure ("Discrépance de suites associées à un système de numération", Acta Arithmetica 41,
+//! 1982), taken over the field of four elements, as by H. Niederreiter ("Low-discrepancy and low-dispersion sequences",
+//! Journal of Number Theory 30, 1988). The generating matrix for the element a is Pascal's triangle to the power a.
+//! Powers add up: the matrices for 0 and 1 are Sobol's two dimensions. The same two, visited in the order that the
+//! matrix for ω gives, are the dimensions for ω and ω + 1. So each pair is a (0, 2)-sequence in base 2, and both pairs
+//! together are one in base 4. (A. Ahmed and others call such pairs SZ sequences.)
 //!
-//! smallpt's camera gives sample k the subpixel k modulo 4. In Sobol's own order each subpixel would see a quarter of the square for ever.
-//! So k modulo 4 is made the first digit of a fifth dimension, that of a quadratic polynomial in Niederreiter's construction: of 4^m
-//! samples, those of a subpixel are a (1, m-1, 4)-net in base 4, in the four numbers together.
+//! smallpt's camera assigns the subpixel k modulo 4 to sample k. In Sobol's own order each subpixel would always get
+//! the same quarter of the square. So k modulo 4 becomes the first digit of a fifth dimension, made from a quadratic
+//! polynomial in Niederreiter's construction. Of 4^m samples, those of a subpixel are then a (1, m-1, 4)-net in base 4,
+//! in the four numbers together.
 
 use super::independent::mix;
 use super::owen::{scramble, shuffle};
@@ -29,7 +32,8 @@ use crate::math::{Bits, unit};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Sobol;
 
-/// Sixteen elements of the field of four, each times ω. An element is two bits: 1 is the lower, ω the higher, and ω² = ω + 1.
+/// Multiplies sixteen elements of the field of four by ω. An element is two bits: the lower is 1, the higher ω. In this
+/// field, ω² = ω + 1.
 #[inline(always)]
 const fn times_omega(elements: u32) -> u32 {
     let higher = elements >> 1;
@@ -56,14 +60,14 @@ fn times_powers(elements: u32) -> u32 {
     elements & each_third(0) | once & each_third(1) | (elements ^ once) & each_third(2)
 }
 
-/// Element j over ω^j.
+/// Element j divided by ω^j.
 #[inline(always)]
 fn over_powers(elements: u32) -> u32 {
     let once = times_omega(elements);
     elements & each_third(0) | (elements ^ once) & each_third(1) | once & each_third(2)
 }
 
-/// Pascal's triangle modulo 2 on sixteen elements: four times the Kronecker product of 1 1 and 0 1.
+/// Pascal's triangle modulo 2 applied to sixteen elements: the Kronecker product of four matrices (1 1; 0 1).
 #[inline(always)]
 fn pascal_of_elements<B: Bits>(elements: B) -> B {
     let elements = elements ^ elements.down::<2>() & B::splat(0x3333_3333);
@@ -79,20 +83,20 @@ pub(super) fn pascal<B: Bits>(index: B) -> B {
     pascal_of_elements(index ^ index.down::<1>() & B::splat(u64::from(LOWER)))
 }
 
-/// The index times Pascal's triangle to the power ω, whose entries are those of the triangle times ω^(column - row).
+/// The index times Pascal's triangle to the power ω. Its entries are those of the triangle times ω^(column - row).
 #[inline(always)]
 fn pascal_to_omega(index: u32) -> u32 {
     over_powers(pascal_of_elements(u64::from(times_powers(index))) as u32)
 }
 
-/// The coefficients of the fifth dimension's first digit, a bit of each product at a time. They follow the recurrence of x² + ω²x + 1, a
-/// polynomial without roots in the field, and so repeat themselves after five.
+/// The coefficients of the fifth dimension's first digit, as one mask for each bit of the products. They follow the
+/// recurrence of x² + ω²x + 1, a polynomial without roots in the field, and have period five.
 pub(crate) const SUBPIXEL: [u32; 2] = {
     let coefficients = [1, 2, 0, 2, 1];
     let (mut masks, mut place) = ([0; 2], 0);
     while place < 16 {
         let one = coefficients[place % 5];
-        // What the two bits of an element become: one times 1 and one times ω.
+        // The images of an element's two bits: one times 1 and one times ω.
         let (lower, higher) = (one, times_omega(one) & 3);
         let mut bit = 0;
         while bit < 2 {
@@ -104,7 +108,7 @@ pub(crate) const SUBPIXEL: [u32; 2] = {
     masks
 };
 
-/// The orders of four, two bits for each.
+/// The 24 orders of four samples, two bits for each sample.
 pub(crate) const ORDERS: [u8; 24] = {
     let mut orders = [0; 24];
     let (mut place, mut code) = (0, 0);
@@ -119,8 +123,8 @@ pub(crate) const ORDERS: [u8; 24] = {
     orders
 };
 
-/// The place of a sample in the order that the leading uses share: its fours shuffled, and in each the one whose fifth dimension starts
-/// with the sample's subpixel.
+/// A sample's position in the order that the leading uses share. Groups of four are shuffled. In its group the sample
+/// gets the member whose fifth dimension starts with the sample's subpixel.
 #[inline(always)]
 fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
     let fours = (shuffle(u64::from(sample >> 2), [a, b]) as u32) << 2;
@@ -130,27 +134,28 @@ fn leading(sample: u32, [a, b]: [u64; 2]) -> u32 {
     fours | subpixel ^ lower ^ higher << 1
 }
 
-/// What the numbers of a pixel have in common.
+/// The hash of seed and pixel that all random numbers of a pixel share.
 #[inline(always)]
 pub(super) fn pixel<B: Bits>(seed: u64, pixel: B) -> B {
     mix(mix(pixel) ^ B::splat(mix(seed)))
 }
 
-/// The places of a sample in the order that the leading uses share: for the film, and for what the first vertex asks for its direction or light.
+/// A sample's positions in the order that the leading uses share: for the film, and for the direction or light at the
+/// first vertex.
 #[inline(always)]
 pub(super) fn joined(pixel: u64, sample: u32) -> [u32; 2] {
-    // No dimension is so large.
+    // No dimension is this large, so no other key is made from these values.
     let place = leading(sample, [mix(pixel ^ u64::MAX), mix(pixel ^ (u64::MAX - 1))]);
     [place, pascal_to_omega(place)]
 }
 
-/// The place of a sample in the order of a use of its own.
+/// A sample's position in the use's own order.
 #[inline(always)]
 pub(super) fn own_place<B: Bits>(key: B, sample: B) -> B {
     shuffle(sample, [mix(key), mix(key ^ B::splat(1))])
 }
 
-/// The two numbers of a place in the sequence, scrambled for a use, as 64-bit fractions.
+/// The two numbers at a position of the sequence, scrambled for a use, as 64-bit fractions.
 #[inline(always)]
 pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
     let first = [mix(key ^ B::splat(2)), mix(key ^ B::splat(3))];
@@ -158,7 +163,8 @@ pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
     [scramble(place, first).reversed(), scramble(pascal(place), second).reversed()]
 }
 
-/// The pair of an address, whose place in an order of its own and whose two fractions follow from its key by some way to scramble.
+/// The pair at an address. From the address's key, `own_place` computes the position in the use's own order, and
+/// `fractions` the two scrambled fractions.
 #[inline(always)]
 pub(super) fn pair_by(
     at: Address,
@@ -166,7 +172,7 @@ pub(super) fn pair_by(
     fractions: impl Fn(u64, u64) -> [u64; 2],
 ) -> [f64; 2] {
     let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
-    // The same for a whole path, so a compiler takes it out of the loop over bounces.
+    // Constant along a path, so the compiler moves it out of the loop over bounces.
     let pixel = pixel(at.key.seed, u64::from(at.key.pixel));
     let key = mix(pixel ^ dimension);
     let place = match (at.bounce, at.branch, at.purpose) {
@@ -188,7 +194,8 @@ impl Sampler for Sobol {
 mod tests {
     use super::*;
 
-    /// Sobol's second dimension from his own recurrence: the polynomial x + 1 makes each direction number from the one before it.
+    /// Checks Sobol's second dimension against his own recurrence: the polynomial x + 1 makes each direction number
+    /// from the previous one.
     #[test]
     fn the_second_dimension_is_sobols() {
         let mut directions = [1_u32 << 31; 32];
@@ -215,7 +222,7 @@ mod tests {
         assert_eq!(pascal_to_omega(0b01_00_00), 0b01_00_11);
     }
 
-    /// Each four samples come in any of their 24 orders.
+    /// The table has all 24 orders of four samples.
     #[test]
     fn orders_are_all_different() {
         let mut orders = ORDERS.to_vec();

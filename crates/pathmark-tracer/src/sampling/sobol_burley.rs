@@ -1,9 +1,10 @@
 //! Sobol pairs with hash-based Owen scrambling: `--sampler sobol-burley`.
 //!
-//! The pairs and their orders are those of `sobol` ([`super::sobol`]); scramblings are made of 32-bit products, as B. Burley has them ("Practical
-//! Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020), by a hash of the family of S. Laine and T. Karras
-//! ("Stratified Sampling for Stochastic Transparency", 2011) with the constants of N. Vegdahl ("Building a Better LK Hash", 2021). A pair takes 4
-//! products of 64 bits and 12 of 32, where `sobol` takes 23 of 64 bits. Digits beyond the 32nd are no part of the net.
+//! Pairs and orders are those of `sobol` ([`super::sobol`]). The scramblings use 32-bit products, as proposed by B.
+//! Burley ("Practical Hash-based Owen Scrambling", Journal of Computer Graphics Techniques 9(4), 2020). The hash is of
+//! the family of S. Laine and T. Karras ("Stratified Sampling for Stochastic Transparency", 2011) with the constants of
+//! N. Vegdahl ("Building a Better LK Hash", 2021). A pair takes 4 products of 64 bits and 12 of 32, where `sobol` takes
+//! 23 of 64 bits. Digits beyond the 32nd do not belong to the net.
 
 use super::independent::mix;
 use super::sobol::{pair_by, pascal};
@@ -14,7 +15,7 @@ use crate::math::Bits;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SobolBurley;
 
-/// Scrambles 32 binary digits, the first in the lowest bit. What the upper half of the word becomes is of no use.
+/// Scrambles 32 binary digits, the first in the lowest bit. The upper half of the result is meaningless.
 #[inline(always)]
 fn scramble<B: Bits>(digits: B, seed: B) -> B {
     let digits = digits ^ digits.times_low(B::splat(0x3D20_ADEA));
@@ -23,19 +24,19 @@ fn scramble<B: Bits>(digits: B, seed: B) -> B {
     digits ^ digits.times_low(B::splat(0x53A2_2864))
 }
 
-/// A sample's index with its first digit in the lowest of 32 bits: the same for a whole path.
+/// A sample's index with its first digit in the lowest of 32 bits. It is constant along a path.
 #[inline(always)]
 pub(super) fn digits<B: Bits>(sample: B) -> B {
     sample.reversed().down::<32>()
 }
 
-/// The place of a sample with these digits in the order of a use of its own.
+/// The position in the sequence of a sample with these digits, in the use's own order.
 #[inline(always)]
 pub(super) fn own_place<B: Bits>(key: B, digits: B) -> B {
     scramble(digits, mix(key ^ B::splat(1))).up::<32>().reversed()
 }
 
-/// The two numbers of a place in the sequence, scrambled for a use, as 64-bit fractions.
+/// The two numbers at a position of the sequence, scrambled for a use, as 64-bit fractions.
 #[inline(always)]
 pub(super) fn fractions<B: Bits>(key: B, place: B) -> [B; 2] {
     [scramble(place, key).reversed(), scramble(pascal(place), key.down::<32>()).reversed()]
@@ -53,7 +54,7 @@ mod tests {
     use super::super::owen::flips;
     use super::*;
 
-    /// The constants and their order, by another way: as Vegdahl writes his hash, on 32-bit words.
+    /// Checks the constants and their order against Vegdahl's own form of the hash, on 32-bit words.
     #[test]
     fn it_is_vegdahls_hash() {
         let hash = |mut x: u32, seed: u32| {
@@ -75,7 +76,7 @@ mod tests {
         flips::are_independent(|digits, key| scramble(digits, mix(key).down::<32>()));
     }
 
-    /// The digits before decide, and none after: what makes it a scrambling of nets.
+    /// A digit's flip depends on the digits before it and on none after it, so a scrambled net is a net.
     #[test]
     fn scrambling_keeps_what_leading_digits_share() {
         for key in 0..1000 {

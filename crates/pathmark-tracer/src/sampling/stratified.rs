@@ -1,10 +1,11 @@
 //! Jittered strata: `--sampler stratified`.
 //!
-//! Of every 16 samples of a pixel, each of the 4x4 cells of the unit square gets one, at a random place inside it: jittered sampling (R. L.
-//! Cook, T. Porter and L. Carpenter, "Distributed Ray Tracing", 1984). Which sample gets which cell is shuffled for each use of numbers and
-//! each 16 samples, so that uses stay independent of each other and of the sample's index, and a part of the 16 is fair, too.
+//! Of every 16 samples of a pixel, each of the 4x4 cells of the unit square gets one, at a random position inside it:
+//! jittered sampling (R. L. Cook, T. Porter and L. Carpenter, "Distributed Ray Tracing", 1984). The assignment of cells
+//! to samples is shuffled for each use of random numbers and each 16 samples. So uses are independent of each other and
+//! of the sample's index, and fewer than 16 samples are unbiased, too.
 //!
-//! The error falls as that of independent samples does, by a factor below it: what differs within a cell remains.
+//! The error falls at the rate of independent samples, but is smaller by a factor: the variation within a cell remains.
 
 use super::independent::mix;
 use super::{Address, Sampler};
@@ -14,11 +15,11 @@ use crate::math::unit;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Stratified;
 
-/// Samples that share out the cells.
+/// Number of samples that are distributed over the cells.
 const BLOCK: u32 = 16;
 
-/// The cell of each sample: a permutation of 0..16 made from the key by eight rounds of a Feistel network, whose halves are column and row.
-/// Each cell is equally likely, and each two cells for two samples to less than 1e-4.
+/// The cell of each sample: a permutation of 0..16 made from the key by eight rounds of a Feistel network, whose halves
+/// are column and row. All cells are equally likely; so are all pairs of cells for two samples, to less than 1e-4.
 #[inline(always)]
 fn cell(sample: u32, key: u64) -> [u32; 2] {
     let (mut column, mut row) = (sample % 4, sample / 4 % 4);
@@ -35,7 +36,7 @@ impl Sampler for Stratified {
     fn pair(&self, at: Address) -> [f64; 2] {
         let dimension = u64::from(at.bounce) << 32 | u64::from(at.branch) << 16 | at.purpose as u64;
         let sample = at.key.sample;
-        // The same for a whole path, so a compiler takes it out of the loop over bounces.
+        // Constant along a path, so the compiler moves it out of the loop over bounces.
         let block = mix(mix(u64::from(at.key.pixel) << 32 | u64::from(sample / BLOCK)) ^ mix(at.key.seed));
         let key = mix(block ^ dimension);
         let cell = cell(sample, mix(key));
@@ -44,7 +45,8 @@ impl Sampler for Stratified {
     }
 }
 
-/// A number in the quarter `cell` of [0, 1). The cell makes the leading two bits: a sum of cell and place could round up to 1.
+/// A number in the quarter `cell` of [0, 1). The cell is the leading two bits; adding a cell and an offset could round
+/// up to 1.
 #[inline(always)]
 fn inside(cell: u32, bits: u64) -> f64 {
     unit(u64::from(cell) << 62 | bits >> 2)
@@ -54,7 +56,8 @@ fn inside(cell: u32, bits: u64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Sixteen samples, sixteen cells; each cell is as likely as another for a sample, and so is each two for two samples.
+    /// Sixteen samples get sixteen different cells. All cells are equally likely for a sample, and all pairs for two
+    /// samples.
     #[test]
     fn cells_are_a_fair_permutation() {
         const KEYS: u64 = 1 << 18;
@@ -76,7 +79,8 @@ mod tests {
         let chi_square = |counts: &mut dyn Iterator<Item = u32>, mean: f64| -> f64 {
             counts.map(|count| (f64::from(count) - mean) * (f64::from(count) - mean) / mean).sum()
         };
-        // Both tails of chi-square at 1e-4, with 15 degrees of freedom for each of 16 samples and 239 for two of them.
+        // Both tails of chi-square at 1e-4, with 15 degrees of freedom for each of 16 samples and 239 for a pair of
+        // samples.
         for counts in counts {
             let value = chi_square(&mut counts.into_iter(), KEYS as f64 / 16.0);
             assert!((1.2..54.0).contains(&value), "{value}");

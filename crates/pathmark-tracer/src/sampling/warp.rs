@@ -1,4 +1,4 @@
-//! Warps of the unit square to the distributions that paths need, each with its density.
+//! Warps of the unit square to the distributions that paths need, and the densities of those distributions.
 
 use crate::math::{Real, Vec3, sin_cos_turns};
 use std::f64::consts::PI;
@@ -19,21 +19,21 @@ pub fn tent<T: Real>(u: T) -> T {
     T::select(r.lt(one), r.sqrt() - one, one - (two - r).sqrt())
 }
 
-/// A point of the unit disk with density 1/π, neighbours staying neighbours (Shirley and Chiu, "A Low Distortion Map Between Disk and
-/// Square", 1997).
+/// A point of the unit disk with density 1/π; neighbours stay neighbours (Shirley and Chiu, "A Low Distortion Map
+/// Between Disk and Square", 1997).
 #[inline(always)]
 pub fn concentric_disk([u, v]: [f64; 2]) -> [f64; 2] {
     let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
     if x == 0.0 && y == 0.0 {
         return [0.0, 0.0];
     }
-    // Eighths of a turn from the axis that is nearer.
+    // The angle in turns: at most an eighth of a turn from the nearer axis.
     let (r, turns) = if x.abs() > y.abs() { (x, 0.125 * (y / x)) } else { (y, 0.25 - 0.125 * (x / y)) };
     let (sin, cos) = sin_cos_turns(turns);
     [r * cos, r * sin]
 }
 
-/// The density per steradian of directions that are all as likely.
+/// The density per steradian of uniformly distributed directions.
 pub const UNIFORM_SPHERE_DENSITY: f64 = 0.25 / PI;
 
 /// A direction with the density [`UNIFORM_SPHERE_DENSITY`].
@@ -54,7 +54,7 @@ mod tests {
 
     const CORNERS: [f64; 5] = [0.0, f64::EPSILON / 2.0, 0.5, 1.0 - f64::EPSILON / 2.0, 1.0];
 
-    /// H03, also at u = 1, which the samplers never give.
+    /// H03, also at u = 1, which the samplers never return.
     #[test]
     fn cosine_warp_is_finite_at_the_corners() {
         for u in CORNERS {
@@ -78,14 +78,14 @@ mod tests {
         assert!((first - 2.0 / 3.0).abs() < 1e-5 && (second - 0.5).abs() < 1e-12, "{first} {second}");
     }
 
-    /// Over the midpoints of a grid, whose cells share the square evenly.
+    /// The mean of `of` over the midpoints of a grid of equal cells on the unit square.
     fn mean(of: impl Fn([f64; 2]) -> f64) -> f64 {
         let n = 512;
         let at = |k: i32| (f64::from(k) + 0.5) / f64::from(n);
         (0..n * n).map(|k| of([at(k % n), at(k / n)])).sum::<f64>() / f64::from(n * n)
     }
 
-    /// Like H03: corners and middle stay on the disk, and the corners of the square are its diagonals.
+    /// As in H03: corners and middle stay on the disk, and the corners of the square are mapped to its diagonals.
     #[test]
     fn disk_warp_is_finite_at_the_corners() {
         for u in CORNERS {
@@ -125,7 +125,8 @@ mod tests {
         }
     }
 
-    /// H05, like H03: unit at the corners; means of z and xy vanish, of x², y² and z² are 1/3, of z⁴ 1/5.
+    /// H05: unit length at the corners, as in H03. The means of z and xy vanish; those of x², y² and z² are 1/3, of z⁴
+    /// 1/5.
     #[test]
     fn sphere_warp() {
         for u in CORNERS {

@@ -1,13 +1,15 @@
-//! G9 of the catalogue of hard cases: every shipped scene in thermal equilibrium. Each surface gives off what it does not reflect, so the
-//! radiance is 1 in every pixel, whatever the shapes and the materials. What is lost through a gap, reflected too often or weighted wrongly
-//! shows in the mean of the image.
+//! G9 of the catalogue of hard cases: every shipped scene in thermal equilibrium. Each surface emits as much as it does
+//! not reflect, so the radiance is 1 in every pixel for any shapes and materials. Light that escapes through a gap, is
+//! reflected too often or weighted wrongly changes the mean of the image.
 //!
-//! Roulette is most of the noise of such an image, and `energy.rs` holds it to closed forms. So the mean is held to 0.1 % on paths that are cut
-//! before roulette begins, each with the light that the rest of it would have brought, which in equilibrium is its throughput; and on paths
-//! of any length too, as far as the samples go that a test has time for. With `PATHMARK_THOROUGH` set every scene gets as many as 0.1 % takes,
-//! except `overlap`, whose paths of any length have no variance that samples could settle.
+//! Russian roulette causes most of the noise of such an image; `energy.rs` tests it against closed forms. So the mean
+//! is tested to 0.1 % on paths that are cut before roulette begins. Each gets the light that its rest would have
+//! brought, which in equilibrium is its throughput. Paths of any length are tested too, as precisely as a test's time
+//! allows. With `PATHMARK_THOROUGH` set every scene gets as many samples as 0.1 % takes, except `overlap`: samples
+//! cannot estimate the variance of its paths of any length.
 //!
-//! Family-wise level 1e-3 (Sidak), two-sided. A first run with other numbers tells how many samples that is.
+//! Family-wise level 1e-3 (Sidak), two-sided. A first run with other random numbers estimates the number of samples
+//! required.
 
 use pathmark_tracer::estimator::{Bsdf, Estimator, Options, Probe, Smallpt};
 use pathmark_tracer::math::{Ray, Rgb};
@@ -17,24 +19,26 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 const LEVEL: f64 = 1e-3;
 const SIZE: (u32, u32) = (64, 48);
-/// What the mean of an image may be off by.
+/// The error of an image's mean that a test must detect.
 const POWER: f64 = 1e-3;
-/// Samples of a scene at most, unless the test is to be thorough.
+/// Largest number of samples of a scene, unless the test is thorough.
 const MOST: f64 = 3e6;
-/// Scenes that take more than these, and what they are then held to: mirrors without end, and a gloss that is looked for
-/// by the cosine. The same gloss by its facets, `kd-ks-25-vndf`, is not excused.
+/// Scenes that need more samples, and the larger error that their tests must detect: endless mirrors, and a gloss that
+/// is sampled by the cosine. The same gloss sampled by its facets, `kd-ks-25-vndf`, is no exception.
 const NOISY: [(&str, f64); 2] = [("wada2", 2e-3), ("kd-ks-25", 2e-3)];
-/// Glass in a mirror ball. smallpt refracts with probability 3/4 - Re/2 what has the weight 1 - Re, so every such vertex multiplies the
-/// second moment by up to 1.27, and little but the lamp ends these paths. They are held to 0.1 % up to [`LONG`] bounces, and to this beyond.
+/// Glass in a mirror ball. smallpt chooses refraction, which has the weight 1 - Re, with probability 3/4 - Re/2. So
+/// every such vertex multiplies the second moment by up to 1.27, and almost only the lamp ends these paths. Up to
+/// [`LONG`] bounces the test is stricter, in thorough mode 0.1 %; beyond, this is the error that it must detect.
 const UNBOUNDED: (&str, f64) = ("overlap", 1e-2);
 const LONG: u16 = 16;
-/// Samples of the first run, of which there are more where the spread is not to be underestimated.
+/// Samples of the first run; more where the spread must not be underestimated.
 const PILOT: f64 = 2e4;
 const THOROUGH_PILOT: f64 = 1e6;
 
-/// What happens to one path: rays that meet nothing, and the throughput of where it is cut, less what that surface gave off.
+/// The events of one path: the number of rays that hit nothing, and the throughput where it is cut, less that surface's
+/// emission.
 struct Fate {
-    /// Bounces before the vertex where it is cut.
+    /// Bounces before the vertex where the path is cut.
     cut: Option<u16>,
     escaped: u64,
     rest: [f64; 3],
@@ -72,10 +76,10 @@ impl Fate {
     }
 }
 
-/// Of samples all over the image, each the mean of its channels.
+/// Sums over samples of the whole image; each sample is the mean of its channels.
 struct Tally {
     n: f64,
-    /// Of deviations from 1, so that the squares keep their digits.
+    /// Sum of deviations from 1, so that the squares keep their digits.
     sum: f64,
     square: f64,
     escaped: u64,
@@ -84,7 +88,7 @@ struct Tally {
 impl Tally {
     fn of(scene: &Scene, max_depth: Option<u16>, seed: u64, samples: u32) -> Self {
         match max_depth {
-            // Following glass both ways leaves less to chance.
+            // Following glass both ways reduces the variance.
             Some(_) => {
                 Self::with(&Smallpt::new(Options { max_depth, ..Options::default() }), scene, max_depth, seed, samples)
             }
@@ -94,7 +98,7 @@ impl Tally {
         }
     }
 
-    /// In as many parts as there are processors; which they are changes the last digits alone.
+    /// Uses one thread per processor; their number changes only the last digits.
     fn with(estimator: &impl Estimator, scene: &Scene, max_depth: Option<u16>, seed: u64, samples: u32) -> Self {
         let parts = std::thread::available_parallelism().map_or(1, |n| n.get() as u32);
         let mut tally = Self { n: 0.0, sum: 0.0, square: 0.0, escaped: 0 };
@@ -158,7 +162,7 @@ impl Tally {
     }
 }
 
-/// Generators make their scenes small: few objects, short paths.
+/// Generated scenes are made small: few objects, short paths.
 fn small(name: &str) -> Scene {
     let scene = match name {
         "spheres" => load("spheres:100"),
@@ -169,16 +173,16 @@ fn small(name: &str) -> Scene {
     scene.unwrap().in_equilibrium()
 }
 
-/// How closely a scene can be looked at.
+/// The precision of a scene's test.
 struct Look {
-    /// What its mean may be off by.
+    /// The error of its mean that the test must detect.
     power: f64,
     pilot: f64,
-    /// By how much the first run may have underestimated the spread.
+    /// Factor by which the first run may have underestimated the spread.
     margin: f64,
 }
 
-/// How many standard errors each of so many tests may be off by.
+/// The largest deviation, in standard errors, that each of this many tests allows.
 fn limit_among(tests: usize) -> f64 {
     let level = -libm::expm1(libm::log1p(-LEVEL) / tests as f64);
     -Normal::standard().inverse_cdf(0.5 * level)
@@ -188,7 +192,7 @@ fn is_one(name: &str, max_depth: Option<u16>, look: &Look) {
     let limit = limit_among(2 * SCENES.len() + 1);
     let most = if is_thorough() { f64::from(u32::MAX) } else { MOST };
     let scene = small(name);
-    // A path that is cut where fog scatters it tells nobody what it still carried.
+    // A path that is cut at a scattering event in fog reports no rest of its throughput.
     let max_depth = max_depth.filter(|_| scene.fog.is_none());
     let Look { power, pilot, margin } = look;
     let root = margin * limit * Tally::of(&scene, max_depth, 41, *pilot as u32).deviation() / power;
@@ -197,7 +201,7 @@ fn is_one(name: &str, max_depth: Option<u16>, look: &Look) {
     let found = Tally::of(&scene, max_depth, 42, samples as u32);
     assert!(limit * found.error() < *power, "{name}: no power, one standard error is {}", found.error());
     let z = (found.mean() - 1.0) / found.error();
-    // Where nothing is left to chance there is still rounding, and the tables of emission are good to 1e-4.
+    // Without random noise there are still rounding errors, and the tables of emission are accurate to 1e-4.
     let is_one = z.abs() < limit || (found.mean() - 1.0).abs() < 1e-4;
     assert!(is_one, "{name}: {} after {} samples ({z} errors)", found.mean(), found.n);
     assert!(scene.background.is_some() || found.escaped == 0, "{name}: {} rays left it", found.escaped);
@@ -212,7 +216,7 @@ fn ordinary() -> Look {
     Look { power: POWER, pilot: if is_thorough() { THOROUGH_PILOT } else { PILOT }, margin: 1.2 }
 }
 
-/// For scenes whose spread is that of a few bright samples, which a short run does not meet.
+/// For scenes whose spread comes from a few bright samples, which a short run misses.
 fn wary(power: f64) -> Look {
     Look { power, pilot: 10.0 * ordinary().pilot, margin: 1.6 }
 }
@@ -231,7 +235,7 @@ fn every_scene_is_one_within_a_thousandth() {
     }
 }
 
-/// Also: nothing leaves a scene that has no background, and no sample is invalid, however long the paths.
+/// Also: no ray leaves a scene that has no background, and no sample is invalid, however long the paths.
 #[test]
 fn paths_of_any_length() {
     for (name, _) in SCENES {
@@ -239,7 +243,7 @@ fn paths_of_any_length() {
     }
 }
 
-/// Roulette is in these paths, and what comes after them is not.
+/// These paths include Russian roulette. They are cut after [`LONG`] bounces.
 #[test]
 fn long_paths_where_those_of_any_length_have_no_bound() {
     is_one(UNBOUNDED.0, Some(LONG), &wary(if is_thorough() { POWER } else { 5e-3 }));

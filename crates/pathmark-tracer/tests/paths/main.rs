@@ -1,4 +1,5 @@
-//! Tests of whole paths. They are in this crate because estimators are slow unless they are optimised, as all code of this crate is.
+//! Tests of whole paths. They are in this crate because all its code is optimised in every build; estimators are slow
+//! otherwise.
 
 mod equilibrium;
 mod rays;

@@ -1,4 +1,4 @@
-//! The search for rays apart from paths.
+//! Ray search apart from paths.
 
 use pathmark_tracer::kernel::{FoundRays, RaySearch, Spec, choose, path_rays};
 use pathmark_tracer::scene::load;
@@ -21,7 +21,7 @@ fn search(scene: &str, kernel: &str, precision: &str) -> FoundRays {
     search.run()
 }
 
-/// Every ray of a path meets what its path met, whoever searches.
+/// Every ray has the same hit as its path had, whichever kernel searches.
 #[test]
 fn what_paths_met_is_met() {
     for scene in ["bumpy-ball", "cornell", "spheres:300", "cornell-mesh"] {
@@ -31,7 +31,7 @@ fn what_paths_met_is_met() {
         assert_eq!((lanes.met, lanes.distance.to_bits()), (scalar.met, scalar.distance.to_bits()), "{scene}");
         let singles = search(scene, "lanes", "f32");
         assert!(singles.met.abs_diff(scalar.met) <= 2, "{scene}");
-        // Some ten rays in a million meet the other side of an edge.
+        // About ten rays in a million hit the other side of an edge.
         assert!((singles.distance / scalar.distance - 1.0).abs() < 1e-3, "{scene}");
     }
 }
