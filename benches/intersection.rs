@@ -1,5 +1,5 @@
-//! `cargo bench --bench intersection`: rays per second against one primitive or box, against spheres in SIMD lanes by both of their forms, and
-//! against whole scenes by accelerator.
+//! `cargo bench --bench intersection`: rays per second against one primitive or box, against spheres in SIMD lanes in
+//! both of their forms, and against whole scenes by accelerator.
 
 mod bench;
 
@@ -14,7 +14,7 @@ use std::time::Duration;
 
 const RAYS: usize = 1024;
 
-/// Rays from a cube of twice the size towards points of the cube from -1 to 1.
+/// Returns rays from points of the cube from -2 to 2 towards points of the cube from -1 to 1.
 fn rays() -> Vec<Ray> {
     let mut numbers = Pcg64Mcg::new(1);
     let mut unit = || (numbers.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
@@ -29,7 +29,7 @@ fn rays() -> Vec<Ray> {
     (0..RAYS).map(ray).collect()
 }
 
-/// One primitive, tested as a scene without a hierarchy tests it.
+/// Tests all rays against one primitive, as a scene without a hierarchy does.
 fn meet<P: Primitive>(primitive: &P, rays: &[Ray]) -> f64 {
     rays.iter().map(|ray| primitive.meet(ray, &P::prepare(ray)).max(0.0)).sum()
 }
@@ -53,7 +53,7 @@ fn primitives(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Spheres that rays in lanes are tested against, by centre and radius or by curvature.
+/// A test of rays in lanes against spheres, given by centre and radius or by curvature.
 struct InEachLane<'a> {
     rays: &'a [Ray],
     spheres: u32,

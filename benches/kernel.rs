@@ -14,7 +14,7 @@ use std::time::Duration;
 
 const SPP: u32 = 16;
 
-/// The kernels that there are here, by name, with their instruction sets.
+/// Returns the kernels of this machine by name, for each of their instruction sets and precisions.
 fn kernels() -> impl Iterator<Item = (String, Spec)> {
     KERNELS.iter().flat_map(move |kernel| {
         let spec = Spec { width: 64, height: 48, kernel: kernel.name.to_string(), ..Spec::default() };

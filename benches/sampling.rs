@@ -9,11 +9,11 @@ use pathmark::simd::{Float, Precision, Work, levels, on_level};
 use std::hint::black_box;
 use std::time::Duration;
 
-/// Pairs of an iteration: vertices times samples.
+/// Pairs in one iteration: vertices times samples.
 const PAIRS: u64 = 16 * 64;
 const VERTICES: u16 = 16;
 
-/// Pairs of as many samples as there are lanes, at each vertex.
+/// The drawing of pairs at each vertex, for as many samples at a time as there are lanes.
 struct InEachLane {
     sampler: InLanes,
 }
@@ -50,7 +50,7 @@ fn one_by_one(sampler: &dyn Sampler) -> f64 {
     sum
 }
 
-/// Every sampler, one pair after the other and in lanes.
+/// Measures every sampler, one pair at a time and in lanes.
 fn pairs(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sampling");
     group.throughput(Throughput::Elements(PAIRS));

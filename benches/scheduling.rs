@@ -1,11 +1,12 @@
 //! `cargo bench --bench scheduling`: every strategy on one fixed small render and on empty jobs.
 //!
-//! Group `scheduling` renders cornell at 96x72, 4 spp, in tiles of 8x8, with 1, 2 and 4 threads, in samples per second; group `empty-jobs`
-//! hands out jobs that do nothing. Group `seam` sets strategies beside their bare mechanisms, which says what the interface between
-//! scheduling and work costs for each job (`cargo bench --bench scheduling -- seam`). Group `trace` sets a measured render beside the same
-//! render unmeasured, which says what the account of who did what when costs. At the end stands a table of speedups against
-//! `serial`. Criterion runs its cases one after the other, so a drift of the machine's speed falls on some of them; `pathmark run
-//! thread-scaling` interleaves them and is what conclusions should rest on.
+//! Group `scheduling` renders cornell at 96x72, 4 spp, in tiles of 8x8, with 1, 2 and 4 threads, in samples per second.
+//! Group `empty-jobs` hands out jobs that do nothing. Group `seam` compares strategies with their bare mechanisms,
+//! which shows the overhead of the interface between scheduling and work for each job
+//! (`cargo bench --bench scheduling -- seam`). Group `trace` compares a measured render with the same render
+//! unmeasured, which shows the overhead of recording which worker ran which job when. A table of speedups against
+//! `serial` ends the run. Criterion runs its cases one after the other, so machine drift affects only some of them.
+//! `pathmark run thread-scaling` interleaves them, and conclusions should be based on it.
 
 mod bare;
 mod bench;
@@ -23,10 +24,11 @@ use std::time::Duration;
 const THREADS: [usize; 3] = [1, 2, 4];
 const SPP: u32 = 4;
 const EMPTY_JOBS: usize = 10_000;
-/// A thread for each of ten thousand jobs would measure the system's limits.
+/// For strategies with a thread for each job: ten thousand threads would measure the system's limits.
 const EMPTY_JOBS_PER_THREAD: usize = 500;
 
-/// A job renders a tile into a buffer of its own and forgets it: nothing is shared but the kernel.
+/// Returns the number of jobs and the job. A job renders a tile into its own buffer and discards it; jobs share only
+/// the kernel.
 fn render_job(spec: &Spec) -> (usize, Job) {
     let scene = Arc::new(pathmark::scene::load("cornell").expect("cornell is embedded"));
     let kernel: Arc<dyn Kernel> = Arc::from(build(&scene, spec).expect("the default names exist"));
@@ -42,7 +44,7 @@ fn render_job(spec: &Spec) -> (usize, Job) {
     (jobs, Arc::new(job))
 }
 
-/// The thread counts that mean something to a strategy.
+/// Returns the thread counts that are useful for a strategy.
 fn thread_counts(workers: Workers) -> &'static [usize] {
     match workers {
         Workers::Threads => &THREADS,
@@ -50,7 +52,7 @@ fn thread_counts(workers: Workers) -> &'static [usize] {
     }
 }
 
-/// What the case is called: a thread count, unless the strategy has its own rule.
+/// Returns the parameter in a case's name: the thread count, or `per-job` for a thread for each job.
 fn threads_label(workers: Workers, threads: usize) -> String {
     if workers == Workers::PerJob { "per-job".to_string() } else { threads.to_string() }
 }
@@ -118,12 +120,12 @@ fn seam(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Serial, so that nothing but the measuring differs: the same pieces through a bare loop, and through `measure`.
+/// Compares the same pieces in a bare loop and through `measure`. Both are serial, so only the measuring differs.
 fn trace(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("trace");
     group.sample_size(20).sampling_mode(SamplingMode::Flat);
     group.warm_up_time(Duration::from_millis(200)).measurement_time(Duration::from_millis(700));
-    // The smallest jobs there are, so that what a job costs besides is as large a part of the time as it can be.
+    // The smallest possible jobs, so that their overhead is as large a part of the time as possible.
     let spec = Spec { width: 64, height: 48, estimator: "bsdf".to_string(), ..Spec::default() };
     let pieces = "tiles:1x1";
     let settings = Settings {

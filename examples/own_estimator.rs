@@ -1,4 +1,5 @@
-//! An estimator of one's own: ambient occlusion, which asks of every visible point how much of the sky above it is free.
+//! A custom estimator: ambient occlusion, which tests for every visible point how much of the hemisphere above it is
+//! free.
 //!
 //! `cargo run --release --example own_estimator -- render cornell --estimator occlusion --spp 64 -o occlusion.png`
 
@@ -10,7 +11,7 @@ use pathmark::sampling::{Address, Purpose, SampleKey, Sampler, cosine_hemisphere
 use pathmark::scene::{Scene, Standpoint, Tests};
 use std::process::ExitCode;
 
-/// What is further away than this does not darken a point.
+/// Objects further away than this do not darken a point.
 const REACH: f64 = 40.0;
 
 struct Occlusion;
@@ -31,7 +32,7 @@ impl Estimator for Occlusion {
         let seen = scene.intersect::<X>(&ray, None, &mut tests);
         probe.ray(tests);
         let Some(hit) = seen else { return Rgb::WHITE };
-        // The numbers follow from where they are used, so the image is the same under every schedule.
+        // Random numbers depend only on their address, so the image is the same under every schedule.
         let pair = sampler.pair(Address { key, bounce: 1, branch: 0, purpose: Purpose::Bsdf });
         let direction = hit.frame().to_world(cosine_hemisphere(pair));
         let from = Standpoint { primitive: hit.primitive, inside: hit.inside };

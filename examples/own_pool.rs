@@ -1,4 +1,4 @@
-//! A thread pool of your own beside Pathmark's: here `paralight` with fixed ranges, which gives each of its threads a block of the jobs.
+//! A custom thread pool beside Pathmark's: `paralight` with fixed ranges, which gives each thread a block of the jobs.
 //!
 //! `cargo run --release --example own_pool -- render cornell --strategy paralight-fixed --threads 2` renders with it,
 //! `-- run thread-scaling` compares it, and `cargo test --example own_pool` says whether it keeps the contract.
@@ -24,7 +24,8 @@ const ENTRY: Entry = Entry {
     )
 };
 
-/// What paralight does, as the simulator can replay it. `Discipline::ONE_BY_ONE` and `Halving` say it of many other pools.
+/// Paralight's assignment of jobs, for replay by the simulator. `Discipline::ONE_BY_ONE` and `Halving` describe many
+/// other pools.
 fn deal(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>> {
     let start = |worker| worker * jobs / workers;
     (start(worker)..start(worker + 1)).step_by(1)
@@ -37,7 +38,7 @@ fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
         range_strategy: RangeStrategy::Fixed,
         cpu_pinning: CpuPinningPolicy::No,
     };
-    // Where the system gives no thread paralight panics, and this is an error.
+    // If the system refuses a thread, paralight panics; `library::start` turns the panic into an error.
     Ok(Box::new(Fixed(library::start(blueprint, threads.get(), || pool.build())?)))
 }
 
@@ -46,7 +47,7 @@ struct Fixed(ThreadPool);
 impl Strategy for Fixed {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
         let panics = Panics::default();
-        // After a panic `attempt` leaves out the jobs that are left, and `raise` passes the panic on.
+        // After a panic `attempt` skips the remaining jobs, and `raise` passes the panic on.
         let attempt = |index| panics.attempt(|| job(index));
         (0..jobs).into_par_iter().with_thread_pool(&mut self.0).for_each(attempt);
         drop(job);

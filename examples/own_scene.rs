@@ -1,4 +1,4 @@
-//! A scene of one's own, by text and by code, rendered from a program without the command line.
+//! A custom scene, from text and code, rendered by a program without the command line.
 //!
 //! `cargo run --release --example own_scene`
 
@@ -9,7 +9,7 @@ use pathmark::scene::Scene;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// What stays of smallpt's box: its walls and its lamp, with the camera.
+/// The parts kept from smallpt's box: its walls, lamp and camera.
 const ROOM: &str = "
 about = 'a row of balls in a box'
 base = 'cornell'
@@ -37,7 +37,7 @@ fn main() -> Result<()> {
     for strategy in ["serial", "work-stealing", "rayon"] {
         let settings = Settings { spp: 16, spec: spec.clone(), strategy: strategy.into(), ..Settings::default() };
         let outcome = Setup::for_scene(Arc::clone(&scene), settings)?.run(None)?;
-        // Other seconds, the same image.
+        // The times differ, the image is the same.
         println!("{strategy:14} {:.3} s, checksum {}", outcome.makespan_s, outcome.checksum.unwrap_or_default());
     }
     Ok(())

@@ -1,14 +1,15 @@
-//! A workload of one's own beside the path tracer: how long the Collatz sequences of many numbers are.
+//! A custom workload beside the path tracer: the lengths of the Collatz sequences of many numbers.
 //!
 //! `cargo run --release --example own_workload -- render collatz --size 100x100 --strategy rayon -o collatz.png`
 //!
-//! The whole command line is there: `list workloads` shows it, `render --trace`, `simulate` and experiments take it where a scene's name stands.
+//! The whole command line works with it: `list workloads` shows it, and `render --trace`, `simulate` and experiments
+//! take it in place of a scene's name.
 
 use pathmark::Lab;
 use pathmark::kernel::workload::{Item, Workload};
 use std::process::ExitCode;
 
-/// Numbers that one item tries.
+/// Number of Collatz sequences in one item.
 const NUMBERS: u64 = 500;
 
 struct Collatz;
@@ -27,7 +28,7 @@ impl Workload for Collatz {
     }
 }
 
-/// Steps until the number is 1.
+/// Returns the number of steps until `number` is 1.
 fn length(mut number: u64) -> u64 {
     let mut steps = 0;
     while number != 1 {

@@ -1,11 +1,12 @@
 //! Output files that appear whole or not at all.
 //!
-//! The bytes go to a temporary file in the destination's own directory, are synced, and take the destination's name in one
-//! rename. A reader, or a run that is resumed after a crash, sees the old file or the new one and nothing between; a failure
-//! leaves the old file as it was and no temporary file behind.
+//! The bytes are written to a temporary file in the destination's own directory and synced; one rename then gives the
+//! file the destination's name. A reader, or a run that is resumed after a crash, sees either the old file or the new
+//! one. A failure leaves the old file unchanged and no temporary file behind.
 //!
-//! A destination that cannot be a file at all (a directory, a device, a name that is too long, a directory that is not there)
-//! is the user's to mend: [`InputError`]. A refusal of the system (permission, space, a read-only file system) is [`Error::System`].
+//! A destination that cannot be a file (a directory, a device, a name that is too long, a directory that does not
+//! exist) is an [`InputError`], for the user to correct. A refusal of the system (permission, space, a read-only file
+//! system) is [`Error::System`].
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -18,20 +19,20 @@ use crate::error::{Error, InputError, Result};
 use crate::file_id::{folder_of, followed};
 use crate::temporary;
 
-/// Writes what `body` writes to the file `path`, or leaves `path` as it was. A symbolic link is followed, not replaced, also where it
-/// leads to nothing yet.
+/// Writes the output of `body` to the file `path`, or leaves `path` unchanged. A symbolic link is followed, not
+/// replaced, even if its target does not exist yet.
 pub fn write(path: &Path, body: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let target = Target::of("file", path)?;
     target.replace(body).map_err(|e| Error::system("writing", path, e))
 }
 
-/// Asks whether [`write()`] to `path` could succeed, and leaves nothing behind; to be asked before hours of work depend on it. `option` is
-/// what the user gave the path for, and named in an error.
+/// Checks that [`write()`] to `path` could succeed, and leaves no file behind. Call it before hours of work depend on
+/// it. An error names `option`, with which the user gave the path.
 pub fn check_writable(option: &str, path: &Path) -> Result<()> {
     let target = Target::of(option, path)?;
     let try_it = || {
         if target.exists {
-            // The rename would replace a write-protected file as well, but its owner meant it to stay.
+            // The rename would even replace a write-protected file, but its owner intended it to stay.
             OpenOptions::new().write(true).open(&target.file)?;
         }
         temporary::new_in(&target.directory).and_then(NamedTempFile::close)
@@ -39,20 +40,20 @@ pub fn check_writable(option: &str, path: &Path) -> Result<()> {
     try_it().map_err(|e| Error::system("writing", path, e))
 }
 
-/// What keeps `found` from being replaced by a regular file.
+/// Returns the reason why `found` cannot be replaced by a regular file; `None` if it can.
 pub(crate) fn obstacle(found: &fs::Metadata) -> Option<&'static str> {
     match found {
         found if found.is_dir() => Some("is a directory"),
-        // Renaming onto a device would put a plain file in the place of, say, /dev/null.
+        // A rename onto a device would replace, for example, /dev/null by a plain file.
         found if !found.is_file() => Some("is not a regular file"),
         _ => None,
     }
 }
 
-/// The longest name of a file that all the usual file systems take, in bytes.
+/// The longest file name that all common file systems accept, in bytes.
 const LONGEST_NAME: usize = 255;
 
-/// Refuses a path that ends in a name which no file can have: for a file whose folder is made later.
+/// Refuses a path whose file name is too long for any file; used for a file whose folder is created later.
 pub fn check_name(path: &Path) -> Result<()> {
     let name = path.file_name().unwrap_or_default();
     if name.len() <= LONGEST_NAME {
@@ -63,7 +64,7 @@ pub fn check_name(path: &Path) -> Result<()> {
     Err(error.allowed(format!("up to {LONGEST_NAME} bytes")).into())
 }
 
-/// A destination that may be a regular file.
+/// A destination that is, or can become, a regular file.
 struct Target {
     file: PathBuf,
     directory: PathBuf,
@@ -71,7 +72,7 @@ struct Target {
 }
 
 impl Target {
-    /// Follows links, and refuses what no permission and no free space could make a file.
+    /// Follows links, and refuses a destination that cannot be a file even with every permission and enough space.
     fn of(option: &str, path: &Path) -> Result<Self> {
         let refuse = |problem: &str| InputError::new(option, path.display().to_string(), problem);
         let text = path.as_os_str().as_encoded_bytes();
@@ -107,8 +108,8 @@ impl Target {
         file.as_file().sync_all()?;
         step(Step::Rename)?;
         file.persist(&self.file).map_err(|refusal| refusal.error)?;
-        // The rename has happened and is visible. Where a directory cannot be synced (some network file systems), a power cut
-        // may still bring the old file back, whole; that is no reason to report a failure.
+        // The rename is already visible. If a directory cannot be synced (some network file systems), a power cut can
+        // still restore the old file, whole; this is not reported as a failure.
         File::open(&self.directory).and_then(|directory| directory.sync_all()).ok();
         Ok(())
     }

@@ -1,33 +1,33 @@
-//! The steps by which bytes reach a disk, each of which a test can make fail.
+//! Steps of writing to a disk, each of which a test can make fail.
 //!
-//! A full disk, a used-up quota, a broken cable show themselves at any of them: when a file is made, in the middle of a write, when the
-//! system is asked whether the bytes are safe, or at the rename. Everything that the program writes goes through here, so that all of these
-//! can be tried with all outputs, in any build. Faults belong to the thread that asked for them.
+//! A full disk, an exhausted quota or a broken cable can cause an error at any step: when a file is created, during a
+//! write, when the system syncs the bytes, or at the rename. All output of the program passes through this module, so
+//! tests can try every fault with every output, in any build. Faults affect only the thread that set them.
 
 use std::cell::RefCell;
 use std::io::{self, Write};
 
-/// What is about to be done.
+/// A step of writing a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
-    /// A file is made.
+    /// A file is created.
     Create,
-    /// So many bytes are handed to the system.
+    /// This many bytes are handed to the system.
     Write(usize),
-    /// The system is asked to make sure of what was written.
+    /// The system is asked to sync the written bytes to the disk.
     Sync,
-    /// A finished file takes its name.
+    /// A finished file is renamed to its final name.
     Rename,
 }
 
-/// What a disk does at a step: the error that the system would give, or how many bytes of a write it takes.
+/// The behaviour of a disk at a step: an error of the system, or how many bytes of a write it accepts.
 pub type Faults = dyn FnMut(Step) -> io::Result<usize>;
 
 thread_local! {
     static FAULTS: RefCell<Option<Box<Faults>>> = const { RefCell::new(None) };
 }
 
-/// Runs `body` with a disk that behaves as `faults` say, in this thread.
+/// Runs `body` in this thread; each step of its output has the result that `faults` returns.
 ///
 /// ```
 /// use pathmark::{atomic_file, disk};
@@ -40,7 +40,7 @@ thread_local! {
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub fn with_faults<R>(faults: impl FnMut(Step) -> io::Result<usize> + 'static, body: impl FnOnce() -> R) -> R {
-    /// Puts the sound disk back, also when `body` panics.
+    /// Removes the faults, also when `body` panics.
     struct Repair;
     impl Drop for Repair {
         fn drop(&mut self) {
@@ -52,17 +52,17 @@ pub fn with_faults<R>(faults: impl FnMut(Step) -> io::Result<usize> + 'static, b
     body()
 }
 
-/// Asks the disk for a step other than a write.
+/// Checks whether the disk allows a step other than a write.
 pub fn step(step: Step) -> io::Result<()> {
     allowed(step).map(|_| ())
 }
 
-/// How many bytes of a write are taken.
+/// Returns how many bytes of a write are accepted.
 fn allowed(step: Step) -> io::Result<usize> {
     FAULTS.with_borrow_mut(|faults| faults.as_mut().map_or(Ok(usize::MAX), |faults| faults(step)))
 }
 
-/// A file on the disk.
+/// A file whose writes are subject to the faults.
 #[derive(Debug)]
 pub struct OnDisk<F>(pub F);
 

@@ -1,4 +1,4 @@
-//! Which file a path leads to, however it is spelled: through links, upper folders, or another name of the same file.
+//! File identity: the file that a path leads to, also through links, parent folders or another name of the same file.
 
 use std::ffi::OsString;
 use std::fs;
@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-/// Links that are followed one after the other; the system follows as many.
+/// The longest chain of links that is followed, as in the system.
 const MOST_LINKS: usize = 40;
 
 /// A file's identity.
@@ -14,17 +14,17 @@ const MOST_LINKS: usize = 40;
 pub struct FileId {
     device: u64,
     inode: u64,
-    /// For a file that is not there yet: its path below the nearest folder that is.
+    /// For a file that does not exist yet: its path below the nearest existing folder.
     below: Vec<OsString>,
 }
 
 impl FileId {
-    /// Of the file that reading or writing `path` would open or make.
+    /// Returns the identity of the file that reading or writing `path` would open or create.
     pub fn of(path: &Path) -> io::Result<Self> {
         let path = followed(path)?;
         match fs::metadata(&path) {
             Ok(data) => Ok(Self { device: data.dev(), inode: data.ino(), below: Vec::new() }),
-            // Whether it can be made there is for the one who makes it to say.
+            // Errors on creating it there are reported by the code that creates it.
             Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
                 let name = path.file_name().ok_or(e)?;
                 let mut id = Self::of(folder_of(&path))?;
@@ -36,18 +36,19 @@ impl FileId {
     }
 }
 
-/// The folder that a file is in.
+/// Returns the folder that contains a file.
 pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// The path that a link leads to, also where nothing is there yet; a path that is no link stays as it is.
+/// Returns the path that a link leads to, even if the target does not exist yet; a path that is not a link is returned
+/// unchanged.
 pub fn followed(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_path_buf();
     for _ in 0..MOST_LINKS {
         match fs::read_link(&path) {
             Ok(target) => path = folder_of(&path).join(target),
-            // No link, or nothing at all.
+            // Not a link, or no such file.
             Err(_) => return Ok(path),
         }
     }

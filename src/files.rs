@@ -1,7 +1,8 @@
-//! The files that a command reads and writes: no output may be an input, or another output, however the two are spelled.
+//! The files that a command reads and writes: no output may be an input or another output, under any spelling of their
+//! paths.
 //!
-//! Every verb enters its files here before it does any work. Files are compared by identity ([`FileId`]), so links, upper folders and second
-//! names do not hide one.
+//! Every verb registers its files here before it does any work. Files are compared by identity ([`FileId`]), so links,
+//! parent folders and second names are recognised.
 
 use crate::atomic_file::{check_writable, obstacle};
 use crate::error::{Error, InputError, Result};
@@ -11,12 +12,12 @@ use std::collections::hash_map::Entry;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a command does with a file.
+/// The use of a file by a command.
 #[derive(Debug)]
 enum Use {
-    /// It reads the file; what that is to the user.
+    /// The command reads the file, which the user knows by this description.
     Input(String),
-    /// It replaces the file; the option that the user gave the file with.
+    /// The command replaces the file, which the user gave with this option.
     Output(String),
 }
 
@@ -27,28 +28,29 @@ pub struct Files {
 }
 
 impl Files {
-    /// The command reads the file: `what` it is to the user, as in "the scene". One that is not there is left to the reader to report.
-    /// Inputs are entered before outputs.
+    /// Registers an input. `what` describes it to the user, as in "the scene". A missing file is left to its reader to
+    /// report. Inputs are registered before outputs.
     pub fn reads(&mut self, what: &str, path: &Path) {
         if let Ok(id) = FileId::of(path) {
             self.uses.entry(id).or_insert_with(|| Use::Input(what.to_string()));
         }
     }
 
-    /// The command reads a scene from these files.
+    /// Registers the files of a scene as inputs.
     pub fn reads_scene(&mut self, files: &[PathBuf]) {
         for path in files {
             self.reads("a file of the scene", path);
         }
     }
 
-    /// The command will write the file, which the user gave with `option`. Refuses what cannot be written, an input, and another output.
+    /// Registers an output, which the user gave with `option`. Refuses a file that cannot be written, an input, and
+    /// another output.
     pub fn writes(&mut self, option: &str, path: &Path) -> Result<()> {
         check_writable(option, path)?;
         self.claims(option, path)
     }
 
-    /// As [`Files::writes`], for a file in a folder that may still have to be made.
+    /// Like [`Files::writes`], for a file in a folder that may not exist yet.
     pub fn claims(&mut self, option: &str, path: &Path) -> Result<()> {
         let refuse = |problem: &str| Error::from(InputError::new(option, path.display().to_string(), problem));
         if let Some(problem) = fs::metadata(path).ok().as_ref().and_then(obstacle) {
@@ -67,7 +69,7 @@ impl Files {
         }
     }
 
-    /// As [`Files::claims`], for a file that may only be there if `is_ours` says that it may be replaced.
+    /// Like [`Files::claims`], but refuses an existing file unless `is_ours` allows its replacement.
     pub fn renews(&mut self, option: &str, path: &Path, is_ours: impl FnOnce(&Path) -> bool) -> Result<()> {
         self.claims(option, path)?;
         if path.exists() && !is_ours(path) {

@@ -1,4 +1,4 @@
-//! What there is to choose from, as a value: everything built in, and what a program of one's own adds.
+//! The lab: tables of everything that a user can choose by name, built in or added by a program.
 //!
 //! ```no_run
 //! use pathmark::kernel::workload::{Item, Workload};
@@ -38,16 +38,16 @@ pub const THREAD_PER_ROW: &str = "thread-per-row";
 /// The strategy that speedups are compared with.
 pub const SERIAL: &str = "serial";
 
-/// The tables.
+/// The tables of everything that a user can choose by name.
 pub struct Lab {
     strategies: Vec<Strategy>,
     estimators: Vec<OwnEstimator>,
     workloads: Vec<workload::Entry>,
     scenes: Library,
     experiments: Vec<(String, String)>,
-    /// Names that a program added, by kind, and where.
+    /// Names that a program added: kind, name and source location.
     added: Vec<(&'static str, String, &'static Location<'static>)>,
-    /// The first name that was taken.
+    /// The error for the first name that was already taken.
     problem: Option<InputError>,
 }
 
@@ -66,7 +66,7 @@ impl Default for Lab {
 }
 
 impl Lab {
-    /// Everything built in.
+    /// Returns the built-in tables.
     pub fn new() -> Self {
         Self {
             strategies: STRATEGIES.to_vec(),
@@ -79,7 +79,7 @@ impl Lab {
         }
     }
 
-    /// The same, shared: for whoever adds nothing.
+    /// Returns the built-in tables, shared, for programs that add nothing.
     pub fn built_in() -> Arc<Self> {
         Arc::clone(&BUILT_IN)
     }
@@ -104,7 +104,7 @@ impl Lab {
         self
     }
 
-    /// Adds a workload. It shares its names with scenes, because it stands where they stand.
+    /// Adds a workload. Workloads and scenes share one set of names, because a workload can take the place of a scene.
     #[must_use]
     #[track_caller]
     pub fn workload(mut self, name: &'static str, workload: impl Workload) -> Self {
@@ -114,7 +114,7 @@ impl Lab {
         self
     }
 
-    /// Adds a scene in TOML; it is read when somebody asks for it.
+    /// Adds a scene in TOML, which is read only when the scene is used.
     #[must_use]
     #[track_caller]
     pub fn scene(mut self, name: &str, text: &str) -> Self {
@@ -148,17 +148,17 @@ impl Lab {
         self.added.push((kind, name.to_string(), at));
     }
 
-    /// Refuses tables in which a name means two things.
+    /// Returns an error if a name has two meanings.
     pub fn check(&self) -> Result<()> {
         self.problem.as_ref().map_or(Ok(()), |problem| Err(problem.clone().into()))
     }
 
-    /// The strategies, in the order in which they are listed.
+    /// Returns the strategies, in the order in which they are listed.
     pub fn strategies(&self) -> &[Strategy] {
         &self.strategies
     }
 
-    /// The strategy that `text` names, and its parameter if a colon follows.
+    /// Returns the strategy that `text` names, and the parameter after the colon if there is one.
     pub fn strategy_named(&self, text: &str) -> Result<(Strategy, Option<String>)> {
         let (name, parameter) = match text.split_once(':') {
             Some((name, parameter)) => (name, Some(parameter.to_string())),
@@ -176,42 +176,43 @@ impl Lab {
         }
     }
 
-    /// The estimators, in the order in which they are listed.
+    /// Returns the estimators, in the order in which they are listed.
     pub fn estimators(&self) -> impl Iterator<Item = &EstimatorEntry> {
         ESTIMATORS.iter().chain(self.estimators.iter().map(OwnEstimator::entry))
     }
 
-    /// Those that a program added.
+    /// Returns the estimators that a program added.
     pub fn own_estimators(&self) -> &[OwnEstimator] {
         &self.estimators
     }
 
-    /// The workloads, in the order in which they are listed.
+    /// Returns the workloads, in the order in which they are listed.
     pub fn workloads(&self) -> &[workload::Entry] {
         &self.workloads
     }
 
-    /// The workload of that name.
+    /// Returns the workload called `name`.
     pub fn workload_named(&self, name: &str) -> Option<&workload::Entry> {
         self.workloads.iter().find(|entry| entry.name == name)
     }
 
-    /// The names of the scenes, in the order in which they are listed.
+    /// Returns the names of the scenes, in the order in which they are listed.
     pub fn scenes(&self) -> impl Iterator<Item = &str> {
         self.scenes.names()
     }
 
-    /// The scene of that name, or the one in the file of that path.
+    /// Returns the scene of that name, or the one in the file of that path.
     pub fn load_scene(&self, name_or_path: &str) -> Result<Scene> {
         self.scenes.load(name_or_path)
     }
 
-    /// The estimator that the scene asks for, or the usual one. Only the scene's own text is read for that.
+    /// Returns the name of the estimator that the scene sets, or of the default one. It reads only the scene's own
+    /// text.
     pub fn scene_estimator(&self, name_or_path: &str) -> Result<String> {
         self.scenes.estimator_of(name_or_path)
     }
 
-    /// Name and text of the experiments that a program added.
+    /// Returns name and text of the experiments that a program added.
     pub fn own_experiments(&self) -> &[(String, String)] {
         &self.experiments
     }

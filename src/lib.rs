@@ -1,8 +1,8 @@
-//! Pathmark: how should many unequal pieces of work be scheduled on many cores, and what does accuracy cost in time?
+//! Pathmark: how should many unequal jobs be scheduled on many cores, and what does accuracy cost in time?
 //!
-//! The workload is a deterministic, seeded path tracer of the smallpt family. Three axes are never multiplied in code: *what* is rendered
-//! ([`scene`], [`estimator`], [`sampling`], [`kernel`]), in which *pieces* ([`film`]), and *who* renders them when ([`strategy`]). They
-//! meet in [`measure`], the only place that reads a clock.
+//! The workload is a deterministic, seeded path tracer of the smallpt family. The code keeps three axes independent:
+//! *what* is rendered ([`scene`], [`estimator`], [`sampling`], [`kernel`]), in which *pieces* ([`film`]), and *who*
+//! renders them when ([`strategy`]). They meet in [`measure`], the only place that reads a clock.
 //!
 //! ```
 //! use pathmark::measure::{Settings, Setup};
@@ -24,37 +24,37 @@
 //!
 //! # Where to start
 //!
-//! * To put a pool, an estimator, a workload, a scene or an experiment of your own beside ours: [`Lab`]. The package's `examples/own_*.rs` are
+//! * To add your own pool, estimator, workload, scene or experiment: [`Lab`]. The package's `examples/own_*.rs` are
 //!   such programs.
-//! * To test a pool of your own: [`strategy`], a crate without the renderer, and its contract.
+//! * To test your own pool: [`strategy`], a crate without the renderer, and its contract.
 //! * To render from a program, as above: [`measure::Setup`]; [`image_io`] writes the picture, [`metric`] compares two.
-//! * To judge what was measured: [`analysis`], and [`simulate`] for workers that the machine does not have.
+//! * To analyse measurements: [`analysis`], and [`simulate`] for workers that the machine does not have.
 //!
-//! | module | what is in it |
+//! | module | contents |
 //! |--|--|
-//! | [`lab`] | the tables as a value: what there is to choose from, and what a program adds |
-//! | [`strategy`] | who runs which job, and when; the contract that every strategy keeps |
-//! | [`measure`] | settings, runs, traces, records: where a strategy meets a kernel and a clock is read |
-//! | [`kernel`] | how a piece of the film is rendered; workloads besides the path tracer |
-//! | [`film`] | how a film is cut into pieces, and added up to the same bits |
-//! | [`film_file`] | sums of a film in a file, and what they are of |
+//! | [`lab`] | the tables of all choices: the built-in ones, and those that a program adds |
+//! | [`strategy`] | which worker runs which job, and when; the contract that every strategy keeps |
+//! | [`measure`] | settings, runs, traces, records: runs kernels with strategies and reads the clock |
+//! | [`kernel`] | kernels that render a piece of the film; workloads besides the path tracer |
+//! | [`film`] | decomposition of a film into pieces, and sums with the same bits for all of them |
+//! | [`film_file`] | files with the sums of a film, and the scene and settings that they belong to |
 //! | [`scene`] | scenes from text and from files: shapes, lights, cameras, hierarchies |
 //! | [`estimator`] | how the radiance along a path is estimated |
-//! | [`material`] | what a surface does with light |
+//! | [`material`] | materials: how a surface scatters light |
 //! | [`sampling`] | random numbers by address, and warps with their densities |
 //! | [`effect`] | sets of effects that kernels are compiled for |
-//! | [`math`] | vectors, colours, rays, and formulas that round alike on every machine |
+//! | [`math`] | vectors, colours, rays, and formulas that round equally on every machine |
 //! | [`image_io`] | pictures in files |
-//! | [`metric`] | how far one picture is from another |
+//! | [`metric`] | error metrics between two pictures |
 //! | [`analysis`] | statistics: intervals, speedup, scaling laws, prices |
-//! | [`simulate`] | measured job costs on virtual workers |
+//! | [`simulate`] | replays of measured job costs on virtual workers |
 //! | [`experiment`] | questions in TOML files, the cells that answer them, and their rows |
 //! | [`check`] | the hard cases as a table |
-//! | [`error`] | what can go wrong, and who has to act |
+//! | [`error`] | errors, and who has to act on them |
 //!
 //! Modules that are not listed serve the program `pathmark` and may change at any time.
 
-// A test may unwrap; the library tells its user what is wrong.
+// Tests may unwrap; the library returns errors that say what is wrong.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 #[doc(hidden)]

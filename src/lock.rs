@@ -1,7 +1,8 @@
-//! Locks against a second process that would write the same file or folder.
+//! Locks that keep a second process from writing the same file or folder.
 //!
-//! The system lifts a lock when its process ends, however it ends: what a killed one leaves behind is a lock file that locks nothing. Lock files
-//! have names that nobody else uses, and are empty: any other file of that name is the user's, and stays.
+//! The system releases a lock when its process ends in any way, so a killed process leaves a lock file that locks
+//! nothing. Lock files have names that no other program uses, and are empty. Any other file of that name belongs to the
+//! user and stays.
 
 use crate::digest;
 use crate::error::{Error, InputError, Result};
@@ -13,21 +14,22 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
 
-/// A process that was killed may have had a child between its fork and its exec, which holds the lock until then.
+/// Longest wait for a lock. A killed process may have had a child between its fork and its exec, which holds the lock
+/// until then.
 const PATIENCE: Duration = Duration::from_secs(1);
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Who may hold a lock at the same time.
+/// Whether a lock may have several holders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sharing {
-    /// Nobody else.
+    /// One holder only.
     Alone,
-    /// Others that share it.
+    /// Several holders that share it.
     Shared,
 }
 
-/// Locks an open file; whether it could be locked and `path` still leads to it. A file that has been replaced or removed while we waited is
-/// nobody's any more.
+/// Locks an open file; returns whether it could be locked and `path` still leads to it. A lock on a file that was
+/// replaced or removed while we waited would protect nothing.
 pub fn try_lock(file: &File, path: &Path, sharing: Sharing) -> io::Result<bool> {
     let mut waited = Duration::ZERO;
     loop {
@@ -51,7 +53,7 @@ pub fn leads_to(path: &Path, file: &File) -> bool {
     file.metadata().and_then(|open| Ok(same(open, fs::metadata(path)?))).unwrap_or(false)
 }
 
-/// A lock file, for what is replaced by renames or is a folder. It is removed when the last who holds it drops it.
+/// A lock file, for a folder or for a file that is replaced by renames. Its last holder removes it when dropped.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
@@ -60,26 +62,27 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Locks what is to be written to a file, which need not be there. `field` names the file in an error.
+    /// Locks a file for writing; the file need not exist. `field` names the file in an error.
     pub fn of_file(path: &Path, field: &str) -> Result<Self> {
-        // Where the path is a link, the lock stands beside the file itself.
+        // If the path is a link, the lock file is beside the link's target.
         let file = followed(path).and_then(|path| path.canonicalize().or(Ok(path)));
         let file = file.map_err(|e| Error::system("locking", path, e))?;
         let name = digest::of_text(&file.file_name().unwrap_or_default().to_string_lossy());
         Self::new(&folder_of(&file).join(format!(".pathmark-{name}.lock")), field, path, Sharing::Alone)
     }
 
-    /// Locks a folder that is there. `field` names it in an error.
+    /// Locks an existing folder. `field` names it in an error.
     pub fn of_folder(folder: &Path, field: &str, sharing: Sharing) -> Result<Self> {
         Self::new(&folder.join(".pathmark.lock"), field, folder, sharing)
     }
 
-    /// Locks by the file `path`, which is made if need be. `field` and `of` say in an error what it is that another process is writing.
+    /// Locks the file `path`, which is created if necessary. In an error, `field` and `of` name the file or folder that
+    /// another process is writing.
     fn new(path: &Path, field: &str, of: &Path, sharing: Sharing) -> Result<Self> {
         let system = |e| Error::system("locking", path, e);
         let mut options = OpenOptions::new();
         options.read(true).write(true).create(true).truncate(false).custom_flags(libc::O_NOFOLLOW);
-        // Whoever held it may have removed it while we waited: once more, with a file that has a name.
+        // The previous holder may have removed the file while we waited: try once more, with a new file.
         for _ in 0..2 {
             let file = options.open(path).map_err(system)?;
             if file.metadata().map_err(system)?.len() > 0 {
@@ -99,7 +102,8 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // While it is locked against all others, so that nobody can have locked it in between. If it stays, it locks nothing.
+        // Removed only under an exclusive lock, so that no other process can have locked it meanwhile. A file that
+        // stays locks nothing.
         if self.file.try_lock().is_ok() && leads_to(&self.path, &self.file) {
             fs::remove_file(&self.path).ok();
         }

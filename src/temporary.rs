@@ -1,10 +1,11 @@
 //! Temporary files beside their destinations, and the removal of those whose writer was killed.
 //!
-//! A writer locks its temporary file until the file has its final name. The system lifts the lock when the writer ends, however it ends, so a
-//! file that another process can lock is abandoned. Process numbers play no part: they are used again, and mean nothing on another host.
+//! A writer locks its temporary file until the file has its final name. The system releases the lock when the writer
+//! ends in any way, so a file that another process can lock is abandoned. Process numbers are not used: they are
+//! assigned again, and mean nothing on another host.
 //!
-//! Some shared folders keep locks to one host. A file therefore carries the boot of the system that wrote it in its name, and a file of another
-//! boot is taken for abandoned only when nobody has written to it for a day as well.
+//! On some shared folders, locks hold only within one host. The name of a file therefore contains the boot of the
+//! system that wrote it. A file of another boot counts as abandoned only if it has also not been written to for a day.
 
 use crate::disk::{Step, step};
 use crate::lock::leads_to;
@@ -20,36 +21,39 @@ const PREFIX: &str = ".pathmark-";
 const SUFFIX: &str = ".tmp";
 /// No writer pauses as long as this between two writes.
 const ABANDONED_AFTER: Duration = Duration::from_hours(24);
-/// Another process that tidies up may take a new file for abandoned before it is locked; that does not happen often in a row.
+/// Attempts to create a file. Another process that cleans up may take a new file for abandoned before it is locked, but
+/// rarely several times in a row.
 const ATTEMPTS: usize = 16;
 
-/// The beginning of the names of this system's files, the same for all of its processes until it is started anew.
+/// The prefix of this system's file names, the same for all of its processes until the next boot.
 static OWN_PREFIX: LazyLock<String> = LazyLock::new(|| {
     let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     let word: String = boot.chars().filter(char::is_ascii_hexdigit).take(16).collect();
     format!("{PREFIX}{word}-")
 });
 
-/// A new file in the folder, locked; it deletes itself unless it is renamed. Removes the folder's abandoned ones first.
+/// Creates a locked file in the folder, which deletes itself unless it is renamed. Removes the folder's abandoned files
+/// first.
 pub(crate) fn new_in(folder: &Path) -> io::Result<NamedTempFile> {
     remove_abandoned(folder);
     step(Step::Create)?;
     let mut builder = tempfile::Builder::new();
-    // An output is as public as any file the user makes: the umask decides, not tempfile's 0600.
+    // The umask decides about the permissions of an output, as for any file of the user, and not tempfile's 0600.
     builder.prefix(&*OWN_PREFIX).suffix(SUFFIX).permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     for _ in 0..ATTEMPTS {
         let file = builder.tempfile_in(folder)?;
         match file.as_file().try_lock() {
             Ok(()) if !leads_to(file.path(), file.as_file()) => {}
             Err(TryLockError::WouldBlock) => {}
-            // Where there are no locks, nobody can lock the file, so nobody removes it either.
+            // On a file system without locks, no process can lock the file, so none removes it either.
             Ok(()) | Err(TryLockError::Error(_)) => return Ok(file),
         }
     }
     Err(io::Error::other("another process removes each temporary file"))
 }
 
-/// Removes the temporary files in a folder whose writers are gone. What cannot be removed stays: it is in nobody's way.
+/// Removes the temporary files in a folder whose writers have ended. A file that cannot be removed stays and does no
+/// harm.
 pub(crate) fn remove_abandoned(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         // The lock is held until the file is gone.
@@ -59,7 +63,7 @@ pub(crate) fn remove_abandoned(folder: &Path) {
     }
 }
 
-/// The file, locked, if it is a temporary one that no writer has.
+/// Returns the file, locked, if it is a temporary file without a writer.
 fn abandoned(entry: &DirEntry) -> Option<File> {
     let name =
         entry.file_name().into_string().ok().filter(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX))?;

@@ -1,7 +1,9 @@
-//! The mechanisms of strategies without the strategies: the same primitive, a job that is known at compile time, and no care for panics.
+//! The bare mechanisms of strategies: the same primitive, a job that is known at compile time, and no handling of
+//! panics.
 //!
-//! What such a loop and the strategy differ by is the price of the seam between scheduling and work: a call through `Arc<dyn Fn>`, a look
-//! at the wish to stop, a panic that is caught. Threads are started where the strategy starts them, in the run or before it.
+//! The difference between such a loop and the strategy is the overhead of the interface between scheduling and work: a
+//! call through `Arc<dyn Fn>`, a check of the stop request, and catching panics. Threads are started where the strategy
+//! starts them, in the run or before it.
 
 use std::collections::VecDeque;
 use std::hint::black_box;
@@ -16,13 +18,13 @@ use crossbeam::utils::CachePadded;
 use rayon::ThreadPoolBuilder;
 use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 
-/// Runs so many jobs.
+/// A function that runs the given number of jobs.
 pub(crate) type Run = Box<dyn FnMut(usize)>;
 
-/// A mechanism for a number of threads.
+/// A function that makes a mechanism for a number of threads.
 pub(crate) type Make = fn(usize) -> Run;
 
-/// The strategies whose mechanisms are here.
+/// The strategies with their bare mechanisms.
 pub(crate) const PAIRS: [(&str, Make); 6] = [
     ("serial", plain_loop),
     ("shared-counter", counter),
@@ -32,7 +34,7 @@ pub(crate) const PAIRS: [(&str, Make); 6] = [
     ("fixed-pool", queue),
 ];
 
-/// The job.
+/// The empty job.
 pub(crate) fn empty(index: usize) {
     black_box(index);
 }
@@ -41,7 +43,7 @@ fn plain_loop(_: usize) -> Run {
     Box::new(|jobs| (0..jobs).for_each(empty))
 }
 
-/// `body` on so many threads of its own.
+/// Runs `body` on `threads` new threads.
 fn scoped(threads: usize, body: impl Fn() + Sync) {
     thread::scope(|scope| {
         for _ in 0..threads {

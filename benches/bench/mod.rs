@@ -1,7 +1,8 @@
-//! A bench program: criterion measures, its lines go into a file, and tables of what it stored end the run.
+//! A bench program: criterion measures, its output goes into a file, and tables of its stored results end the run.
 //!
-//! With a flag of criterion's (`--verbose`, `--list`, `--test` and so on) it prints as it always does. With `PATHMARK_BENCH_OUT=DIR` the cases of
-//! `scheduling` are also written into that folder of results, where `pathmark report DIR` finds them.
+//! With a flag of criterion (`--verbose`, `--list`, `--test` and so on) it prints as usual. With
+//! `PATHMARK_BENCH_OUT=DIR` the cases of `scheduling` are also written into that results folder, where
+//! `pathmark report DIR` finds them.
 
 mod stored;
 mod table;
@@ -16,10 +17,11 @@ use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// The program that a folder of results has, and its group whose table is one of speedups.
+/// The program whose cases go into a results folder, and its group with a table of speedups.
 const OF_SPEEDUPS: &str = "scheduling";
 
-/// A bench program of that name. `units` are groups, or what the names of groups begin with, and what their elements are.
+/// Runs the bench program `name`. `units` are pairs: a group, or the beginning of the names of groups, and the unit of
+/// their elements.
 pub(crate) fn run(name: &str, units: &[(&str, &str)], cases: impl FnOnce(&mut Criterion)) {
     let (start, load) = (SystemTime::now(), ForeignLoad::begin());
     let mut criterion = Criterion::default().without_plots().nresamples(2000).configure_from_args();
@@ -65,7 +67,8 @@ fn write(name: &str, rows: &[BenchRow]) {
     }
 }
 
-/// While it lives, what is printed goes into a file. On a terminal criterion's line of progress stays, which it writes to standard error.
+/// Redirects the program's output into a file while it lives. On a terminal standard error stays, because criterion
+/// writes its progress line there.
 struct Aside {
     file: PathBuf,
     stdout: OwnedFd,
@@ -73,7 +76,7 @@ struct Aside {
 }
 
 impl Aside {
-    /// `None` if there is nowhere to write; then criterion prints.
+    /// Starts the redirection; `None` if no file can be written, and then criterion prints.
     fn begin(name: &str) -> Option<Self> {
         let folder = stored::folder();
         create_dir_all(&folder).ok()?;

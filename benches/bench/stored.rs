@@ -1,17 +1,17 @@
-//! The medians that criterion has just stored. Criterion calls its files a private detail, so this is the only place that reads them; what is
-//! missing or unreadable is left out.
+//! The medians that criterion has just stored. Criterion calls its files a private detail, so they are read only here;
+//! missing or unreadable files are left out.
 
 use pathmark::report::BenchRow;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Where criterion keeps its files.
+/// Returns the folder of criterion's files.
 pub(super) fn folder() -> PathBuf {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     std::env::var_os("CRITERION_HOME").map_or_else(|| target.join("criterion"), PathBuf::from)
 }
 
-/// The cases that were stored since `start`, by group, case and parameter.
+/// Returns the cases stored since `start`, sorted by group, case and parameter.
 pub(super) fn since(start: SystemTime) -> Vec<BenchRow> {
     let mut rows = Vec::new();
     collect(&folder(), start, &mut rows);
@@ -42,7 +42,7 @@ fn case(folder: &Path) -> Option<BenchRow> {
     let median = estimates.get("median")?;
     let interval = median.get("confidence_interval")?;
     let seconds = |value: Option<&serde_json::Value>| Some(value?.as_f64()? * 1e-9);
-    // A case without a parameter has null there.
+    // The value is null for a case without a parameter.
     let text = |name: &str| Some(benchmark.get(name)?.as_str().unwrap_or_default().to_string());
     Some(BenchRow {
         group: text("group_id")?,

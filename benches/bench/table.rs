@@ -1,12 +1,12 @@
-//! The tables that a bench program ends with.
+//! The tables at the end of a bench program.
 
 use pathmark::report::BenchRow;
 use std::collections::BTreeSet;
 
-/// Columns of a table of cases by parameters: one more, and lines would be broken.
+/// Columns of a table of cases by parameters; with one more, lines would wrap.
 const COLUMNS: usize = 7;
 
-/// Prints the cases of a group: what an element takes, with half of its interval.
+/// Prints the cases of a group: nanoseconds for an element, with half of the confidence interval.
 pub(super) fn print_cases(group: &str, unit: &str, rows: &[&BenchRow]) {
     println!("\n{group}: nanoseconds for a {unit}, median and half of its 95 % interval");
     let mut parameters: Vec<&str> = Vec::new();

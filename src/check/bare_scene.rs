@@ -1,9 +1,9 @@
-//! Scenes of bare primitives, searched in every way that there is.
+//! Scenes of bare primitives, searched with every accelerator.
 
 use crate::math::Ray;
 use crate::scene::{ACCELERATORS, Hit, Primitives, Scene, Sphere, Standpoint, load};
 
-/// A scene of these primitives, all of one object; its camera is of no interest.
+/// A scene of these primitives, all of one object. Its camera is irrelevant.
 pub fn scene_of(primitives: Primitives) -> Scene {
     let mut scene = load("furnace").expect("a shipped scene");
     scene.owners = vec![0; primitives.counts().iter().sum()];
@@ -16,12 +16,12 @@ pub fn scene_of_spheres(spheres: Vec<Sphere>) -> Scene {
     scene_of(Primitives { spheres, ..Primitives::default() })
 }
 
-/// The scene as each accelerator has it: without one every primitive is tested.
+/// The scene with each accelerator in turn. Without one, every primitive is tested.
 pub fn searches(scene: &Scene) -> impl Iterator<Item = (&'static str, Scene)> + '_ {
     ACCELERATORS.iter().map(|entry| (entry.name, scene.accelerated(entry.name).unwrap_or_else(|| scene.clone())))
 }
 
-/// What the ray meets first.
+/// The first hit of the ray.
 pub fn intersect(scene: &Scene, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
     scene.first_of_any(ray, from)
 }

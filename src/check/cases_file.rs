@@ -1,4 +1,4 @@
-//! `check/cases.csv`: what came of each hard case, as evidence for claims.
+//! `check/cases.csv`: the outcome of each hard case, as evidence for claims.
 
 use super::{Case, Outcome};
 use crate::atomic_file;
@@ -7,37 +7,37 @@ use crate::files::Files;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// The folder of results that has the list.
+/// The folder of results that contains the list.
 pub const FOLDER: &str = "check";
-/// The list's file in it.
+/// The list's file in this folder.
 pub const FILE: &str = "cases.csv";
 
 /// One case.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseRow {
-    /// Its name in the catalogue.
+    /// Name of the case in the catalogue.
     pub id: String,
-    /// What it tries.
+    /// Short description of the test.
     pub tries: String,
-    /// Whether nothing failed.
+    /// Whether no trial failed.
     pub pass: bool,
-    /// How many things were tried.
+    /// Number of trials.
     pub trials: usize,
-    /// How many of them failed.
+    /// Number of failed trials.
     pub failed: usize,
-    /// The last trial: which variant, what was expected, what was found.
+    /// Variant of the trial that is shown: the first that failed, or else the last.
     pub variant: String,
-    /// Expected there.
+    /// Value expected in it.
     pub expected: String,
-    /// Found there.
+    /// Value found in it.
     pub found: String,
-    /// Why the case, or a part of it, was not tried.
+    /// Why the case, or a part of it, was skipped.
     pub skipped: String,
 }
 
 impl CaseRow {
-    /// The row of a case; of its trials it shows the first that failed, or else the last.
+    /// The row of a case. It shows the first trial that failed, or else the last.
     pub fn new(case: &Case, outcome: &Outcome) -> Self {
         let shown = outcome.failures().next().or(outcome.trials.last());
         let of = |part: fn(&super::Trial) -> String| shown.map(part).unwrap_or_default();
@@ -55,12 +55,13 @@ impl CaseRow {
     }
 }
 
-/// Whether a folder of results has the list already.
+/// Whether a folder of results already contains the list.
 pub fn is_in(out: &Path) -> bool {
     out.join(FOLDER).join(FILE).is_file()
 }
 
-/// Enters the list into the files of a command that will write it. Refuses a folder that has one: results are never overwritten.
+/// Enters the list into the files that a command will write. Refuses a folder that has one: results are never
+/// overwritten.
 pub fn claim(out: &Path, files: &mut Files) -> Result<()> {
     files.renews("out", &out.join(FOLDER).join(FILE), |_| false)
 }

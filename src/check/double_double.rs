@@ -2,7 +2,8 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A number as an unevaluated sum of two: 106 bits (Dekker, 1971; products split after Veltkamp, no fused operation).
+/// A number as an unevaluated sum of two f64: 106 bits (Dekker, 1971; products split after Veltkamp, without fused
+/// operations).
 #[derive(Clone, Copy)]
 pub(super) struct Dd(pub(super) f64, f64);
 

@@ -1,8 +1,8 @@
-//! Renders held to exact values: what every way to render a scene must find.
+//! Renders compared with exact values, for every way to render a scene.
 //!
-//! A mean must lie within its interval, and the interval must be narrow: a wide one would see nothing. How many samples that takes is what
-//! a first run with other numbers tells. The scores of the single pixels, all of which see the same, must scatter as chance says and no
-//! less: means of the whole image hide what is too large here and too small there.
+//! A mean must lie within its interval, and the interval must be narrow: a wide one would detect nothing. A first run
+//! with other random numbers estimates how many samples this takes. The scores of the single pixels, which all see the
+//! same value, must scatter as chance predicts: means of the whole image hide errors that cancel between pixels.
 
 use super::{Effort, Trials};
 use crate::analysis::z_test::{critical_value, sidak};
@@ -15,50 +15,50 @@ use crate::strategy::STRATEGIES;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::sync::Arc;
 
-/// The chance of a false alarm in all comparisons of a section together, two-sided.
+/// Probability of a false alarm in all comparisons of a section together, two-sided.
 const LEVEL: f64 = 1e-3;
-/// More comparisons than any section has; fewer only make the level smaller.
+/// An upper bound on the comparisons of a section. Too large a bound only makes the level smaller.
 const COMPARISONS: usize = 1000;
-/// A spot has a width, and a value is the sum of many.
+/// Relative tolerance for the width of a spot and for the rounding error of a sum.
 const ROUNDING: f64 = 1e-7;
-/// Pixels in a row and in a column.
+/// Pixels per row and per column.
 const SIDE: u32 = 32;
-/// Samples of an image at least, and of the first run.
+/// Minimum samples of an image, and of the first run.
 const FEWEST: f64 = 8192.0;
-/// What is expected so often does not happen with a chance of 1e-6.
+/// An event with this expected count fails to occur with probability 1e-6.
 const UNSEEN: f64 = 14.0;
-/// By how much a first run may underestimate the number of samples.
+/// Factor by which a first run may underestimate the number of samples.
 const MARGIN: f64 = 1.3;
-/// By how much the pixels' scores may scatter more or less because samples are not normal.
+/// Relative tolerance for the scatter of the pixels' scores, because samples are not normal.
 const TAILS: f64 = 0.07;
 
-/// The estimators that follow all light: those without a depth of their own, so not Whitted's.
+/// The estimators that follow all light: those without a depth limit of their own, so not Whitted's.
 pub fn full_estimators() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().filter(|entry| entry.max_depth.is_none()).map(|entry| entry.name)
 }
 
-/// Those that find light by arriving at it: in an enclosure that glows all over, what aims at a point of it is far noisier than what goes
-/// wherever the surface sends it.
+/// The estimators that find light by hitting it. In an enclosure that glows all over, aiming at one of its points is
+/// far noisier than following the surface's sampled direction.
 pub fn arriving_estimators() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().filter(|entry| !entry.aims && entry.max_depth.is_none()).map(|entry| entry.name)
 }
 
-/// Those that aim at light.
+/// The estimators that aim at light.
 pub fn aiming_estimators() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().filter(|entry| entry.aims).map(|entry| entry.name)
 }
 
-/// Those of the full ones whose sample is a single path: where nothing splits, the others follow the same path.
+/// The full estimators whose sample is a single path. Where nothing splits, the others follow the same path.
 pub fn unsplit_estimators() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().filter(|entry| entry.is_one_path && entry.max_depth.is_none()).map(|entry| entry.name)
 }
 
-/// All of them.
+/// All estimators.
 pub fn every_estimator() -> impl Iterator<Item = &'static str> {
     ESTIMATORS.iter().map(|entry| entry.name)
 }
 
-/// The |z| that no comparison of a section may reach.
+/// The |z| that every comparison of a section must stay below.
 pub(super) fn critical() -> f64 {
     sidak(LEVEL, COMPARISONS).and_then(critical_value).expect("a level in (0, 1)")
 }
@@ -75,31 +75,31 @@ pub fn mean(film: &Film, channel: usize) -> (f64, f64) {
     (mean, ((square / n - mean * mean).max(0.0) / (n - 1.0)).sqrt())
 }
 
-/// Renders, with all threads unless the settings say otherwise.
+/// Renders with all threads unless the settings say otherwise.
 pub(super) fn run(scene: &Scene, settings: Settings) -> Outcome {
     let setup = Setup::for_scene(Arc::new(scene.clone()), settings).expect("settings that fit the scene");
     setup.run(None).expect("a render")
 }
 
-/// Renders images of one scene in every way.
+/// Renders images of a scene in every way.
 pub(super) struct Bench<'a> {
     pub(super) trials: &'a mut Trials,
-    /// Half-width of an interval as a share of the exact value, quickly and thoroughly.
+    /// Largest half-width of an interval as a share of the exact value: quick, thorough.
     pub(super) widest: [f64; 2],
-    /// After so many bounces paths are cut.
+    /// Number of bounces after which paths are cut.
     pub(super) max_depth: Option<u16>,
-    /// When chance ends paths, if not as the estimator has it.
+    /// Roulette rule, if not the estimator's own.
     pub(super) roulette: Option<String>,
-    /// Whether all pixels see the same, so that their scores can be held to chance.
+    /// Whether all pixels see the same value, so that their scores can be compared with chance.
     pub(super) by_pixel: bool,
     /// Columns and rows.
     pub(super) size: [u32; 2],
-    /// Samples of an image at least.
+    /// Minimum samples of an image.
     pub(super) fewest: f64,
-    /// Whether some samples are other than most so rarely that a run may not meet one, so that its error bar knows nothing of them; none of
-    /// them is more than the exact value off.
+    /// Whether some samples differ from the others, but so rarely that a run may contain none. The error bar then
+    /// ignores them. None of them is off by more than the exact value.
     pub(super) rare: bool,
-    /// Who renders the next image, and in which pieces: the tables in turn.
+    /// Index of the strategy and decomposition of the next image: the tables are used in turn.
     turn: usize,
 }
 
@@ -125,7 +125,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Renders about so many samples in all, by the next strategy.
+    /// Renders about `samples` samples in all, with the next strategy and decomposition.
     fn render(&mut self, scene: &Scene, spec: Spec, samples: f64) -> Outcome {
         let strategy = &STRATEGIES[self.turn % STRATEGIES.len()];
         let decomposition = &DECOMPOSITIONS[self.turn % DECOMPOSITIONS.len()];
@@ -143,7 +143,7 @@ impl<'a> Bench<'a> {
         run(scene, settings)
     }
 
-    /// Holds means of channels to exact values, by every kernel and these estimators.
+    /// Compares means of channels with exact values, for every kernel and these estimators.
     pub(super) fn each(
         &mut self,
         what: &str,
@@ -159,8 +159,8 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Likewise by every sampler that gives the same numbers twice. Their samples know of each other, so the error bar is an upper bound, and
-    /// single pixels are not looked at.
+    /// Does the same for every deterministic sampler. Their samples are not independent, so the error bar is an upper
+    /// bound, and single pixels are not checked.
     pub(super) fn each_sampler(&mut self, what: &str, scene: &Scene, exact: &[f64]) {
         for sampler in crate::sampling::SAMPLERS.iter().filter(|entry| entry.deterministic) {
             let spec = Spec { sampler: sampler.name.to_string(), ..self.spec("bsdf", KERNELS[0].name) };
@@ -173,7 +173,7 @@ impl<'a> Bench<'a> {
         Spec { width, height, estimator: estimator.to_string(), kernel: kernel.to_string(), ..Spec::default() }
     }
 
-    /// About so many samples by every kernel and these estimators, each with what to call it.
+    /// Renders about `samples` samples with every kernel and these estimators. Each film comes with its label.
     pub(super) fn films(
         &mut self,
         scene: &Scene,
@@ -189,7 +189,7 @@ impl<'a> Bench<'a> {
         .collect()
     }
 
-    /// How many samples make the interval of every channel narrow enough.
+    /// Number of samples that makes the interval of every channel narrow enough.
     fn needed(&mut self, scene: &Scene, spec: &Spec, exact: &[f64]) -> f64 {
         let mut samples = self.fewest;
         for seed in [91, 92] {
@@ -225,7 +225,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Holds the mean of a channel to an exact value, and the scores of its pixels to chance.
+    /// Compares the mean of a channel with its exact value, and the scores of its pixels with chance.
     pub(super) fn hold(&mut self, what: &str, film: &Film, channel: usize, exact: f64, by_pixel: bool) {
         let (found, error) = mean(film, channel);
         let (width, widest) = (critical() * error, self.widest());
@@ -244,7 +244,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The squared scores of the pixels add up to as much as chance makes them.
+    /// Checks that the sum of the pixels' squared scores agrees with chance.
     fn pixels(&mut self, what: &str, film: &Film, channel: usize, exact: f64) {
         let n: f64 = film.pixels().iter().map(|pixel| f64::from(pixel.count)).sum();
         let error = mean(film, channel).1;

@@ -1,5 +1,5 @@
-//! Exact arithmetic on f64, for what confirms the oracles: every finite f64 is a whole multiple of 2^-1074. A product of n factors is in
-//! units of 2^(-1074 n); quotients are compared by multiplying across.
+//! Exact arithmetic on f64, to confirm the oracles: every finite f64 is an integer multiple of 2^-1074. A product of n
+//! factors has the unit 2^(-1074 n). Quotients are compared by cross-multiplication.
 
 use crate::math::Vec3;
 use num_bigint::BigInt;
@@ -17,7 +17,7 @@ pub(super) fn fixed(x: f64) -> BigInt {
     if x.is_sign_negative() { -magnitude } else { magnitude }
 }
 
-/// Three of them.
+/// The three components in units.
 pub(super) fn fixed_vector(v: Vec3) -> [BigInt; 3] {
     [fixed(v.x), fixed(v.y), fixed(v.z)]
 }

@@ -1,4 +1,4 @@
-//! Images for cases, and what they say about means.
+//! Images for cases, and their means.
 
 use super::Trials;
 use crate::film::Film;
@@ -6,7 +6,7 @@ use crate::kernel::Spec;
 use crate::measure::{Outcome, Settings};
 use crate::scene::Scene;
 
-/// Renders a scene with about as little around it as there is.
+/// Renders a scene with default settings but for these.
 pub(super) fn render(
     scene: &Scene,
     kernel: &str,
@@ -19,26 +19,26 @@ pub(super) fn render(
     run(scene, spec, spp)
 }
 
-/// Renders a scene by a spec.
+/// Renders a scene with this spec.
 pub(super) fn run(scene: &Scene, spec: Spec, spp: u32) -> Outcome {
     let (decomposition, strategy) = ("rows".into(), "shared-counter".into());
     let settings = Settings { spp, spec, decomposition, strategy, threads: 2, ..Settings::default() };
     super::exact::run(scene, settings)
 }
 
-/// Mean and variance over all samples of a film, within the pixels.
+/// Mean over all samples of a film, and variance within the pixels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moments {
     /// The mean.
     pub(super) mean: f64,
     /// The variance of a sample within its pixel.
     pub(super) variance: f64,
-    /// How many samples.
+    /// Number of samples.
     pub(super) n: f64,
 }
 
 impl Moments {
-    /// Those of a channel.
+    /// The moments of a channel.
     pub(super) fn of(film: &Film, channel: usize) -> Self {
         let (mut n, mut sum, mut spread) = (0.0, 0.0, 0.0);
         for pixel in film.pixels() {
@@ -55,7 +55,8 @@ impl Moments {
     }
 }
 
-/// Whether two images of the same scene, by whatever ways of finding light, have one mean: the score of their difference.
+/// Score of the difference of two means. It tells whether two images of a scene have the same mean, however each finds
+/// light.
 pub(super) fn difference(a: &Moments, b: &Moments) -> f64 {
     let error = libm::hypot(a.error(), b.error());
     if error > 0.0 {
@@ -67,11 +68,12 @@ pub(super) fn difference(a: &Moments, b: &Moments) -> f64 {
     }
 }
 
-/// Insists on an exact value, within an error that must be below `widest` of it to mean anything.
+/// Checks against an exact value. The relative half-width, `limit` standard errors, must be at most `widest`;
+/// otherwise the check has no power.
 pub(super) fn exact(trials: &mut Trials, variant: &str, value: f64, found: &Moments, limit: f64, widest: f64) {
     let power = limit * found.error() / value;
     trials.at_most(format!("{variant}: limit times error, relative"), widest, power);
-    // The spot that is looked at is small, not a point.
+    // The spot in view is small, but not a point.
     let off = (found.mean - value).abs() - 1e-7 * value;
     let score = if off > 0.0 { off / found.error() } else { 0.0 };
     trials.deviates_below(format!("{variant}: {:.6} for {value:.6}", found.mean), limit, score);

@@ -3,8 +3,8 @@
 use crate::math::{Vec3, dot};
 use crate::scene::Triangle;
 
-/// A closed mesh around the origin, `rows` by `columns` on a sphere whose radius at each vertex is `radius` (drawn once for each). The
-/// corners of neighbours are the same bits.
+/// A closed mesh around the origin, `rows` by `columns`. Each vertex lies at distance `radius()` from the origin,
+/// called once per vertex. Triangles that share a corner have bitwise equal coordinates for it.
 pub(super) fn star(rows: usize, columns: usize, mut radius: impl FnMut() -> f64) -> Vec<Triangle> {
     let south = Vec3::new(0.0, 0.0, -radius());
     let north = Vec3::new(0.0, 0.0, radius());
@@ -32,7 +32,7 @@ pub(super) fn star(rows: usize, columns: usize, mut radius: impl FnMut() -> f64)
     triangles
 }
 
-/// The surface of the cube from 0 to `n`, each face of n x n squares with corners on the integers.
+/// The surface of the cube from 0 to `n`. Each face has n x n squares with integer corners.
 pub(super) fn grid_cube(n: i32) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for axis in 0..3 {
@@ -53,7 +53,7 @@ pub(super) fn grid_cube(n: i32) -> Vec<Triangle> {
     triangles
 }
 
-/// An icosahedron on the unit sphere, each triangle cut into four so many times.
+/// An icosahedron on the unit sphere, each triangle divided into four `cuts` times.
 pub(super) fn icosphere(cuts: u32) -> Vec<Triangle> {
     let golden = 0.5 + 1.25_f64.sqrt();
     // Corners by axis and signs: 0, +-1 and +-golden in cyclic order.

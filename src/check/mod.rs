@@ -1,8 +1,8 @@
-//! Hard cases: inputs on which careless numerics go wrong, as a table that both `pathmark check` and the tests run.
+//! Hard cases: inputs on which careless numerics fail, as a table that both `pathmark check` and the tests run.
 //!
-//! Each case has the identifier of the catalogue from which its inputs come (a letter for the section and a number) and says what must
-//! come out. What is expected is a closed form, a value computed with more digits, another method or a property; never what this
-//! program gave before.
+//! Each case has the identifier of the catalogue from which its inputs come (a letter for the section and a number)
+//! and states the expected result. The expected value is a closed form, a value computed with more digits, the result
+//! of another method, or a property. It is never an earlier result of this program.
 //!
 //! ```
 //! use pathmark::check::{Effort, find};
@@ -14,7 +14,7 @@
 //!
 //! # Adding one
 //!
-//! A line in the `CASES` of the file that fits, with the function that tries it:
+//! Add a line to the `CASES` of the file that fits, with the function that runs the test:
 //!
 //! ```
 //! use pathmark::check::{Case, Trials};
@@ -58,7 +58,7 @@ pub use trials::{Effort, Outcome, Trial, Trials};
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The sections of the catalogue that the table has, in its order.
+/// The sections of the catalogue that the table contains, in catalogue order.
 pub static SECTIONS: &[Section] = &[
     sphere::SECTION,
     triangle::SECTION,
@@ -69,26 +69,26 @@ pub static SECTIONS: &[Section] = &[
     analytic::SECTION,
 ];
 
-/// What is tried about one subject.
+/// The cases about one subject.
 pub struct Section {
-    /// What it is about, for headings.
+    /// The subject, for headings.
     pub title: &'static str,
-    /// Its cases, file by file.
+    /// The cases, by file.
     pub cases: &'static [&'static [Case]],
 }
 
 /// A hard case.
 pub struct Case {
-    /// Its name in the catalogue: a letter for the section and a number.
+    /// Name in the catalogue: a letter for the section and a number.
     pub id: &'static str,
-    /// What is tried, in a few words.
+    /// Short description of the test.
     pub tries: &'static str,
-    /// Tries it, for all that it applies to: formulas, precisions, kernels, estimators, strategies.
+    /// Runs the test for everything that it applies to: formulas, precisions, kernels, estimators, strategies.
     pub run: fn(&mut Trials),
 }
 
 impl Case {
-    /// Tries it. A panic is a trial that failed, with the panic's words.
+    /// Runs the test. A panic becomes a failed trial with the panic's message.
     pub fn run(&self, effort: Effort) -> Outcome {
         let mut trials = Trials::new(effort);
         if let Err(payload) = catch_unwind(AssertUnwindSafe(|| (self.run)(&mut trials))) {
@@ -105,7 +105,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     SECTIONS.iter().flat_map(|section| section.cases.iter().copied().flatten())
 }
 
-/// The case of that name.
+/// The case with this name.
 pub fn find(id: &str) -> Option<&'static Case> {
     cases().find(|case| case.id == id)
 }

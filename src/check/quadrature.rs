@@ -1,13 +1,14 @@
-//! Integrals over a rectangle, to a tolerance.
+//! Adaptive integrals over a rectangle.
 
-/// Nodes and weights of Gauss and Legendre's rule of three points on [0, 1].
+/// Nodes and weights of the three-point Gauss-Legendre rule on [0, 1].
 const NODES: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-/// Cut at least and at most so often.
+/// Minimum and maximum depth of subdivision.
 const DEPTH: (u32, u32) = (1, 12);
 
-/// The integral of `f` over a rectangle. A part is quartered until that changes it by no more than the tolerance.
+/// The integral of `f` over a rectangle. A part is quartered until quartering changes its integral by at most the
+/// tolerance.
 pub(super) fn integral(x: [f64; 2], y: [f64; 2], tolerance: f64, f: &impl Fn(f64, f64) -> f64) -> f64 {
     refined(x, y, rule(x, y, f), tolerance, 0, f)
 }

@@ -4,20 +4,20 @@ use crate::math::{Vec3, dot};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 
-/// A generator with what cases of geometry draw.
+/// A generator of the random values that geometry cases use.
 pub(super) struct Random(Pcg64Mcg);
 
 impl Random {
-    /// The generator with that seed; each case has its own.
+    /// The generator with this seed; each case uses a different seed.
     pub(super) fn new(seed: u128) -> Self {
         Self(Pcg64Mcg::new(seed))
     }
 
-    /// One of so many.
+    /// A random index below `count`.
     pub(super) fn below(&mut self, count: usize) -> usize {
         (self.0.next_u64() % count as u64) as usize
     }
-    /// From 0 to below 1.
+    /// A number in [0, 1).
     pub(super) fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -25,7 +25,7 @@ impl Random {
     pub(super) fn scale(&mut self, low: f64, high: f64) -> f64 {
         libm::exp10(low + (high - low) * self.unit())
     }
-    /// Of length 1, evenly over the sphere.
+    /// A unit vector, uniform over the sphere.
     pub(super) fn direction(&mut self) -> Vec3 {
         loop {
             let v = Vec3::new(2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0, 2.0 * self.unit() - 1.0);

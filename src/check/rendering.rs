@@ -6,7 +6,7 @@ use crate::measure::{Outcome, Settings, Setup, available_threads};
 use crate::scene::Scene;
 use std::sync::Arc;
 
-/// Renders `spp` samples of each pixel; `None`, with the reason written down, if the spec is not for this scene.
+/// Renders `spp` samples of each pixel. Returns `None`, and records the reason, if the spec does not fit this scene.
 pub(super) fn render(trials: &mut Trials, scene: &Arc<Scene>, spec: Spec, spp: u32) -> Option<Outcome> {
     let (decomposition, strategy) = ("rows".to_string(), "shared-counter".to_string());
     let told = format!("{}, {}, {}", scene.name, spec.estimator, spec.kernel);
@@ -15,7 +15,7 @@ pub(super) fn render(trials: &mut Trials, scene: &Arc<Scene>, spec: Spec, spp: u
     outcome.map_err(|error| trials.skip(format!("{told}: {error}"))).ok()
 }
 
-/// The spec for every kernel.
+/// The spec with every kernel.
 pub(super) fn by_kernel(spec: &Spec) -> impl Iterator<Item = Spec> + '_ {
     KERNELS.iter().map(|kernel| Spec { kernel: kernel.name.to_string(), ..spec.clone() })
 }

@@ -1,4 +1,4 @@
-//! Many cases at once.
+//! Runs many cases in parallel.
 
 use super::{Case, Effort, Outcome};
 use crate::error::{Error, Result};
@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::thread;
 
-/// Tries the cases on so many threads. `told` hears how many are done. The outcomes are in the cases' order.
+/// Runs the cases on so many threads. Calls `told` with the number of finished cases. The outcomes are in the order of
+/// the cases.
 pub fn run(
     cases: &[&'static Case],
     effort: Effort,
@@ -29,7 +30,7 @@ pub fn run(
     Ok(outcomes.into_iter().map(|(_, outcome)| outcome).collect())
 }
 
-/// What `body` gives on each of `count` threads. It is begun on none of them unless the system gives all.
+/// Returns the result of `body` on each of `count` threads. Runs it on none of them unless the system starts all.
 pub(super) fn on_threads<T: Send>(count: usize, body: impl Fn() -> T + Sync) -> Result<Vec<T>> {
     let all_are_there: OnceLock<bool> = OnceLock::new();
     let work = || all_are_there.wait().then(&body);

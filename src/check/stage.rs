@@ -1,4 +1,4 @@
-//! Scenes for cases, put together from a few words and read by the program's own reader.
+//! Scenes for cases, assembled from short parts and read by the program's scene reader.
 //!
 //! ```
 //! use pathmark::check::stage::{camera, diffuse, object, scene, sphere};
@@ -11,7 +11,7 @@
 use crate::error::Result;
 use crate::scene::Scene;
 
-/// A camera that looks at a spot that is so small that it is a point: 2e-8 wide at distance 1.
+/// A camera whose spot is so small that it counts as a point: 2e-8 wide at distance 1.
 pub fn camera(position: [f64; 3], look_at: [f64; 3]) -> String {
     view(position, look_at, [0.36, 0.48, 0.8], 1e-6)
 }
@@ -23,35 +23,35 @@ pub fn view(position: [f64; 3], look_at: [f64; 3], up: [f64; 3], degrees: f64) -
     )
 }
 
-/// A camera with a field of view in degrees that stands above nothing in particular.
+/// A camera with a field of view in degrees and an arbitrary up direction.
 pub fn camera_above(position: [f64; 3], look_at: [f64; 3], degrees: f64) -> String {
     view(position, look_at, [0.36, 0.48, 0.8], degrees)
 }
 
-/// A camera at the origin that looks along -z; for scenes of which only the geometry matters.
+/// A camera at the origin that looks along -z, for scenes of which only the geometry matters.
 pub const ANY_CAMERA: &str =
     "[camera.smallpt]\nposition = [0.0, 0.0, 0.0]\ndirection = [0.0, 0.0, -1.0]\nfield = 0.5\nadvance = 0.0\n";
 
-/// Materials in which only the kind matters.
+/// A diffuse material, for cases in which only the kind of material matters.
 pub const DIFFUSE: &str = "{ diffuse = { albedo = [0.5, 0.5, 0.5] } }";
-/// Loses nothing.
+/// A mirror that absorbs nothing.
 pub const MIRROR: &str = "{ mirror = { albedo = [1.0, 1.0, 1.0] } }";
-/// Loses nothing.
+/// Glass that absorbs nothing.
 pub const GLASS: &str = "{ dielectric = { eta = 1.5, tint = [1.0, 1.0, 1.0] } }";
 
-/// An object, named by what it is; shape and material are what stands behind `=` in a scene file.
+/// An object whose name is its shape and material. Both are given as the text behind `=` in a scene file.
 pub fn object(shape: &str, material: &str, emission: [f64; 3]) -> String {
     let name = format!("{shape} {material}").replace('\'', "\"");
     format!("[[objects]]\nname = '{name}'\nshape = {shape}\nmaterial = {material}\nemission = {emission:?}\n")
 }
 
-/// An object with a name of its own, which gives off the same in all channels.
+/// An object with a given name and the same emission in all channels.
 pub fn named(name: &str, shape: &str, material: &str, emission: f64) -> String {
     let emission = [emission; 3];
     format!("[[objects]]\nname = '{name}'\nshape = {shape}\nmaterial = {material}\nemission = {emission:?}\n")
 }
 
-/// A dark sphere with a name of its own.
+/// A sphere with a given name and no emission.
 pub fn ball(name: &str, center: [f64; 3], radius: f64, material: &str) -> String {
     named(name, &sphere(center, radius), material, 0.0)
 }
@@ -61,17 +61,17 @@ pub fn sphere(center: [f64; 3], radius: f64) -> String {
     format!("{{ sphere = {{ center = {center:?}, radius = {radius:?} }} }}")
 }
 
-/// A plane without an end.
+/// An infinite plane.
 pub fn plane(point: [f64; 3], normal: [f64; 3]) -> String {
     format!("{{ plane = {{ point = {point:?}, normal = {normal:?} }} }}")
 }
 
-/// Four corners around the edge.
+/// A quadrilateral, given by its four corners in order around the edge.
 pub fn quad(corners: [[f64; 3]; 4]) -> String {
     format!("{{ quad = {{ corners = {corners:?} }} }}")
 }
 
-/// A matte material, the same in all channels.
+/// A diffuse material, the same in all channels.
 pub fn diffuse(albedo: f64) -> String {
     format!("{{ diffuse = {{ albedo = {:?} }} }}", [albedo; 3])
 }
@@ -92,12 +92,12 @@ pub fn fog(absorption: f64, scattering: f64, emission: f64) -> String {
     format!("[fog]\nabsorption = {absorption:?}\nscattering = {scattering:?}\nemission = {emission:?}\n")
 }
 
-/// Reads a scene from its parts, or says what is wrong with it; what stands before the first table comes first.
+/// Reads a scene from its parts, or returns the error. Text that belongs before the first table must come first.
 pub fn try_scene(parts: &[String]) -> Result<Scene> {
     Scene::from_toml(&format!("about = 'a case'\n{}", parts.concat()))
 }
 
-/// Reads a scene from its parts.
+/// Reads a scene from its parts. Panics if it is invalid.
 pub fn scene(parts: &[String]) -> Scene {
     try_scene(parts).unwrap_or_else(|error| panic!("{error} in\n{}", parts.concat()))
 }

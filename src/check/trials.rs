@@ -1,52 +1,52 @@
-//! What a case tried, expected and found.
+//! Trials of a case: variant, expected result and found result.
 
 use serde::Serialize;
 use std::fmt::{Debug, Display};
 
-/// How many random inputs a case may take.
+/// Number of random inputs that a case may use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effort {
-    /// As many as all cases together can try in a minute or two.
+    /// As many as all cases together can process in a minute or two.
     Quick,
-    /// As many as the catalogue asks for.
+    /// As many as the catalogue requires.
     Thorough,
 }
 
-/// One thing that was tried.
+/// One comparison of a case.
 #[derive(Debug, Clone, Serialize)]
 pub struct Trial {
-    /// To what the case was applied: a formula, a precision, an estimator, a strategy.
+    /// Subject of the comparison: a formula, a precision, an estimator, a strategy.
     pub variant: String,
-    /// What must come out.
+    /// The expected result.
     pub expected: String,
-    /// What came out.
+    /// The actual result.
     pub found: String,
-    /// Whether that is right.
+    /// Whether the actual result is right.
     pub passed: bool,
 }
 
-/// What came of a case.
+/// The outcome of a case.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
-    /// All that was tried.
+    /// All trials.
     pub trials: Vec<Trial>,
-    /// Why the case, or a part of it, was not tried here.
+    /// Why the case, or a part of it, was skipped.
     pub skipped: Vec<String>,
 }
 
 impl Outcome {
-    /// Whether all that was tried is right. A case of which nothing was tried has passed only if it says why.
+    /// Whether all trials passed. A case without trials passes only if it states why.
     pub fn passed(&self) -> bool {
         self.trials.iter().all(|trial| trial.passed) && !(self.trials.is_empty() && self.skipped.is_empty())
     }
 
-    /// What went wrong.
+    /// The trials that failed.
     pub fn failures(&self) -> impl Iterator<Item = &Trial> {
         self.trials.iter().filter(|trial| !trial.passed)
     }
 }
 
-/// What a case writes down as it goes.
+/// Recorder for the trials of a running case.
 pub struct Trials {
     effort: Effort,
     outcome: Outcome,
@@ -61,12 +61,12 @@ impl Trials {
         self.outcome
     }
 
-    /// How much may be tried.
+    /// The effort that is allowed.
     pub fn effort(&self) -> Effort {
         self.effort
     }
 
-    /// How many times to try: the first number quickly, the second thoroughly.
+    /// Number of repetitions: the first number for a quick run, the second for a thorough one.
     pub fn times(&self, quick: u64, thorough: u64) -> u64 {
         match self.effort {
             Effort::Quick => quick,
@@ -74,7 +74,7 @@ impl Trials {
         }
     }
 
-    /// Writes down whether something holds.
+    /// Records a trial, and returns whether it passed.
     pub fn holds(
         &mut self,
         variant: impl Into<String>,
@@ -87,40 +87,41 @@ impl Trials {
         passed
     }
 
-    /// A number that must be `expected` within the absolute `tolerance`. Infinities are close to themselves only, NaN to nothing.
+    /// Requires a number to equal `expected` within the absolute `tolerance`. Infinities are close to themselves only,
+    /// NaN to nothing.
     pub fn close(&mut self, variant: impl Into<String>, expected: f64, found: f64, tolerance: f64) -> bool {
         let passed = expected == found || (found - expected).abs() <= tolerance;
         self.holds(variant, format_args!("{expected:?} +- {tolerance:.1e}"), format_args!("{found:?}"), passed)
     }
 
-    /// A number, such as the largest error, that must not be above a limit. NaN is above every limit.
+    /// Requires a number, such as the largest error, to be at most `limit`. NaN fails.
     pub fn at_most(&mut self, variant: impl Into<String>, limit: f64, found: f64) -> bool {
         self.holds(variant, format_args!("at most {limit:?}"), format_args!("{found:?}"), found <= limit)
     }
 
-    /// A number, such as the error of what lacks a guard, that must not be below a limit: inputs that tell right from wrong make it large.
+    /// Requires a number to be at least `limit`. Used for errors of unguarded code, which hard inputs make large.
     pub fn at_least(&mut self, variant: impl Into<String>, limit: f64, found: f64) -> bool {
         self.holds(variant, format_args!("at least {limit:?}"), format_args!("{found:?}"), found >= limit)
     }
 
-    /// A value that must be exactly what is expected.
+    /// Requires a value to equal `expected` exactly.
     pub fn same<T: PartialEq + Debug>(&mut self, variant: impl Into<String>, expected: T, found: T) -> bool {
         let pair = [expected, found];
         let [expected, found] = pair.each_ref().map(|value| format!("{value:?}"));
         self.holds(variant, expected, found, pair[0] == pair[1])
     }
 
-    /// Something, named by `what`, that must not have happened in any of `of` tries.
+    /// Requires that an event, named by `what`, happened in none of `of` tries.
     pub fn never(&mut self, variant: impl Into<String>, what: &str, count: u64, of: u64) -> bool {
         self.holds(variant, format_args!("0 {what}"), format_args!("{count} of {of}"), count == 0 && of > 0)
     }
 
-    /// A standardised deviation that must stay below the critical value, on either side.
+    /// Requires the absolute value of a standardised deviation to be below the critical value.
     pub fn deviates_below(&mut self, variant: impl Into<String>, critical: f64, z: f64) -> bool {
         self.holds(variant, format_args!("|z| < {critical:.2}"), format_args!("z = {z:.2}"), z.abs() < critical)
     }
 
-    /// Says why something was not tried here.
+    /// Records why something was skipped.
     pub fn skip(&mut self, why: impl Into<String>) {
         self.outcome.skipped.push(why.into());
     }

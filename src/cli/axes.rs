@@ -1,4 +1,4 @@
-//! The options that choose what is rendered, in which pieces and by whom, from the table of axes.
+//! The options for the image, its pieces and the schedule, made from the table of axes.
 
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, read_text};
@@ -11,14 +11,14 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
 use std::path::{Path, PathBuf};
 
-/// The values of the options that choose *what* is rendered, or of those that choose pieces and workers.
+/// The values of the options for *what* is rendered, or of those for pieces and workers.
 pub(super) struct Options<const WHAT: bool> {
     values: Vec<(&'static Axis, String)>,
     /// Folder of hierarchies, which change no image.
     cache: Option<PathBuf>,
 }
 
-/// *What* is rendered.
+/// The options for *what* is rendered.
 pub(super) type What = Options<true>;
 
 /// The three axes: *what*, *pieces*, *who*.
@@ -50,13 +50,13 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Settings under which they are rendered, by nobody in particular.
+    /// Settings of these samples, with the default schedule.
     pub(super) fn settings(&self, lab: &Lab) -> Result<Settings> {
         self.what.settings(lab, &self.scene, self.spp, self.seed)
     }
 }
 
-/// The kernel for devices, and the option that says which.
+/// The kernel for devices, and the option that chooses one.
 const DEVICE: &str = "device";
 
 fn device_option() -> Arg {
@@ -72,7 +72,7 @@ fn cache_option() -> Arg {
     option.value_parser(value_parser!(PathBuf))
 }
 
-/// What clap refuses before the program looks at a value.
+/// The check that clap makes before the program reads a value.
 fn parser(axis: &Axis) -> ValueParser {
     match (axis.field)(&mut Settings::default()) {
         Field::Switch(_) => value_parser!(bool),
@@ -145,12 +145,12 @@ impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
     }
 }
 
-/// The refusal to look into the paths of a workload.
+/// The error of a verb that needs paths, for a workload.
 pub(super) fn no_paths(workload: &str) -> Error {
     InputError::new("scene", workload, "is a workload, and has no paths").allowed("a scene").into()
 }
 
-/// The estimator that a scene names; `scene` itself is a layer below estimators and cannot know whether there is one.
+/// The estimator that a scene names. The layer `scene` lies below estimators, so the name is checked only here.
 fn default_estimator(lab: &Lab, scene: &str) -> Result<String> {
     let name = lab.scene_estimator(scene)?;
     if lab.estimators().any(|entry| entry.name == name) {
@@ -162,7 +162,7 @@ fn default_estimator(lab: &Lab, scene: &str) -> Result<String> {
     Err(error.allowed(names.join(", ")).in_file(scene, at).into())
 }
 
-/// Refuses options that a workload, which has nothing to do with light, would not look at.
+/// Refuses a cache and options about light, which a workload would ignore.
 fn check_for_workload(settings: &Settings) -> Result<()> {
     let mut base = Settings::default();
     base.spec.estimator.clear();
@@ -182,7 +182,7 @@ fn check_for_workload(settings: &Settings) -> Result<()> {
 }
 
 impl What {
-    /// Settings under which samples are looked into, by nobody in particular.
+    /// Settings with these options, and with the default schedule.
     pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let spec = Spec { seed, estimator: String::new(), ..Spec::default() };
         let cache = self.cache.clone();
@@ -204,7 +204,7 @@ impl What {
 }
 
 impl Axes {
-    /// The settings for a scene, samples and a seed. A strategy whose name says its pieces takes no other.
+    /// The settings for a scene, samples and a seed. Refuses other pieces for a strategy whose name gives its pieces.
     pub(super) fn settings(&self, lab: &Lab, scene: &str, spp: u32, seed: u64) -> Result<Settings> {
         let mut settings = self.what.settings(lab, scene, spp, seed)?;
         self.schedule.apply(&mut settings)?;

@@ -1,4 +1,4 @@
-//! `pathmark bounces SCENE`: the light of an image by the bounces that it made, and how long its paths are.
+//! `pathmark bounces SCENE`: the light of an image by number of bounces, and the lengths of its paths.
 
 use super::axes::{Samples, no_paths};
 use super::output::{number, print, print_json};
@@ -29,10 +29,10 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// More rows than this are summed up in the last one; files have all of them.
+/// Rows beyond this number are printed as one sum; files have all of them.
 const SHOWN: usize = 16;
 
-/// What report A says roulette ends paths before.
+/// Report A says that Russian roulette ends paths before this number of bounces.
 const REPORTED: usize = 6;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
@@ -79,12 +79,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     print(&text(&scene.name, spec, arguments.samples.spp, &found, &rows))
 }
 
-/// One number of bounces.
+/// Light and paths with one number of bounces.
 struct Row {
     bounces: usize,
     /// Mean radiance.
     light: [f64; 3],
-    /// Of the light, all channels together.
+    /// Share of the light, all channels together.
     share: f64,
     running: f64,
     ended: u64,

@@ -1,4 +1,4 @@
-//! Trying the hard cases as evidence for claims, for `check` and `reproduce`.
+//! Hard cases: tries them as evidence for claims, for `check` and `reproduce`.
 
 use crate::check::cases_file::{self, CaseRow};
 use crate::check::{self, Case, Effort, Outcome};
@@ -15,7 +15,7 @@ pub(super) fn try_all(cases: &[&'static Case], effort: Effort, talk: &dyn Progre
     Ok(outcomes)
 }
 
-/// Writes what came of some cases into a folder of results.
+/// Writes the outcomes of some cases into a folder of results.
 pub(super) fn write(out: &Path, cases: &[&'static Case], outcomes: &[Outcome]) -> Result<()> {
     let rows: Vec<CaseRow> = cases.iter().zip(outcomes).map(|(case, outcome)| CaseRow::new(case, outcome)).collect();
     cases_file::write(out, &rows)

@@ -1,4 +1,4 @@
-//! `pathmark check`: the hard cases on this machine, and what guarding against them costs.
+//! `pathmark check`: the hard cases on this machine, and the costs of guarding against them.
 
 use super::output::{lock_folder, print, print_json};
 use super::progress::Talk;
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// A case and what came of it.
+/// A case and its outcome.
 #[derive(Serialize)]
 struct Row<'a> {
     id: &'static str,
@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         .zip(&outcomes)
         .map(|(case, outcome)| Row { id: case.id, tries: case.tries, pass: outcome.passed(), outcome })
         .collect();
-    // Guards are timed alone, only where everything is asked for, and once for each folder.
+    // Guards are timed alone, only if no cases are named, and once for each folder.
     let are_priced = arguments.out.as_ref().is_some_and(|out| guards::are_in(out));
     let prices = if arguments.cases.is_empty() && !are_priced { guards::measure(talk) } else { Vec::new() };
     if arguments.json {
@@ -75,8 +75,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }
 }
 
-/// The folder of results, locked, if the cases, the price list and the page may be written into it. `reproduce` may have left the price list
-/// there already.
+/// Locks the folder of results if the cases, the price list and the page may be written into it. `reproduce` may have
+/// left the price list there already.
 fn folder_for_results(out: &Path) -> Result<Lock> {
     let mut files = Files::default();
     if !guards::are_in(out) || guards::read(out)?.is_empty() {
@@ -103,7 +103,7 @@ fn fits(case: &Case, name: &str) -> bool {
     case.id == name || (name.len() == 1 && case.id.starts_with(name))
 }
 
-/// What a reader sees: a line for each case, all that was tried where cases were named, and whatever went wrong.
+/// The printed table: a line for each case, its failed or skipped trials, and with `in_full` all trials.
 fn table(rows: &[Row<'_>], in_full: bool) -> String {
     let mut lines = Vec::new();
     for section in SECTIONS {
@@ -131,7 +131,7 @@ fn table(rows: &[Row<'_>], in_full: bool) -> String {
     lines.join("\n")
 }
 
-/// Name, verdict, what is tried, and of a single trial what was expected and found.
+/// Name, verdict and subject of a case, and the expected and found result of a single trial.
 fn line(row: &Row<'_>) -> String {
     let verdict = match (row.pass, row.outcome.trials.is_empty()) {
         (true, false) => "pass",

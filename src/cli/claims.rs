@@ -1,4 +1,4 @@
-//! `pathmark claims`: the claims of the four reports beside what was measured.
+//! `pathmark claims`: the claims of the four reports beside the measurements.
 
 use super::output::{print, print_json};
 use crate::error::{Error, InputError, Result};

@@ -1,4 +1,5 @@
-//! `pathmark compare IMAGE REFERENCE [HALF]`: how far an image is from another, or from two references without their noise.
+//! `pathmark compare IMAGE REFERENCE [HALF]`: the error of an image against another, or against two references without
+//! their noise.
 
 use super::output::{number, print, print_json};
 use super::picture;
@@ -40,8 +41,9 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Images of one scene and one seed share samples, and look more alike than they are. Between films, which are there to measure errors, that is
-/// refused; of pictures, which may be two ways to render one image, it is told.
+/// Finds images of one scene and one seed, which share samples and look more alike than they are. Refuses such films,
+/// because films serve to measure errors. Returns a remark about such pictures, which may be two ways to render one
+/// image.
 fn shared_samples(inputs: &[(&PathBuf, Option<FilmKey>)]) -> Result<Option<String>> {
     let mut remark = None;
     for (index, (path, key)) in inputs.iter().enumerate() {
@@ -62,7 +64,7 @@ fn shared_samples(inputs: &[(&PathBuf, Option<FilmKey>)]) -> Result<Option<Strin
     Ok(remark)
 }
 
-/// A line of what is printed.
+/// A line of the output.
 struct Line {
     name: &'static str,
     value: f64,
@@ -135,8 +137,8 @@ fn plain(image: &Image, reference: &Image) -> Result<Vec<Line>> {
     METRICS.iter().map(line).collect()
 }
 
-/// The cross form, with an interval by the scatter of the pixels' products: the noise of neighbours is independent, and what pixels differ in
-/// besides makes the interval wider, never too narrow.
+/// The cross form, with an interval from the scatter of the pixels' products. The noise of neighbours is independent;
+/// other differences between pixels only make the interval wider.
 fn cross(image: &Image, first: &Image, second: &Image) -> Result<Vec<Line>> {
     let products = cross_products(image, first, second)?;
     let mean = products.iter().sum::<f64>() / products.len() as f64;

@@ -43,7 +43,7 @@ struct AcrossOptions {
     across_revisions: bool,
 }
 
-/// What undecided cells count as.
+/// How undecided cells count.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Undecided {
     /// They do not make the command fail
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
     Ok(())
 }
 
-/// Compares what was counted.
+/// Compares counts instead of times.
 fn counts(arguments: &Arguments, limit: f64) -> Result<()> {
     let (changed, compared) = count_diff(&arguments.old, &arguments.new)?;
     if arguments.json {
@@ -103,7 +103,7 @@ fn counts(arguments: &Arguments, limit: f64) -> Result<()> {
     Ok(())
 }
 
-/// Says what a reader should know of the comparison.
+/// Prints warnings and notes about the comparison.
 fn remark(found: &Diff, talk: &Talk) {
     if !found.paired {
         talk.note(

@@ -1,4 +1,4 @@
-//! `pathmark explain [WARNING]`: what a row's warnings mean.
+//! `pathmark explain [WARNING]`: the meaning of a row's warnings.
 
 use super::output::print;
 use crate::error::{InputError, Result};
@@ -16,7 +16,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let Some(asked) = &arguments.warning else {
         return print(&WARNINGS.iter().map(explained).collect::<Vec<_>>().join("\n\n"));
     };
-    // Rows have the numbers of the case behind the name.
+    // In rows, the numbers of the case follow the name in brackets.
     let name = asked.split('(').next().unwrap_or_default().trim();
     if let Some(entry) = WARNINGS.iter().find(|entry| entry.name == name) {
         return print(&explained(entry));

@@ -1,4 +1,4 @@
-//! Measuring the price list of the guards, for `check` and `reproduce`.
+//! The price list of the guards: measures, reads and writes it for `check` and `reproduce`.
 
 use crate::check::guards::{FILE, FOLDER, GUARDS, PriceRow, read_prices, write_prices};
 use crate::error::{Error, Result};
@@ -11,7 +11,7 @@ pub(super) fn are_in(out: &Path) -> bool {
     out.join(FOLDER).join(FILE).is_file()
 }
 
-/// The list in a folder of results.
+/// Reads the list in a folder of results.
 pub(super) fn read(out: &Path) -> Result<Vec<PriceRow>> {
     read_prices(&out.join(FOLDER).join(FILE))
 }
@@ -28,7 +28,8 @@ pub(super) fn measure(progress: &dyn Progress) -> Vec<PriceRow> {
     rows
 }
 
-/// Enters the list into the files of a command that will write it. Refuses a folder that has one: measurements are never overwritten.
+/// Adds the list to the files that a command will write. Refuses a folder that has one: measurements are never
+/// overwritten.
 pub(super) fn claim(out: &Path, files: &mut Files) -> Result<()> {
     let folder = out.join(FOLDER);
     files.renews("out", &folder.join(FILE), |_| false)?;

@@ -1,4 +1,4 @@
-//! `pathmark list [KIND]`: what there is to choose from.
+//! `pathmark list [KIND]`: all names that a user can choose from.
 
 use super::output::{counted, print, print_json};
 use crate::error::Result;
@@ -67,7 +67,7 @@ struct Item {
     scene: Option<SceneItem>,
 }
 
-/// What is known of a scene besides.
+/// Further facts about a scene.
 #[derive(Serialize)]
 struct SceneItem {
     calls_for: String,
@@ -80,19 +80,19 @@ fn item(name: &str, about: &str) -> Item {
     Item { kind: None, name: name.to_string(), about: about.to_string(), scene: None }
 }
 
-/// Meaning, type and age of a column of `records.csv`.
+/// Meaning, type and first schema of a column of `records.csv`.
 fn about_column(column: &Column) -> String {
     let unit = column.unit().map_or_else(String::new, |unit| format!(" of {unit}"));
     let empty = if column.may_be_empty() { ", may be empty" } else { "" };
     format!("{} [{}{unit}{empty}; since schema {}]", column.about.trim(), column.values(), column.since())
 }
 
-/// What a driver calls a device, or why it shows none.
+/// The name that a driver gives a device, or why there is none.
 fn about_device(device: &Device) -> String {
     if device.is_there { device.about.clone() } else { format!("none: {}", device.about) }
 }
 
-/// The kernels of the processor, and one for each device that is there.
+/// The kernels of the processor, and one for each available device.
 fn kernels() -> Vec<Item> {
     let on_processor = KERNELS.iter().map(|entry| item(entry.name, entry.about));
     let there = devices().into_iter().filter(|device| device.is_there);

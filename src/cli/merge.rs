@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if arguments.parts.iter().any(|part| part.is_dir()) { sweeps(arguments, lab, talk) } else { image(arguments, talk) }
 }
 
-/// Rows of one sweep, from the folders of its parts.
+/// Merges the rows of sweeps from the folders of their parts.
 fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let merged = merge_sweeps(&arguments.parts, &arguments.output, arguments.partial, &command_line())?;
     let mut outs: Vec<_> = merged.iter().map(|sweep| sweep.out.clone()).collect();
@@ -59,7 +59,7 @@ fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     Ok(())
 }
 
-/// One image, from the files of its parts.
+/// Merges one image from the files of its parts.
 fn image(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let Arguments { parts, output, partial, .. } = arguments;
     let as_film = is_film(output);

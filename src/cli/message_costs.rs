@@ -1,4 +1,4 @@
-//! `mpiexec -n 2 pathmark message-costs`: what MPI costs here.
+//! `mpiexec -n 2 pathmark message-costs`: the costs of MPI messages on this machine.
 
 use super::output::{print, print_json};
 use crate::cluster::{Cluster, MessageCost, MessageCosts};
@@ -18,7 +18,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// The library that the user names, in the option or the environment; `None` for one that is found.
+/// The library that the user names in the option or the environment; `None` if the program is to find one.
 pub(super) fn library(option: Option<&PathBuf>) -> Option<PathBuf> {
     let named = option.cloned().or_else(|| env::var_os("PATHMARK_MPI").map(PathBuf::from));
     named.filter(|path| path.as_os_str() != "auto")

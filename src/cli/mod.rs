@@ -1,4 +1,4 @@
-//! The command line: one file a verb. Results go to standard output or files, talk goes to standard error.
+//! The command line: one file for each verb. Results go to standard output or files, messages to standard error.
 //!
 //! Exit codes: 0 done, 1 a check failed, 2 the user's input is wrong, 3 the system failed.
 
@@ -49,7 +49,7 @@ use std::io::ErrorKind;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// What people come for, in five lines.
+/// The most common uses, in five lines.
 const EXAMPLES: &str = "\
 Examples:
   pathmark render cornell --spp 64 -o cornell.png            render a scene
@@ -127,7 +127,7 @@ enum Verb {
 }
 
 impl Lab {
-    /// The whole command line with these tables: runs the program with the process's arguments.
+    /// Runs the program with these tables and the process's arguments.
     pub fn main(self) -> ExitCode {
         out_of_memory::watch();
         let cli = match Cli::try_parse() {
@@ -145,7 +145,7 @@ impl Lab {
     }
 }
 
-/// Prints what clap has to say instead of running: what is wrong, or the help and the version that were asked for.
+/// Prints clap's message instead of running: an error, or the requested help or version.
 fn tell(told: &clap::Error) -> ExitCode {
     match told.print() {
         Err(e) if !told.use_stderr() && e.kind() != ErrorKind::BrokenPipe => {
@@ -192,7 +192,7 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     }
 }
 
-/// The command as the user gave it, whatever folder the program lies in.
+/// The command as the user gave it, without the program's folder.
 fn command_line() -> String {
     let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
     std::iter::once("pathmark".to_string()).chain(arguments).collect::<Vec<_>>().join(" ")

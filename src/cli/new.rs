@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         path.as_mut_os_string().push(".toml");
     }
     let shown = path.display().to_string();
-    // A file of the user's is never replaced.
+    // An existing file is never replaced.
     let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(|e| match e.kind() {
         ErrorKind::AlreadyExists => {
             Error::from(InputError::new("name", &shown, "is there already").allowed("a new name"))

@@ -1,9 +1,10 @@
-//! Memory that the system refuses where Rust has no error for it.
+//! Out of memory: an exit code and a message where Rust has no error for refused memory.
 //!
-//! What is large or comes from a user's input is asked for in good time, and its refusal is an error like any other. When one of the many small
-//! allocations fails, or a thread that starts gets no stack for its signals, Rust's runtime aborts. Here such an end becomes what any refusal of
-//! the system is: a line that says so, and exit code 3. Files that were being written leave their temporary ones behind, as after a kill.
-//! No promise holds before `main`, where the system may be unable to load the program, nor for the main thread's own stack.
+//! Memory that is large or depends on user input is requested early, and a refusal is an ordinary error. If a small
+//! allocation fails, or a new thread gets no stack for its signals, Rust's runtime aborts. This module turns such an
+//! abort into an error of the system: a message, and exit code 3. Files that were being written leave their temporary
+//! files behind, as after a kill. Two failures are not covered: before `main`, where the system may be unable to load
+//! the program, and on the main thread's own stack.
 
 #![expect(unsafe_code, reason = "handlers of signals belong to the C library")]
 
@@ -11,13 +12,15 @@ use std::io;
 use std::panic;
 
 const SAID: &[u8] = b"pathmark: the system refused memory\n";
-/// What [`crate::error::Error::System`] ends with.
+/// The exit code of [`crate::error::Error::System`].
 const EXIT_CODE: libc::c_int = 3;
 
-/// Where the runtime panics if a thread gets no stack for its signals. Telling that panic in the usual way takes memory, and may wait for ever.
+/// The source file in which the runtime panics if a thread gets no stack for its signals. The usual message of that
+/// panic takes memory, and may wait for ever.
 const SIGNAL_STACKS: &str = "stack_overflow.rs";
 
-/// From now on, an end of this process for want of memory is told and has an exit code. Other aborts and panics stay what they are.
+/// From now on, an abort for lack of memory prints a message and has an exit code. Other aborts and panics stay
+/// unchanged.
 pub(super) fn watch() {
     let handler: extern "C" fn(libc::c_int) = aborting;
     // SAFETY: the handler does nothing but what a handler of signals may do.
@@ -31,9 +34,10 @@ pub(super) fn watch() {
     }));
 }
 
-/// If it returns, `abort` goes on and ends the process by its signal.
+/// The handler of SIGABRT. If it returns, `abort` ends the process by its signal.
 extern "C" fn aborting(_: libc::c_int) {
-    // Both the C library's allocator and its `mmap` leave this number behind, and what the runtime prints in between does not fail.
+    // Both the C library's allocator and its `mmap` set this error number, and the runtime's message in between does
+    // not fail.
     if io::Error::last_os_error().raw_os_error() == Some(libc::ENOMEM) {
         end();
     }

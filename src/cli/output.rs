@@ -1,4 +1,5 @@
-//! Where results go: a folder, or standard output, which a user may close at any time: `pathmark list | head -1` is no failure.
+//! Output of results: into a folder, or to standard output, which a user may close at any time:
+//! `pathmark list | head -1` is no failure.
 
 use crate::error::{Error, Result};
 use crate::lock::{Lock, Sharing};
@@ -7,13 +8,13 @@ use serde_json::Value;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-/// Makes a folder of results if need be, and keeps others from it as long as the lock is held.
+/// Creates a folder of results if it is missing, and locks it against other processes as `sharing` says.
 pub(super) fn lock_folder(out: &Path, sharing: Sharing) -> Result<Lock> {
     std::fs::create_dir_all(out).map_err(|e| Error::system("creating", out, e))?;
     Lock::of_folder(out, "out", sharing)
 }
 
-/// A number of things: `1 worker`, `2 workers`.
+/// A count with its noun: `1 worker`, `2 workers`.
 pub(super) fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
@@ -26,18 +27,18 @@ pub(super) fn print(text: &str) -> Result<()> {
     }
 }
 
-/// Prints a value as one line of JSON. What is absent is `null`; NaN and infinities, for which JSON has no numbers, are the texts "NaN", "inf"
-/// and "-inf".
+/// Prints a value as one line of JSON. Absent values are `null`; NaN and infinities, for which JSON has no numbers, are
+/// the texts "NaN", "inf" and "-inf".
 pub(super) fn print_json(value: &impl Serialize) -> Result<()> {
     let failed = |e: serde_json::Error| Error::system("writing", "standard output", e.into());
     let mut json = serde_json::to_value(value).map_err(failed)?;
-    // TOML has all numbers, and no null.
+    // TOML keeps NaN and infinities, which JSON turns into null.
     let named = toml::Value::try_from(value).is_ok_and(|exact| name_odd_numbers(&mut json, &exact));
-    // Fields stay in their order where nothing has to be replaced.
+    // If nothing has to be replaced, fields keep their order.
     print(&if named { json.to_string() } else { serde_json::to_string(value).map_err(failed)? })
 }
 
-/// Puts texts in the place of nulls that were numbers; whether there were any.
+/// Replaces nulls that were numbers by texts; returns whether there were any.
 fn name_odd_numbers(json: &mut Value, exact: &toml::Value) -> bool {
     match (json, exact) {
         (json @ Value::Null, toml::Value::Float(found)) => {
@@ -54,7 +55,7 @@ fn name_odd_numbers(json: &mut Value, exact: &toml::Value) -> bool {
     }
 }
 
-/// A number as [`print_json`] prints it, for values that are put together by hand.
+/// A number as [`print_json`] prints it, for JSON that is built by hand.
 pub(super) fn number(value: f64) -> Value {
     if value.is_finite() { Value::from(value) } else { Value::from(value.to_string()) }
 }

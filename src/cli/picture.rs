@@ -1,4 +1,4 @@
-//! Pictures that verbs are given: image files, and film files of references and checkpoints.
+//! Pictures as input of verbs: image files, and film files of references and checkpoints.
 
 use crate::error::{InputError, Result};
 use crate::film_file::read_film;
@@ -6,12 +6,12 @@ use crate::image_io::{self, Image};
 use crate::measure::Provenance;
 use std::path::Path;
 
-/// Whether the file's name is that of a film, which keeps sums in full precision.
+/// Whether the file is named as a film, which keeps sums in full precision.
 pub(super) fn is_film(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "film")
 }
 
-/// A picture, and what it is of where its file knows.
+/// Reads a picture, and its provenance if the file has it.
 pub(super) fn read(path: &Path) -> Result<(Image, Option<Provenance>)> {
     let is_film = is_film(path);
     if is_film && !path.exists() {

@@ -1,4 +1,4 @@
-//! What a reproduction will take: the table of `reproduce --plan`, and a line before a long one.
+//! Plans of `reproduce`: the table of `--plan`, and a line before a long run.
 
 use super::output::print;
 use crate::error::Result;
@@ -13,7 +13,7 @@ pub(super) struct Plans {
 }
 
 impl Plans {
-    /// Renders the pilot.
+    /// Renders the pilot and plans all sweeps.
     pub(super) fn new(lab: &Lab, sweeps: &[Sweep<'_>]) -> Result<Self> {
         let mut prices = Prices::new(lab);
         let each = sweeps.iter().map(|sweep| sweep.plan(&mut prices)).collect::<Result<Vec<_>>>()?;
@@ -32,7 +32,7 @@ impl Plans {
         })
     }
 
-    /// In a line.
+    /// The sum of all plans, in a line.
     pub(super) fn told(&self) -> String {
         let all = self.sum();
         let (minutes, megabytes) = ((all.seconds() / 60.0).ceil(), megabytes(&all));
@@ -44,7 +44,7 @@ impl Plans {
         )
     }
 
-    /// The table of all experiments, and how its seconds were found.
+    /// Prints the table of all experiments, and how its seconds were estimated.
     pub(super) fn print(&self, left_out: usize) -> Result<()> {
         let width = self.each.iter().map(|plan| plan.name.len()).max().unwrap_or(0).max(10);
         let head = format!("{:width$}  {:>6}  {:>6}  {:>8}  {:>8}", "experiment", "cells", "rows", "seconds", "MB");

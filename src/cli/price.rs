@@ -1,8 +1,10 @@
-//! `pathmark price SCENE --rmse E,E`: what accuracies cost, and with `--pay` whether that was right.
+//! `pathmark price SCENE --rmse E,E`: predicts the price of accuracies, and checks it with `--pay`.
 //!
-//! Samplers that spread the samples of a pixel are priced at powers of two times the fewest samples: between them nets are incomplete, and worse.
+//! Samplers that spread the samples of a pixel are priced at powers of two times the fewest samples: between these
+//! numbers, nets are incomplete and worse.
 //!
-//! `--estimator all` prices every unbiased estimator. For one estimator, small pilots of the others tell whether one of them would be sooner.
+//! `--estimator all` prices every unbiased estimator. For one estimator, small pilots of the others find out whether
+//! one of them would be faster.
 
 use super::axes::Axes;
 use super::output::{counted, print, print_json};
@@ -25,14 +27,15 @@ const LEVEL: f64 = 0.95;
 
 /// A larger share of the variance in one value of one pixel makes a price doubtful.
 const LARGEST_SHARE: f64 = 0.05;
-/// And so does a larger kurtosis: the relative error of a variance from n values is about the root of kurtosis / n.
+/// A larger kurtosis makes it doubtful, too: the relative error of a variance from n values is about the root of
+/// kurtosis / n.
 const LARGEST_KURTOSIS: f64 = 200.0;
 
 /// The word for all estimators.
 const ALL: &str = "all";
-/// The pilot of an estimator that was not asked for is so much shorter.
+/// The pilots of other estimators have fewer samples by this factor.
 const SHORTER: u32 = 4;
-/// And has so many seeds, the fewest that give an interval of use.
+/// Seeds of the pilots of other estimators: the fewest that give a useful interval.
 const FEW_SEEDS: u32 = 4;
 
 /// `pathmark price cornell --rmse 0.05,0.02,0.01 --pay`
@@ -62,7 +65,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// A goal, its price, and what was paid.
+/// A goal, its price, and the measured time and error.
 #[derive(Serialize, Default)]
 struct Row {
     estimator: String,
@@ -80,7 +83,7 @@ struct Row {
     paid_seconds: Option<f64>,
     rmse_ratio: Option<f64>,
     seconds_ratio: Option<f64>,
-    /// Of the pilot's values.
+    /// The tail of the pilot's values.
     #[serde(flatten)]
     tail: Tail,
     /// Seeds of the pilot whose times are in doubt.
@@ -89,12 +92,12 @@ struct Row {
     counts: Counts,
 }
 
-/// The numbers of samples that are rendered.
+/// The numbers of samples that can be rendered.
 #[derive(Clone, Copy, Default)]
 struct Counts {
     /// Fewest samples that make a whole image.
     fewest: u32,
-    /// Only powers of two times that.
+    /// Whether only `fewest` times a power of two can be rendered.
     doubled: bool,
 }
 
@@ -103,14 +106,14 @@ impl Counts {
         Self { fewest, doubled: law_of(&settings.spec.sampler) == Law::Fitted }
     }
 
-    /// So many samples, rounded up.
+    /// `spp`, rounded up to a number that can be rendered.
     fn whole(self, spp: f64) -> f64 {
         let fewest = f64::from(self.fewest);
         let times = (spp / fewest).ceil().max(1.0);
         fewest * if self.doubled { libm::exp2(libm::ceil(libm::log2(times) - 1e-9)) } else { times }
     }
 
-    /// By how much more than these samples are rendered, where they are doubled.
+    /// The factor by which rounding up raises `spp`, if only powers of two are rendered; otherwise 1.
     fn surplus(self, spp: f64) -> f64 {
         if self.doubled { self.whole(spp) / spp } else { 1.0 }
     }
@@ -149,13 +152,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     print(&texts.join("\n\n"))
 }
 
-/// The settings with every estimator that has no limit of its own, and so no error that samples cannot mend.
+/// The settings with each unbiased estimator: those that have no bounce limit of their own.
 fn unbiased<'a>(lab: &'a Lab, settings: &'a Settings) -> impl Iterator<Item = Settings> + 'a {
     let names = lab.estimators().filter(|entry| entry.max_depth.is_none()).map(|entry| entry.name.to_string());
     names.map(|estimator| Settings { spec: Spec { estimator, ..settings.spec.clone() }, ..settings.clone() })
 }
 
-/// The pilot of an estimator, and the price of each goal.
+/// Runs the pilot of an estimator, and prices each goal.
 fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, talk: &Talk) -> Result<(Piloted, Vec<Row>)> {
     let counts = Counts::of(settings, lab.prepare(settings.clone())?.fewest_spp());
     let pilot = Pilot { spp: arguments.pilot_spp, seeds: arguments.pilot_seeds };
@@ -169,7 +172,7 @@ fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, talk: &Talk) -> 
     Ok((piloted, rows))
 }
 
-/// The estimators by their seconds to each goal.
+/// The estimators, sorted by their seconds for each goal.
 fn ranking(goals: &[f64], rows: &[Row]) -> String {
     let line = |goal: &f64| {
         let mut of_goal: Vec<&Row> = rows.iter().filter(|row| row.rmse == *goal).collect();
@@ -180,24 +183,25 @@ fn ranking(goals: &[f64], rows: &[Row]) -> String {
     goals.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The estimator that would surely reach the first goal in less time than the one that was asked for, if a short pilot finds one.
+/// Describes an estimator that would certainly reach the first goal sooner than the chosen one; `None` if short pilots
+/// find none.
 fn sooner(lab: &Lab, arguments: &Arguments, own: &Settings, rows: &[Row], talk: &Talk) -> Result<Option<String>> {
     let Some(first) = rows.first().filter(|_| unbiased(lab, own).any(|other| other == *own)) else { return Ok(None) };
     let mut others = Vec::new();
     for other in unbiased(lab, own).filter(|other| other != own) {
-        // The pilot's own samples may be too few for it.
+        // The pilot's samples may be too few for this estimator.
         let entry = lab.estimators().find(|entry| entry.name == other.spec.estimator);
         let multiple = entry.map_or(1, |entry| entry.spp_multiple);
         let fewest = lab.prepare(Settings { spp: multiple, ..other.clone() })?.fewest_spp();
         let spp = (arguments.pilot_spp / SHORTER).next_multiple_of(fewest).max(fewest);
-        // A scene may leave too few samples for a law; then nothing is claimed.
+        // The pilot may have too few samples for a law; the estimator is then left out.
         let Ok(found) = (Pilot { spp, seeds: FEW_SEEDS }).run(lab, &other, LEVEL, talk) else { continue };
         others.extend(found.renderer.price(first.rmse).map(|price| (other.spec.estimator, price.seconds)));
     }
     Ok(soonest(first, others))
 }
 
-/// Whose interval lies wholly below that of the row, and who of those is the soonest.
+/// Describes the soonest of the estimators whose intervals lie entirely below the row's.
 fn soonest(row: &Row, others: Vec<(String, Estimate)>) -> Option<String> {
     let sooner = others.into_iter().filter(|(_, seconds)| seconds.interval.high < row.seconds_low);
     let (name, seconds) = sooner.min_by(|(_, a), (_, b)| a.value.total_cmp(&b.value))?;
@@ -234,7 +238,7 @@ fn row(
 impl Row {
     fn new(price: &Price, (spp, counts): (u32, Counts), renderer: &Renderer, paid: Option<Paid>) -> Self {
         let Price { rmse, spp: Estimate { interval: samples, .. }, seconds } = *price;
-        // What is rendered is rounded up, and so must be what it is compared with.
+        // The rendered samples are rounded up, so the prediction for comparison must use the same number.
         let expected_s = f64::from(spp) * renderer.seconds_per_spp.value;
         let expected = renderer.rmse_after(expected_s).map(|error| error.value);
         Self {

@@ -1,4 +1,4 @@
-//! The options that choose how large an experiment is run.
+//! The options that choose the size at which an experiment is run.
 
 use crate::experiment::Profile;
 use clap::Args;

@@ -1,4 +1,4 @@
-//! What long work says while it lasts: a bar with the time left on a terminal, plain lines elsewhere, nothing with `--quiet`.
+//! Progress of long work: a bar with the time left on a terminal, plain lines elsewhere, nothing with `--quiet`.
 
 use crate::error::Error;
 use crate::experiment::Progress;
@@ -7,15 +7,15 @@ use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-/// The time left by the pace of the bar, and by what the work says itself.
+/// Bars whose time left follows from their pace, or comes from the work itself.
 const BY_PACE: &str = "{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {eta} left";
 const BY_WORK: &str = "{msg:<40!} {wide_bar} {percent:>3} %  {elapsed}, {prefix} left";
 
-/// Without an end that is known.
+/// A bar for work without a known end.
 const BUSY: &str = "{spinner} {msg}  {elapsed}";
 const TICK: Duration = Duration::from_millis(100);
 
-/// Talks on standard error.
+/// The messages of the program on standard error.
 pub(super) struct Talk {
     quiet: bool,
     terminal: bool,
@@ -27,7 +27,7 @@ struct Work {
     title: String,
     total: u64,
     bar: Option<ProgressBar>,
-    /// Tenths that have been told.
+    /// Tenths that have been reported.
     told: u64,
 }
 
@@ -41,11 +41,11 @@ impl Talk {
     }
 
     fn line(text: &str) {
-        // Nobody may be listening; that is no reason to stop.
+        // Standard error may be closed; that is no reason to stop.
         let _ = writeln!(std::io::stderr().lock(), "{text}");
     }
 
-    /// Why the program ends.
+    /// Prints the error with which the program ends.
     pub(super) fn error(&self, error: &Error) {
         self.end();
         Self::line(&format!("pathmark: {error}"));
@@ -53,7 +53,7 @@ impl Talk {
 }
 
 impl Talk {
-    /// Does work of unknown length: on a terminal its title and the time so far are seen meanwhile.
+    /// Runs work of unknown length; a terminal shows its title and the elapsed time meanwhile.
     pub(super) fn busy<T>(&self, title: &str, work: impl FnOnce() -> T) -> T {
         if self.quiet || !self.terminal {
             return work();
@@ -81,12 +81,12 @@ impl Talk {
         *self.work() = Work { title: title.to_string(), total, bar, told: 0 };
     }
 
-    /// Work begins that consists of steps and knows the time left.
+    /// Begins work that consists of steps and gives the time left itself.
     pub(super) fn begin_steps(&self, title: &str, total: u64) {
         self.start(title, total, BY_WORK);
     }
 
-    /// A step begins: the bar goes on under its title, and a line says the time left where there is no bar.
+    /// Begins a step: the bar shows its title; without a bar, a line shows title and time left.
     pub(super) fn step(&self, title: &str, left: &str) {
         if self.quiet {
             return;
@@ -97,7 +97,7 @@ impl Talk {
         }
     }
 
-    /// The time left, for the bar.
+    /// Shows the time left in the bar.
     pub(super) fn left(&self, left: &str) {
         if let Some(bar) = &self.work().bar {
             bar.set_prefix(left.to_string());

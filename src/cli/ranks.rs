@@ -24,7 +24,7 @@ pub(super) struct Ranks {
     mpi: Option<PathBuf>,
 }
 
-/// What the ranks did, beside the outcome.
+/// Statistics of the ranks, beside the outcome.
 #[derive(Serialize)]
 pub(super) struct Told {
     #[serde(skip)]
@@ -37,7 +37,7 @@ pub(super) struct Told {
     by_rank: Vec<RankRow>,
 }
 
-/// A record with what the ranks did.
+/// A record with the statistics of the ranks.
 #[derive(Serialize)]
 pub(super) struct WithRecord<'a> {
     #[serde(flatten)]
@@ -50,7 +50,7 @@ pub(super) fn with_record<'a>(told: &'a Told, record: &'a Record) -> WithRecord<
     WithRecord { record, told }
 }
 
-/// Says in a record who rendered.
+/// Enters ranks, rule and MPI library into a record.
 pub(super) fn label(told: &Told, record: &mut Record) {
     record.ranks = u16::try_from(told.ranks).ok();
     record.rank_rule.clone_from(&told.rank_rule);
@@ -63,7 +63,7 @@ impl Ranks {
         self.ranks.as_deref().map(|text| lab.rank_rule("ranks", text)).transpose()
     }
 
-    /// Renders `spp` samples a pixel or until another goal is reached; `None` on all ranks but the first.
+    /// Renders `spp` samples per pixel, or until another goal is reached; `None` on all ranks but the first.
     pub(super) fn render(
         &self,
         rule: &RankRule,
@@ -91,7 +91,7 @@ impl Told {
     }
 }
 
-/// What each rank did, in lines.
+/// The statistics of each rank, in lines.
 pub(super) fn told(told: &Told) -> String {
     let Told { ranks, rank_rule, mpi, gather_s, by_rank } = told;
     let head = format!("{ranks} ranks of {mpi} by {rank_rule}, gathered in {:.1} ms", 1e3 * gather_s);

@@ -1,4 +1,4 @@
-//! `pathmark rays SCENE`: rays per second of the search for what a ray meets first, along the rays of paths.
+//! `pathmark rays SCENE`: rays per second of the search for the first hit, along the rays of paths.
 
 use super::axes::{Samples, no_paths};
 use super::output::{number, print, print_json};
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Confidence of the interval around the median, if there are repetitions enough.
+/// Confidence of the interval around the median, if there are enough repetitions.
 const LEVEL: f64 = 0.95;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
@@ -104,8 +104,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     ))
 }
 
-/// `pathmark-rays 1 TRIANGLES RAYS`, a line end, then little-endian doubles: the corners of each triangle, and of each ray its origin, its direction and
-/// the number of the triangle that it starts on, which is -1 for none.
+/// Writes `pathmark-rays 1 TRIANGLES RAYS`, a line end, then little-endian doubles: the corners of each triangle; then
+/// for each ray its origin, its direction and the number of the triangle on which it starts, or -1 for none.
 fn export(scene: &Scene, rays: &[Start], file: &mut dyn Write) -> io::Result<()> {
     let triangles = &scene.primitives.triangles;
     writeln!(file, "pathmark-rays 1 {} {}", triangles.len(), rays.len())?;

@@ -1,4 +1,4 @@
-//! `pathmark reference SCENE`: the two half-references that images are measured against.
+//! `pathmark reference SCENE`: the two half-references against which images are measured.
 
 use super::output::print;
 use super::progress::Talk;
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     out: PathBuf,
 }
 
-/// Where refining starts.
+/// Samples per pixel at which refining starts.
 const FIRST_SPP: u32 = 16;
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {

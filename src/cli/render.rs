@@ -140,7 +140,7 @@ fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, talk: &Talk) -
     arguments.strict.check(invalid)
 }
 
-/// What a reader wants to know first.
+/// The printed summary of a render.
 fn summary(record: &Record, outcome: &Outcome) -> String {
     let Record { width, height, spp, estimator, effects, strategy, decomposition, .. } = record;
     // A workload has neither estimator nor effects, and traces no rays.

@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         let allowed = format!("0 to {}", LARGEST_SPP - 1);
         return Err(InputError::new("sample", sample.to_string(), problem).allowed(allowed).into());
     }
-    // Any number of samples that the estimator takes: only the names are looked at.
+    // Any number of samples that the estimator allows will do: only the names are used.
     let mut settings = arguments.what.settings(lab, &arguments.scene, 1, arguments.seed)?;
     let estimator = lab.estimators().find(|entry| entry.name == settings.spec.estimator);
     settings.spp = estimator.map_or(1, |entry| entry.spp_multiple);
@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let (given, counts) = kernel::one_sample(&*kernel::construct(scene, choice)?, [x, y], sample);
     let is_valid = counts.invalid == 0;
     let precision = choice.precision();
-    // Lanes keep no log, and they alone have other precisions.
+    // Lanes keep no log, and only lanes have other precisions.
     let path = if precision == Precision::F64 { Some(path(scene, choice, (x, y, sample), given)?) } else { None };
     let radiance = path.as_ref().map_or(given, |(_, radiance)| radiance.channels());
     if arguments.json {
@@ -85,7 +85,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     ))
 }
 
-/// The command that shows a sample of an image again: with every option that changes what the sample is.
+/// The command that replays a sample of an image, with every option that changes the sample.
 pub(super) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
     let scene = if scene.contains(char::is_whitespace) { format!("'{scene}'") } else { scene.to_string() };
     let axes = AXES.iter().filter(|axis| axis.changes_image && (!axis.about.is_empty() || axis.name == "seed"));
@@ -104,7 +104,7 @@ fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
     })
 }
 
-/// Follows the path once more and writes it down, and makes sure that it is the one that the kernel which fits the scene followed.
+/// Traces the path again with a log, and checks that its radiance equals the kernel's bit for bit.
 fn path(scene: &Arc<Scene>, choice: &Choice, at: (u32, u32, u32), given: [f64; 3]) -> Result<(PathLog, Rgb)> {
     let mut log = PathLog::default();
     let radiance = Inspector::new(scene, choice)?.estimate(at.0, at.1, at.2, &mut log);
@@ -186,7 +186,7 @@ fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
                 ]);
             }
             Event::Light { radiance, .. } if radiance.is_black() => {}
-            // What a surface gives off is told right after the arrival at it.
+            // The light that a surface emits is logged right after the hit.
             Event::Light { radiance, .. } if stands_on_surface => {
                 if let Some(line) = lines.last_mut() {
                     line[5] = triple(radiance.channels());
@@ -235,17 +235,17 @@ mod tests {
         arguments: Arguments,
     }
 
-    /// What the program takes a told command for.
+    /// The arguments that the program reads from a command.
     fn read(command: &str) -> Arguments {
         let words = command.strip_prefix("pathmark ").expect("the program's name");
         Replay::try_parse_from(words.split(' ')).expect("a command that the program takes").arguments
     }
 
-    /// Each axis that changes the image, changed.
+    /// Changes each axis that changes the image.
     #[test]
     fn a_told_command_is_of_the_same_sample_on_every_axis() {
         let base = || Spec { width: 8, height: 6, estimator: "bsdf".into(), ..Spec::default() };
-        // A new axis has to be put on the list below, unless it changes no sample, as the last five here.
+        // A new axis must be added to the list below, unless it changes no sample, like the last four here.
         let Spec {
             width: _,
             height: _,
@@ -256,9 +256,14 @@ mod tests {
             max_depth: _,
             camera_rays: _,
             roulette: _,
-            ..
+            clamp: _,
+            filter: _,
+            epsilon: _,
+            kernel: _,
+            simd: _,
+            effects: _,
+            accelerator: _,
         } = base();
-        let Spec { kernel: _, simd: _, effects: _, accelerator: _, clamp: _, .. } = base();
         let others = [
             Spec { width: 9, ..base() },
             Spec { height: 7, ..base() },
@@ -269,6 +274,9 @@ mod tests {
             Spec { max_depth: Some(3), ..base() },
             Spec { camera_rays: Some(4), ..base() },
             Spec { roulette: Some("never".into()), ..base() },
+            Spec { clamp: Some("subpixel".into()), ..base() },
+            Spec { filter: Some("center".into()), ..base() },
+            Spec { epsilon: Some("0.001".into()), ..base() },
         ];
         for spec in others {
             assert_ne!(spec, base());

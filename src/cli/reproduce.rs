@@ -80,7 +80,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         guards::claim(&arguments.out, &mut files)?;
     }
     let Total { rows, failed, invalid, doubts } = run_all(&sweeps, profile, lab, talk)?;
-    // They take longer than a sixth of all quick experiments: `check --out` tries them when they are asked for.
+    // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `check --out`.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
         let all: Vec<&'static Case> = check::cases().collect();
         cases::write(&arguments.out, &all, &cases::try_all(&all, Effort::Quick, talk)?)?;
@@ -97,7 +97,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     arguments.strict.check(invalid)
 }
 
-/// What all sweeps did.
+/// The outcome of all sweeps.
 #[derive(Default)]
 struct Total {
     rows: usize,
@@ -106,7 +106,8 @@ struct Total {
     doubts: Doubts,
 }
 
-/// Runs all sweeps. The quick ones are over before an estimate of them would be of use; of the others, the time left is that of all.
+/// Runs all sweeps. Quick sweeps end before an estimate would be useful; for the others, the time left is of all
+/// sweeps.
 fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Result<Total> {
     let mut total = Total::default();
     let mut add = |summary: &Summary| {
@@ -131,11 +132,11 @@ fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Re
     Ok(total)
 }
 
-/// Moves what an earlier run left out of the way, whichever experiments and profile it had: measurements are never overwritten, and a report is of
-/// one run.
+/// Moves the results of an earlier run away, whatever its experiments and profile: measurements are never overwritten,
+/// and a report is of one run.
 fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
     let names: Vec<&str> = Definition::known(lab).map(|(name, _)| name).collect();
-    // All are asked before any is moved: a running sweep holds the lock of one of them.
+    // All are checked before any is moved: a running sweep may hold the lock of one of them.
     for rows in names.iter().map(|name| out.join(name).join("records.csv")) {
         if rows.is_file() {
             RecordsFile::check_idle(&rows)?;

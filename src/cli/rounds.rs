@@ -25,12 +25,12 @@ pub(super) struct Until {
 }
 
 impl Until {
-    /// Whether one round would not do.
+    /// Whether the options need more than one round.
     pub(super) fn is_multi_round(&self) -> bool {
         self.has_goal() || self.checkpoint.is_some()
     }
 
-    /// Whether something else than a number of samples says when to stop.
+    /// Whether an error or a time ends the render, and not a number of samples.
     fn has_goal(&self) -> bool {
         self.target_error.is_some() || self.time_limit.is_some()
     }
@@ -47,7 +47,7 @@ impl Until {
     }
 }
 
-/// Renders until the goal is reached: `spp` samples a pixel, if nothing else says when to stop.
+/// Renders until the goal is reached: `spp` samples per pixel, if there is no other goal.
 pub(super) fn render(
     arguments: &Until,
     setup: Setup,

@@ -90,11 +90,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let mut files = Files::default();
     let sweep = Sweep::new(&definition, &options, &mut files)?;
     report::claim("out", &arguments.out, &mut files)?;
-    // Other experiments may run into the same folder, each into its own; `reproduce` may not.
+    // Other experiments may run in the same folder, each in its own subfolder; `reproduce` may not.
     let _lock = lock_folder(&arguments.out, Sharing::Shared)?;
     let summary = sweep.run(talk)?;
     let page = report::write(lab, &arguments.out);
-    // Rows that failed are worse news than a page that could not be written.
+    // Failed rows are reported before a page that could not be written.
     if summary.failed > 0 {
         let problem = format!("{} of {} rows failed; their column `error` says why", summary.failed, summary.rows);
         return Err(Error::Check(problem));

@@ -48,7 +48,7 @@ impl Part {
     }
 }
 
-/// The task of a SLURM array: its number among those from the first to the last.
+/// The part of this task of a SLURM array: the task's number among those from the first to the last.
 fn of_array(cut: ShardCut) -> Result<Shard> {
     let read = |name: &str| {
         let text = env::var(name).unwrap_or_default();
@@ -59,7 +59,7 @@ fn of_array(cut: ShardCut) -> Result<Shard> {
     };
     let task = |suffix: &str| read(&format!("SLURM_ARRAY_TASK_{suffix}"));
     let (id, count, first, last) = (task("ID")?, task("COUNT")?, task("MIN")?, task("MAX")?);
-    // Of an array with gaps, as one that repeats the tasks that failed, nobody can tell how many parts there are.
+    // An array with gaps, such as one that repeats failed tasks, does not tell the number of parts.
     let shard = if last.checked_sub(first).and_then(|span| span.checked_add(1)) == Some(count) {
         id.checked_sub(first).and_then(|index| Shard::new(index + 1, count, cut))
     } else {
@@ -71,7 +71,7 @@ fn of_array(cut: ShardCut) -> Result<Shard> {
     })
 }
 
-/// Renders the part into its file, going on where an earlier process was.
+/// Renders the part into its file, from where an earlier process stopped; returns the number of invalid samples.
 pub(super) fn render(shard: Shard, setup: Setup, path: &Path, as_json: bool, talk: &Talk) -> Result<u64> {
     let samples = shard.samples(setup.settings().spp);
     let mut rounds = Rounds::of(setup, Some(shard))?;

@@ -1,4 +1,4 @@
-//! `pathmark simulate TRACE`: the jobs of a run on workers that this machine does not have.
+//! `pathmark simulate TRACE`: replays the jobs of a run on workers that this machine does not have.
 
 use super::output::print;
 use super::progress::Talk;
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     check_noise(arguments, &hardware, costs.iter().sum())?;
     let names = match &arguments.strategies[..] {
         [] => lab.strategies().iter().map(|entry| entry.name.to_string()).collect(),
-        // A process of one thread does its jobs in order.
+        // A process with one thread runs its jobs in order.
         names if !arguments.ranks.is_empty() => [names, &[SERIAL.to_string()]].concat(),
         names => names.to_vec(),
     };
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         files.claims("out", &arguments.out.join(name))?;
     }
     std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
-    // What was measured elsewhere or earlier is explained by what handing out cost then.
+    // Overheads calibrated with the trace explain it better than those of this machine now.
     let calibrated = arguments.trace.join("calibration.csv");
     let rows = if calibrated.is_file() && arguments.strategies.is_empty() {
         read_calibration(&calibrated)?
@@ -152,7 +152,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     print(&format!("figures and {table} in {}", arguments.out.display()))
 }
 
-/// What the user says that messages cost, or what the folder knows.
+/// The costs of messages from the user's file, or from the folder; none without either.
 fn messages(arguments: &Arguments, talk: &Talk) -> Result<Messages> {
     let own = arguments.trace.join(MESSAGES);
     if let Some(path) = arguments.messages.as_ref().or(own.is_file().then_some(&own)) {
@@ -162,7 +162,7 @@ fn messages(arguments: &Arguments, talk: &Talk) -> Result<Messages> {
     Ok(Messages::default())
 }
 
-/// 1..4096, or 1,2,768.
+/// Parses numbers of workers: `1..4096`, which doubles, or `1,2,768`.
 fn parse_workers(field: &'static str, text: &str) -> Result<Vec<usize>> {
     let number = |text: &str| text.trim().parse::<usize>().ok().filter(|workers| (1..=MOST_WORKERS).contains(workers));
     let list = match text.split_once("..") {
@@ -186,12 +186,12 @@ fn parse_workers(field: &'static str, text: &str) -> Result<Vec<usize>> {
     })
 }
 
-/// The slowest core: slower ones are no cores, and take long to replay.
+/// The slowest core: slower ones are unrealistic, and take long to replay.
 const SLOWEST: f64 = 0.01;
-/// The largest share of the time that interruptions may take, and the shortest that they may be.
+/// The largest share of the time for interruptions, and the shortest length of one.
 const MOST_NOISE: f64 = 0.9;
 const SHORTEST_MS: f64 = 0.001;
-/// Beyond that a simulation says nothing about any machine, and takes long to say it.
+/// Simulations of more workers are unrealistic, and take long.
 const MOST_WORKERS: usize = 1 << 16;
 
 fn hardware(arguments: &Arguments) -> Result<Hardware> {
@@ -216,7 +216,7 @@ fn hardware(arguments: &Arguments) -> Result<Hardware> {
     Ok(Hardware { speeds, noise })
 }
 
-/// What differs from cores that are all like this one.
+/// The differences from cores that are all like this one.
 fn hardware_in_words(arguments: &Arguments) -> String {
     let parts = [
         arguments.slow_core.map(|speed| format!(", one core of speed {speed}")),
@@ -238,10 +238,11 @@ fn parse_noise(text: &str) -> Result<Noise> {
     })
 }
 
-/// Interruptions in one replay, each of which is drawn: strategies times numbers of workers of so many take some seconds.
+/// The most interruptions in one replay. Each is drawn: with so many, replaying all strategies and numbers of workers
+/// takes some seconds.
 const MOST_INTERRUPTIONS: f64 = 1e6;
 
-/// Refuses noise that takes longer to draw than anyone waits for.
+/// Refuses noise that would take too long to draw.
 fn check_noise(arguments: &Arguments, hardware: &Hardware, work_s: f64) -> Result<()> {
     let slowest = match hardware.speeds {
         Speeds::Identical => 1.0,
@@ -257,13 +258,13 @@ fn check_noise(arguments: &Arguments, hardware: &Hardware, work_s: f64) -> Resul
     Err(error.allowed(format!("longer or fewer interruptions, at most {MOST_INTERRUPTIONS:.0} of them")).into())
 }
 
-/// Seconds after which no further round of predictions is begun.
+/// Estimated seconds of all rounds of predictions; there are at least one and at most five.
 const CHECK_S: f64 = 30.0;
-/// Seconds of a round from which on this machine is not predicted at all.
+/// Estimated seconds of a round above which this machine is not predicted.
 const MOST_CHECK_S: f64 = 120.0;
 
-/// Runs the trace's own workload on 1, 2, 4 and so on to all processors of this machine, each round beginning with a serial run for the costs.
-/// Doubts are about the times of all these runs.
+/// Runs the trace's own workload on 1, 2, 4 ... and all processors of this machine. Each round begins with a serial run
+/// for the job costs. The doubts are about the times of all these runs.
 fn predict_live(
     lab: &Lab,
     trace: &TraceFile,

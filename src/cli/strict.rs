@@ -1,4 +1,4 @@
-//! `--strict`: invalid samples are contained and told in any case; whether they are a failure is the user's choice.
+//! `--strict`: invalid samples are always left out and reported; with this option they are also a failure.
 
 use crate::error::{Error, Result};
 use clap::Args;
@@ -11,7 +11,7 @@ pub(super) struct Strict {
 }
 
 impl Strict {
-    /// Refuses that many invalid samples, if any are refused.
+    /// Fails if there are invalid samples and the option is set.
     pub(super) fn check(&self, count: u64) -> Result<()> {
         if !self.strict || count == 0 {
             return Ok(());

@@ -1,11 +1,11 @@
-//! How far several experiments have come together: one bar, in milliseconds of their estimate.
+//! Progress of several experiments together: one bar, in milliseconds of their estimate.
 
 use super::progress::Talk;
 use crate::experiment::{Plan, Progress};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Tells a `Talk` how far all experiments are, while each of them tells how far it is itself.
+/// The progress of all experiments for a `Talk`, from the progress of each experiment.
 pub(super) struct Whole<'a> {
     talk: &'a Talk,
     total_s: f64,
@@ -13,7 +13,7 @@ pub(super) struct Whole<'a> {
     pace: Mutex<Pace>,
 }
 
-/// What work took, beside its estimate.
+/// The time that work took, beside its estimate.
 struct Pace {
     at_s: f64,
     at: Instant,
@@ -22,7 +22,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// The work has come to that second of the estimate.
+    /// Records that the work has reached a second of the estimate.
     fn watch(&mut self, at_s: f64) {
         let (estimated_s, taken_s) = (at_s - self.at_s, self.at.elapsed().as_secs_f64());
         // Rows that an earlier run made take no time and say nothing about the pace.
@@ -39,13 +39,13 @@ impl Pace {
     }
 }
 
-/// Where the work stands, in seconds of the estimate.
+/// The position of the work, in seconds of the estimate.
 #[derive(Default)]
 struct Place {
     plan: Plan,
-    /// Before the experiment.
+    /// Start of the experiment.
     start_s: f64,
-    /// Before the step, the step's own, and its units.
+    /// Start of the step, its seconds, and its units.
     from_s: f64,
     step_s: f64,
     total: u64,
@@ -59,7 +59,7 @@ impl<'a> Whole<'a> {
         Self { talk, total_s, place: Mutex::new(Place::default()), pace: Mutex::new(pace) }
     }
 
-    /// The work has come to that second of the estimate; the time left, in words.
+    /// Records that the work has reached a second of the estimate; returns the time left in words.
     fn reach(&self, at_s: f64) -> String {
         let mut pace = self.pace.lock().unwrap_or_else(PoisonError::into_inner);
         pace.watch(at_s);
@@ -73,7 +73,7 @@ impl<'a> Whole<'a> {
         self.place.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next experiment begins.
+    /// Begins the next experiment.
     pub(super) fn enter(&self, plan: &Plan) {
         let mut place = self.place();
         let start_s = place.start_s + place.plan.seconds();
@@ -92,7 +92,7 @@ impl Progress for Whole<'_> {
         (place.from_s, place.step_s) = if title == place.plan.name {
             (cells_at, place.plan.cells_s)
         } else {
-            // Half of a reference; the halves of an experiment count alike.
+            // Half of a reference; all halves of an experiment count equally.
             (place.from_s, place.plan.references_s / place.plan.halves.max(1) as f64)
         };
         place.total = total;
@@ -109,7 +109,7 @@ impl Progress for Whole<'_> {
         self.talk.note(text);
     }
 
-    /// A step ends; the bar goes on with the next one.
+    /// Ends a step; the bar continues with the next one.
     fn end(&self) {
         let mut place = self.place();
         (place.from_s, place.step_s) = (place.from_s + place.step_s, 0.0);

@@ -1,4 +1,4 @@
-//! Jobs on their way to ranks.
+//! Distribution of jobs to ranks.
 
 use super::failed;
 use crate::error::{Error, Result};
@@ -14,22 +14,22 @@ use std::thread;
 use std::time::Instant;
 use std::vec::IntoIter;
 
-/// What getting jobs took.
+/// Number of requests for jobs, and the seconds of waiting for them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Wait {
     pub(super) requests: u64,
     pub(super) seconds: f64,
 }
 
-/// The answer to a rank for which there is no chunk left.
+/// The answer to a rank if no chunk is left.
 const NOTHING_LEFT: [u64; 2] = [0; 2];
 
-/// The chunks of a rule in the order of their numbers, for so many ranks that render.
+/// The chunks of a rule in the order of their numbers, for `ranks` ranks that render.
 fn chunks_of(rule: ChunkRule, jobs: usize, ranks: usize) -> Vec<Range<usize>> {
     rule.chunks(jobs, ranks.max(1)).collect()
 }
 
-/// What the ranks need to share jobs by a rule: made before the clock starts.
+/// The resources with which ranks share jobs by a rule; made before the clock starts.
 pub(super) struct HandOut<'a> {
     world: &'a World,
     way: Way,
@@ -47,7 +47,7 @@ impl<'a> HandOut<'a> {
         Ok(Self { world, way: rule.way(), counter })
     }
 
-    /// Does this rank's jobs until none are left for it.
+    /// Runs this rank's jobs until none is left for it.
     pub(super) fn run(&mut self, share: &mut Share<'_>) -> Result<Wait> {
         let (world, jobs) = (self.world, share.plan().len());
         match self.way {
@@ -76,13 +76,13 @@ impl<'a> HandOut<'a> {
         }
     }
 
-    /// Frees what was made, when all ranks are here.
+    /// Frees the counter, once all ranks have arrived.
     pub(super) fn free(self) -> Result<()> {
         self.counter.map_or(Ok(()), |counter| counter.free().map_err(failed))
     }
 }
 
-/// Waits for something, and adds how long that took.
+/// Calls `get`, and adds its seconds and one request to `wait`.
 fn timed<T>(wait: &mut Wait, get: impl FnOnce() -> Result<T>) -> Result<T> {
     let begin = Instant::now();
     let got = get()?;
@@ -91,7 +91,7 @@ fn timed<T>(wait: &mut Wait, get: impl FnOnce() -> Result<T>) -> Result<T> {
     Ok(got)
 }
 
-/// While a rank renders a small chunk its request for the next is under way.
+/// Renders chunks by counter. While a rank renders a small chunk, its request for the next one is already under way.
 fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let mut wait = Wait::default();
     let jobs = share.plan().len();
@@ -113,7 +113,8 @@ fn counted(counter: &mut Counter<'_>, chunks: &[Range<usize>], world: &World, sh
     Ok(wait)
 }
 
-/// Renders chunk after chunk on another thread, while this one, which alone may call MPI, gets the chunks and looks after the other ranks.
+/// Renders chunk after chunk on another thread. This thread, the only one that may call MPI, gets the chunks and looks
+/// after the other ranks.
 fn render_attentively(
     share: &mut Share<'_>,
     mut next: impl FnMut(Seen) -> Result<Option<Range<usize>>>,
@@ -124,7 +125,7 @@ fn render_attentively(
         let (give, given) = channel();
         let render = move || {
             let mut seen = Seen::default();
-            // After an error of MPI nobody answers.
+            // After an error of MPI no answer comes.
             while ask.send(seen).is_ok()
                 && let Ok(chunk) = given.recv()
             {
@@ -139,7 +140,7 @@ fn render_attentively(
             let request = asked.recv_timeout(LOOK);
             look()?;
             match request {
-                // It is there: it waits for the answer.
+                // The rendering thread is there: it waits for the answer.
                 Ok(seen) => match next(seen)? {
                     Some(chunk) => give.send(chunk).unwrap_or_default(),
                     None => break,
@@ -153,7 +154,7 @@ fn render_attentively(
     })
 }
 
-/// Asks rank 0 for chunks, and tells it how long the last one took.
+/// Asks rank 0 for chunks, and reports how long the last one took.
 fn ask(world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let (mut wait, mut seen) = (Wait::default(), Seen::default());
     loop {
@@ -172,7 +173,8 @@ fn ask(world: &World, share: &mut Share<'_>) -> Result<Wait> {
     }
 }
 
-/// Renders, and says how long that took. Jobs of several threads count as if they had come one after the other in that time.
+/// Renders, and returns the job durations. Jobs of several threads count as if they had run one after the other in the
+/// elapsed time.
 fn seen_rendering<'a>(
     jobs: Range<usize>,
     share: &mut Share<'a>,
@@ -189,19 +191,19 @@ fn seen_rendering<'a>(
     Ok(durations().map(|duration| duration * seconds / busy_s).collect())
 }
 
-/// What rank 0 hands out.
+/// The chunks that rank 0 hands out.
 enum Stock {
-    /// Chunks of sizes that are known.
+    /// Chunks of known sizes.
     Chunks(IntoIter<Range<usize>>),
-    /// Chunks by how fast the ranks have been.
+    /// Chunks whose sizes depend on how fast the ranks have been.
     Learned(LearnedRule, Box<Ledger>),
 }
 
-/// The other side of [`ask`].
+/// Rank 0's side of [`ask`].
 struct Desk<'a> {
     world: &'a World,
     stock: Stock,
-    /// Ranks that have not been told that nothing is left.
+    /// Ranks that have not yet been told that nothing is left.
     asking: usize,
 }
 
@@ -221,7 +223,7 @@ impl<'a> Desk<'a> {
         }
     }
 
-    /// Answers the requests that are there.
+    /// Answers all pending requests.
     fn answer_who_waits(&mut self) -> Result<()> {
         while self.asking > 0 && self.world.has_message().map_err(failed)? {
             self.answer()?;
@@ -229,7 +231,7 @@ impl<'a> Desk<'a> {
         Ok(())
     }
 
-    /// Tells all who will still ask that nothing is left.
+    /// Answers the remaining requests, until every rank has been told that nothing is left.
     fn answer_the_last(&mut self) -> Result<Wait> {
         let mut wait = Wait::default();
         while self.asking > 0 {
@@ -264,7 +266,7 @@ fn answer_all(stock: Stock, world: &World) -> Result<Wait> {
     Ok(Wait::default())
 }
 
-/// Answers between its own chunks, as a program without further threads does.
+/// Answers between rank 0's own chunks, as a program with a single thread does.
 fn answer_between_chunks(stock: Stock, world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let (mut desk, mut seen) = (Desk::new(stock, world), Seen::default());
     loop {
@@ -275,7 +277,7 @@ fn answer_between_chunks(stock: Stock, world: &World, share: &mut Share<'_>) -> 
     desk.answer_the_last()
 }
 
-/// Answers at any time: chunks of learned rules are large at first, and who asks should not wait for one.
+/// Answers at any time: the first chunks of learned rules are large, and a rank that asks should not wait for one.
 fn answer_at_once(stock: Stock, world: &World, share: &mut Share<'_>) -> Result<Wait> {
     let desk = RefCell::new(Desk::new(stock, world));
     let next = |seen| Ok(desk.borrow_mut().take(0, seen));

@@ -1,8 +1,8 @@
-//! What MPI costs between the processes that a launcher started: `mpiexec -n 2 pathmark message-costs`.
+//! Costs of MPI between the processes that a launcher started: `mpiexec -n 2 pathmark message-costs`.
 //!
-//! Rank 1 asks, rank 0 answers, and the others wait. How long a fetch-and-op takes depends on the library: some complete it without rank 0, others
-//! only while rank 0 is inside a call of MPI. So it is timed while rank 0 waits, while it computes and looks after MPI now and then, as it does
-//! when it renders, and while it computes without a look.
+//! Rank 1 asks, rank 0 answers, and the others wait. The duration of a fetch-and-op depends on the library: some
+//! complete it without rank 0, others only while rank 0 is inside a call of MPI. It is therefore timed while rank 0
+//! waits, while it computes and looks after MPI now and then (as in a render), and while it computes without a look.
 
 use super::{Cluster, failed};
 use crate::analysis::quantile::{median, median_interval};
@@ -15,12 +15,12 @@ use std::hint::spin_loop;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Repetitions of what takes microseconds, and of what may take as long as a computation.
+/// Repetitions of an operation of microseconds, and of one that may take as long as a computation.
 const MANY: usize = 2000;
 const FEW: usize = 20;
-/// How long rank 0 computes without a look after MPI.
+/// Time for which rank 0 computes without a look after MPI.
 const COMPUTATION: Duration = Duration::from_millis(20);
-/// Words that each rank gives to a gather: those of a film of 512x384 pixels, seven words a pixel, shared by two ranks.
+/// Words that each rank gives to a gather: a film of 512x384 pixels, seven words per pixel, shared by two ranks.
 const GATHERED: usize = 7 * 512 * 384 / 2;
 const LEVEL: f64 = 0.95;
 
@@ -30,27 +30,27 @@ const GATHER: &str = "a gather of 5 MB from each rank";
 const WAITS: &str = "waits";
 const LOOKS: &str = "computes, and looks every ms";
 
-/// What was measured between some ranks, as `message-costs --json` prints it.
+/// The costs measured between some ranks, as `message-costs --json` prints them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MessageCosts {
-    /// How many ranks there were.
+    /// Number of ranks.
     pub ranks: usize,
-    /// Name and version of the library.
+    /// Name and version of the MPI library.
     pub mpi: String,
     /// The operations.
     pub costs: Vec<MessageCost>,
 }
 
-/// What one operation cost.
+/// The cost of one operation.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MessageCost {
     /// The operation.
     pub operation: String,
-    /// What rank 0 does meanwhile.
+    /// The activity of rank 0 meanwhile.
     pub rank_0: String,
-    /// How often it was timed.
+    /// Number of repetitions.
     pub repetitions: u64,
     /// Median seconds.
     pub median_s: f64,
@@ -61,7 +61,7 @@ pub struct MessageCost {
 }
 
 impl MessageCosts {
-    /// Reads what `message-costs --json` printed.
+    /// Reads the output of `message-costs --json`.
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path)?;
         serde_json::from_str(&text).map_err(|e| {
@@ -89,7 +89,7 @@ impl MessageCosts {
         self.median_s(FETCH, Some(WAITS))
     }
 
-    /// Seconds of a fetch-and-op after another, while rank 0 renders and looks after MPI every [`LOOK`].
+    /// Seconds of one fetch-and-op among many in sequence, while rank 0 renders and looks after MPI every [`LOOK`].
     pub fn fetch_while_rendering_s(&self) -> f64 {
         self.median_s(FETCH, Some(LOOKS))
     }
@@ -102,7 +102,7 @@ impl MessageCosts {
 }
 
 impl Cluster {
-    /// Times the operations; rank 0 has the costs.
+    /// Times the operations; rank 0 gets the costs, the others `None`.
     pub fn message_costs(self) -> Result<Option<MessageCosts>> {
         if self.size() < 2 {
             let error = InputError::new("ranks", self.size().to_string(), "messages need two processes");
@@ -121,7 +121,7 @@ impl Cluster {
         Ok(is_first.then_some(told))
     }
 
-    /// Seconds of requests that rank 1 made.
+    /// Seconds of each request by rank 1; empty on other ranks.
     fn requests(&self) -> Result<Vec<f64>> {
         let world = &self.world;
         let mut word = [0];
@@ -142,7 +142,8 @@ impl Cluster {
         }
     }
 
-    /// Seconds of fetch-and-ops that rank 1 did in the memory of rank 0, which computes for `pause` between two looks after MPI.
+    /// Seconds of fetch-and-ops by rank 1 in the memory of rank 0, which computes for `pause` between two looks after
+    /// MPI.
     fn fetches(&self, pause: Option<Duration>, repetitions: usize) -> Result<Vec<f64>> {
         let world = &self.world;
         let mut counter = Counter::new(world).map_err(failed)?;
@@ -170,7 +171,7 @@ impl Cluster {
         Ok(seconds)
     }
 
-    /// Seconds of gathers, as rank 0 saw them.
+    /// Seconds of gathers, as measured on rank 0.
     fn gathers(&self) -> Result<Vec<f64>> {
         let words = vec![0; GATHERED];
         let seconds = timed(FEW, || {
@@ -180,7 +181,7 @@ impl Cluster {
         Ok(if self.is_first() { seconds } else { Vec::new() })
     }
 
-    /// What the rank that timed an operation tells the others of it.
+    /// The cost of an operation, sent to all ranks by the rank that timed it.
     fn told(&self, operation: &str, rank_0: &str, seconds: &[f64]) -> Result<MessageCost> {
         let interval = median_interval(seconds, LEVEL);
         let own = [median(seconds), interval.map(|own| own.low), interval.map(|own| own.high)];
@@ -193,7 +194,7 @@ impl Cluster {
     }
 }
 
-/// Uses the processor for so long.
+/// Keeps the processor busy for `time`.
 fn compute(time: Duration) {
     let begin = Instant::now();
     while begin.elapsed() < time {
@@ -201,7 +202,7 @@ fn compute(time: Duration) {
     }
 }
 
-/// Does something again and again; the seconds of each time.
+/// Repeats an operation, and returns the seconds of each repetition.
 fn timed(repetitions: usize, mut operation: impl FnMut() -> Result<()>) -> Result<Vec<f64>> {
     let one = |_| {
         let begin = Instant::now();

@@ -1,8 +1,8 @@
 //! One render by several processes, on one machine or on many, by MPI: `mpiexec -n 4 pathmark render cornell --ranks guided`.
 //!
-//! A rule says which rank does which jobs of the plan; inside a rank a strategy spreads them over its threads. Any rule goes with any
-//! strategy, and the film has the bits that one process gives: what travels is the sum of each piece, and rank 0 puts the pieces
-//! together by their place.
+//! A rule assigns the jobs of the plan to ranks; within a rank a strategy spreads them over its threads. Any rule works
+//! with any strategy. The film has the same bits as the film of one process: ranks send the sums of each piece, and
+//! rank 0 puts the pieces in their places.
 
 mod hand_out;
 mod message_costs;
@@ -23,33 +23,33 @@ use std::ops::Range;
 use std::path::Path;
 use std::slice::from_ref;
 
-/// What one rank did.
+/// Statistics of one rank.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RankRow {
     /// Its number, from 0.
     pub rank: usize,
-    /// Jobs that it did.
+    /// Jobs that it ran.
     pub jobs: u64,
     /// Times that it asked for jobs.
     pub requests: u64,
-    /// Seconds that its workers spent on jobs, together.
+    /// Seconds that its workers spent on jobs, in total.
     pub busy_s: f64,
     /// Seconds that it waited for answers, and for the other ranks at the end.
     pub waiting_s: f64,
 }
 
-/// What all ranks came to, beside the film.
+/// Statistics of all ranks, beside the film.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tally {
-    /// What each rank did, over all rounds.
+    /// Statistics of each rank, over all rounds.
     pub ranks: Vec<RankRow>,
     /// Seconds to bring all pieces to rank 0, over all rounds.
     pub gather_s: f64,
-    /// Name and version of the library.
+    /// Name and version of the MPI library.
     pub library: String,
 }
 
-/// The processes that a launcher started together. The library is opened here, and nothing else is done yet.
+/// The processes that a launcher started together. [`Cluster::begin`] opens the library and starts MPI.
 pub struct Cluster {
     world: World,
 }
@@ -69,34 +69,35 @@ fn failed(error: MpiError) -> Error {
 }
 
 impl Cluster {
-    /// Opens the library that the user names, or one of those that systems have.
+    /// Opens the MPI library that the user names, or one that systems usually have.
     pub fn begin(library: Option<&Path>) -> Result<Self> {
         Ok(Self { world: World::begin(library).map_err(failed)? })
     }
 
-    /// Whether this is the rank that has the image in the end, and speaks for all.
+    /// Whether this is rank 0, which has the image in the end and reports for all.
     pub fn is_first(&self) -> bool {
         self.world.rank() == 0
     }
 
-    /// How many ranks there are.
+    /// Number of ranks.
     pub fn size(&self) -> usize {
         self.world.size()
     }
 
-    /// Renders; rank 0 has what one process would have given, with the workers of all ranks. After an error of one rank the others cannot go on,
-    /// and are ended.
+    /// Renders. Rank 0 gets the outcome that one process would give, with the workers of all ranks; the others get
+    /// `None`. After an error of one rank the others cannot continue, and are ended.
     pub fn render(self, setup: &Setup, rule: &RankRule) -> Result<Option<(Outcome, Tally)>> {
         let ranks = self.agreed(setup, rule, "at once")?;
         let mut tally = Tally::new(&ranks.world);
-        // A process that ends with an error and without MPI's farewell makes the launcher end the others.
+        // If a process ends with an error and without finalizing MPI, the launcher ends the others.
         let gathered = ranks.round(setup, rule, from_ref(&(0..setup.settings().spp)), &mut tally)?;
         let outcome = gathered.map(|gathered| setup.assembled(gathered)).transpose()?;
         ranks.world.end().map_err(failed)?;
         Ok(outcome.map(|outcome| (outcome, tally)))
     }
 
-    /// The same, if all ranks can do this and were asked to. If not they part in peace: each says so.
+    /// Returns `self` if all ranks can render this and have the same task. If tasks differ, every rank leaves MPI in order
+    /// and gets the error. A rule that does not fit the ranks is refused before they talk, so MPI's launcher ends them.
     fn agreed(self, setup: &Setup, rule: &RankRule, way: &str) -> Result<Self> {
         rule.check(self.size())?;
         match self.check_same(setup, rule, way) {
@@ -108,7 +109,7 @@ impl Cluster {
         }
     }
 
-    /// Refuses ranks that were given something else to do.
+    /// Refuses ranks whose task differs from rank 0's.
     fn check_same(&self, setup: &Setup, rule: &RankRule, way: &str) -> Result<()> {
         let settings = setup.settings();
         let text = format!(
@@ -130,7 +131,7 @@ impl Cluster {
         }
     }
 
-    /// One round of these sections; rank 0 has all jobs.
+    /// Renders one round of these sections; rank 0 gets all jobs, the others `None`.
     fn round(
         &self,
         setup: &Setup,

@@ -1,7 +1,7 @@
-//! Several rounds by all ranks: until an accuracy, until time is up, with checkpoints.
+//! Rounds by all ranks: until an accuracy is reached or time is up, with checkpoints.
 //!
-//! Rank 0 alone knows the film and the goal. Before each round it tells the others from which sample to which it goes; they do their share, and
-//! forget it. So a run that was ended can go on with another number of ranks.
+//! Rank 0 alone knows the film and the goal. Before each round it sends the range of samples to the others; they render
+//! their share, and forget it. A run that was ended can therefore continue with another number of ranks.
 
 use super::{Cluster, Tally, failed};
 use crate::error::{Error, Result};
@@ -9,11 +9,12 @@ use crate::film::GrowingFilm;
 use crate::lab::RankRule;
 use crate::measure::{Extend, RoundTimes, Rounds, Setup};
 
-/// The samples of a round that is none: the end.
+/// Sent instead of a range of samples: no round follows.
 const NO_MORE: [u64; 2] = [0; 2];
 
 impl Cluster {
-    /// Renders in rounds. `lead` is called on rank 0 with what extends its film, and decides when to stop; the other ranks follow.
+    /// Renders in rounds. On rank 0, calls `lead` with a function that extends its film; `lead` decides when to stop.
+    /// The other ranks follow, and get `None`.
     pub fn render_in_rounds<T>(
         self,
         setup: Setup,
@@ -34,7 +35,7 @@ impl Cluster {
             is_broken = false;
             Ok(times)
         });
-        // Where a round failed, the others do not listen any more; the launcher ends them.
+        // After a failed round the others no longer listen; the launcher ends them.
         if !is_broken {
             ranks.tell(NO_MORE)?;
             ranks.world.end().map_err(failed)?;
@@ -62,7 +63,7 @@ impl Cluster {
         }
     }
 
-    /// What rank 0 tells all ranks.
+    /// Sends rank 0's `samples` to all ranks, and returns them.
     fn tell(&self, samples: [u64; 2]) -> Result<[u64; 2]> {
         let all = self.world.all_gather(&samples).map_err(failed)?;
         Ok(all.first_chunk().copied().unwrap_or(NO_MORE))

@@ -1,4 +1,4 @@
-//! Jobs as words that travel between ranks, and back. Sums keep all their bits.
+//! Jobs encoded as words for messages between ranks, and decoded again. Sums keep all their bits.
 
 use crate::film::{Plan, TileBuffer};
 use crate::kernel::Counts;
@@ -9,7 +9,7 @@ const HEAD: usize = 11;
 /// Words of a pixel: three sums, three sums of squares, and the number of samples.
 const PIXEL: usize = 7;
 
-/// The words of some jobs, whose rank has workers from number `first_worker` on.
+/// Encodes jobs of a rank whose workers are numbered from `first_worker` on.
 pub(super) fn words(done: &[DoneJob], first_worker: u32) -> Vec<u64> {
     let pixels: usize = done.iter().map(|job| job.tile.bounds().area()).sum();
     let mut words = Vec::with_capacity(done.len() * HEAD + pixels * PIXEL);
@@ -30,7 +30,7 @@ pub(super) fn words(done: &[DoneJob], first_worker: u32) -> Vec<u64> {
     words
 }
 
-/// The jobs of a plan in some words; `None` if these are not what [`words`] gives.
+/// Decodes the jobs of a plan; `None` if [`words`] cannot have encoded them.
 pub(super) fn jobs(mut words: &[u64], plan: &Plan) -> Option<Vec<DoneJob>> {
     let mut done = Vec::new();
     while !words.is_empty() {

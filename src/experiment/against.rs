@@ -1,7 +1,8 @@
 //! A sweep of two builds in turns: `run EXPERIMENT --against OLD`.
 //!
-//! Each repetition of each cell is run by both, one right after the other, and who comes first alternates. A drift of the machine's speed falls
-//! on both rows of a pair, so their ratio is free of it. The other build's rows lie in `OUT/against`, as those of a sweep of its own.
+//! Both builds run each repetition of each cell, one right after the other, and alternate in going first. Drift of the
+//! machine's speed affects both rows of a pair equally, so their ratio is free of it. The other build's rows lie in
+//! `OUT/against`, like those of a separate sweep.
 
 use super::cell_process::{CELL_ABOUT, CellJob, PointJob};
 use super::records_file::RecordsFile;
@@ -14,10 +15,10 @@ use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The folder below that of the sweep's results.
+/// The folder of the other build's rows, inside the folder of results.
 const FOLDER: &str = "against";
 
-/// The other build, and where its rows go.
+/// The other build, and the files for its rows.
 pub(super) struct Against {
     program: PathBuf,
     folder: PathBuf,
@@ -26,12 +27,12 @@ pub(super) struct Against {
     has_rows: bool,
 }
 
-/// Where the other build's rows of an experiment lie.
+/// The folder of the other build's rows of an experiment.
 pub fn folder_against(out: &Path, name: &str) -> PathBuf {
     out.join(FOLDER).join(name)
 }
 
-/// Refuses what is no program, and programs that do not know cells, before any work.
+/// Refuses a file that is no program, and a program that cannot run cells, before the sweep starts.
 pub(super) fn check_program(program: &Path) -> Result<()> {
     let refused = |problem: &str| {
         let error = InputError::new("against", program.display().to_string(), problem);
@@ -41,7 +42,7 @@ pub(super) fn check_program(program: &Path) -> Result<()> {
     if !is_program {
         return refused("is no program");
     }
-    // With its place, because a name without one would be looked for elsewhere.
+    // An absolute path, because a name without a folder would be searched for elsewhere.
     let program = fs::canonicalize(program).map_err(|e| Error::system("finding", program, e))?;
     let help = Command::new(&program).args(["cell", "--help"]).stdin(Stdio::null()).output();
     match help {
@@ -61,16 +62,16 @@ impl Against {
         Ok(Self { program, folder, run, file, has_rows: false })
     }
 
-    /// Runs a repetition of a cell; gives its rows.
+    /// Runs a repetition of a cell; returns its rows.
     pub(super) fn run(&mut self, job: &CellJob) -> Result<Vec<Record>> {
-        // Images and traces are kept of one build.
+        // Images and traces are kept of this build only.
         let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
         let job = CellJob { points, trace: None, ..job.clone() };
         let mut rows = Vec::new();
         for record in job.run_in_child_of(Ok(self.program.clone())) {
             let record = Record { order: job.order, ..record };
             if !self.has_rows {
-                // The rows say of which build they are.
+                // The rows say which build measured them.
                 self.run.machine.commit.clone_from(&record.commit);
                 self.run.machine.dirty = record.dirty;
                 self.run.write(&self.folder.join(MACHINE))?;

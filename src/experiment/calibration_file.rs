@@ -1,4 +1,4 @@
-//! `calibration.csv`: what handing out empty jobs cost on the machine of a sweep.
+//! `calibration.csv`: the costs of handing out empty jobs on the machine of a sweep.
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};

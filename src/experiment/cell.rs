@@ -7,30 +7,30 @@ use crate::measure::{AXES, Axis, ImageKey, Settings, Setup, available_threads, s
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
-    /// The settings in one word: the key under which a killed sweep finds what it has done.
+    /// The settings in one word: the key by which a resumed sweep finds its finished rows.
     pub id: String,
     /// The settings.
     pub settings: Settings,
     /// The scene as it was when the cell was made.
     pub scene: SceneVersion,
-    /// Its rows: one, or the points of its curve, by samples per pixel.
+    /// Its rows: one, or the points of its curve, in the order of samples per pixel.
     pub points: Vec<CellPoint>,
-    /// Samples that one of this machine's processors has to render: how long it takes, in the same unit for all cells.
+    /// Samples for each processor of this machine: an estimate of its time, in the same unit for all cells.
     pub weight: u64,
-    /// The most repetitions that its matrix allows, whatever its experiment has.
+    /// The most repetitions that its matrix allows; `None` without a limit.
     pub at_most: Option<u32>,
     /// The other program that renders it, if it is not this one.
     pub external: Option<External>,
 }
 
-/// A row that a cell gives.
+/// A row of a cell.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CellPoint {
-    /// Its key: the cell's, or for a point of a curve what the cell of so many samples would have, and which curve it is of.
+    /// Its key. For a point of a curve: the key of a cell with so many samples, followed by the name of the curve.
     pub id: String,
     /// Samples per pixel.
     pub spp: u32,
-    /// What tells images apart: rows with the same word must have the same checksum.
+    /// The image in one word: rows with the same word must have the same checksum.
     pub image: String,
 }
 
@@ -42,17 +42,17 @@ impl CellPoint {
 }
 
 impl Cell {
-    /// Its repetitions in an experiment of so many.
+    /// Its repetitions in an experiment of `others` repetitions.
     pub(super) fn repetitions(&self, others: u32) -> u32 {
         self.at_most.map_or(others, |most| most.min(others))
     }
 
-    /// Whether it is one after the other on one thread.
+    /// Whether it runs its jobs one after the other on one thread.
     pub(super) fn is_serial(&self) -> bool {
         self.settings.is_serial()
     }
 
-    /// Whether it is a serial run of the other's image, in whatever pieces.
+    /// Whether it is a serial run of the other's image, with any decomposition.
     pub(super) fn is_baseline_of(&self, other: &Self) -> bool {
         let image = |cell: &Self| Settings {
             strategy: String::new(),
@@ -65,7 +65,7 @@ impl Cell {
         self.is_serial() && image(self) == image(other)
     }
 
-    /// The cell of a setup. What a strategy ignores does not tell cells apart.
+    /// The cell of a setup. Settings that its strategy ignores do not tell cells apart.
     pub fn new(setup: &Setup) -> Self {
         Self::with_points(setup, &[setup.settings().spp], "")
     }
@@ -89,7 +89,7 @@ impl Cell {
         if settings.output != Settings::default().output {
             schedule = format!("{schedule}/{}", settings.output);
         }
-        // An id names only what differs from the default.
+        // An id names only settings that differ from the default.
         for axis in AXES.iter().filter(|axis| axis.of_light && !axis.changes_image) {
             let value = axis.show(&settings);
             if value != axis.show(&Settings::default()) {

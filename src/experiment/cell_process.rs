@@ -1,9 +1,9 @@
-//! One repetition of one cell, in a process of its own: memory, caches, CPU time and thread counts of one run are not those of another,
-//! and a crash is a row instead of the end of the sweep.
+//! Cell processes: each repetition of a cell runs in its own process. Memory, caches, CPU time and thread counts of two
+//! runs are therefore separate, and a crash gives a failed row instead of ending the sweep.
 //!
-//! The parent writes a [`CellJob`] as a line of JSON to the child's standard input and keeps that open; the child answers with its
-//! rows as JSON on its standard output. A child whose input ends has lost its parent and stops, and with it what it started, so that no orphan
-//! disturbs the sweep that goes on in its place.
+//! The parent writes a [`CellJob`] as a line of JSON to the child's standard input and keeps that open; the child
+//! answers with its rows as JSON on its standard output. A child whose input ends has lost its parent. It stops,
+//! together with all processes it started, so that no orphan disturbs a resumed sweep.
 
 use super::external::filled;
 use super::object_pixels::{object_pixels, only};
@@ -27,43 +27,44 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-/// What the help of the verb `cell` begins with. A program whose help says so can run cells, so later builds must keep these words.
+/// The beginning of the help of the verb `cell`. A program whose help contains it can run cells, so later builds must
+/// keep these words.
 pub const CELL_ABOUT: &str = "One cell of a sweep, read from standard input";
 
-/// What a child is asked to do.
+/// The job of a child process.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellJob {
     /// The experiment's name.
     pub experiment: String,
-    /// The rows that it gives, by samples per pixel: one, or those of a curve.
+    /// Its rows, in the order of samples per pixel: one, or the points of a curve.
     pub points: Vec<PointJob>,
-    /// Which repetition.
+    /// The number of the repetition.
     pub repetition: u32,
     /// Position in the sweep.
     pub order: u64,
-    /// What to run.
+    /// The settings to run.
     pub settings: Settings,
-    /// The scene as the experiment began with it.
+    /// The scene as it was when the experiment began.
     pub scene: SceneVersion,
     /// The two half-references, if errors are to be measured.
     pub references: Option<[HalfFile; 2]>,
-    /// The object on whose pixels errors are measured besides.
+    /// The object on whose pixels errors are measured, too.
     #[serde(default)]
     pub object: Option<String>,
-    /// The other program that renders it, and the folder where that was made.
+    /// The other program that renders it, and the folder in which that was built.
     pub external: Option<(External, PathBuf)>,
-    /// Where to keep the trace; of a curve there is none.
+    /// The path for the trace; a curve has none.
     pub trace: Option<PathBuf>,
 }
 
 /// One row of a cell.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PointJob {
-    /// The row's word.
+    /// The row's key.
     pub cell: String,
     /// Samples per pixel.
     pub spp: u32,
-    /// Where to keep the image.
+    /// The path for the image, if it is kept.
     pub image: Option<PathBuf>,
 }
 
@@ -78,13 +79,13 @@ impl CellJob {
         }
     }
 
-    /// Runs the cell in a child and gives a row for each point; whatever goes wrong there becomes failed rows.
+    /// Runs the cell in a child process and returns a row for each point; an error there becomes failed rows.
     pub(super) fn run_in_child(&self) -> Vec<Record> {
         let own = env::current_exe().map_err(|e| format!("finding this program: {e}"));
         self.run_in_child_of(own)
     }
 
-    /// Runs the cell in a child that is another build of the program.
+    /// Runs the cell in a child process of `program`, which may be another build.
     pub(super) fn run_in_child_of(&self, program: std::result::Result<PathBuf, String>) -> Vec<Record> {
         let rows = program.and_then(|program| self.child(&program)).and_then(|rows| {
             let wrong = || format!("the cell's process gave {} rows instead of {}", rows.len(), self.points.len());
@@ -135,14 +136,15 @@ impl CellJob {
         self.curve(lab, references.as_ref())
     }
 
-    /// The setup of so many samples, of the scene that the experiment began with.
+    /// The setup with `spp` samples per pixel; refuses a scene that has changed since the experiment began.
     fn setup(&self, lab: &Lab, spp: u32) -> Result<Setup> {
         let setup = lab.prepare(Settings { spp, ..self.settings.clone() })?;
         self.scene.check(&setup.hash())?;
         Ok(setup)
     }
 
-    /// The rows of a cell for a GPU where there is none: no failures, but nothing measured either.
+    /// The rows of a cell for a GPU on a machine without one: they have not failed, but have no measurements. `None`
+    /// with a GPU.
     fn without_device(&self, lab: &Lab) -> Result<Option<Vec<Record>>> {
         let setup = self.setup(lab, self.settings.spp)?;
         let is_without = setup.scene().is_some_and(|(_, choice)| choice.lacks_device());
@@ -154,8 +156,8 @@ impl CellJob {
         Ok(is_without.then(|| self.points.iter().map(row).collect()))
     }
 
-    /// The rows of a curve. Rounds that end inside a block of samples would render its samples twice and time them twice, so an image of fewer
-    /// samples than a block is rendered by itself; from there on one render grows.
+    /// The rows of a curve. A round that ends inside a block of samples would render and time samples twice. An image
+    /// with fewer samples than a block is therefore rendered separately; from there on one render grows.
     fn curve(&self, lab: &Lab, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
         let rounds = |spp: u32| Rounds::new(self.setup(lab, spp)?);
         let mut long = rounds(self.settings.spp)?;
@@ -210,7 +212,7 @@ impl CellJob {
         self.points.iter().map(row).collect()
     }
 
-    /// The rows of processes, each point by processes of its own.
+    /// The rows of a cell that several processes render; each point starts new processes.
     fn by_processes(&self, lab: &Lab, ranks: u16, rule: &str, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
         let row = |point: &PointJob| {
             let settings = Settings { spp: point.spp, ..self.settings.clone() };
@@ -273,14 +275,14 @@ impl CellJob {
     }
 }
 
-/// The child's side: reads a job, answers with its rows.
+/// The child's side: reads a job and prints its rows.
 pub fn child_main(lab: &Lab) -> Result<()> {
     let mut text = String::new();
     std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
     let job: CellJob = serde_json::from_str(&text)
         .map_err(|e| InputError::new("standard input", "", format!("is no description of a cell: {e}")))?;
     let wait_for_the_end = || {
-        // Nothing more is ever sent: this returns when the parent is gone.
+        // The parent sends nothing more, so this returns when it is gone.
         let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());
         process_group::end_own_group();
     };

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-/// A chapter. Experiments name theirs; the page has the titles.
+/// A chapter of the report page. Each experiment names its chapter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Chapter {
@@ -12,7 +12,7 @@ pub enum Chapter {
     Scheduling,
     /// Guards, and inputs on which simpler programs fail.
     HardInputs,
-    /// Effects that a scene calls for, and their price.
+    /// Effects that a scene uses, and their price.
     Effects,
     /// Experiments that name no chapter.
     #[default]
@@ -23,7 +23,7 @@ impl Chapter {
     /// All chapters, in the order of the page.
     pub const ALL: [Self; 5] = [Self::Accuracy, Self::Scheduling, Self::HardInputs, Self::Effects, Self::Others];
 
-    /// What links to the chapter point at.
+    /// The anchor at which links to the chapter point.
     pub fn anchor(self) -> &'static str {
         match self {
             Self::Accuracy => "chapter-accuracy",

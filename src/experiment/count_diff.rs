@@ -1,4 +1,4 @@
-//! Two measurements of the same cells by what was counted: work that the program does, whatever the machine is busy with.
+//! Comparison of two measurements of the same cells by counts: the program's work, however busy the machine is.
 
 use super::diff::{Side, sides};
 use crate::error::Result;
@@ -7,10 +7,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A number of a row, if it was counted.
+/// Reads a count of a row; `None` if it was not counted.
 type Count = fn(&Record) -> Option<u64>;
 
-/// What is counted, as the columns are called. None of it depends on who renders when.
+/// The counts, by the names of their columns. None of them depends on the schedule.
 const COUNTS: [(&str, Count); 5] = [
     ("jobs", |row| Some(row.jobs as u64)),
     ("paths", |row| row.paths),
@@ -19,33 +19,34 @@ const COUNTS: [(&str, Count); 5] = [
     ("primitive_tests", |row| row.primitive_tests),
 ];
 
-/// Instructions are counted beside the rows. They repeat to within this share: where memory lies differs from run to run.
+/// The column of instructions, which are counted beside the rows.
 const INSTRUCTIONS: &str = "instructions";
+/// Instruction counts repeat to within this share: memory addresses differ from run to run.
 const REPEATS: f64 = 1e-3;
 
-/// A number of a cell in both measurements.
+/// A count of a cell in both measurements.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct CountDiff {
     /// The cell.
     pub cell: String,
     /// The column.
     pub column: &'static str,
-    /// The largest number of its repetitions before.
+    /// The largest count of its repetitions in the old measurement.
     pub old: u64,
-    /// And after.
+    /// The same in the new measurement.
     pub new: u64,
 }
 
 impl CountDiff {
-    /// New over old; infinite if there was none.
+    /// New over old; infinite if only the old count is 0.
     pub fn ratio(&self) -> f64 {
         if self.old == self.new { 1.0 } else { self.new as f64 / self.old as f64 }
     }
 }
 
-/// What changed among the counts of the cells that both have, and how many numbers were compared.
+/// The counts that differ, of the cells that both measurements have, and how many counts were compared.
 pub fn count_diff(old: &Path, new: &Path) -> Result<(Vec<CountDiff>, usize)> {
-    // What is counted is the same on every machine.
+    // Counts are the same on every machine.
     let [old, new] = sides(old, new, true)?;
     let (old, new) = (counts(&old), counts(&new));
     let both = || old.iter().filter_map(|(key, old)| Some((key, *old, *new.get(key)?)));

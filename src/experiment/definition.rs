@@ -1,4 +1,4 @@
-//! The text of an experiment.
+//! Definitions: the text of an experiment.
 //!
 //! ```toml
 //! title = "Time against threads"
@@ -64,27 +64,27 @@ pub const EXPERIMENTS: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/exp
 /// The field of a profile for the samples of each half-reference.
 pub(super) const REFERENCE_SPP: &str = "reference-spp";
 
-/// What else there is in a folder of results.
+/// Other names in a folder of results, which no experiment may have.
 const TAKEN: &[&str] = &["CLAIMS.md", "benches", "check", "claims", "earlier", "guards", "references", "report.html"];
 
-/// Something that not every build has.
+/// A feature that not every build has.
 pub(super) struct Feature {
-    /// What an experiment calls it.
+    /// Its name in an experiment's `requires`.
     pub(super) name: &'static str,
     /// Whether this build has it.
     pub(super) is_there: bool,
-    /// What it takes to have it.
+    /// How to get a build that has it.
     pub(super) takes: &'static str,
 }
 
-/// What an experiment may require.
+/// The features that an experiment may require.
 pub(super) const FEATURES: &[Feature] = &[Feature {
     name: "openmp",
     is_there: cfg!(feature = "openmp"),
     takes: "a program built by `cargo run --release --features openmp -- ...`",
 }];
 
-/// What a sweep may keep beside its rows.
+/// Files that a sweep may keep beside its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Keep {
@@ -92,13 +92,13 @@ pub enum Keep {
     Images,
     /// The trace of each run.
     Traces,
-    /// What handing out empty jobs costs, which the simulator needs.
+    /// The costs of handing out empty jobs, which the simulator needs.
     Calibration,
-    /// What messages between processes cost, which the simulator needs for ranks.
+    /// The costs of messages between processes, which the simulator needs for ranks.
     Messages,
 }
 
-/// An experiment as it is written.
+/// An experiment as its file defines it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Definition {
@@ -111,17 +111,17 @@ pub struct Definition {
     /// The file's name, for errors.
     #[serde(skip)]
     pub file: String,
-    /// Whether values were set besides, so that no line of the text is one of the file.
+    /// Whether `--set` changed values, so that no line of the text is one of the file.
     #[serde(skip)]
     pub(super) is_changed: bool,
-    /// What its names mean.
+    /// The tables in which its names are looked up.
     #[serde(skip, default = "Lab::built_in")]
     pub lab: Arc<Lab>,
     /// Heading.
     pub title: String,
-    /// What is asked.
+    /// The question.
     pub question: String,
-    /// How to read what comes out.
+    /// How to read the results.
     #[serde(default)]
     pub analysis: String,
     /// The chapter of the report page that it belongs to.
@@ -135,16 +135,16 @@ pub struct Definition {
     pub in_short: Option<NonZeroUsize>,
     /// Names of the figures that the report draws.
     pub figures: Vec<String>,
-    /// What figures are told about this experiment, by figure; each figure reads its own table.
+    /// Parameters of figures, by figure; each figure reads its own table.
     #[serde(default)]
     pub figure: BTreeMap<String, toml::Table>,
-    /// What is kept beside the rows.
+    /// The files that are kept beside the rows.
     #[serde(default)]
     pub keep: Vec<Keep>,
-    /// Whether samplers may be used that give other numbers in each run, so that no checksum can be expected.
+    /// Whether samplers may draw other random numbers in each run, so that no checksum can be expected.
     #[serde(default)]
     pub unverified: bool,
-    /// What not every build has; without it the experiment is left out.
+    /// Features that not every build has; without them the experiment is left out.
     #[serde(default)]
     pub requires: Vec<String>,
     #[serde(deserialize_with = "one_or_many")]
@@ -190,7 +190,7 @@ impl Definition {
         EXPERIMENTS.iter().copied().chain(own)
     }
 
-    /// The definition of that name, or the one in the file of that path.
+    /// Loads the definition with that name, or from the file at that path.
     pub fn load(lab: &Arc<Lab>, name_or_path: &str) -> Result<Self> {
         let definition = Self::find(lab, name_or_path)?;
         let name = &definition.name;
@@ -216,7 +216,7 @@ impl Definition {
         Self::from_text(lab, &stem, name_or_path, &read_text(path)?)
     }
 
-    /// The estimator that is named first.
+    /// The estimator that is named first; empty if none is named.
     pub fn first_estimator(&self) -> &str {
         self.matrix.iter().filter_map(|matrix| matrix.values("estimator")).flatten().next().map_or("", String::as_str)
     }
@@ -233,24 +233,24 @@ impl Definition {
         names
     }
 
-    /// The first feature that it needs and that this program has not, and what it takes to have it.
+    /// The first required feature that this build lacks, and how to get it.
     pub fn missing_feature(&self) -> Option<(&str, &'static str)> {
         let required = |feature: &&Feature| self.requires.iter().any(|name| name == feature.name);
         let missing = FEATURES.iter().filter(required).find(|feature| !feature.is_there);
         missing.map(|feature| (feature.name, feature.takes))
     }
 
-    /// Whether that is kept beside the rows.
+    /// Whether these files are kept beside the rows.
     pub fn keeps(&self, what: Keep) -> bool {
         self.keep.contains(&what)
     }
 
-    /// How often each cell is run; at most, where it is until enough is known.
+    /// The repetitions of each cell; the largest number, if there is a goal.
     pub fn repetitions(&self, profile: Profile) -> Result<u32> {
         Ok(self.scale(profile)?.repetitions)
     }
 
-    /// Until when cells are run, if not a number of times.
+    /// The goal at which repetitions stop; `None` if their number is fixed.
     pub(super) fn until(&self, profile: Profile) -> Result<Option<&Until>> {
         Ok(self.scale(profile)?.until.as_ref())
     }
@@ -267,7 +267,8 @@ impl Definition {
         let own = || self.matrices(profile).filter_map(|matrix| matrix.numbers("spp")).flatten().collect();
         let spps: Vec<u32> = scale.numbers("spp").unwrap_or_else(own);
         let largest = spps.into_iter().max().unwrap_or(0);
-        // Seeds share the references' noise, which the cross form removes in the mean only. A curve's end is one of many points.
+        // All seeds share the references' noise, which the cross form removes only in the mean. In curves this matters
+        // less, because the last point is one of many.
         let times = if self.matrices(profile).all(|matrix| matrix.curve) { 4 } else { 10 };
         let needed = largest.saturating_mul(times);
         let spp = scale.reference_spp.unwrap_or(needed);
@@ -279,12 +280,12 @@ impl Definition {
         Err(self.located(profile, error))
     }
 
-    /// The object on whose pixels errors are measured besides.
+    /// The object on whose pixels errors are measured, too.
     pub(super) fn object(&self) -> Option<&str> {
         self.reference.as_ref()?.object.as_deref()
     }
 
-    /// The error of a reference that cannot be rendered, at the field that asks for it.
+    /// Adds to the error of a reference the place of the field that caused it.
     pub(super) fn reference_error(&self, profile: Profile, error: Error) -> Error {
         match error {
             Error::Input(mut input) if input.place.is_none() && input.field == "spp" => {
@@ -299,7 +300,8 @@ impl Definition {
         }
     }
 
-    /// Adds the place where the field and its value stand in the definition: the profile's own table comes before the matrix.
+    /// Adds the place of the field and its value in the definition. The profile's own table is searched before the
+    /// rest.
     pub(super) fn located(&self, profile: Profile, error: InputError) -> Error {
         if self.is_changed {
             return error.in_file(&self.file, None).into();

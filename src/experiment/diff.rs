@@ -1,8 +1,8 @@
-//! Two measurements of the same cells: which got slower?
+//! Comparison of two measurements of the same cells: which cells got slower?
 //!
-//! Rows that were measured in pairs (`run --against`) give a ratio for each repetition; other rows give the ratios of all pairs of an old and
-//! a new time. All intervals of a comparison together hold with 95 % confidence (Bonferroni). Where repetitions went on until the answer was
-//! known (`run --until`), intervals are those that hold at every look.
+//! Rows that were measured in pairs (`run --against`) give a ratio for each repetition; other rows give the ratios of
+//! all pairs of an old and a new time. All intervals of a comparison together hold with 95 % confidence (Bonferroni).
+//! If repetitions in pairs had a goal (`run --until`), the intervals hold at every look.
 
 use super::instructions;
 use super::records_file::read_records;
@@ -17,10 +17,10 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The chance that any interval of a comparison misses.
+/// The probability that any interval of a comparison misses.
 const MISS: f64 = 0.05;
 
-/// What a comparison says of a cell.
+/// The result of a comparison for a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Change {
@@ -35,7 +35,7 @@ pub enum Change {
 }
 
 impl Change {
-    /// As tables say it.
+    /// The word in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Slower => "slower",
@@ -51,17 +51,17 @@ impl Change {
 pub struct CellDiff {
     /// The cell.
     pub cell: String,
-    /// Median seconds before and after.
+    /// Median seconds in the old measurement.
     pub old_s: f64,
-    /// See `old_s`.
+    /// Median seconds in the new measurement.
     pub new_s: f64,
-    /// Times that were compared, before and after.
+    /// Numbers of times that were compared, old and new.
     pub repetitions: [usize; 2],
     /// New over old.
     pub ratio: f64,
     /// The interval of the ratio.
     pub interval: Option<Interval>,
-    /// What that says.
+    /// The conclusion from the interval.
     pub change: Change,
 }
 
@@ -70,13 +70,13 @@ pub struct CellDiff {
 pub struct Diff {
     /// The cells that both have.
     pub cells: Vec<CellDiff>,
-    /// Cells that only the old one has, and that only the new one has.
+    /// Numbers of cells that only the old measurement has, and that only the new one has.
     pub unmatched: [usize; 2],
     /// Whether rows were compared in pairs.
     pub paired: bool,
-    /// Whether repetitions went on until the answer was known, and the intervals allow that.
+    /// Whether repetitions had a goal, and the intervals allow for that.
     pub sequential: bool,
-    /// Whether repetitions went on until something was known, and the intervals do not allow that.
+    /// Whether repetitions had a goal, and the intervals do not allow for that.
     pub stopped_by_times: bool,
     /// Doubts about all times.
     pub doubts: Doubts,
@@ -89,16 +89,16 @@ pub(super) enum Pairing {
     None,
     /// Within a repetition.
     Paired,
-    /// Likewise, and after each repetition it was asked whether that is enough.
+    /// Within a repetition, with a look at the intervals after each repetition.
     Sequential,
 }
 
-/// The confidence of each of so many intervals of a comparison.
+/// The confidence of each interval in a comparison of `cells` cells.
 pub(super) fn level_of(cells: usize) -> f64 {
     1.0 - MISS / cells as f64
 }
 
-/// A share by which something may get slower, as `0.03` or `3%`.
+/// Parses a share by which a cell may get slower, such as `0.03` or `3%`.
 pub fn parse_share(field: &str, text: &str) -> Result<f64> {
     let parsed = match text.strip_suffix('%') {
         Some(percent) => percent.trim().parse::<f64>().map(|percent| percent / 100.0),
@@ -110,11 +110,11 @@ pub fn parse_share(field: &str, text: &str) -> Result<f64> {
     })
 }
 
-/// Rows, and where they come from.
+/// The rows of a measurement, and their origin.
 pub(super) struct Side {
     run: Option<RunFile>,
     pub(super) rows: Vec<Record>,
-    /// The instructions of cells, where they were counted.
+    /// The instructions of cells, if they were counted.
     pub(super) instructions: BTreeMap<String, u64>,
 }
 
@@ -127,16 +127,16 @@ fn side(path: &Path) -> Result<Side> {
     Ok(Side { run, rows: read_records(&file)?, instructions: instructions::read(&file)? })
 }
 
-/// What measurements may differ in and be compared all the same.
+/// Differences with which measurements may still be compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Across {
-    /// Measured on two machines.
+    /// Whether the machines may differ.
     pub machines: bool,
-    /// By builds that render other bits, so that their work is not known to be equal.
+    /// Whether the builds may render other bits, so that their work is not known to be equal.
     pub revisions: bool,
 }
 
-/// Both measurements. Those of two machines are refused unless `across_machines`.
+/// Reads both measurements. Refuses those of two machines unless `across_machines`.
 pub(super) fn sides(old: &Path, new: &Path, across_machines: bool) -> Result<[Side; 2]> {
     let both = [side(old)?, side(new)?];
     if let [Some(before), Some(after)] = [&both[0].run, &both[1].run]
@@ -152,7 +152,7 @@ pub(super) fn sides(old: &Path, new: &Path, across_machines: bool) -> Result<[Si
     Ok(both)
 }
 
-/// Refuses cells whose images have other bits in both measurements: more work that gives another image is not slower work.
+/// Refuses cells whose images have other bits in both measurements: more time for another image does not mean slower.
 fn check_images([before, after]: &[Side; 2], new: &Path) -> Result<()> {
     let has_image = |row: &&Record| !row.checksum.is_empty();
     let old: BTreeMap<&str, &str> =
@@ -165,8 +165,8 @@ fn check_images([before, after]: &[Side; 2], new: &Path) -> Result<()> {
     Err(error.allowed("builds whose images have the same bits, or --across-revisions").into())
 }
 
-/// Compares two measurements. `limit` is the share by which a cell may get slower, .03 say. Measurements that differ in more than `across` allows
-/// are refused.
+/// Compares two measurements. `limit` is the share by which a cell may get slower, such as 0.03. Refuses measurements
+/// that differ in more than `across` allows.
 pub fn diff(old: &Path, new: &Path, limit: f64, across: Across) -> Result<Diff> {
     if !(limit.is_finite() && limit >= 0.0) {
         let error = InputError::new("fail-above", limit.to_string(), "is no share by which something may get slower");
@@ -216,7 +216,7 @@ fn times(rows: &[Record]) -> BTreeMap<String, BTreeMap<u32, f64>> {
     times
 }
 
-/// A cell's old and new seconds, by repetition; `None` if there are none.
+/// Compares a cell's old and new seconds, given by repetition; `None` if there are none.
 pub(super) fn compared(
     cell: &str,
     old: &BTreeMap<u32, f64>,
@@ -279,14 +279,14 @@ mod tests {
             assert_eq!(change(&TIMES, &TIMES, paired), Change::Same);
             assert_eq!(change(&TIMES, &TIMES.map(|time| 1.1 * time), paired), Change::Slower);
             assert_eq!(change(&TIMES, &TIMES.map(|time| 0.9 * time), paired), Change::Faster);
-            // Slower for certain, and by less than the limit.
+            // Certainly slower, but by less than the limit.
             assert_eq!(change(&TIMES, &TIMES.map(|time| 1.01 * time), paired), Change::Same);
             assert_eq!(
                 change(&TIMES[..3], &TIMES[..3].iter().map(|time| 2.0 * time).collect::<Vec<_>>(), paired),
                 Change::Undecided
             );
         }
-        // A machine whose speed drifts by as much as it likes: pairs do not mind, and other comparisons cannot tell.
+        // With strong machine drift, pairs still decide, but other comparisons cannot.
         let drift = [1.0, 1.5, 2.0, 0.7, 1.2, 3.0, 0.5, 1.1, 2.2];
         assert_eq!(change(&drift, &drift.map(|time| 1.05 * time), true), Change::Slower);
         assert_eq!(change(&drift, &drift.map(|time| 1.05 * time), false), Change::Undecided);
@@ -298,9 +298,9 @@ mod tests {
         assert_eq!(change(&[1.0], &[9.0], false), Change::Undecided);
     }
 
-    /// What sweeps of six cells come to that go on until each cell is decided, 200 repetitions at most: the number of sweeps with a slower cell, and how
-    /// many repetitions a cell took in the mean. The new build's times are `factor` times the old ones, and both have a noise of about 7 % with a
-    /// heavy tail; both rows of a pair share a drift.
+    /// Simulates sweeps of six cells that run until each cell is decided, at most 200 times. Returns the number of
+    /// sweeps with a slower cell and the mean repetitions of a cell. The new build's times are `factor` times the old
+    /// ones. Both have noise of about 7 % with a heavy tail, and both rows of a pair share a drift.
     fn sweeps(count: u32, factor: f64, seed: u128) -> (u32, f64) {
         let mut generator = Pcg64Dxsm::new(seed, 3);
         let mut uniform = || ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0;
@@ -329,8 +329,8 @@ mod tests {
         (slower, repetitions as f64 / f64::from(6 * count))
     }
 
-    /// Two equal builds: at most 5 % of the sweeps find a slower cell, 10 of 200, and three standard deviations of that count are 9. A build that is 10 %
-    /// slower is found in nearly all.
+    /// Two equal builds: at most 5 % of the sweeps, 10 of 200, find a slower cell; three standard deviations of that
+    /// count are 9. Nearly all sweeps find a build that is 10 % slower.
     #[test]
     fn sweeps_that_go_on_until_they_know_are_seldom_wrong() {
         let ((equal, _), (slower, repetitions)) = (sweeps(200, 1.0, 1), sweeps(40, 1.1, 2));

@@ -1,17 +1,18 @@
-//! A machine that becomes faster or slower while a sweep runs.
+//! Drift: detects that a machine becomes faster or slower while a sweep runs.
 //!
-//! Two things are watched for each cell: its time, which anything can lengthen, and its processor time, which waiting cannot. Work that takes
-//! more processor time than before ran on slower processors: on a virtual machine usually because its host has put two of them on one core.
+//! Two times of each cell are watched: the makespan, which any disturbance can lengthen, and the processor time, which
+//! waiting cannot lengthen. If the processor time grows, the processors were slower: on a virtual machine usually
+//! because its host has put two of them on one core.
 
 use crate::analysis::quantile::median;
 use crate::measure::{Record, Warning};
 use std::collections::HashMap;
 
-/// Earlier rows of a cell that are enough to say what it usually takes.
+/// Earlier rows that are needed to know the usual time of a cell.
 const ENOUGH: usize = 3;
-/// Relative difference of the time from the median so far from which a row is suspected.
+/// A row gets a warning if its makespan differs from the median so far by more than this share.
 const SUSPICIOUS: f64 = 0.25;
-/// Likewise of the processor time, which is steadier.
+/// The same for an increase of the processor time, which is steadier.
 const SLOW: f64 = 0.15;
 
 /// The times of each cell so far.
@@ -23,7 +24,7 @@ struct Times {
     cpu_s: Vec<f64>,
 }
 
-/// By how much a value differs from the median of enough others.
+/// The relative difference of a value from the median of earlier ones; `None` if there are fewer than [`ENOUGH`].
 fn change(value: f64, before: &[f64]) -> Option<f64> {
     let usual = median(before).filter(|_| before.len() >= ENOUGH)?;
     Some(value / usual - 1.0)
@@ -34,7 +35,7 @@ fn percent(change: f64) -> i32 {
 }
 
 impl Drift {
-    /// Knows the rows of an earlier part of the sweep.
+    /// Starts with the rows of an earlier part of the sweep.
     pub(super) fn of(done: &[Record]) -> Self {
         let mut drift = Self(HashMap::new());
         for record in done {
@@ -49,7 +50,7 @@ impl Drift {
         times.cpu_s.extend(record.cpu_s());
     }
 
-    /// Warns of a row whose times are far from those of its cell's earlier rows.
+    /// Adds a warning to a row whose times are far from those of its cell's earlier rows.
     pub(super) fn watch(&mut self, record: &mut Record) {
         if let Some(times) = self.0.get(&record.cell) {
             let drifted = record.makespan_s.and_then(|time| change(time, &times.makespan_s));

@@ -1,4 +1,4 @@
-//! Other renderers in an experiment's tables.
+//! External programs: other renderers in an experiment's tables.
 //!
 //! ```toml
 //! [[external]]
@@ -20,10 +20,10 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What stands in the columns that mean nothing for other programs.
+/// The value of columns that have no meaning for other programs.
 pub const EXTERNAL: &str = "external";
 
-/// Another program.
+/// Another renderer, with the settings of its cells.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct External {
@@ -31,7 +31,7 @@ pub struct External {
     pub name: String,
     /// The program and its arguments; `{spp}`, `{seed}` and `{out}` must be among them, `{width}`, `{height}` and `{folder}` may be.
     pub command: Vec<String>,
-    /// What makes it, once before the sweep.
+    /// The command that builds it, once before the sweep.
     #[serde(default)]
     pub build: Vec<String>,
     scene: String,
@@ -68,12 +68,12 @@ pub(super) fn filled(command: &[String], values: &[(&str, String)]) -> Vec<Strin
 }
 
 impl External {
-    /// The ending of the file that it writes.
+    /// The extension of the image file that it writes.
     pub fn format(&self) -> &str {
         &self.format
     }
 
-    /// Makes it; whatever goes wrong is said and nothing else: its rows will say that there is no program.
+    /// Builds it. A failure is only reported: its rows will say that the program is missing.
     pub(super) fn make(&self, folder: &Path, progress: &dyn Progress) {
         let command = filled(&self.build, &[("folder", folder.display().to_string())]);
         let Some((program, arguments)) = command.split_first() else { return };
@@ -85,7 +85,7 @@ impl External {
         progress.note(&format!("{} is left out: {}: {problem}", self.name, command.join(" ")));
     }
 
-    /// Refuses what cannot be run.
+    /// Refuses an entry that cannot be run.
     fn check(&self) -> Result<()> {
         for placeholder in ["{spp}", "{seed}", "{out}"] {
             if !self.command.iter().any(|word| word.contains(placeholder)) {
@@ -154,7 +154,7 @@ impl Definition {
                     Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
                 match cells.iter().find(|known: &&Cell| known.id == cell.id) {
                     None => cells.push(cell),
-                    // Curves share their beginnings, and a list may name a number twice.
+                    // Curves share their first points, and a list may name a value twice.
                     Some(known) if known.external == cell.external => {}
                     Some(_) => {
                         let problem = "is the name of another program of the same images";

@@ -1,7 +1,7 @@
-//! The two halves of a reference on their way into the cache, and how good they are.
+//! Half-references: renders the two halves of a reference into the cache, and estimates their error.
 //!
-//! A film of 16 · 2^k samples is one subtree of its pixels' sums, so any longer one of the same half goes on from it, with the same bits
-//! as without. Long ones leave such films on the way, so that a killed render does not start anew.
+//! A film of 16 · 2^k samples is one subtree of its pixels' sums, so a longer film of the same half can continue from
+//! it with the same bits. Long renders save such films on the way, so that a killed render does not start anew.
 
 use super::reference::reference_path;
 use super::{Progress, Reference};
@@ -14,7 +14,7 @@ use crate::measure::{History, LARGEST_SPP, Rounds};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// The two halves, from the cache in `folder` where they are there and whole, rendered otherwise.
+/// Returns the two halves, each read from the cache in `folder` if it is there, and rendered otherwise.
 pub fn render_reference(
     lab: &Lab,
     reference: &Reference,
@@ -23,13 +23,13 @@ pub fn render_reference(
 ) -> Result<[(PathBuf, Film); 2]> {
     let mut halves = [Half::new(lab, reference, 0, folder)?, Half::new(lab, reference, 1, folder)?];
     let are_cached = halves.iter().all(|half| half.path(reference.spp).is_file());
-    // What is only read may lie on a disk that is only read.
+    // Cached halves are only read, so they may lie on a read-only disk, which allows no lock.
     let _lock = if are_cached { None } else { Some(lock(folder)?) };
     let [first, second] = &mut halves;
     Ok([first.render(reference.spp, progress)?, second.render(reference.spp, progress)?])
 }
 
-/// Two processes in one folder would remove each other's films on the way.
+/// Locks the folder: two processes in it would remove each other's intermediate films.
 fn lock(folder: &Path) -> Result<Lock> {
     Lock::of_folder(folder, "references", Sharing::Alone)
 }
@@ -37,7 +37,7 @@ fn lock(folder: &Path) -> Result<Lock> {
 /// Seconds of rendering that may be lost when the program is killed.
 const MOST_LOST_S: f64 = 20.0;
 
-/// One half on its way into the cache.
+/// One half that is rendered into the cache.
 struct Half<'a> {
     rounds: Rounds,
     index: u32,
@@ -57,18 +57,18 @@ impl<'a> Half<'a> {
         reference_path(self.folder, &self.key(spp))
     }
 
-    /// The film of so many samples, if it is cached.
+    /// The film of `spp` samples per pixel, if it is cached.
     fn cached(&self, spp: u32) -> Result<Option<Film>> {
         let path = self.path(spp);
         if !path.is_file() {
             return Ok(None);
         }
-        // A damaged file is an error, never quietly replaced: it may be the user's only copy.
+        // A damaged file is an error and is never replaced: it may be the user's only copy.
         let (found, film) = read_film(&path)?;
         Ok((found == self.key(spp)).then_some(film))
     }
 
-    /// Goes on from the longest cached film that one of `spp` samples begins with.
+    /// Continues from the longest cached film that is the beginning of one with `spp` samples.
     fn adopt_beginning(&mut self, spp: u32) -> Result<()> {
         let FilmKey { width, height, spp: done, .. } = self.rounds.film_key();
         for samples in subtrees().rev().filter(|samples| (done + 1..spp).contains(samples)) {
@@ -110,7 +110,7 @@ impl<'a> Half<'a> {
     }
 }
 
-/// Numbers of samples that are one subtree of a pixel's sum, and that every estimator can render.
+/// Numbers of samples that form one subtree of a pixel's sum, and that every estimator can render.
 fn subtrees() -> impl DoubleEndedIterator<Item = u32> {
     (0..=(LARGEST_SPP / SAMPLE_BLOCK).ilog2()).map(|k| SAMPLE_BLOCK << k)
 }
@@ -121,17 +121,18 @@ fn remove(stone: Option<PathBuf>) -> Result<()> {
     std::fs::remove_file(&path).map_err(|e| Error::system("removing", &path, e))
 }
 
-/// The error of the average of two halves, told in two ways.
+/// The RMSE of the average of two halves, estimated in two ways.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReferenceError {
-    /// By the variance of its samples. Too large where they are stratified or of low discrepancy.
+    /// By the variance of its samples. Too large if they are stratified or of low discrepancy.
     pub by_variance: f64,
-    /// By the difference of the halves, whose mean square is four times the average's. Knows nothing of how samples are drawn.
+    /// By the difference of the halves, whose mean square is four times the mean squared error of their average. Makes
+    /// no assumption about how samples are drawn.
     pub by_difference: f64,
 }
 
 impl ReferenceError {
-    /// Of two halves of one size.
+    /// Estimates the error from two halves of one size.
     pub fn of(first: &Film, second: &Film) -> Self {
         let (a, b) = (first.image(), second.image());
         let pairs = a.pixels.as_flattened().iter().zip(b.pixels.as_flattened());
@@ -140,7 +141,7 @@ impl ReferenceError {
         Self { by_variance: (variance / 4.0).sqrt(), by_difference: (mean / 4.0).sqrt() }
     }
 
-    /// The worse of the two.
+    /// The larger of the two estimates.
     pub fn worse(&self) -> f64 {
         self.by_variance.max(self.by_difference)
     }
@@ -162,8 +163,8 @@ pub fn check_until(rmse: f64) -> Result<()> {
     Err(error.allowed("finite numbers above 0").into())
 }
 
-/// Doubles both halves until the error of their average, in the worse of both accounts, is at most `rmse`. Starts with what is cached; films on
-/// the way to the last one are removed if this run made them.
+/// Doubles the samples of both halves until the larger estimate of their average's error is at most `rmse`. Starts with
+/// cached films, and removes intermediate films that this run made.
 pub fn refine_reference(
     lab: &Lab,
     reference: &Reference,

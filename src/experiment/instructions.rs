@@ -1,8 +1,8 @@
-//! Instructions of each cell, whole processes of it, as valgrind's callgrind counts them: `run EXPERIMENT --count-instructions`.
+//! Instruction counts of each cell's whole process, by valgrind's callgrind: `run EXPERIMENT --count-instructions`.
 //!
-//! A count repeats to some millionths where a time does not to some hundredths, whatever else the machine does. It knows nothing of caches and of
-//! waiting, and valgrind runs threads one at a time and has no AVX-512, so a kernel in lanes is the one for AVX2. The counts of a sweep lie beside
-//! its rows in `instructions.csv`, which `diff --counts` compares.
+//! Even on a busy machine, a count repeats to some millionths; a time does not repeat to some hundredths. Counts ignore
+//! caches and waiting. Valgrind runs threads one at a time and has no AVX-512, so kernels in lanes use AVX2. The counts
+//! of a sweep lie beside its rows in `instructions.csv`, which `diff --counts` compares.
 
 use super::cell_process::{CellJob, PointJob};
 use super::{Cell, Progress, Sweep, folder_against, process_group};
@@ -26,14 +26,15 @@ struct Row {
     instructions: u64,
 }
 
-/// Refuses to begin where nothing can count.
+/// Refuses to begin if valgrind cannot be started.
 pub(super) fn check_counter() -> Result<()> {
     let found = Command::new(COUNTER).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     found.map(drop).map_err(|e| Error::system("starting", COUNTER, e))
 }
 
 impl Sweep<'_> {
-    /// Counts the instructions of each cell of this program's own, and of the other build if there is one.
+    /// Counts the instructions of each cell that runs in one process of this program, and the other build's if there is
+    /// one.
     pub(super) fn count_instructions(&self, folder: &Path, progress: &dyn Progress) -> Result<()> {
         let own = env::current_exe().map_err(|e| Error::system("finding", "this program", e))?;
         let other = self.options.against.clone();
@@ -59,11 +60,11 @@ impl Sweep<'_> {
     }
 }
 
-/// The instructions of a cell that a program runs. `Err` says why there are none.
+/// Counts the instructions of a cell that `program` runs. `Err` says why there is no count.
 fn count(job: &CellJob, program: &Path) -> std::result::Result<u64, String> {
-    // Nothing is read, written or compared beside the image itself.
+    // The process only renders the image: it reads, writes and compares nothing else.
     let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
-    // Whether another run has built the hierarchy would change the count.
+    // With a cache, the count would depend on whether another run has built the hierarchy.
     let settings = Settings { cache: None, ..job.settings.clone() };
     let job = CellJob { points, settings, references: None, object: None, trace: None, ..job.clone() };
     let text = serde_json::to_string(&job).map_err(|e| format!("describing the cell: {e}"))?;
@@ -77,7 +78,7 @@ fn count(job: &CellJob, program: &Path) -> std::result::Result<u64, String> {
     collected(&said).ok_or_else(|| format!("{COUNTER} told no count"))
 }
 
-/// The total in what callgrind says at its end: `==7== Collected : 1234`.
+/// The total in callgrind's last lines: `==7== Collected : 1234`.
 fn collected(said: &str) -> Option<u64> {
     said.lines().find_map(|line| line.split_once("Collected : ")?.1.trim().parse().ok())
 }
@@ -94,7 +95,7 @@ fn write(path: &Path, counts: &BTreeMap<String, u64>) -> Result<()> {
     atomic_file::write(path, |file| file.write_all(&bytes))
 }
 
-/// The counts beside some rows; none if nothing was counted.
+/// Reads the counts beside a file of rows; empty if nothing was counted.
 pub(super) fn read(rows: &Path) -> Result<BTreeMap<String, u64>> {
     let path: PathBuf = rows.with_file_name(INSTRUCTIONS);
     if !path.is_file() {

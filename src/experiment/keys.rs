@@ -3,7 +3,7 @@
 use super::table::REQUIRED;
 use crate::measure::AXES;
 
-/// Key and meaning of everything but the axes.
+/// Key and meaning of all fields except the axes.
 const KEYS: &[(&str, &str)] = &[
     ("title", "heading of its section [required]"),
     ("question", "what is asked [required]"),
@@ -33,7 +33,7 @@ const KEYS: &[(&str, &str)] = &[
     ("reports", "the profile --reports, likewise"),
 ];
 
-/// Key and meaning of everything that an experiment's file may say.
+/// Key and meaning of all fields that an experiment's file may have.
 pub fn keys() -> impl Iterator<Item = (String, String)> {
     let axes = AXES.iter().map(|axis| {
         let about = if axis.about.is_empty() { "values of this axis" } else { axis.about };
@@ -50,7 +50,7 @@ mod tests {
     use crate::lab::Lab;
     use std::collections::BTreeSet;
 
-    /// The reader's own list stands in the error about a key that it does not know.
+    /// The error about an unknown key lists the keys that the parser knows.
     #[test]
     fn the_listed_keys_are_those_that_are_read() {
         let read = |text: &str| Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap_err().to_string();

@@ -10,10 +10,11 @@ use crate::sampling::{SAMPLERS, is_deterministic};
 use std::collections::HashSet;
 use std::path::Path;
 
-/// Whatever fits the scene best.
+/// The value that leaves the choice to the program.
 const FITTING: &str = "fitting";
 
-/// Cells that differ. Two words may mean the same run, as the profile that fits a scene and its name do; a point that two curves share is one.
+/// Distinct cells. Two words may mean the same run, such as `fitting` and the name of the profile that fits a scene; a
+/// point that two curves share is kept once.
 #[derive(Default)]
 struct Cells {
     list: Vec<Cell>,
@@ -21,11 +22,11 @@ struct Cells {
 }
 
 impl Cells {
-    /// Adds what a setup gives and is not there yet.
+    /// Adds the points of a setup's cell that are not there yet.
     fn add(&mut self, setup: &Setup, is_curve: bool, at_most: Option<u32>) {
         let cell = if is_curve { Cell::curve(setup) } else { Cell::new(setup) };
         let mut cell = Cell { at_most, ..cell };
-        // Of two matrices that have it, the one with more repetitions counts.
+        // If two matrices have the cell, the larger number of repetitions counts.
         if let Some(known) = self.list.iter_mut().find(|known| known.id == cell.id) {
             known.at_most = known.at_most.zip(at_most).map(|(first, second)| first.max(second));
         }
@@ -39,7 +40,8 @@ impl Cells {
 }
 
 impl Definition {
-    /// The cells, each once, in the order of the matrix. Every one has been checked: nothing that the definition says can fail later.
+    /// The cells, each once, in the order of the matrix. Every cell is checked, so no error of the definition can
+    /// appear later.
     pub fn cells(&self, profile: Profile) -> Result<Vec<Cell>> {
         if self.repetitions(profile)? == 0 {
             return Err(self.located(profile, InputError::new("repetitions", "0", "must be at least 1")));
@@ -65,7 +67,7 @@ impl Definition {
         Ok(cells.list)
     }
 
-    /// A scene file is named relative to the experiment that uses it.
+    /// The path of a scene file, which is relative to the experiment that uses it; other names stay unchanged.
     fn scene_path(&self, scene: &str) -> String {
         let beside = Path::new(&self.file).parent().map(|folder| folder.join(scene));
         match beside {
@@ -91,13 +93,14 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// The values of an axis as they are written. A profile replaces those of the matrix; only its size is for matrices without one.
+    /// The values of an axis as they are written. A profile's values replace the matrix's, except the size, where the
+    /// matrix's own come first.
     fn written(&self, axis: &Axis) -> Option<&'a Vec<String>> {
         let (own, scale) = (self.matrix.values(axis.name), self.scale.values(axis.name));
         if axis.name == "size" { own.or(scale) } else { scale.or(own) }
     }
 
-    /// Refuses axes without a value; a bounce limit may have none.
+    /// Refuses axes without a value, except the bounce limit, which may have none.
     fn check_axes(&self) -> Result<()> {
         let is_empty = |axis: &&Axis| self.written(axis).is_some_and(Vec::is_empty) && axis.name != "max-depth";
         let problem = "is an empty axis, so there is nothing to run";
@@ -106,7 +109,7 @@ impl<'a> Product<'a> {
         })
     }
 
-    /// Adds the cells of all values of these axes.
+    /// Adds the cells of all combinations of these axes.
     fn add(&self, axes: &[Axis], settings: &Settings, cells: &mut Cells) -> Result<()> {
         let Some((axis, inner)) = axes.split_first() else { return self.add_cell(settings.clone(), cells) };
         let Some(written) = self.written(axis).filter(|values| !values.is_empty()) else {
@@ -135,7 +138,7 @@ impl<'a> Product<'a> {
         Ok(())
     }
 
-    /// The estimator that a scene names itself.
+    /// The estimator that a scene names; empty for a workload.
     fn own_estimator(&self, scene: &str) -> Result<String> {
         let lab = &self.definition.lab;
         if lab.workload_named(scene).is_some() {
@@ -165,7 +168,8 @@ impl<'a> Product<'a> {
         Ok(())
     }
 
-    /// Every row's checksum is compared with the others' of the same image, unless the definition says that there is none.
+    /// Refuses a sampler that gives other checksums in each run, unless the definition is `unverified`: rows of one
+    /// image are compared by checksum.
     fn check_sampler(&self, sampler: &str) -> Result<()> {
         let is_known = SAMPLERS.iter().any(|entry| entry.name == sampler);
         if self.definition.unverified || is_deterministic(sampler) || !is_known {
@@ -195,7 +199,8 @@ mod tests {
         definition.cells(Profile::Quick).unwrap().into_iter().map(|cell| cell.at_most).collect()
     }
 
-    /// Of two matrices that have a cell the one with more repetitions counts, and a limit that is none is none.
+    /// If two matrices have a cell, the larger number of repetitions counts. A limit that is not below the profile's
+    /// repetitions is none.
     #[test]
     fn a_cell_has_the_repetitions_of_the_matrix_that_gives_it_most() {
         assert_eq!(limits("repetitions = 2", "repetitions = 3"), [Some(3)]);

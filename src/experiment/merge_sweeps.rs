@@ -1,7 +1,8 @@
-//! Parts of sweeps put together: `pathmark merge DIR...` after `pathmark run EXPERIMENT --shard 1/4 --out DIR` on several machines.
+//! Merging of parts of sweeps: `pathmark merge DIR...` after `pathmark run EXPERIMENT --shard 1/4 --out DIR` on several
+//! machines.
 //!
-//! A ratio of two times is a ratio of two rows of one repetition, so a repetition must not mix machines: repetition r of part i becomes
-//! repetition r · n + i - 1. Rows of unlike machines are kept in folders of their own.
+//! A ratio of two times compares two rows of one repetition, so a repetition must not mix machines: repetition r of
+//! part i of n becomes repetition r · n + i - 1. Rows of unlike machines are kept in separate folders.
 
 use super::cell::trace_file;
 use super::records_file::read_records;
@@ -15,7 +16,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Missing parts that are named.
+/// The largest number of missing parts that are named.
 const MOST_TOLD: usize = 20;
 
 /// A part of one sweep.
@@ -25,16 +26,16 @@ struct Part {
     run: RunFile,
 }
 
-/// What was put together.
+/// A merged sweep.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MergedSweep {
-    /// The folder that a report is made of.
+    /// The folder from which a report is made.
     pub out: PathBuf,
     /// The experiment.
     pub name: String,
-    /// Its rows.
+    /// Number of its rows.
     pub rows: usize,
-    /// Parts that are missing, in words.
+    /// Missing parts, such as `2/4`.
     pub missing: Vec<String>,
 }
 
@@ -42,7 +43,7 @@ fn refused(field: &str, path: &Path, problem: impl Into<String>) -> InputError {
     InputError::new(field, path.display().to_string(), problem)
 }
 
-/// The parts in a folder that `run --out` made, by the experiment's name.
+/// The parts in a folder that `run --out` made, each with its experiment's name.
 fn parts_in(folder: &Path) -> Result<Vec<(String, Part)>> {
     let entries = fs::read_dir(folder).map_err(|e| match e.kind() {
         ErrorKind::NotFound => refused("part", folder, "there is no such folder").into(),
@@ -67,7 +68,7 @@ fn parts_in(folder: &Path) -> Result<Vec<(String, Part)>> {
     Ok(parts)
 }
 
-/// Puts the parts of each experiment together below `out`. `command` is what the rows' folder says of its origin.
+/// Merges the parts of each experiment below `out`. `command` is recorded as the command that made the rows.
 pub fn merge_sweeps(folders: &[PathBuf], out: &Path, partial: bool, command: &str) -> Result<Vec<MergedSweep>> {
     let mut sweeps: BTreeMap<String, Vec<Part>> = BTreeMap::new();
     for folder in folders {
@@ -99,7 +100,7 @@ pub fn merge_sweeps(folders: &[PathBuf], out: &Path, partial: bool, command: &st
     Ok(merged)
 }
 
-/// Refuses parts that do not belong together; gives those that are missing.
+/// Refuses parts that do not belong together; returns the missing ones.
 fn check(parts: &[Part]) -> Result<Vec<String>> {
     let first = &parts[0];
     for part in &parts[1..] {
@@ -127,7 +128,7 @@ fn check(parts: &[Part]) -> Result<Vec<String>> {
     Ok(missing.map(|index| format!("{index}/{count}")).collect())
 }
 
-/// The parts of each machine: of each model of processor and number of them.
+/// Groups the parts by machine: by model and number of processors.
 fn by_machine(parts: Vec<Part>) -> Vec<Vec<Part>> {
     let mut machines: Vec<Vec<Part>> = Vec::new();
     for part in parts {
@@ -140,7 +141,7 @@ fn by_machine(parts: Vec<Part>) -> Vec<Vec<Part>> {
     machines
 }
 
-/// Writes the folder of one sweep; gives its number of rows.
+/// Writes the folder of one sweep; returns its number of rows.
 fn write(parts: &[Part], out: &Path, name: &str, command: &str) -> Result<usize> {
     let folder = out.join(name);
     if folder.exists() {
@@ -183,7 +184,7 @@ fn write(parts: &[Part], out: &Path, name: &str, command: &str) -> Result<usize>
     Ok(rows.len())
 }
 
-/// Copies the files of a folder that is there, but for those that are there already.
+/// Copies the files of `from`, if it exists, except those that `to` already has.
 fn copy_all(from: &Path, to: &Path) -> Result<()> {
     let Ok(entries) = fs::read_dir(from) else { return Ok(()) };
     fs::create_dir_all(to).map_err(|e| Error::system("creating", to, e))?;

@@ -61,7 +61,7 @@ pub use sweep::{Options, Summary, Sweep};
 pub use sweep_shard::SweepShard;
 pub use until::{Goal, MOST_REPETITIONS, Until};
 
-/// Told how far long work has come. Implemented by the command line.
+/// Receives the progress of long work. The command line implements it.
 pub trait Progress: Sync {
     /// Work of `total` units begins.
     fn begin(&self, title: &str, total: u64);

@@ -1,4 +1,4 @@
-//! The part of an image that one object fills, so that errors can be measured there alone: most of a picture of one ball is not the ball.
+//! Pixels of one object, so that errors can be measured there alone: most of a picture of one ball is not the ball.
 
 use crate::error::{InputError, Result};
 use crate::image_io::Image;
@@ -23,7 +23,7 @@ pub(super) fn check_object(setup: &Setup, object: &str) -> Result<()> {
     }
 }
 
-/// For each pixel, whether the ray through its centre meets the object first.
+/// For each pixel, whether the ray through its centre hits the object first; empty without a scene.
 pub(super) fn object_pixels(setup: &Setup, object: &str) -> Result<Vec<bool>> {
     let Some((scene, choice)) = setup.scene() else { return Ok(Vec::new()) };
     let wanted = index(scene, object)?;
@@ -38,7 +38,7 @@ pub(super) fn object_pixels(setup: &Setup, object: &str) -> Result<Vec<bool>> {
     Ok(pixels.map(is_on_it).collect())
 }
 
-/// The wanted pixels of an image, in a row.
+/// The wanted pixels of an image, as an image of one row.
 pub(super) fn only(image: &Image, wanted: &[bool]) -> Image {
     let pixels: Vec<[f64; 3]> =
         image.pixels.iter().zip(wanted).filter(|(_, is_wanted)| **is_wanted).map(|(pixel, _)| *pixel).collect();
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
     use crate::measure::Settings;
 
-    /// Of smallpt's box the mirror ball fills a disk in the lower left, about as large as its share of the view.
+    /// The mirror ball in smallpt's box fills a disk in the lower left of the view.
     #[test]
     fn a_ball_fills_a_disk() {
         let mut settings = Settings::default();

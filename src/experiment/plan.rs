@@ -1,7 +1,8 @@
-//! What a sweep will take, before it starts: rows, bytes, and seconds by a short pilot.
+//! The plan of a sweep before it starts: rows, bytes, and seconds estimated by a short pilot.
 //!
-//! The pilot renders each kind of image once, on one thread and at a small size, for the nanoseconds of a sample. A cell takes its samples times
-//! that, divided by the processors that its threads can use. This assumes an ideal speedup, and leaves out what schedules cost.
+//! The pilot renders each kind of image once, on one thread and at a small size, to measure the time of a sample. A
+//! cell's time is its samples times that, divided by the processors that its threads can use. This assumes an ideal
+//! speedup and ignores the overhead of schedules.
 
 use super::cell::Cell;
 use super::sweep::Sweep;
@@ -18,14 +19,14 @@ use std::time::Instant;
 const RENDER_S: f64 = 0.01;
 /// Seconds after which no other kind is rendered.
 const MOST_S: f64 = 10.0;
-/// Columns of the pilot's images: lanes have enough paths at a time.
+/// Columns of the pilot's images: enough paths at a time for the lanes.
 const WIDTH: u32 = 64;
-/// Seconds of a row besides rendering: its process starts, and its image is checked.
+/// Seconds of a row besides rendering: starting its process and checking its image.
 const ROW_S: f64 = 0.03;
 /// Bytes of a row, of a job in a trace, of a pixel in an image, and of a pixel in the film of a reference.
 const BYTES: [u64; 4] = [760, 60, 12, 52];
 
-/// What a sweep takes, from its first row to its last.
+/// The estimated cost of a sweep, from its first row to its last.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plan {
     /// The experiment.
@@ -34,13 +35,13 @@ pub struct Plan {
     pub cells: usize,
     /// Its rows.
     pub rows: usize,
-    /// Estimated seconds of the references that no earlier plan has and no cache holds.
+    /// Estimated seconds of the references that are neither in an earlier plan nor in the cache.
     pub references_s: f64,
-    /// Halves of those references.
+    /// Number of halves of those references.
     pub halves: usize,
     /// Estimated seconds of all rows.
     pub cells_s: f64,
-    /// Estimated bytes of rows, traces, images and references. Figures are not among them.
+    /// Estimated bytes of rows, traces, images and references, without figures.
     pub bytes: u64,
 }
 
@@ -51,24 +52,24 @@ impl Plan {
     }
 }
 
-/// What the pilot knows of samples, and the references that have been planned.
+/// The times of samples that the pilot measured, and the references that have been planned.
 pub struct Prices<'a> {
     lab: &'a Lab,
     begun: Instant,
-    /// Kinds of images, with the seconds of a sample.
+    /// Kinds of images, each with the seconds of a sample.
     kinds: Vec<(Settings, f64)>,
-    /// Kinds that were not rendered for want of time; the mean of the others stands for them.
+    /// Number of kinds that were not rendered for lack of time; the mean of the others stands for them.
     pub guessed: usize,
     planned: HashSet<PathBuf>,
 }
 
 impl<'a> Prices<'a> {
-    /// Nothing is known yet.
+    /// Starts with no kinds of images.
     pub fn new(lab: &'a Lab) -> Self {
         Self { lab, begun: Instant::now(), kinds: Vec::new(), guessed: 0, planned: HashSet::new() }
     }
 
-    /// How many kinds of images are known.
+    /// The number of known kinds of images.
     pub fn kinds(&self) -> usize {
         self.kinds.len()
     }
@@ -89,7 +90,7 @@ impl<'a> Prices<'a> {
         Ok(seconds)
     }
 
-    /// Renders a kind of image; `spp` is a number of samples that it can have.
+    /// Renders a kind of image and returns the seconds of a sample; `spp` is a number of samples that it can have.
     fn measure(&self, kind: &Settings, spp: u32) -> Result<f64> {
         let with = |spp: u32| self.lab.prepare(Settings { spp, ..kind.clone() });
         let samples = |spp: u32| f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp);
@@ -105,7 +106,7 @@ impl<'a> Prices<'a> {
         Ok(with(fewest * times)?.run(None)?.makespan_s / samples(fewest * times))
     }
 
-    /// Adds a reference that no earlier plan has.
+    /// Adds the halves of a reference that are neither cached nor in an earlier plan.
     fn add_reference(&mut self, reference: &Reference, folder: &Path, plan: &mut Plan) -> Result<()> {
         let pixels = u64::from(reference.size[0]) * u64::from(reference.size[1]);
         for (half, path) in reference.paths(self.lab, folder)?.into_iter().enumerate() {
@@ -122,7 +123,8 @@ impl<'a> Prices<'a> {
     }
 }
 
-/// The image of these settings at the pilot's size and by one thread, whatever its samples. Two cells of one kind have the same.
+/// The image of these settings at the pilot's size, on one thread, without seed and samples; equal for cells of one
+/// kind.
 fn small(settings: &Settings) -> Settings {
     let spec = &settings.spec;
     let height = (u64::from(WIDTH) * u64::from(spec.height)).div_ceil(u64::from(spec.width).max(1));
@@ -132,7 +134,7 @@ fn small(settings: &Settings) -> Settings {
 }
 
 impl Sweep<'_> {
-    /// What it takes. Other programs have no price, so their seconds are not in it.
+    /// Estimates the cost of the sweep. Other programs have no price, so their seconds are not included.
     pub fn plan(&self, prices: &mut Prices<'_>) -> Result<Plan> {
         let (definition, options) = (self.definition, self.options);
         let repetitions = self.repetitions()?;

@@ -1,5 +1,6 @@
-//! What an accuracy will cost, found out by a pilot: some seeds are rendered and timed, and their images measured by each other. No reference is
-//! needed, and the seeds of the pilot belong to no image, so that what is paid for later is not judged by the samples that set its price.
+//! The price of an accuracy, estimated by a pilot: some seeds are rendered and timed, and their images are compared
+//! with each other. No reference is needed. The pilot's seeds belong to no image, so a render that is paid for later is
+//! not judged by the samples that set its price.
 
 use super::Progress;
 use crate::analysis::Estimate;
@@ -13,31 +14,32 @@ use crate::lab::Lab;
 use crate::measure::{Doubts, Rounds, Settings};
 use crate::sampling::{REFERENCE_SEEDS, is_spread};
 
-/// Seeds from here on are for pilots.
+/// The first seed of pilots.
 const PILOT_SEEDS: u64 = REFERENCE_SEEDS >> 1;
-/// Points of each seed's curve, each of twice the samples: enough for an exponent.
+/// Points of each seed's curve, each with twice the samples of the one before: enough to fit an exponent.
 const POINTS: u32 = 5;
 
-/// How thoroughly a price is found out.
+/// The size of a pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pilot {
     /// Samples per pixel of each seed.
     pub spp: u32,
-    /// How many seeds.
+    /// Number of seeds.
     pub seeds: u32,
 }
 
-/// What a pilot found out.
+/// The result of a pilot.
 pub struct Piloted {
-    /// Error and time.
+    /// Estimates of error and time.
     pub renderer: Renderer,
-    /// That of the pixels' values over seeds: where one value of one pixel makes up much of the variance, the price rests on whether the pilot met it.
+    /// The tail of the pixels' values over seeds. If one value of one pixel makes up much of the variance, the price
+    /// depends on whether the pilot met it.
     pub tail: Tail,
     /// Doubts about the times of its seeds.
     pub doubts: Doubts,
 }
 
-/// What was paid.
+/// Measured time and error of two renders.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Paid {
     /// Mean seconds of the two renders.
@@ -46,7 +48,7 @@ pub struct Paid {
     pub rmse: f64,
 }
 
-/// How the error falls with a sampler of that name.
+/// The law by which the error falls with that sampler.
 pub fn law_of(sampler: &str) -> Law {
     if is_spread(sampler) { Law::Fitted } else { Law::Independent }
 }
@@ -56,7 +58,7 @@ fn with_seed(settings: &Settings, spp: u32, seed: u64) -> Settings {
 }
 
 impl Pilot {
-    /// Renders the pilot; intervals have this level.
+    /// Renders the pilot. Intervals have the confidence `level`.
     pub fn run(&self, lab: &Lab, settings: &Settings, level: f64, progress: &dyn Progress) -> Result<Piloted> {
         let law = law_of(&settings.spec.sampler);
         let fewest = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
@@ -111,7 +113,7 @@ fn tail_over_seeds(images: &[Vec<f64>]) -> Option<Tail> {
     tail(values.iter().map(Vec::as_slice))
 }
 
-/// Renders two seeds, from the settings' own on, with so many samples, and measures what that took and what it gave.
+/// Renders two seeds, the settings' own and the next, at `spp` samples per pixel; measures their time and error.
 pub fn pay(lab: &Lab, settings: &Settings, spp: u32, progress: &dyn Progress) -> Result<Paid> {
     let mut images = Vec::new();
     let mut seconds = 0.0;

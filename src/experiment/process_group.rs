@@ -1,5 +1,5 @@
-//! A process that ends with everything that it started: it leads a group of processes, and the group is ended when it has ended, or when it
-//! finds that the process that started it has.
+//! Process groups: a child leads a group that contains all processes it starts. The group is killed when the child has
+//! ended, or when the child finds that its parent has ended.
 
 use nix::errno::Errno;
 use nix::sys::signal::{Signal, killpg};
@@ -10,15 +10,16 @@ use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
 
-/// Starts the command as the leader of a group, tells it a line on its standard input, which stays open, and waits for its end.
+/// Starts the command as the leader of a group, writes a line to its standard input, which stays open, and waits for
+/// its end.
 pub(super) fn answer(mut command: Command, line: &str) -> io::Result<Output> {
     let streams = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = streams.process_group(0).spawn()?;
     let (out, err) = (child.stdout.take(), child.stderr.take());
-    // Both streams are read at once: one that is full would block the child.
+    // Both streams are read concurrently: a full one would block the child.
     let said = thread::Builder::new().spawn(move || read(err));
     let heard = said.and_then(|said| {
-        // A child that dies early closes its end; its exit status tells more than this write.
+        // If the child has died early, this write fails; its exit status tells more.
         child.stdin.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{line}")).ok();
         let out = read(out)?;
         let err = said.join().unwrap_or_else(|_| Ok(Vec::new()))?;
@@ -26,7 +27,7 @@ pub(super) fn answer(mut command: Command, line: &str) -> io::Result<Output> {
         while waitid(Id::Pid(pid(&child)), ended) == Err(Errno::EINTR) {}
         Ok((out, err))
     });
-    // As long as nobody has waited for the child, its number is its own, so no other group can be meant.
+    // Until the child has been waited for, its process id is not reused, so no other group can be killed.
     killpg(pid(&child), Signal::SIGKILL).ok();
     let status = child.wait()?;
     heard.map(|(stdout, stderr)| Output { status, stdout, stderr })

@@ -1,4 +1,4 @@
-//! A cell whose workers are processes: `mpiexec` starts as many of this program, and the first prints the row.
+//! Cells whose workers are processes: `mpiexec` starts several processes of this program, and the first prints the row.
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
@@ -12,11 +12,12 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What starts processes, unless [`LAUNCHER_VARIABLE`] says otherwise: `mpiexec --oversubscribe`, say.
+/// The program that starts processes, unless [`LAUNCHER_VARIABLE`] holds another command, such as
+/// `mpiexec --oversubscribe`.
 const LAUNCHER: &str = "mpiexec";
 const LAUNCHER_VARIABLE: &str = "PATHMARK_MPIEXEC";
 
-/// Renders with so many processes. `Ok(None)` if there is no launcher.
+/// Renders with `ranks` processes. `Ok(None)` if there is no launcher.
 pub(super) fn run_processes(
     settings: &Settings,
     ranks: u16,
@@ -35,7 +36,7 @@ pub(super) fn run_processes(
     Ok(Some((record, image_io::read(&image)?)))
 }
 
-/// What so many processes of this program print. `Ok(None)` if there is no launcher.
+/// Runs `ranks` processes of this program; returns their standard output. `Ok(None)` if there is no launcher.
 fn printed_by_ranks(ranks: u16, arguments: &[OsString]) -> Result<Option<Vec<u8>>> {
     let launcher = env::var(LAUNCHER_VARIABLE).unwrap_or_else(|_| LAUNCHER.to_string());
     let mut words = launcher.split_whitespace();
@@ -54,7 +55,7 @@ fn printed_by_ranks(ranks: u16, arguments: &[OsString]) -> Result<Option<Vec<u8>
     Ok(Some(output.stdout))
 }
 
-/// What messages between two processes cost, beside the rows of a sweep.
+/// The file with the costs of messages between two processes, beside the rows of a sweep.
 pub const MESSAGES: &str = "messages.json";
 
 /// Times messages between two processes and writes the file; `Ok(false)` if there is no launcher.
@@ -65,7 +66,7 @@ pub(super) fn write_messages(path: &Path) -> Result<bool> {
     Ok(true)
 }
 
-/// The options of a render with these settings, by name.
+/// The command-line arguments of a render with these settings.
 fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
     let mut options = vec!["render".to_string(), settings.scene.clone(), "--quiet".to_string(), "--json".to_string()];
     let samples_and_seed = ["spp", "seed", "clamp"];
@@ -80,7 +81,7 @@ fn options(settings: &Settings, rule: &str) -> Vec<OsString> {
     options.into_iter().map(OsString::from).chain(cache).collect()
 }
 
-/// The record in what the first process printed, with the time that gathering took among that of putting pieces together.
+/// The record that the first process printed; its merge time includes the time of gathering.
 fn record(printed: &[u8]) -> Option<Record> {
     let mut value: Value = serde_json::from_slice(printed).ok()?;
     let fields = value.as_object_mut()?;
@@ -90,7 +91,7 @@ fn record(printed: &[u8]) -> Option<Record> {
     Some(Record { merge_s: record.merge_s.map(|merge_s| merge_s + gather_s), ..record })
 }
 
-/// Refuses settings under which processes cannot start, or would not know what to do.
+/// Refuses settings with which processes cannot start, share jobs or give their output.
 pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
     let (ranks, rule) = match (settings.ranks, &settings.rank_rule) {
         (None, None) => return Ok(()),

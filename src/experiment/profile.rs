@@ -1,11 +1,11 @@
-//! The sizes at which an experiment is run, and what a definition says of each.
+//! Profiles: the sizes at which an experiment is run, and their tables in a definition.
 
 use super::Definition;
 use super::table::Scale;
 use crate::error::{InputError, Result};
 use serde::Deserialize;
 
-/// How large an experiment is run.
+/// The size at which an experiment is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Profile {
@@ -21,7 +21,7 @@ impl Profile {
     /// Every profile.
     pub const ALL: [Self; 3] = [Self::Quick, Self::Full, Self::Reports];
 
-    /// Its name in files and, behind `--`, on the command line.
+    /// Its name in files and, after `--`, on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quick => "quick",
@@ -63,13 +63,13 @@ impl Definition {
         })
     }
 
-    /// The options that choose the profiles it has.
+    /// The command-line options for the profiles that the definition has.
     fn options(&self) -> String {
         let options: Vec<String> = self.profiles().map(|profile| format!("--{}", profile.name())).collect();
         options.join(", ")
     }
 
-    /// Refuses a matrix for a profile that is not there, and a profile without a matrix.
+    /// Refuses a matrix that names a missing profile, and a profile without a matrix.
     pub(super) fn check_profiles(&self) -> Result<()> {
         let named = self.matrix.iter().filter_map(|matrix| matrix.profiles.as_ref()).flatten();
         if let Some(absent) = named.copied().find(|profile| !self.has(*profile)) {

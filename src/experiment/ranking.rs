@@ -1,6 +1,7 @@
-//! Which schedules of an image are faster than which, from the rows of an experiment.
+//! Rankings of the schedules of an image by speed, from the rows of an experiment.
 //!
-//! A repetition of an image is a block: its rows were measured one soon after the other, so drift of the machine falls on all of them.
+//! A repetition of an image is a block: its rows were measured shortly after each other, so machine drift affects all
+//! of them.
 
 use super::Cell;
 use super::definition::Definition;
@@ -23,24 +24,24 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
-/// The chance that any order told is wrong.
+/// The probability that any reported order is wrong.
 pub(super) const MISS: f64 = 0.05;
 
 /// A schedule's place among those of its image.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Place {
-    /// The schedule: what its cells' names have behind the image.
+    /// The schedule: the part of its cells' names after the image.
     pub schedule: String,
     /// Median seconds.
     pub median_s: f64,
-    /// How many times as long as the first it takes: the median of the ratios within a repetition.
+    /// Time relative to the first schedule: the median of the ratios within a repetition.
     pub ratio: f64,
-    /// The interval of the ratio; those of all places hold together with 95 % confidence. None for the first, and where there are too few
-    /// repetitions for one.
+    /// The interval of the ratio; the intervals of all places hold together with 95 % confidence. `None` for the first
+    /// place, and with too few repetitions.
     pub interval: Option<Interval>,
     /// Repetitions.
     pub repetitions: usize,
-    /// Numbers of the groups that it belongs to, from 0. Two schedules cannot be told apart if they share one.
+    /// Numbers of the groups that it belongs to, from 0. Two schedules that share a group cannot be told apart.
     pub groups: Vec<usize>,
 }
 
@@ -51,10 +52,10 @@ pub struct ImageRanking {
     pub image: String,
     /// The schedules.
     pub places: Vec<Place>,
-    /// Those of which none is known to be slower than another one: the fastest is among them with 95 % confidence, for all images together.
-    /// Schedules that a matrix shows with fewer repetitions are not compared.
+    /// The schedules that are not known to be slower than another: with 95 % confidence, for all images together, the
+    /// fastest is among them. Schedules whose matrix limits their repetitions are not compared.
     pub fastest: Vec<String>,
-    /// How many were compared for it.
+    /// How many schedules were compared for `fastest`.
     pub compared: usize,
 }
 
@@ -63,7 +64,7 @@ pub struct ImageRanking {
 pub struct Ranking {
     /// Image by image.
     pub images: Vec<ImageRanking>,
-    /// Repetitions that it takes to tell any two schedules apart.
+    /// The fewest repetitions that can tell any two schedules apart.
     pub least_repetitions: u32,
     /// Doubts about all times.
     pub doubts: Doubts,
@@ -81,7 +82,7 @@ struct Schedules {
     shown: BTreeMap<String, Times>,
 }
 
-/// Ranks the schedules in the folder of an experiment, or those that the filters leave.
+/// Ranks the schedules in the folder of an experiment; with filters, only those that pass them.
 pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Ranking> {
     let records = folder.join("records.csv");
     let rows: Vec<Record> = read_records(&records)?.into_iter().filter(|row| row.error.is_empty()).collect();
@@ -128,7 +129,8 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     })
 }
 
-/// The rows' keys whose matrix has fewer repetitions than its experiment; none where no definition lies beside the rows that this program can read.
+/// The keys of rows whose matrix has fewer repetitions than its experiment; empty if no readable definition lies beside
+/// the rows.
 fn shown_only(lab: &Arc<Lab>, folder: &Path, profile: &str) -> BTreeSet<String> {
     let capped = cells(lab, folder, profile).unwrap_or_default().into_iter().filter(|cell| cell.at_most.is_some());
     capped.flat_map(|cell| cell.points).map(|point| point.id).collect()
@@ -142,7 +144,7 @@ fn cells(lab: &Arc<Lab>, folder: &Path, profile: &str) -> Result<Vec<Cell>> {
     definition.cells(Profile::from_name(profile).unwrap_or(Profile::Quick))
 }
 
-/// The rows' keys that the filters leave.
+/// The keys of rows that pass the filters.
 fn wanted(lab: &Arc<Lab>, folder: &Path, profile: &str, filters: &[String]) -> Result<BTreeSet<String>> {
     let mut wanted = BTreeSet::new();
     for cell in cells(lab, folder, profile)? {
@@ -157,8 +159,8 @@ fn wanted(lab: &Arc<Lab>, folder: &Path, profile: &str, filters: &[String]) -> R
     Ok(wanted)
 }
 
-/// The pairs (faster, slower) of schedules that are told apart. Where repetitions went on until something was known, each pair's median ratio has
-/// an interval that holds at every look, and those of all pairs hold together.
+/// The pairs (faster, slower) of schedules that are told apart. If repetitions had a goal, each pair's median ratio has
+/// an interval that holds at every look, and the intervals of all pairs hold together.
 fn orders(times: &[Times], miss: f64, stopping: Stopping) -> BTreeSet<(usize, usize)> {
     if stopping == Stopping::Fixed {
         return told_apart(times, miss);
@@ -176,12 +178,12 @@ fn orders(times: &[Times], miss: f64, stopping: Stopping) -> BTreeSet<(usize, us
     told
 }
 
-/// The confidence of each pair's interval, where those of all pairs hold together.
+/// The confidence of each pair's interval with which the intervals of all pairs hold together.
 fn sequence_level(schedules: usize, miss: f64) -> f64 {
     1.0 - 2.0 * miss / (schedules * schedules.saturating_sub(1)).max(1) as f64
 }
 
-/// The fewest repetitions that tell any two of so many schedules apart.
+/// The fewest repetitions that can tell any two of `schedules` schedules apart.
 fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
     if stopping == Stopping::Fixed {
         return least_blocks(schedules, miss);
@@ -191,13 +193,13 @@ fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
     (1..MOST_REPETITIONS).find(is_enough).unwrap_or(MOST_REPETITIONS)
 }
 
-/// The schedules that no other one is faster than, where each comparison may miss with that probability.
+/// The schedules that are not known to be slower than another, with a miss probability for each comparison.
 fn fastest(schedules: &BTreeMap<String, Times>, miss: f64, stopping: Stopping) -> Vec<String> {
     let is_left = may_be_least(&schedules.values().collect::<Vec<_>>(), miss, stopping);
     schedules.keys().zip(is_left).filter(|(_, is_left)| *is_left).map(|(name, _)| name.clone()).collect()
 }
 
-/// Schedules in the order of their times over the median time of their repetition.
+/// Schedules sorted by the median of their times, each divided by the median time of its repetition.
 fn ordered(schedules: &BTreeMap<String, Times>) -> Vec<(&String, &Times)> {
     let mut blocks: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
     for (repetition, seconds) in schedules.values().flatten() {
@@ -243,7 +245,8 @@ mod tests {
         (0..9).map(|at| (at, factor * (1.0 + 0.4 * f64::from(at % 3)))).collect()
     }
 
-    /// Two schedules that are faster in turns, and one that takes twice as long in every repetition, on a machine whose speed drifts.
+    /// Two schedules that are faster in turns, and one that always takes twice as long, on a machine whose speed
+    /// drifts.
     #[test]
     fn the_fastest_come_first_and_those_that_cannot_be_told_apart_share_a_group() {
         let mut b = times(1.0);
@@ -263,7 +266,7 @@ mod tests {
         assert!(places.iter().all(|place| place.repetitions == 9));
     }
 
-    /// A schedule of three repetitions is told its ratio, and no order, however fast it is.
+    /// A schedule with three repetitions gets a ratio but no group, however fast it is.
     #[test]
     fn schedules_of_fewer_repetitions_come_last_and_in_no_group() {
         let fast: Times = times(0.5).into_iter().take(3).collect();
@@ -278,7 +281,7 @@ mod tests {
         assert_eq!(places[2].interval, None);
     }
 
-    /// Where one has no time in common with the first, its place says so by its absence and not by a number.
+    /// A schedule that shares no repetition with the first gets no place, instead of a ratio of NaN.
     #[test]
     fn a_schedule_without_a_common_repetition_has_no_place() {
         let elsewhere: Times = times(3.0).into_iter().map(|(at, seconds)| (at + 100, seconds)).collect();
@@ -292,7 +295,8 @@ mod tests {
         assert!(places.iter().all(|place| place.ratio.is_finite()), "{places:?}");
     }
 
-    /// One comparison for each of the two others: six repetitions of one order, 1/64 <= .05 / 2, and five would be 1/32.
+    /// Two comparisons, one with each other schedule: six repetitions in the same order suffice (1/64 <= .05 / 2), five
+    /// do not (1/32).
     #[test]
     fn the_fastest_is_among_those_that_none_is_faster_than() {
         let of = |count: u32, factor: f64| (0..count).map(|at| (at, factor)).collect::<Times>();

@@ -10,14 +10,14 @@ use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-/// Versions of the columns that are read. The older ones lack columns that may be empty, and nothing else.
+/// Versions of the columns that can be read. The older ones only lack columns that may be empty.
 const READABLE: [u32; 3] = [7, 8, SCHEMA];
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {
     path: PathBuf,
     file: File,
-    /// Its length: nobody else writes to it.
+    /// Its expected length: no other process should write to it.
     length: u64,
 }
 
@@ -39,14 +39,14 @@ pub fn read_records(path: &Path) -> Result<Vec<Record>> {
     parse(complete, path)
 }
 
-/// The part of a file that ends with a finished row. What a crash left behind it need not even be text.
+/// The part of a file up to its last finished row. The rest, left by a crash, need not even be text.
 fn complete_part<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str> {
     let end = end_of_rows(bytes);
     let refuse = |before: usize, problem: &str| {
         let line = bytes[..before].split(|byte| *byte == b'\n').count();
         InputError::new("row", "", problem).in_file(path.display().to_string(), Some((line, 1))).into()
     };
-    // A crash tears one row. Whole rows behind an open quote would be dropped with it.
+    // A crash truncates one row. Whole rows after an unclosed quote would be dropped with it.
     let fields = |line: &[u8]| line.split(|byte| *byte == b',').count();
     let head = bytes.split(|byte| *byte == b'\n').next().map_or(0, fields);
     if bytes[end..].split(|byte| *byte == b'\n').skip(1).any(|line| head > 1 && fields(line) >= head) {
@@ -55,12 +55,12 @@ fn complete_part<'a>(bytes: &'a [u8], path: &Path) -> Result<&'a str> {
     std::str::from_utf8(&bytes[..end]).map_err(|e| refuse(e.valid_up_to(), "is not UTF-8 text"))
 }
 
-/// Where the last finished row ends. A line end between quotes is part of a field.
+/// The end of the last finished row. A line end between quotes is part of a field.
 fn end_of_rows(bytes: &[u8]) -> usize {
     let (mut quoted, mut end, mut before) = (false, 0, b'\n');
     for (at, byte) in bytes.iter().enumerate() {
         match byte {
-            // A quote opens a field at its beginning, and goes on with it behind another, which it doubles.
+            // A quote opens a field at its beginning; after another quote, which it doubles, it continues the field.
             b'"' => quoted = !quoted && matches!(before, b'\n' | b',' | b'"'),
             b'\n' if !quoted => end = at + 1,
             _ => {}
@@ -70,7 +70,7 @@ fn end_of_rows(bytes: &[u8]) -> usize {
     end
 }
 
-/// Refuses a file whose rows have other columns than those that would be added to it.
+/// Refuses a file whose columns differ from those of the rows to add.
 fn check_columns(text: &str, path: &Path) -> Result<()> {
     let head = csv::ReaderBuilder::new().from_reader(text.as_bytes()).headers().cloned().unwrap_or_default();
     if head.is_empty() || head.iter().eq(COLUMNS.iter().map(|column| column.name)) {
@@ -97,7 +97,7 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
         };
         let row = row.map_err(|e| broken("row", &e))?;
         let line = row.position().map(|position| (position.line() as usize, 1));
-        // Before anything else of the row: other versions have other columns.
+        // The schema is checked first, because other versions have other columns.
         let found = schema.and_then(|at| row.get(at)).unwrap_or_default();
         if !READABLE.iter().any(|readable| found == readable.to_string()) {
             let problem = "was written by another version of the program";
@@ -123,7 +123,7 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
 }
 
 impl RecordsFile {
-    /// Starts a new file; refuses to touch one that is there.
+    /// Creates a file; refuses to replace an existing one.
     pub fn create(path: &Path) -> Result<Self> {
         let create = || step(Step::Create).and_then(|()| OpenOptions::new().write(true).create_new(true).open(path));
         let file = create().map_err(|e| match e.kind() {
@@ -136,7 +136,8 @@ impl RecordsFile {
         Self::locked(path, file)
     }
 
-    /// Goes on with a file: what is in it, but for a half-written last row and for rows that failed, which are run again.
+    /// Opens an existing file and returns its rows, except a half-written last row and failed rows, which are run
+    /// again.
     pub fn resume(path: &Path) -> Result<(Self, Vec<Record>)> {
         let file =
             OpenOptions::new().read(true).write(true).open(path).map_err(|e| Error::system("opening", path, e))?;
@@ -150,7 +151,7 @@ impl RecordsFile {
         if rows == records.len() && complete.len() == bytes.len() {
             return Ok((locked, records));
         }
-        // The new file takes the old one's place in one step, so being killed here loses nothing either.
+        // The new file replaces the old one in one step, so a kill here loses nothing.
         let mut bytes = Vec::new();
         for (index, record) in records.iter().enumerate() {
             bytes.extend(row_bytes(record, index == 0).map_err(|e| Error::system("writing", path, e))?);
@@ -161,7 +162,7 @@ impl RecordsFile {
         Ok((Self::locked(path, file)?, records))
     }
 
-    /// Whether there is a finished row behind the header.
+    /// Whether there is a finished row after the header.
     pub fn has_rows(path: &Path) -> Result<bool> {
         let bytes = std::fs::read(path).map_err(|e| Error::system("reading", path, e))?;
         let complete = complete_part(&bytes, path)?;
@@ -183,8 +184,8 @@ impl RecordsFile {
         Err(InputError::new("records", path.display().to_string(), "is being written by another sweep").into())
     }
 
-    /// Refuses to go on where the file has been replaced, removed or changed by somebody who does not ask for locks: rows would go to a file
-    /// that nobody reads, or behind rows that are no longer there.
+    /// Refuses to continue if a program that ignores locks has replaced, removed or changed the file: rows would go to
+    /// a file that nobody reads, or after rows that no longer exist.
     pub fn check_own(&self) -> Result<()> {
         let length = self.file.metadata().map_err(|e| Error::system("writing", &self.path, e))?.len();
         let problem = if !lock::leads_to(&self.path, &self.file) {
@@ -197,7 +198,8 @@ impl RecordsFile {
         Err(InputError::new("records", self.path.display().to_string(), problem).into())
     }
 
-    /// Appends a row and waits until the disk has it. If that fails, the file is as it was, as far as the disk lets it.
+    /// Appends a row and waits until it is on the disk. On failure, the file keeps its earlier length, if the disk
+    /// allows it.
     pub fn append(&mut self, record: &Record) -> Result<()> {
         self.check_own()?;
         let outcome = row_bytes(record, self.length == 0).and_then(|bytes| {
@@ -208,7 +210,7 @@ impl RecordsFile {
             Ok(bytes.len() as u64)
         });
         let written = outcome.map_err(|e| {
-            // Half a row would be found and dropped by the next `--resume`, but `report` would have to refuse it.
+            // The next `--resume` would drop half a row, but `report` would have to refuse it.
             self.file.set_len(self.length).ok();
             Error::system("writing", &self.path, e)
         })?;

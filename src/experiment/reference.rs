@@ -1,4 +1,4 @@
-//! What images are measured against: two independent halves, from seeds that no image under test can have.
+//! References: two independent halves against which images are measured, from seeds that no image under test can have.
 //!
 //! With two halves R₁ and R₂ the mean of (T - R₁)(T - R₂) is the image's squared error without the references' own noise
 //! (docs/errors.md: cross form).
@@ -19,12 +19,12 @@ pub fn reference_seed(half: u32) -> u64 {
     REFERENCE_SEEDS + u64::from(half)
 }
 
-/// What a reference is of.
+/// The scene and the settings of a reference.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reference {
     /// Scene: a name or a path.
     pub scene: String,
-    /// The version of the scene that is asked for; any, if `None`.
+    /// The required version of the scene; any version, if `None`.
     pub version: Option<SceneVersion>,
     /// Estimator.
     pub estimator: String,
@@ -36,7 +36,7 @@ pub struct Reference {
     pub spp: u32,
 }
 
-/// A half on disk, as an experiment began with it.
+/// A half on disk, as it was when the experiment began.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HalfFile {
     /// The film file.
@@ -73,7 +73,7 @@ impl Reference {
     }
 }
 
-/// Where a film of that key is cached.
+/// The path at which a film with that key is cached.
 pub(super) fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
     let half = key.seed - REFERENCE_SEEDS;
     folder.join(format!(
@@ -83,7 +83,7 @@ pub(super) fn reference_path(folder: &Path, key: &FilmKey) -> PathBuf {
 }
 
 impl Reference {
-    /// Refuses what cannot be rendered, before anything is made.
+    /// Refuses a reference that cannot be rendered, before any file is made.
     pub fn check(&self, lab: &Lab) -> Result<()> {
         if !is_deterministic(&self.sampler) {
             let problem = "gives other numbers in each run, and a reference must be what its name says";
@@ -94,18 +94,19 @@ impl Reference {
         self.half(lab, 0).map(|_| ())
     }
 
-    /// Where its two halves are cached.
+    /// The paths at which its two halves are cached.
     pub fn paths(&self, lab: &Lab, folder: &Path) -> Result<[PathBuf; 2]> {
         let path = |half| -> Result<PathBuf> { Ok(reference_path(folder, &self.half(lab, half)?.film_key())) };
         Ok([path(0)?, path(1)?])
     }
 
-    /// Whether it is what images of these settings are measured against.
+    /// Whether images of these settings are measured against this reference.
     pub(super) fn is_for(&self, settings: &Settings) -> bool {
         self.scene == settings.scene && self.size == [settings.spec.width, settings.spec.height]
     }
 
-    /// Refuses names that no file can have, and a damaged film in the cache. It is never quietly replaced: it may be the user's only copy.
+    /// Refuses names that no file can have, and a damaged film in the cache. Such a film is never replaced: it may be
+    /// the user's only copy.
     pub fn check_cache(&self, lab: &Lab, folder: &Path) -> Result<()> {
         for path in self.paths(lab, folder)? {
             atomic_file::check_name(&path)?;
@@ -117,7 +118,7 @@ impl Reference {
     }
 }
 
-/// The references that an experiment's cells call for: one for each scene and size.
+/// The references that an experiment's cells need: one for each scene and size.
 pub fn wanted_references(definition: &Definition, profile: Profile, cells: &[Cell]) -> Result<Vec<Reference>> {
     let Some((estimator, spp)) = definition.reference(profile)? else { return Ok(Vec::new()) };
     let mut wanted: Vec<Reference> = Vec::new();

@@ -1,4 +1,4 @@
-//! `machine.toml`: what the rows beside it were measured on, and with which command.
+//! `machine.toml`: the machine on which the rows beside it were measured, and the command.
 
 use super::Profile;
 use crate::atomic_file;
@@ -8,34 +8,34 @@ use crate::measure::Machine;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Its name.
+/// The file's name.
 pub const MACHINE: &str = "machine.toml";
 
-/// What is written beside the rows.
+/// The description that is written beside the rows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunFile {
-    /// The command that made them.
+    /// The command that made the rows.
     pub command: String,
     /// `quick`, `full` or `reports`.
     pub profile: String,
-    /// The part of the sweep that these rows are, as in `2/4`; none if they are all of it.
+    /// The part of the sweep that these rows are, such as `2/4`; `None` if they are all of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shard: Option<String>,
-    /// The other program whose rows were measured in turns with these; none if there was none.
+    /// The other program whose rows were measured in turns with these; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
-    /// The share to which cells were to be decided, `fastest` or `order`, where repetitions went on until they were; none if their number was fixed.
+    /// The goal of the repetitions: a share, `fastest` or `order`; `None` if their number was fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
-    /// Whether the command said how often, so that the limits of matrices did not hold.
+    /// Whether the command set the repetitions, so that the limits of matrices did not apply.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub uncapped: bool,
-    /// Whether cells took hierarchies from a `--cache`, so that they did not all build them.
+    /// Whether cells could take hierarchies from a `--cache` instead of building them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub cached: bool,
     /// SHA-256 of the definition's text, shortened to 16 hexadecimal digits.
     pub definition_hash: String,
-    /// Where and with what.
+    /// The machine and the build.
     pub machine: Machine,
 }
 
@@ -45,7 +45,7 @@ pub fn read_run_file(path: &Path) -> Result<RunFile> {
 }
 
 impl RunFile {
-    /// Of something that no definition describes, on this machine.
+    /// The description of a measurement without a definition, on this machine.
     pub fn of_now(command: String) -> Self {
         let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
         let machine = Machine::look();
@@ -53,7 +53,7 @@ impl RunFile {
         Self { command, profile, shard, against, until, uncapped: false, cached: false, definition_hash, machine }
     }
 
-    /// Writes it.
+    /// Writes the file.
     pub fn write(&self, path: &Path) -> Result<()> {
         let text = toml::to_string_pretty(self)
             .map_err(|e| InputError::new("machine", "", format!("cannot be written as TOML: {e}")))?;

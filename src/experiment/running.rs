@@ -1,4 +1,4 @@
-//! A sweep that runs: cells in, rows out.
+//! A running sweep: runs cells, checks their rows and appends them.
 
 use super::against::Against;
 use super::drift::Drift;
@@ -11,7 +11,7 @@ use crate::measure::{Doubts, Record};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 
-/// What a sweep knows of the rows so far, and where it puts the next ones.
+/// The state of a running sweep: the rows so far, and the files for the next ones.
 pub(super) struct Running<'a> {
     sweep: &'a Sweep<'a>,
     folder: PathBuf,
@@ -19,13 +19,13 @@ pub(super) struct Running<'a> {
     against: Option<Against>,
     file: RecordsFile,
     progress: &'a dyn Progress,
-    /// Cells and repetitions of which there is a row.
+    /// Cells and repetitions that have a row.
     finished: HashSet<(String, u32)>,
-    /// How many rows each cell has that are not doubtful, or always will be, and how many that are.
+    /// Each cell's number of rows without doubt, or with doubt that a rerun cannot remove, and of other doubtful rows.
     by_doubt: HashMap<String, [u32; 2]>,
-    /// The times of this build, and of another one if there are two.
+    /// The times of this build, and of the other one if there is one.
     decisions: Decisions,
-    /// The serial run of each cell's image, on the same pieces if there is one on them.
+    /// The serial run of each cell's image, with the same decomposition if there is one.
     serial: Vec<Option<usize>>,
     /// The first row's checksum of each image.
     checksums: HashMap<String, String>,
@@ -67,7 +67,7 @@ impl<'a> Running<'a> {
             checksums: HashMap::new(),
             drift: Drift::of(&done),
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
-            // Rows that failed are gone and their numbers with them, so the count of rows may be taken already.
+            // Failed rows were dropped with their numbers, so the number of rows may be in use already.
             order: done.iter().map(|record| record.order + 1).max().unwrap_or(0),
             repetition: done.iter().map(|record| record.repetition + 1).max().unwrap_or(0),
             summary,
@@ -93,7 +93,7 @@ impl<'a> Running<'a> {
         self.repetition = self.repetition.max(record.repetition + 1);
     }
 
-    /// Runs a repetition of a cell, or what of it has no rows yet.
+    /// Runs a repetition of a cell and adds the rows that are missing.
     pub(super) fn cell(&mut self, index: usize, repetition: u32) -> Result<()> {
         let cell = &self.sweep.cells[index];
         let is_missing = |id: &str| !self.finished.contains(&(id.to_string(), repetition));
@@ -108,7 +108,7 @@ impl<'a> Running<'a> {
         if other_first {
             run_against()?;
         }
-        // A curve that was killed among its rows is rendered again, and only the rows that are not there are added.
+        // A curve that was killed between two rows is rendered again, and only the missing rows are added.
         let rows = job.run_in_child();
         if !other_first {
             run_against()?;
@@ -143,7 +143,7 @@ impl<'a> Running<'a> {
         Ok(())
     }
 
-    /// The cells of which not enough is known yet.
+    /// The cells for which the goal is not reached yet.
     pub(super) fn undecided(&self, goal: Goal) -> Vec<usize> {
         match goal {
             Goal::Share(limit) => self.unknown(limit),
@@ -151,8 +151,8 @@ impl<'a> Running<'a> {
         }
     }
 
-    /// The cells whose place among the schedules of their image is not known, and the serial runs beside them; and those that are not compared,
-    /// because their matrix has fewer repetitions. A curve's place is that of its end.
+    /// The cells whose place among the schedules of their image is unknown, the serial runs beside them, and the cells
+    /// that are not compared because their matrix limits their repetitions. A curve's last point is compared.
     fn unordered(&self, goal: Goal) -> Vec<usize> {
         let mut images: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
         let (compared, counted): (Vec<_>, Vec<_>) =
@@ -172,8 +172,8 @@ impl<'a> Running<'a> {
         all.into_iter().collect()
     }
 
-    /// The cells of which it is not known on which side of the limit the ratio of both builds is, or, of one build, what they are compared by; and
-    /// the serial runs beside them.
+    /// The open cells, and the serial runs beside them. With two builds, a cell is open until its ratio is decided at
+    /// the limit; with one build, until its speedup or time is known to within the limit.
     fn unknown(&self, limit: f64) -> Vec<usize> {
         let cells = &self.sweep.cells;
         let count = cells.iter().map(|cell| cell.points.len()).sum();
@@ -192,8 +192,8 @@ impl<'a> Running<'a> {
         (0..cells.len()).filter(|index| open.contains(index) || is_beside(*index)).collect()
     }
 
-    /// The cells that have fewer rows without a doubt than `wanted` because others are doubtful, each with how many it lacks, and the serial runs that
-    /// they are compared with: times are compared within a repetition.
+    /// The cells that have fewer than `wanted` rows without doubt because others are doubtful, each with the number
+    /// that it lacks. The serial runs compared with them are included: times are compared within a repetition.
     pub(super) fn doubtful(&self, wanted: u32) -> Vec<(usize, u32)> {
         let cells = &self.sweep.cells;
         let lacks = |cell: &Cell| {
@@ -210,19 +210,19 @@ impl<'a> Running<'a> {
         (0..cells.len()).map(|index| (index, of_group(index))).filter(|(_, lack)| *lack > 0).collect()
     }
 
-    /// The number of a repetition that no row has yet.
+    /// The first repetition number that no row has yet.
     pub(super) fn next_repetition(&self) -> u32 {
         self.repetition
     }
 
-    /// What was done, once all of it is in the rows' own file.
+    /// The outcome, after a check that the file of rows is still this sweep's own.
     pub(super) fn finish(self) -> Result<Summary> {
         self.file.check_own()?;
         Ok(self.summary)
     }
 }
 
-/// The serial run of a cell's image, on the same pieces if there is one on them.
+/// The serial run of a cell's image, with the same decomposition if there is one. `None` for a serial cell.
 fn serial_of(cells: &[Cell], index: usize) -> Option<usize> {
     let own = &cells[index];
     if own.is_serial() {
@@ -233,7 +233,8 @@ fn serial_of(cells: &[Cell], index: usize) -> Option<usize> {
     serial().find(is_on_its_pieces).or_else(|| serial().next())
 }
 
-/// A row whose checksum is not that of the other rows of the same image has failed: a schedule must not change a bit.
+/// Marks a row as failed if its checksum differs from that of earlier rows of its image: a schedule must not change a
+/// bit.
 fn verified(record: Record, image: &str, checksums: &mut HashMap<String, String>) -> Record {
     if !record.error.is_empty() || record.checksum.is_empty() {
         return record;

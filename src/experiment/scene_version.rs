@@ -1,12 +1,12 @@
-//! A scene as it was when an experiment began. Its files may be edited while the experiment runs; rows of two versions are no repetitions of each
-//! other, and rows of one must not be measured against references of the other.
+//! Scene versions: a scene as it was when an experiment began. Its files may be edited while the experiment runs. Rows
+//! of two versions are not repetitions of each other, and must not be measured against each other's references.
 
 use crate::error::{InputError, Result};
 use crate::measure::Setup;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What tells versions of a scene apart, meshes and bases included.
+/// The version of a scene, meshes and bases included.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SceneVersion {
     /// The scene's hash.
@@ -16,12 +16,12 @@ pub struct SceneVersion {
 }
 
 impl SceneVersion {
-    /// What a setup has read.
+    /// The version of the scene that a setup has read.
     pub fn of(setup: &Setup) -> Self {
         Self { hash: setup.hash(), files: setup.files().to_vec() }
     }
 
-    /// Refuses the hash of a scene that was read again and is another one by now.
+    /// Refuses another hash: the scene has changed since this version was read.
     pub fn check(&self, hash: &str) -> Result<()> {
         if hash == self.hash {
             return Ok(());

@@ -1,5 +1,5 @@
-//! The order in which cells are run: each repetition visits all cells once, in an order of its own, so that a drift of the machine's
-//! speed falls on all of them alike.
+//! The order in which cells are run: each repetition visits all cells once, in its own random order, so that machine
+//! drift affects all cells equally.
 
 use rand::Rng;
 use rand_pcg::Pcg32;
@@ -34,8 +34,8 @@ mod tests {
         assert_ne!(shuffled(50, "x", 0), shuffled(50, "x", 1));
     }
 
-    /// Each of the 6 orders of three cells comes about equally often: 6000 rounds, chi-square with 5 degrees of freedom between its
-    /// 0.05 % and 99.95 % quantiles (0.16 and 22.1), so too even fails as well.
+    /// Each of the 6 orders of three cells occurs about equally often in 6000 rounds: chi-square with 5 degrees of
+    /// freedom lies between its 0.05 % and 99.95 % quantiles (0.16 and 22.1), so counts that are too even fail as well.
     #[test]
     fn orders_are_uniform() {
         let mut counts = std::collections::HashMap::new();

@@ -1,4 +1,4 @@
-//! Runs the cells of an experiment, a row at a time.
+//! Sweeps: check an experiment, then run its cells and append their rows.
 
 use super::against::{Against, check_program, folder_against};
 use super::calibration_file::write_calibration;
@@ -27,47 +27,47 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// What a sweep writes into its folder, beside images and traces.
+/// The files that a sweep writes into its folder, besides images and traces.
 const OWN_FILES: [&str; 6] =
     ["records.csv", "machine.toml", "experiment.toml", "calibration.csv", MESSAGES, instructions::INSTRUCTIONS];
 
-/// How to run an experiment.
+/// Options of a sweep.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Folder that gets a folder for the experiment, and one for references.
+    /// The parent of the experiment's folder and of the references' folder.
     pub out: PathBuf,
-    /// How large.
+    /// The size at which the experiment is run.
     pub profile: Profile,
-    /// Goes on with rows that are there.
+    /// Whether to continue with the rows that the folder already has.
     pub resume: bool,
-    /// Repetitions, if not the definition's.
+    /// Repetitions of each cell; `None` for the definition's number.
     pub repetitions: Option<u32>,
-    /// `field=value,value...`: only cells that have one of the values of each.
+    /// Filters `field=value,value...`: a cell is run if it has one of the values of each filter.
     pub filters: Vec<String>,
-    /// Another build of the program, which runs each repetition of each cell besides.
+    /// Another build of the program, which also runs each repetition of each cell.
     pub against: Option<PathBuf>,
-    /// The part of the cells to run, if not all.
+    /// The part of the cells to run; `None` for all.
     pub shard: Option<SweepShard>,
-    /// The figure that compares with serial runs: filters leave them in, and there must be one.
+    /// The figure that compares with serial runs. Filters then keep the serial runs, and there must be at least one.
     pub serial_for: Option<&'static str>,
-    /// Until enough is known, if not as the definition says.
+    /// The goal at which repetitions stop; `None` for the definition's.
     pub until: Option<Until>,
-    /// Cells with doubtful rows are run again.
+    /// Whether cells with doubtful rows are run again.
     pub rerun_doubtful: bool,
-    /// The instructions of each cell are counted besides.
+    /// Whether the instructions of each cell are counted, too.
     pub count_instructions: bool,
-    /// Folder in which cells look for hierarchies of large scenes, and keep them.
+    /// Folder in which cells look up and store the hierarchies of large scenes.
     pub cache: Option<PathBuf>,
     /// The command as the user gave it.
     pub command: String,
 }
 
-/// What a sweep did.
+/// The outcome of a sweep.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Summary {
-    /// Where the rows are.
+    /// The folder of the rows.
     pub folder: PathBuf,
-    /// Rows in all.
+    /// Number of rows in the folder.
     pub rows: usize,
     /// Rows that failed, checksum mismatches included.
     pub failed: usize,
@@ -77,7 +77,7 @@ pub struct Summary {
     pub doubts: Doubts,
 }
 
-/// An experiment that can start: everything that the user could have got wrong has been checked, and nothing has been made.
+/// An experiment that is ready to start: all user input has been checked, and no file has been made.
 pub struct Sweep<'a> {
     pub(super) definition: &'a Definition,
     pub(super) options: &'a Options,
@@ -87,7 +87,7 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Checks an experiment and enters its files into those of the command.
+    /// Checks an experiment and adds its files to `files`, the files of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
         let cells = filtered(&definition.cells(options.profile)?, options)?;
         let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
@@ -137,7 +137,8 @@ impl<'a> Sweep<'a> {
         Ok(Self { definition, options, cells, references, until })
     }
 
-    /// Runs what is not yet in the folder. Each repetition visits all cells once, in an order of its own.
+    /// Runs the repetitions of cells that have no rows yet. Each repetition visits all cells once, in a different
+    /// order.
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
         let Self { definition, options, cells, references: wanted, until } = self;
         let folder = options.out.join(&definition.name);
@@ -164,7 +165,7 @@ impl<'a> Sweep<'a> {
             external.make(&programs, progress);
         }
         let (images, traces) = (folder.join("images"), folder.join("traces"));
-        // Killed sweeps leave temporary files also where this one has nothing more to write.
+        // A killed sweep may have left temporary files even in folders to which this one writes nothing.
         for folder in [&folder, &images, &traces, &options.out.join("references")] {
             temporary::remove_abandoned(folder);
         }
@@ -215,18 +216,18 @@ impl<'a> Sweep<'a> {
         Ok(summary)
     }
 
-    /// How often each cell is run; at most, where it is until something is known.
+    /// The repetitions of each cell; the largest number, if there is a goal.
     pub(super) fn repetitions(&self) -> Result<u32> {
         let usual = || match &self.options.until {
             Some(_) => Ok(MOST_REPETITIONS),
-            // At most so many, where the definition says until when.
+            // The largest number, if the definition has a goal.
             None => self.definition.repetitions(self.options.profile),
         };
         self.options.repetitions.map_or_else(usual, Ok)
     }
 
-    /// Runs cells with doubtful rows again, each as often as it lacks a row without a doubt, in repetitions of their own. What is doubtful stays, and
-    /// what is doubtful again is not run a third time.
+    /// Runs cells with doubtful rows again, as often as each lacks rows without doubt, under new repetition numbers.
+    /// Doubtful rows stay, and rows that are doubtful again are not run a third time.
     fn rerun(&self, running: &mut Running<'_>, wanted: u32, progress: &dyn Progress) -> Result<()> {
         let doubtful = running.doubtful(wanted);
         let first = running.next_repetition();
@@ -249,7 +250,7 @@ impl<'a> Sweep<'a> {
         Ok(())
     }
 
-    /// What a cell's process is asked to do in a repetition, which is number `order` of the sweep.
+    /// The job of a cell's process in a repetition; `order` is its position in the sweep.
     pub(super) fn job(
         &self,
         cell: &Cell,
@@ -259,7 +260,7 @@ impl<'a> Sweep<'a> {
         lowest_seed: Option<u64>,
     ) -> CellJob {
         let definition = self.definition;
-        // Curves have many images: those of one seed show what there is to see.
+        // Curves have many images, so only those of the lowest seed are kept.
         let shown = cell.points.len() == 1 || Some(cell.settings.spec.seed) == lowest_seed;
         let is_kept = definition.keeps(Keep::Images) && repetition == 0 && shown;
         let point_job = |point: &CellPoint| PointJob {
@@ -284,7 +285,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// The cells that all filters let through, and the serial runs that their times are compared with.
+/// The cells that pass all filters, and the serial runs with which their times are compared.
 fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
     let mut wanted: Vec<&Cell> = cells.iter().collect();
     for filter in &options.filters {
@@ -302,7 +303,7 @@ fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
     Ok(cells.iter().filter(|cell| is_wanted(cell)).cloned().collect())
 }
 
-/// What is said of the rows of a sweep on this machine.
+/// The description of a sweep's rows: this command and this machine.
 fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -> RunFile {
     RunFile {
         command: options.command.clone(),
@@ -317,7 +318,7 @@ fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -
     }
 }
 
-/// The rows' file, and the rows that are there.
+/// Creates or reopens the file of rows; also returns the rows that it already has.
 fn open(
     definition: &Definition,
     options: &Options,
@@ -330,7 +331,7 @@ fn open(
         atomic_file::write(&folder.join("experiment.toml"), |out| out.write_all(definition.text.as_bytes()))
     };
     if options.resume && rows.is_file() {
-        // Killed before its first row, a sweep may have left no machine.toml, and has nothing that must not be mixed.
+        // A sweep killed before its first row may have left no machine.toml; without rows there is nothing to mix.
         if RecordsFile::has_rows(&rows)? {
             read_run_file(&machine)?.check_same(run, &machine)?;
         }
@@ -347,7 +348,7 @@ fn open(
     Ok((file, Vec::new()))
 }
 
-/// Refuses a folder of somebody else for a new sweep: what is in it would be overwritten by files of the same names.
+/// Refuses a new sweep in a non-empty folder without rows: files of the same names would be overwritten.
 fn check_new(folder: &Path, rows: &Path) -> Result<()> {
     let Ok(mut entries) = std::fs::read_dir(folder) else { return Ok(()) };
     match entries.find_map(std::result::Result::ok) {
@@ -376,7 +377,7 @@ fn references<'a>(
     wanted.iter().map(render).collect()
 }
 
-/// Refuses paths that no cell's process could be told, and names that no file can have.
+/// Refuses paths that cannot be passed to a cell's process, and names that no file can have.
 fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Result<()> {
     for (option, path) in [("out", Some(&options.out)), ("cache", options.cache.as_ref())] {
         if let Some(path) = path.filter(|path| path.to_str().is_none()) {
@@ -387,7 +388,7 @@ fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Re
     options.cache.as_deref().map_or(Ok(()), check_cache)?;
     for cell in cells {
         if definition.keeps(Keep::Traces) {
-            // No repetition has a longer number.
+            // No repetition number is longer.
             atomic_file::check_name(Path::new(&trace_file(&cell.id, u32::MAX)))?;
         }
         if definition.keeps(Keep::Images) {

@@ -8,9 +8,9 @@ use std::fmt;
 /// One of `count` parts of the cells of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SweepShard {
-    /// Which one; the first is 1.
+    /// The number of the part, from 1.
     pub(super) index: u32,
-    /// How many there are.
+    /// The number of parts.
     pub(super) count: u32,
 }
 
@@ -23,7 +23,7 @@ impl fmt::Display for SweepShard {
 impl SweepShard {
     /// Reads `2/4`.
     pub fn parse(text: &str) -> Result<Self> {
-        // Parts of images are numbered alike; how those are cut does not matter here.
+        // Parts of images are numbered in the same way; how those are cut does not matter here.
         let shard = Shard::parse(text, ShardCut::Tiles)?;
         Ok(Self { index: shard.index(), count: shard.count() })
     }
@@ -31,9 +31,9 @@ impl SweepShard {
     /// The cells of this part: every n-th, and the serial runs that they are compared with.
     pub(super) fn cells(self, cells: Vec<Cell>) -> Result<Vec<Cell>> {
         let own = |index: usize| index % self.count as usize == self.index as usize - 1;
-        let (baselines, others): (Vec<Cell>, Vec<Cell>) = cells.iter().cloned().partition(Cell::is_serial);
-        // Where all cells are serial, there is nothing that they are compared with.
-        let divided = if others.is_empty() { cells.clone() } else { others };
+        let (serial, others): (Vec<Cell>, Vec<Cell>) = cells.iter().cloned().partition(Cell::is_serial);
+        // If all cells are serial, they are compared with nothing and are divided themselves.
+        let (baselines, divided) = if others.is_empty() { (Vec::new(), serial) } else { (serial, others) };
         if self.count as usize > divided.len() {
             let problem = format!("there are {} cells to divide", divided.len());
             let error = InputError::new("shard", self.to_string(), problem);
@@ -47,7 +47,7 @@ impl SweepShard {
         Ok(cells.into_iter().filter(|cell| is_mine(cell) || is_needed(cell)).collect())
     }
 
-    /// The number that a repetition of this part has among those of all parts.
+    /// The number of this part's repetition `own` among the repetitions of all parts.
     pub(super) fn repetition(self, own: u32) -> u32 {
         own.saturating_mul(self.count).saturating_add(self.index - 1)
     }

@@ -13,19 +13,19 @@ use std::marker::PhantomData;
 use std::num::NonZeroU32;
 use std::str::FromStr;
 
-/// A table: values by axis, in the words of the file, and what else a matrix or a profile says.
+/// A table: the values of axes as text, and the other fields of a matrix or a profile.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Table<const PROFILE: bool> {
     axes: BTreeMap<&'static str, Vec<String>>,
     /// Whether samples per pixel are for each thread.
     pub(super) weak: bool,
-    /// Whether each cell is a curve: a render that is measured on its way.
+    /// Whether each cell is a curve: a render that is measured several times on its way.
     pub(super) curve: bool,
     /// The profiles that the matrix is for; all, if `None`.
     pub(super) profiles: Option<Vec<Profile>>,
-    /// How often each cell is run; at most, where it is `until` something.
+    /// The repetitions of each cell; the largest number, if there is a goal.
     pub(super) repetitions: u32,
-    /// The most that the cells of the matrix are run.
+    /// The largest number of repetitions of the matrix's cells.
     pub(super) at_most: Option<u32>,
     pub(super) until: Option<Until>,
     pub(super) reference_spp: Option<u32>,
@@ -34,25 +34,25 @@ pub(super) struct Table<const PROFILE: bool> {
 /// The axes; cells are all combinations. An axis that is not named keeps its default.
 pub(super) type Matrix = Table<false>;
 
-/// How large a profile is, and the axes that it replaces.
+/// The size and repetitions of a profile, and the axes that it replaces.
 pub(super) type Scale = Table<true>;
 
 /// The axes that a matrix cannot leave out.
 pub(super) const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "decomposition"];
 
-/// What a profile renders that does not say it, and how often: the fewest repetitions that allow an interval with 95 % confidence.
+/// Default size and repetitions of a profile: the fewest repetitions that allow an interval with 95 % confidence.
 const SIZE: &str = "320x240";
 const REPETITIONS: u32 = 6;
 
 impl Matrix {
-    /// Whether that profile has it.
+    /// Whether the profile has this matrix.
     pub(super) fn is_for(&self, profile: Profile) -> bool {
         self.profiles.as_ref().is_none_or(|profiles| profiles.contains(&profile))
     }
 }
 
 impl Scale {
-    /// What a profile is that says nothing.
+    /// The default of a profile.
     pub(super) fn usual() -> Self {
         Self { axes: BTreeMap::from([("size", vec![SIZE.to_string()])]), repetitions: REPETITIONS, ..Self::default() }
     }
@@ -70,7 +70,7 @@ impl<const PROFILE: bool> Table<PROFILE> {
     }
 }
 
-/// How often: a number, or until enough is known.
+/// The repetitions of a profile: a number, or a goal.
 #[derive(Deserialize)]
 #[serde(
     untagged,
@@ -143,7 +143,7 @@ impl<'de> DeserializeSeed<'de> for Values {
             Field::Samples(_) => words(&Vec::<u32>::deserialize(from)?),
             Field::Seed(_) => words(&Vec::<u64>::deserialize(from)?),
             Field::Workers(_) => Vec::<Threads>::deserialize(from)?.iter().map(|own| own.count().to_string()).collect(),
-            // All cells have the same size, which is no list.
+            // All cells have the same size, so it is not a list.
             Field::Size(_) => <[u32; 2]>::deserialize(from).map(|[width, height]| vec![format!("{width}x{height}")])?,
         })
     }
@@ -191,7 +191,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
     }
 }
 
-/// One table, or an array of them.
+/// Reads one table, or an array of tables.
 pub(super) fn one_or_many<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Vec<T>, D::Error> {
     struct OneOrMany<T>(PhantomData<T>);
     impl<'de, T: Deserialize<'de>> Visitor<'de> for OneOrMany<T> {

@@ -1,12 +1,13 @@
-//! Repetitions that go on until enough is known: `run EXPERIMENT --until 3%`, or `repetitions = { until = "3 %" }` in its file.
+//! Repetitions until a goal is reached: `run EXPERIMENT --until 3%`, or `repetitions = { until = "3 %" }` in its file.
 //!
 //! With a share as the goal, cells are decided one by one. With another build beside this one (`--against OLD`), a cell is decided when the
 //! interval of its ratio of times lies above 1 plus the limit, below 1, or within the limit of 1. Otherwise it is decided when its speedup over
 //! the serial run of its image, or its time where there is no serial run, is known to within the limit. With `fastest` or `order` as the goal, the
 //! schedules of an image are compared with each other.
 //!
-//! Intervals hold at every look ([`crate::analysis::confidence_sequence`]), so stopping by them does not make them wrong. What is decided is left
-//! out of later repetitions; serial runs go on beside the cells that are compared with them.
+//! Intervals hold at every look ([`crate::analysis::confidence_sequence`]), so they stay valid when repetitions stop by
+//! them. Decided cells are left out of later repetitions; serial runs are repeated beside the cells that are compared
+//! with them.
 
 use super::diff::{Change, Pairing, compared, level_of, parse_share};
 use super::ranking::MISS;
@@ -20,16 +21,17 @@ use crate::measure::Record;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::time::Duration;
 
-/// Confidence of each interval of an experiment, as its figures have it.
+/// Confidence of each interval, as in the figures of an experiment.
 const LEVEL: f64 = 0.95;
 
-/// As many repetitions as a comparison takes, if nobody says how many it may.
+/// The largest number of repetitions until a goal, if the user sets none.
 pub const MOST_REPETITIONS: u32 = 200;
 
 /// The goal of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
-    /// By which share a cell got slower than in another build; or, of one build, what it is compared by, to within that share.
+    /// The share that decides a cell: with two builds the limit of its ratio of times, with one build the precision of
+    /// its speedup or time.
     Share(f64),
     /// The fastest schedule of each image: a cell is left out once another one is faster (successive elimination: E. Even-Dar, S. Mannor and
     /// Y. Mansour, "Action elimination and stopping conditions for the multi-armed bandit and reinforcement learning problems", 2006).
@@ -48,19 +50,19 @@ impl Goal {
     }
 }
 
-/// When to stop.
+/// The rule by which repetitions stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Until {
     /// The goal of a sweep.
     pub goal: Goal,
     /// The goal as the user gave it.
     pub text: String,
-    /// No repetition begins later than that.
+    /// The time after which no repetition begins, from the start of the first one.
     pub within: Option<Duration>,
 }
 
 impl Until {
-    /// From text: `3%` or `0.03`, `fastest` or `order`, and `60s`.
+    /// Parses a goal (`3%`, `0.03`, `fastest` or `order`) and a time (`60s`).
     pub fn parse(goal: &str, within: Option<&str>) -> Result<Self> {
         let length = |text: &str| -> Result<Duration> {
             let wrong = || InputError::new("within", text, "is no length of time").allowed("60s, or 2min");
@@ -72,12 +74,13 @@ impl Until {
         Ok(Self { goal: goal_of?, text: goal.to_string(), within })
     }
 
-    /// The goal of a sweep: that of the command, or that of the definition if the command does not say how often.
+    /// The goal of a sweep: the command's, or the definition's if the command sets neither goal nor repetitions.
     pub(super) fn of(definition: &Definition, options: &Options) -> Result<Option<Self>> {
         let until = match &options.until {
             Some(until) => Some(until.clone()),
             None if options.repetitions.is_some() => None,
-            // Two builds and parts of a sweep are run as often as the definition allows.
+            // With two builds, or for a part of a sweep, a goal of the definition that compares schedules does not
+            // apply.
             None => {
                 let own = definition.until(options.profile)?;
                 own.filter(|until| !until.goal.is_of_schedules() || is_of_all_schedules(options).is_ok()).cloned()
@@ -91,20 +94,20 @@ impl Until {
         Ok(until)
     }
 
-    /// Whether no repetition may begin any more.
+    /// Whether the time limit has passed, so that no repetition may begin.
     pub(super) fn is_over(&self, elapsed: Duration) -> bool {
         self.within.is_some_and(|within| elapsed >= within)
     }
 }
 
 impl Options {
-    /// Whether the number of repetitions is the user's, which is for all cells, and not the definition's.
+    /// Whether the command, and not the definition, sets the repetitions; they then hold for all cells.
     pub(super) fn say_how_often(&self) -> bool {
         self.repetitions.is_some() || self.until.is_some()
     }
 }
 
-/// Whether a sweep compares all schedules of its images with each other, and if not, why.
+/// Checks that a sweep compares all schedules of its images with each other; the error says why it does not.
 fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static str> {
     match (&options.against, &options.shard) {
         (Some(_), _) => Err("compares schedules with each other, and --against compares each with another build"),
@@ -113,7 +116,7 @@ fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static st
     }
 }
 
-/// A share that repetitions can reach.
+/// Parses a share that repetitions can reach: above 0.
 fn share(text: &str) -> Result<f64> {
     let wrong = |problem: &str| {
         let error = InputError::new("until", text, problem);
@@ -130,12 +133,12 @@ fn share(text: &str) -> Result<f64> {
 #[derive(Default)]
 pub(super) struct Decisions {
     times: HashMap<String, [BTreeMap<u32, f64>; 2]>,
-    /// Cells of which a row has no time: they failed, or what they need is not on this machine.
+    /// Cells with a row that has no time: it failed, or the machine lacks something that the cell needs.
     without_time: HashSet<String>,
 }
 
 impl Decisions {
-    /// Knows a row of the old build or of the new one.
+    /// Records a row of the old or of the new build.
     pub(super) fn note(&mut self, record: &Record, is_new: bool) {
         if let Some(seconds) = record.makespan_s.filter(|seconds| record.error.is_empty() && *seconds > 0.0) {
             let times = self.times.entry(record.cell.clone()).or_default();
@@ -145,15 +148,15 @@ impl Decisions {
         }
     }
 
-    /// Whether a cell, one of so many that are compared, is decided.
+    /// Whether a cell, one of `cells` that are compared, is decided.
     pub(super) fn is_decided(&self, cell: &str, cells: usize, limit: f64) -> bool {
         let Some([old, new]) = self.times.get(cell) else { return false };
         let found = compared(cell, old, new, Pairing::Sequential, level_of(cells), limit);
         found.is_some_and(|found| found.change != Change::Undecided)
     }
 
-    /// Whether a cell's speedup over the serial run beside it, or its time where there is none, is known to within the limit to either side. More
-    /// repetitions of a cell without a time would not tell more.
+    /// Whether a cell's speedup over its serial run, or its time if it has none, is known to within the limit on either
+    /// side. A cell without a time counts as known, because more repetitions would not help.
     pub(super) fn is_known(&self, cell: &str, serial: Option<&str>, limit: f64) -> bool {
         if self.without_time.contains(cell) {
             return true;
@@ -171,11 +174,12 @@ impl Decisions {
         median(&values).zip(median_sequence(&values, LEVEL)).is_some_and(|found| width(found) <= 2.0 * limit)
     }
 
-    /// Which cells are open, image by image: those of which it is not known yet whether another schedule is faster, or which are not told apart
-    /// from all others. What is told of all images together is wrong with a probability of 5 % at most.
+    /// Which cells are open, image by image. For the fastest schedule, a cell is open until another one is known to be
+    /// faster; for the order, until it is told apart from all others. The probability of any wrong conclusion, over all
+    /// images, is at most 5 %.
     pub(super) fn open_schedules(&self, images: &[Vec<&str>], goal: Goal) -> Vec<Vec<bool>> {
         let comparisons = |cells: usize| match goal {
-            // Only those with the fastest one can make it lose.
+            // Only comparisons with the fastest cell can eliminate it.
             Goal::Fastest => cells.saturating_sub(1),
             _ => cells * cells.saturating_sub(1) / 2,
         };
@@ -184,7 +188,7 @@ impl Decisions {
         images.iter().map(|cells| self.open_of(cells, goal, miss)).collect()
     }
 
-    /// As [`Self::open_schedules`], of one image and at a miss for each comparison.
+    /// [`Self::open_schedules`] for one image, with a miss probability for each comparison.
     fn open_of(&self, cells: &[&str], goal: Goal, miss: f64) -> Vec<bool> {
         let nothing = BTreeMap::new();
         let times_of = |cell: &str| self.times.get(cell).map_or(&nothing, |[_, new]| new);
@@ -204,7 +208,7 @@ impl Decisions {
             (0..times.len()).map(is_open).collect()
         };
         let mut open = vec![false; cells.len()];
-        // One alone is the fastest.
+        // If only one is left, it is the fastest.
         if is_open.iter().filter(|is_open| **is_open).count() > 1 {
             timed.into_iter().zip(is_open).for_each(|(at, is_open)| open[at] = is_open);
         }
@@ -228,7 +232,7 @@ mod tests {
         decisions
     }
 
-    /// Eight values are the fewest that an interval at every look has: from the least to the largest of them.
+    /// An interval that holds at every look needs at least eight values; with eight it spans all of them.
     #[test]
     fn what_is_known_is_known_to_within_the_limit() {
         let (drift, twice) = ([1.0, 2.0, 1.0, 3.0, 1.0, 2.0, 1.0, 2.0], [2.0, 4.0, 2.0, 6.0, 2.0, 4.0, 2.0, 4.0]);
@@ -236,7 +240,7 @@ mod tests {
         let decisions = noted(&[("serial", &drift), ("steady", &twice), ("seven", seven), ("alone", &drift)]);
         assert!(decisions.is_known("steady", Some("serial"), 0.001), "drift falls on both");
         assert!(!decisions.is_known("seven", Some("serial"), 0.9), "seven values have no interval");
-        // From 1 to 3 around a median of 1.5: 2 is 1.33 times that, two thirds to either side.
+        // The interval from 1 to 3 has width 2, which is 1.33 times the median of 1.5: two thirds on either side.
         assert!(decisions.is_known("alone", None, 0.667) && !decisions.is_known("alone", None, 0.66));
         assert!(!decisions.is_known("absent", None, 0.9) && !decisions.is_known("steady", Some("absent"), 0.9));
     }
@@ -248,8 +252,8 @@ mod tests {
         assert!(decisions.is_known("sound", Some("failed"), 0.01));
     }
 
-    /// After n repetitions of one order the stake is nearly 2^(n + 1) / (n + 1). Each of two comparisons with the fastest needs 40, which eight
-    /// repetitions give, and each of three pairs 120, which ten give.
+    /// After n repetitions in the same order the stake is nearly 2^(n + 1) / (n + 1). Each of two comparisons with the
+    /// fastest needs 40, which eight repetitions give; each of three pairs needs 120, which ten give.
     #[test]
     fn a_schedule_is_left_out_once_another_is_faster() {
         let [fast, close, slow] = [1.0, 1.01, 2.0].map(|own| [own; 10]);
@@ -263,7 +267,8 @@ mod tests {
         assert_eq!((open(9, Goal::Order), open(10, Goal::Order)), (vec![true; 3], vec![false; 3]));
     }
 
-    /// The two fast ones take turns, so only the third can be left out; nobody waits for one that failed or for an image's only schedule.
+    /// The two fast schedules are faster in turns, so only the third is left out. A failed schedule and an image's only
+    /// schedule are not repeated.
     #[test]
     fn schedules_that_take_turns_stay() {
         let turns = |first: usize| -> Vec<f64> { (0..20).map(|at| [1.0, 1.1][(at + first) % 2]).collect() };

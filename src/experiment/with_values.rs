@@ -1,10 +1,11 @@
-//! `run EXPERIMENT --set AXIS=VALUES`: the same question asked of other values.
+//! `run EXPERIMENT --set AXIS=VALUES`: the same experiment with other values.
 //!
 //! ```text
 //! pathmark run thread-scaling --set scene=my/room.toml --set threads=1,2,4,8
 //! ```
 //!
-//! The result is the text of a definition of its own, which is kept beside the rows: it can be run again without the options.
+//! The result is the text of a complete definition. It is kept beside the rows and can be run again without the
+//! options.
 
 use super::Definition;
 use super::definition::REFERENCE_SPP;
@@ -13,7 +14,7 @@ use crate::input::parse;
 use crate::measure::{AXES, Axis, Field, Settings, parse_size};
 use toml::{Table, Value};
 
-/// The tables of profiles, in which a value may stand instead of in the matrix.
+/// The tables of profiles, which may hold a value instead of the matrix.
 const PROFILES: [&str; 3] = ["quick", "full", "reports"];
 
 impl Definition {
@@ -52,7 +53,7 @@ fn set(table: &mut Table, pair: &str) -> Result<()> {
     };
     let value = value_of(axis, values)?;
     for profile in profiles(table) {
-        // A profile's size cannot be left out, and stands behind the matrix's own.
+        // A profile always has a size, and the matrix's own comes before it.
         if name != "size" {
             profile.remove(name);
         }
@@ -76,7 +77,7 @@ fn matrices(table: &mut Table) -> Vec<&mut Table> {
     }
 }
 
-/// The value as a definition has it: one size, or a list of words or numbers.
+/// The value in a definition: one size, or a list of words, numbers or switches.
 fn value_of(axis: &Axis, values: &str) -> Result<Value> {
     let each = values.split(',').map(str::trim);
     Ok(match (axis.field)(&mut Settings::default()) {

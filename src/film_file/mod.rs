@@ -1,4 +1,4 @@
-//! The film file: sums in full precision, for references. Layout: [`SumFile`], the JSON being the [`FilmKey`].
+//! Film files: sums in full precision, for references. The layout is [`SumFile`], with the [`FilmKey`] as its JSON.
 
 mod sum_file;
 
@@ -11,7 +11,7 @@ pub use sum_file::SumFile;
 
 const FILE: SumFile = SumFile { magic: "pathmark film 1", field: "film" };
 
-/// What a film is of: two films with the same key hold the same bits.
+/// The identity of a film: two films with the same key hold the same bits.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FilmKey {
@@ -31,31 +31,31 @@ pub struct FilmKey {
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Where paths are cut, if they are.
+    /// Depth at which paths are cut, if they are.
     #[serde(default)]
     pub max_depth: Option<u16>,
-    /// Camera rays of a sample, if there are several.
+    /// Camera rays per sample, if there are several.
     #[serde(default)]
     pub camera_rays: Option<u16>,
-    /// Russian roulette rule, the estimator's own rule included; films of revision 1 leave that out.
+    /// Russian roulette rule, including the estimator's own rule, which films of revision 1 omit.
     #[serde(default)]
     pub roulette: Option<String>,
-    /// What is clamped, if anything is; older files do not say.
+    /// The clamp, if there is one; older files have no entry.
     #[serde(default)]
     pub clamp: Option<String>,
     /// The pixel filter, if it is not the camera's own.
     #[serde(default)]
     pub filter: Option<String>,
-    /// Nearer than this nothing is hit, if there is such a distance.
+    /// Distance below which no hit counts, if there is one.
     #[serde(default)]
     pub epsilon: Option<String>,
-    /// Floating-point format of the paths; older files have but one.
+    /// Floating-point format of the paths; older files have only one.
     #[serde(default = "double")]
     pub precision: String,
-    /// Whether tiles have as many samples as their noise calls for; `spp` is their mean then.
+    /// Whether the number of samples of a tile depends on its noise; `spp` is then the mean.
     #[serde(default)]
     pub adaptive: bool,
-    /// Revision of the arithmetic: films of another one are rendered anew.
+    /// Revision of the arithmetic: films of another revision are rendered again.
     pub revision: u32,
 }
 
@@ -68,7 +68,7 @@ pub fn write_film(path: &Path, key: &FilmKey, film: &Film) -> Result<()> {
     FILE.write(path, key, &[film])
 }
 
-/// Reads a film and what it is of.
+/// Reads a film and its key.
 pub fn read_film(path: &Path) -> Result<(FilmKey, Film)> {
     let (key, films) = FILE.read(path, |key: &FilmKey| (key.width, key.height, 1))?;
     let film = films.into_iter().next().unwrap_or_else(|| Film::new(key.width, key.height));

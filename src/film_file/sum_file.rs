@@ -1,8 +1,8 @@
-//! Sums on disk in full precision: what film files and checkpoints have in common. Such a file cannot be mistaken for another kind, nor
-//! read if a byte is missing.
+//! Files of sums in full precision: the common layout of film files and checkpoints. Such a file cannot be mistaken for
+//! another kind, and is refused if a byte is missing.
 //!
-//! Layout: a line that names the kind, a line of JSON, 52 bytes for each pixel (three sums, three sums of squares as little-endian f64,
-//! the count as u32) of one image after the other, and the SHA-256 of all that.
+//! Layout: a line that names the kind, a line of JSON, 52 bytes for each pixel (three sums, three sums of squares as
+//! little-endian f64, the count as u32) of one image after the other, and the SHA-256 of everything before it.
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
@@ -16,14 +16,14 @@ use std::path::Path;
 
 const PIXEL_BYTES: usize = 52;
 const DIGEST_BYTES: usize = 32;
-/// Names and numbers.
+/// In bytes; a header holds only names and numbers.
 const LONGEST_HEADER: usize = 1 << 16;
 
 /// A kind of file.
 pub struct SumFile {
-    /// Its first line, without the end: a name and the layout's version.
+    /// Its first line, without the newline: a name and the layout's version.
     pub magic: &'static str,
-    /// The field that errors name.
+    /// The field's name in errors.
     pub field: &'static str,
 }
 
@@ -32,7 +32,7 @@ impl SumFile {
         InputError::new(self.field, path.display().to_string(), problem).into()
     }
 
-    /// Writes a header and images, whole or not at all. Nothing is copied: there may be no memory left for it.
+    /// Writes a header and images, whole or not at all. Nothing is copied, since there may be no memory left.
     pub fn write(&self, path: &Path, header: &impl Serialize, films: &[&Film]) -> Result<()> {
         let header = serde_json::to_string(header).map_err(|e| Error::system("writing", path, e.into()))?;
         atomic_file::write(path, |out| {
@@ -49,8 +49,8 @@ impl SumFile {
         })
     }
 
-    /// Reads a header, and as many images of one size as `shape` says by it: width, height and number. Asks for no more memory than the file
-    /// is long.
+    /// Reads a header, and the images that it describes. `shape` returns their common width and height, and their
+    /// number. Allocates no more memory than the file is long.
     pub fn read<H: DeserializeOwned>(
         &self,
         path: &Path,
@@ -61,7 +61,7 @@ impl SumFile {
         let unreadable = |e: io::Error| self.unreadable(path, e);
         let header: std::result::Result<H, _> = serde_json::from_slice(&line);
         let films = match &header {
-            // What a damaged header says is not read, let alone allocated.
+            // Images of a damaged header are neither read nor allocated.
             Err(_) => Vec::new(),
             Ok(header) => {
                 let (width, height, images) = shape(header);
@@ -79,7 +79,7 @@ impl SumFile {
         Ok((header.map_err(|e| self.no_header(path, &e))?, films))
     }
 
-    /// Reads a header alone. Whether the file is whole is not known then.
+    /// Reads only a header, without a check that the file is whole.
     pub fn header<H: DeserializeOwned>(&self, path: &Path) -> Result<H> {
         let (_, line) = self.begin(path)?;
         serde_json::from_slice(&line).map_err(|e| self.no_header(path, &e))
@@ -120,7 +120,7 @@ impl SumFile {
     }
 }
 
-/// What a file's checksum is of, on its way through it.
+/// The part of a file that its checksum covers, with the digest of the bytes read so far.
 struct Body {
     file: Take<BufReader<File>>,
     digest: Sha256,
@@ -133,7 +133,7 @@ impl Body {
         Ok(())
     }
 
-    /// A line without its end, which must come after so many bytes at most.
+    /// Reads a line without its newline; empty if the line has more than `most` bytes.
     fn line(&mut self, most: usize) -> io::Result<Vec<u8>> {
         let mut line = Vec::new();
         self.file.by_ref().take(most as u64 + 1).read_until(b'\n', &mut line)?;
@@ -151,7 +151,7 @@ impl Body {
         Ok(Film::from_pixels(width, height, pixels))
     }
 
-    /// Whether the rest of the file, which is passed over, and its checksum are what was written.
+    /// Reads over the rest of the file, and returns whether its checksum holds.
     fn ends_whole(mut self) -> io::Result<bool> {
         let mut chunk = [0; 4096];
         loop {

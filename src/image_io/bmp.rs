@@ -1,4 +1,4 @@
-//! BMP: 8 bits a channel of display values, for programs that read nothing else.
+//! BMP: display values in 8 bits per channel, for programs that read no other format.
 
 use std::io::Cursor;
 
@@ -20,7 +20,7 @@ pub(super) const FORMAT: Format = Format {
 };
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
-    // The header's own word for the file's length finds both a cut and what was appended.
+    // The file length in the header reveals both a cut and appended bytes.
     let declared = bytes.get(2..6).and_then(|field| field.try_into().ok()).map(u32::from_le_bytes);
     if declared.map(u64::from) != Some(bytes.len() as u64) {
         return Err("its length is not the one that its header tells".into());

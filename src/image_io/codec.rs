@@ -1,7 +1,8 @@
-//! What the formats share: limits that hold before anything is allocated, and the way to and from the `image` crate.
+//! Common parts of the formats: limits that are checked before any allocation, and conversion from and to the `image`
+//! crate's data.
 //!
-//! A header of 30 bytes can claim 2^32 x 2^32 pixels. So a claim is held against fixed caps and against the file's length
-//! before memory is asked for. No format here packs more than `MAX_PIXELS_PER_BYTE` pixels into a byte.
+//! A header of 30 bytes can claim 2^32 x 2^32 pixels. A claim is therefore checked against fixed limits and the file's
+//! length before memory is allocated. No format here packs more than `MAX_PIXELS_PER_BYTE` pixels into a byte.
 
 #[cfg(feature = "program")]
 use image::{DynamicImage, ImageDecoder, Limits};
@@ -9,23 +10,24 @@ use image::{DynamicImage, ImageDecoder, Limits};
 use super::{Image, tone_map};
 use crate::error::Result;
 
-/// What is wrong with a file's bytes; the caller adds whose they are.
+/// A decoded value, or the problem of a file's bytes; the caller adds the file's name.
 pub(super) type Decoded<T> = std::result::Result<T, String>;
 
-/// The longest side.
+/// The longest side, in pixels.
 const MAX_SIDE: u64 = 1 << 16;
 /// The most pixels: 6 GiB in memory.
 const MAX_PIXELS: u64 = 1 << 28;
 #[cfg(feature = "program")]
-/// Deflate expands a byte into at most 1032, which is 8 pixels each when a pixel is one bit.
+/// Deflate expands a byte to at most 1032 bytes, each of which holds 8 pixels of one bit.
 const MAX_PIXELS_PER_BYTE: u64 = 8 * 1032;
-/// More than the largest picture has in the most wasteful format (text with 16 bits a channel).
+/// The longest file, in bytes: more than the largest picture takes in the least compact format (text with 16 bits per
+/// channel).
 pub(super) const MAX_FILE_LENGTH: u64 = 20 * MAX_PIXELS;
 #[cfg(feature = "program")]
-/// What a decoder may allocate for anything but pixels.
+/// Most bytes that a decoder may allocate for data other than pixels.
 pub(super) const MAX_METADATA: u64 = 64 << 20;
 
-/// Whether a picture of this size is one that Pathmark reads and writes.
+/// Checks that Pathmark reads and writes pictures of this size.
 pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {
     if width == 0 || height == 0 {
         Err(format!("{width} x {height} pixels are none"))
@@ -37,7 +39,7 @@ pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {
 }
 
 #[cfg(feature = "program")]
-/// [`check_size`], and whether a file of `length` bytes can hold that many pixels at all.
+/// Like [`check_size`], and also checks that a file of `length` bytes can hold that many pixels.
 pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()> {
     check_size(width, height)?;
     if width * height / MAX_PIXELS_PER_BYTE > length as u64 {
@@ -47,7 +49,7 @@ pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()>
 }
 
 #[cfg(feature = "program")]
-/// The limits that a decoder of the `image` crate is opened with.
+/// Returns the limits for a decoder of the `image` crate.
 pub(super) fn limits() -> Limits {
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE as u32);
@@ -57,7 +59,7 @@ pub(super) fn limits() -> Limits {
 }
 
 #[cfg(feature = "program")]
-/// The pixels behind a decoder that has read its header, from a file of `length` bytes.
+/// Reads the pixels from a decoder that has read its header, of a file of `length` bytes.
 pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<DynamicImage> {
     let (width, height) = decoder.dimensions();
     check_claim(u64::from(width), u64::from(height), length)?;
@@ -65,9 +67,9 @@ pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<Dynam
 }
 
 #[cfg(feature = "program")]
-/// A picture of display values in linear radiance.
+/// Converts display values to a picture in linear radiance.
 pub(super) fn from_display(image: DynamicImage) -> Decoded<Image> {
-    // What lies behind a transparent pixel is not in the file.
+    // The background of a transparent pixel is not in the file.
     if image.color().has_alpha() && image.to_rgba16().pixels().any(|pixel| pixel[3] != u16::MAX) {
         return Err("it has transparent pixels".into());
     }
@@ -85,15 +87,15 @@ pub(super) fn from_display(image: DynamicImage) -> Decoded<Image> {
 }
 
 #[cfg(feature = "program")]
-/// A picture of linear values, as they are.
+/// Converts linear values to a picture, without a change.
 pub(super) fn from_linear(image: DynamicImage) -> Image {
     let (width, height) = (image.width(), image.height());
     let values = image.into_rgb32f();
     Image { width, height, pixels: values.pixels().map(|pixel| pixel.0.map(f64::from)).collect() }
 }
 
-/// All channel values in f32, the precision of the linear formats. NaN and infinity stay, so that a picture can show where they
-/// are; a finite value that only f64 can hold is refused.
+/// Converts all channel values to f32, the precision of the linear formats. NaN and infinity remain, so that a picture
+/// can show where they are; a finite value that only f64 can hold is refused.
 pub(super) fn to_f32(image: &Image) -> Result<Vec<f32>> {
     let too_large = |value: &f64| value.is_finite() && (*value as f32).is_infinite();
     match image.pixels.iter().position(|pixel| pixel.iter().any(too_large)) {

@@ -1,9 +1,9 @@
-//! Automatic exposure, as report C has it: the brightest channel of the whole picture becomes 1. A choice of what is looked at, never of
-//! what is measured: one bright pixel darkens all others, so numbers of two pictures cannot be compared.
+//! Automatic exposure, as in report C: the brightest channel of the whole picture becomes 1. It is for viewing only,
+//! not for measuring: one bright pixel darkens all others, so the values of two exposed pictures are not comparable.
 
 use super::Image;
 
-/// The picture divided by its largest finite channel; as it is if that is not above zero.
+/// Returns the picture divided by its largest finite channel; unchanged if that is not above zero.
 #[must_use]
 pub fn auto_exposed(image: &Image) -> Image {
     let finite = image.pixels.iter().flatten().copied().filter(|value| value.is_finite());
@@ -11,7 +11,7 @@ pub fn auto_exposed(image: &Image) -> Image {
     if largest <= 0.0 {
         return image.clone();
     }
-    // Divided, not multiplied by the inverse: the largest is to be 1 exactly, also where it has no inverse.
+    // Divided, not multiplied by the inverse: the largest value must become exactly 1, even if its inverse is infinite.
     Image { pixels: image.pixels.iter().map(|pixel| pixel.map(|value| value / largest)).collect(), ..*image }
 }
 

@@ -1,4 +1,5 @@
-//! EXR: linear values in f32, lossless and compressed; the format to keep results in. Read: one part, not deep, RGB.
+//! EXR: linear values in f32, lossless and compressed; the recommended format for results. Reads one part, not deep,
+//! RGB.
 //!
 //! Source of the header's layout: the file layout document of openexr.com.
 
@@ -22,7 +23,7 @@ pub(super) const FORMAT: Format = Format {
     notes,
 };
 
-/// Bits of the version field that ask for more than one picture of plain pixels: deep data, several parts.
+/// Bits of the version field for unsupported content: deep data, several parts.
 const UNSUPPORTED: u32 = 0x800 | 0x1000;
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
@@ -37,8 +38,9 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     Ok(codec::from_linear(image))
 }
 
-/// Checks the sizes of what is stored, of what is shown and of a tile: the decoder allocates by all of them, tells only the second,
-/// and takes a window whose corners are swapped for another. `None` when there is no such header.
+/// Checks the sizes of the data window, the display window and the tiles. The decoder allocates by all of them, reports
+/// only the display window, and mistakes a window with swapped corners for another one. `None` for a damaged or
+/// unsupported header.
 fn check_header(bytes: &[u8]) -> Option<Decoded<()>> {
     let mut rest = bytes.strip_prefix(b"\x76\x2f\x31\x01")?;
     let flags = u32::from_le_bytes(*take(&mut rest)?);
@@ -69,14 +71,14 @@ fn check_header(bytes: &[u8]) -> Option<Decoded<()>> {
     Some(Ok(()))
 }
 
-/// The next `N` bytes.
+/// Takes the next `N` bytes.
 fn take<'a, const N: usize>(rest: &mut &'a [u8]) -> Option<&'a [u8; N]> {
     let (head, tail) = rest.split_first_chunk()?;
     *rest = tail;
     Some(head)
 }
 
-/// The next text, which a zero ends; an empty one is none.
+/// Takes the next text, which ends with a zero byte; `None` for an empty one.
 fn text<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let end = rest.iter().position(|&byte| byte == 0).filter(|&end| end > 0)?;
     let head = &rest[..end];
@@ -94,9 +96,9 @@ fn encode(image: &Image, notes: &[Note]) -> Result<Vec<u8>> {
     });
     let mut file = exr::prelude::Image::from_channels(size, channels);
     if !notes.is_empty() {
-        // One attribute holds them all, since the library writes those without a name of its own in any order.
+        // One attribute holds all notes, since the library writes attributes unknown to it in any order.
         let json = serde_json::to_string(&notes.iter().cloned().collect::<BTreeMap<_, _>>()).unwrap_or_default();
-        // Attributes have one byte a letter.
+        // Attributes have one byte per character.
         let plain: String = json.chars().map(|letter| if letter.is_ascii() { letter } else { '?' }).collect();
         file.layer_data.attributes.comments = Text::new_or_none(plain);
     }
@@ -105,7 +107,7 @@ fn encode(image: &Image, notes: &[Note]) -> Result<Vec<u8>> {
     Ok(bytes.into_inner())
 }
 
-/// The comment; nothing where the header cannot be read or another program wrote it.
+/// Returns the notes from the comment; empty if the header cannot be read or another program wrote the comment.
 fn notes(bytes: &[u8]) -> Vec<(String, String)> {
     if !matches!(check_header(bytes), Some(Ok(()))) {
         return Vec::new();

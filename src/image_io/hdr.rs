@@ -23,11 +23,12 @@ pub(super) const FORMAT: Format = Format {
     notes: |_| Vec::new(),
 };
 
-/// Values of this size and more do not fit: the exponent byte ends at 2^127.
+/// Values of at least this size do not fit: the exponent byte ends at 2^127.
 const TOO_LARGE: f64 = 1.7e38;
-/// Below this the exponent byte would run out at the other end: black.
+/// Below this the exponent byte would underflow, so the pixel is black.
 const TOO_SMALL: f64 = 1e-38;
-/// The `image` crate marks rows of 8 to 32768 pixels as compressed, and its reader knows no mark for the last of these.
+/// The `image` crate marks rows of 8 to 32768 pixels as compressed, but its reader does not know the mark for this
+/// width.
 const UNREADABLE_WIDTH: u32 = 32768;
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
@@ -64,8 +65,9 @@ fn encode(image: &Image) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The nearest colour with three 8-bit mantissas. The encoder cuts mantissas off, which darkens a picture by half a step, and
-/// finds the exponent by the platform's logarithm; on values that already fit it can do neither.
+/// Returns the nearest colour with three 8-bit mantissas. The encoder truncates mantissas, which darkens a picture by
+/// half a step, and computes the exponent with the platform's logarithm. Values that already fit are not affected by
+/// either.
 fn round(pixel: [f64; 3]) -> [f32; 3] {
     let brightest = pixel.into_iter().fold(0.0, f64::max);
     if brightest < TOO_SMALL {

@@ -1,4 +1,5 @@
-//! Every file of a small picture with each byte cut off or changed, decoded in memory: thousands of files would take a disk's time.
+//! Tests of damaged files: a small picture in each format, cut off or changed at each byte. They are decoded in memory,
+//! since thousands of files would be slow on a disk.
 
 use super::{FORMATS, Image, Note};
 
@@ -37,7 +38,7 @@ fn a_damaged_byte_never_panics() {
                 let mut bytes = bytes.clone();
                 bytes[at] = value;
                 (format.notes)(&bytes);
-                // A picture or an error, both are fine; what is decoded must be of the size that it tells.
+                // A picture or an error, both are fine; a decoded picture must have the size that it states.
                 if let Ok(image) = (format.decode)(&bytes) {
                     assert_eq!(image.pixels.len(), image.width as usize * image.height as usize, "{}", format.name);
                 }

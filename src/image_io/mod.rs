@@ -1,10 +1,10 @@
-//! Pictures in files: one format a file, one line each in [`FORMATS`].
+//! Picture files: one module per format, one entry each in [`FORMATS`].
 //!
-//! In memory a picture is linear radiance in f64, row 0 at the top. `exr`, `pfm` and `hdr` store linear values; `png`, `ppm` and
-//! `bmp` store what a display shows, through [`tone_map`], and lose what lies outside [0, 1].
+//! In memory a picture is linear radiance in f64, row 0 at the top. `exr`, `pfm` and `hdr` store linear values; `png`,
+//! `ppm` and `bmp` store display values, through [`tone_map`], and lose values outside [0, 1].
 //!
-//! A file that cannot be read is an [`InputError`] that names it, whatever is wrong inside: nothing in a file can make a reader
-//! panic, or allocate more than the file's own length justifies. Pixels that a format cannot hold are an [`Error::Check`].
+//! A file that cannot be read is an [`InputError`] that names it. No content of a file can make a reader panic, or
+//! allocate more memory than the file's own length justifies. Pixels that a format cannot hold are an [`Error::Check`].
 
 #[cfg(feature = "program")]
 mod bmp;
@@ -32,26 +32,26 @@ use crate::error::{Error, InputError, Result};
 pub use crate::film::Image;
 pub use exposure::auto_exposed;
 
-/// A file format, told by the extension of the file's name.
+/// A file format, recognised by the extension of the file's name.
 #[derive(Debug)]
 pub struct Format {
     /// The extension, in lower case.
     pub name: &'static str,
-    /// One line for a list.
+    /// One-line description for a list.
     pub about: &'static str,
-    /// Whether values are linear radiance; otherwise 8 bits of what a display shows.
+    /// Whether values are linear radiance; otherwise display values in 8 bits.
     pub linear: bool,
     /// A width that its pictures cannot have.
     forbidden_width: Option<u32>,
-    /// The picture in a file's bytes, or what is wrong with them.
+    /// Decodes a file's bytes; the error describes the problem.
     decode: fn(&[u8]) -> std::result::Result<Image, String>,
-    /// The bytes of the file; the picture has the number of pixels it says.
+    /// Encodes a picture as the bytes of a file; its number of pixels must match its size.
     encode: fn(&Image, &[Note]) -> Result<Vec<u8>>,
     /// The notes in a file's bytes, as far as they can be read.
     notes: fn(&[u8]) -> Vec<(String, String)>,
 }
 
-/// A text beside the pixels: its name, of letters, and the text. `png` and `exr` keep it, the others drop it.
+/// A text stored with the pixels: its name, of letters, and the text. `png` and `exr` keep it, the others drop it.
 pub type Note = (&'static str, String);
 
 /// Every format, for reading and for writing.
@@ -61,7 +61,7 @@ pub const FORMATS: &[Format] = &[png::FORMAT, exr::FORMAT, hdr::FORMAT, pfm::FOR
 #[cfg(not(feature = "program"))]
 pub const FORMATS: &[Format] = &[pfm::FORMAT];
 
-/// The format that the extension of `path` asks for, in either case; to be asked before anything is rendered.
+/// Returns the format for the extension of `path`, in upper or lower case. Call it before anything is rendered.
 pub fn check_format(path: &Path) -> Result<&'static Format> {
     let extension = path.extension().unwrap_or_default();
     FORMATS.iter().find(|format| extension.eq_ignore_ascii_case(format.name)).ok_or_else(|| {
@@ -71,7 +71,7 @@ pub fn check_format(path: &Path) -> Result<&'static Format> {
     })
 }
 
-/// [`check_format`], and whether the format takes pictures of this size.
+/// Like [`check_format`], and also checks that the format accepts pictures of this size.
 pub fn check_picture(path: &Path, width: u32, height: u32) -> Result<&'static Format> {
     let format = check_format(path)?;
     let size = format!("{width}x{height}");
@@ -89,7 +89,7 @@ pub fn read(path: &Path) -> Result<Image> {
     decoded(path, format, &bytes)
 }
 
-/// Reads the picture in `path`, and each text beside it with its name.
+/// Reads the picture in `path` and its notes, each with its name.
 pub fn read_with_notes(path: &Path) -> Result<(Image, Vec<(String, String)>)> {
     let (format, bytes) = bytes_of(path)?;
     Ok((decoded(path, format, &bytes)?, (format.notes)(&bytes)))

@@ -1,8 +1,9 @@
-//! PFM: linear values in f32, uncompressed, the simplest file that loses nothing.
+//! PFM: linear values in f32, uncompressed; the simplest lossless format.
 //!
 //! Source: Paul Debevec, "PFM, portable float map". `PF` (colour) or `Pf` (grey), width and height, a scale whose sign
-//! tells the byte order (negative: little-endian) and whose size multiplies the values; then rows from the bottom up. The header
-//! ends with one byte of white space, so the length of the file is known exactly, and any other is refused.
+//! gives the byte order (negative: little-endian) and whose size multiplies the values; then rows from the bottom up.
+//! The header ends with one byte of white space, so the length of the file is known exactly, and any other length is
+//! refused.
 
 use super::codec::{self, Decoded};
 use super::{Format, Image};
@@ -50,7 +51,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     Ok(Image { width, height, pixels })
 }
 
-/// The next word of the header and the byte of white space behind it.
+/// Takes the next word of the header and the byte of white space after it.
 fn word<'a>(rest: &mut &'a [u8]) -> Decoded<&'a str> {
     const LONGEST: usize = 32;
     let end = rest.iter().take(LONGEST).position(u8::is_ascii_whitespace);

@@ -1,4 +1,4 @@
-//! PNG: 8 bits a channel of display values, lossless. Read in any depth; a colour profile is not applied.
+//! PNG: display values in 8 bits per channel, lossless. Any depth is read; a colour profile is not applied.
 
 use std::io::Cursor;
 
@@ -22,7 +22,8 @@ pub(super) const FORMAT: Format = Format {
 const END: [u8; 12] = *b"\0\0\0\0IEND\xAE\x42\x60\x82";
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
-    // The decoder stops after the last row it needs; a file that was cut off, or goes on, behind it would pass.
+    // The decoder stops after the last row. Without this check, a file that is cut off or continued after that row
+    // would pass.
     if !bytes.ends_with(&END) {
         return Err("it does not end where a PNG ends".into());
     }
@@ -35,7 +36,7 @@ fn encode(image: &Image, notes: &[Note]) -> Result<Vec<u8>> {
     pack(image, &pixels, notes).map_err(|e| InputError::new("image", "png", e.to_string()).into())
 }
 
-/// The file of these display values. Notes are chunks of UTF-8 text before the pixels.
+/// Encodes display values as a file. Notes are chunks of UTF-8 text before the pixels.
 fn pack(image: &Image, pixels: &[u8], notes: &[Note]) -> std::result::Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, image.width, image.height);
@@ -52,7 +53,8 @@ fn pack(image: &Image, pixels: &[u8], notes: &[Note]) -> std::result::Result<Vec
     Ok(bytes)
 }
 
-/// The texts before the pixels, but for packed ones, which might unpack to anything; nothing where that cannot be read.
+/// Returns the uncompressed texts before the pixels; compressed ones could expand to any size. Empty if the header
+/// cannot be read.
 fn notes(bytes: &[u8]) -> Vec<(String, String)> {
     let limits = png::Limits { bytes: codec::MAX_METADATA as usize };
     let Ok(reader) = png::Decoder::new_with_limits(Cursor::new(bytes), limits).read_info() else { return Vec::new() };

@@ -1,4 +1,5 @@
-//! PPM: 8 bits a channel of display values, written as binary P6, the format of the reports' own programs. Read as P6 or P3.
+//! PPM: display values in 8 bits per channel. Written as binary P6, the format of the reports' own programs; read as P6
+//! or P3.
 
 use std::io::Cursor;
 

@@ -1,8 +1,11 @@
-//! Which rank does which jobs: `--ranks static-blocks | static-cyclic | dynamic:C | guided | ... | master-worker:C | working-master:C | awf-b`.
+//! Rank rules: the assignment of jobs to ranks.
 //!
-//! Deals and rules are those of the strategies of the same names. Where chunks are pure functions of their number, a rank that is free counts up
-//! one number in the memory of rank 0 and looks its chunk up. A master answers requests by messages instead. Where chunks depend on how fast the
-//! ranks have been, a rank's request says how long its last chunk took.
+//! `--ranks static-blocks | static-cyclic | dynamic:C | guided | ... | master-worker:C | working-master:C | awf-b`
+//!
+//! Deals and chunk rules are those of the strategies with the same names. If chunks are pure functions of their number,
+//! a free rank increments a counter in the memory of rank 0 and looks up the chunk of that number. A master answers
+//! requests by messages instead. If chunks depend on the speeds of the ranks, a rank's request reports the time of its
+//! last chunk.
 
 use super::Lab;
 use crate::error::{InputError, Result};
@@ -10,12 +13,12 @@ use crate::strategy::{ChunkRule, Deal, Discipline, LearnedRule};
 use std::fmt;
 use std::time::Duration;
 
-/// Rank 0 hands out chunks of so many jobs by messages, and renders nothing.
+/// Rank 0 hands out chunks of C jobs by messages, and renders nothing.
 const MASTER_WORKER: &str = "master-worker";
-/// Rank 0 hands out chunks of so many jobs by messages, between its own.
+/// Rank 0 hands out chunks of C jobs by messages, between its own chunks.
 const WORKING_MASTER: &str = "working-master";
 
-/// The rules, by name. All but those of masters are the strategies of the same names.
+/// The names of the rules. All except the master rules are strategies of the same names.
 const RULES: [&str; 13] = [
     "static-blocks",
     "static-cyclic",
@@ -32,20 +35,22 @@ const RULES: [&str; 13] = [
     WORKING_MASTER,
 ];
 
-/// How often rank 0 looks after the other ranks' requests while it renders. Some libraries answer them without its help, others only when it
-/// calls MPI. Looking takes some microseconds, and the thread that renders is interrupted for it: every 0.2 ms cost 2 to 3 % of the makespan.
+/// Interval at which rank 0 checks for requests of the other ranks while it renders. Some MPI libraries answer them
+/// without its help, others only when it calls MPI. A check takes some microseconds and interrupts the rendering
+/// thread: an interval of 0.2 ms cost 2 to 3 % of the makespan.
 pub const LOOK: Duration = Duration::from_millis(1);
 
-/// Chunks of at most this share of what each rank gets on average are small.
+/// Chunks up to this fraction of a rank's average share are small.
 const SMALL: f64 = 1.0 / 32.0;
 
-/// Whether a rank that counts asks for its next chunk while it renders one of so many jobs. The answer may need rank 0, which renders too; but
-/// of large chunks who asks early has soon more than its share.
+/// Returns whether a rank that uses the counter asks for its next chunk while it still renders one of `chunk` jobs.
+/// Asking early saves time, because the answer may need rank 0, which renders, too. But with large chunks a rank that
+/// asks early soon has more than its share.
 pub fn is_small(chunk: usize, jobs: usize, ranks: usize) -> bool {
     chunk as f64 <= SMALL * jobs as f64 / ranks as f64
 }
 
-/// Who hands out chunks.
+/// The master that hands out chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Master {
     /// Rank 0, which renders nothing.
@@ -54,20 +59,20 @@ pub enum Master {
     Working,
 }
 
-/// How jobs get to ranks.
+/// The way in which ranks get their jobs.
 #[derive(Debug, Clone, Copy)]
 pub enum Way {
     /// Each rank knows its jobs beforehand.
     Dealt(Deal),
-    /// A rank that is free takes the next number from a counter in the memory of rank 0.
+    /// A free rank takes the next number from a counter in the memory of rank 0.
     Counted(ChunkRule),
-    /// A rank that is free asks rank 0.
+    /// A free rank asks rank 0.
     Asked(Master, ChunkRule),
-    /// A rank that is free asks rank 0, which renders beside that, and tells how long its last chunk took.
+    /// A free rank asks rank 0, which also renders, and reports the time of its last chunk.
     Told(LearnedRule),
 }
 
-/// A rule, as the user named it.
+/// A rank rule, with its text as the user wrote it.
 #[derive(Debug, Clone)]
 pub struct RankRule {
     text: String,
@@ -81,12 +86,12 @@ impl fmt::Display for RankRule {
 }
 
 impl RankRule {
-    /// How jobs get to ranks under this rule.
+    /// Returns the way in which ranks get their jobs under this rule.
     pub fn way(&self) -> Way {
         self.way
     }
 
-    /// Refuses rules that so many ranks cannot follow.
+    /// Returns an error if `ranks` ranks cannot follow this rule.
     pub fn check(&self, ranks: usize) -> Result<()> {
         match self.way {
             Way::Asked(Master::Only, _) if ranks < 2 => {
@@ -100,7 +105,8 @@ impl RankRule {
 }
 
 impl Lab {
-    /// The rule that `text` names, with a parameter if a colon follows. `field` is where the text comes from: an option or an axis.
+    /// Returns the rule that `text` names, with the parameter after the colon if there is one. `field` is the source of
+    /// the text: an option or an axis.
     pub fn rank_rule(&self, field: &'static str, text: &str) -> Result<RankRule> {
         let (name, parameter) = text.split_once(':').map_or((text, None), |(name, rest)| (name, Some(rest)));
         let way = match name {
@@ -126,7 +132,7 @@ impl Lab {
     }
 }
 
-/// A master's chunks of so many jobs.
+/// Parses the chunk size of a master; without text it is 1. `None` if it is not a number above 0.
 fn chunks_of(text: Option<&str>) -> Option<ChunkRule> {
     let parameter = text.map_or(Some(1), |text| text.parse().ok().filter(|size| *size > 0))?;
     Some(ChunkRule { size: |handout| handout.parameter, parameter })

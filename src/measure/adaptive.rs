@@ -1,9 +1,11 @@
-//! Samples where the noise is: `render --adaptive`, and `adaptive = [false, true]` in an experiment.
+//! Adaptive sampling, more samples for noisier pixels: `render --adaptive`, and `adaptive = [false, true]` in an
+//! experiment.
 //!
-//! A pilot renders a few samples a pixel under a seed that no image can have, says how noisy each cell of a fixed grid is, and is thrown
-//! away. The samples of the image decide nothing, so its mean is as unbiased as with the same number everywhere; adaptive renderers that
-//! reuse their pilot's samples are not (Kirk and Arvo, "Unbiased Sampling Techniques for Image Synthesis", 1991). The numbers of samples follow from scene and
-//! settings alone, so the checksum is the same whoever renders which pieces.
+//! A pilot renders a few samples per pixel with a seed that no image can have, estimates the noise of each cell of a
+//! fixed grid, and is discarded. The image's samples decide nothing, so its mean is as unbiased as with the same number
+//! everywhere. Adaptive renderers that reuse their pilot's samples are biased (Kirk and Arvo, "Unbiased Sampling
+//! Techniques for Image Synthesis", 1991). The numbers of samples follow from scene and settings alone, so the checksum
+//! does not depend on the schedule.
 
 use super::run::{Account, Watch};
 use super::{Outcome, Settings, Setup};
@@ -13,17 +15,19 @@ use crate::scene::SUBPIXELS;
 use std::slice::from_ref;
 use std::time::Instant;
 
-/// Seeds from here on are for pilots: above those of images, and far above those of references, which count from 2^63.
+/// Seeds from here on are for pilots: above the seeds of images, and far above those of references, which count from
+/// 2^63.
 const PILOT_SEEDS: u64 = 3 << 62;
-/// Fewest samples per pixel that leave something to share out.
+/// Fewest samples per pixel of which some are left to distribute.
 const FEWEST_SPP: u32 = 16;
-/// Every pixel gets this part of the mean: what the pilot took for quiet may have light that is seldom found.
+/// Every pixel gets at least the mean number of samples divided by this: pixels that look quiet in the pilot may have
+/// light that is seldom found.
 const EVEN_PART: u32 = 8;
-/// The pilot has this part of the samples, but at least 8 a pixel and at most 64.
+/// The pilot has the image's samples per pixel divided by this, but at least 8 and at most 64.
 const PILOT_PART: u32 = 16;
 
 impl Setup {
-    /// Refuses settings whose samples are to be shared out and cannot be.
+    /// Refuses settings that ask for adaptive samples and cannot have them.
     pub(super) fn check_adaptive(&self) -> Result<()> {
         let Settings { adaptive, spp, rank_rule, .. } = self.settings();
         if !*adaptive {
@@ -45,7 +49,7 @@ impl Setup {
         Err(InputError::new("spp", spp.to_string(), problem).allowed(allowed).into())
     }
 
-    /// As many samples on average as were asked for, more of them where a pilot found more noise.
+    /// Renders the requested mean number of samples, with more samples where a pilot found more noise.
     pub(super) fn run_adaptive(&self, watch: Watch<'_>) -> Result<Outcome> {
         let before = Instant::now();
         let grid = self.sample_grid()?;
@@ -64,7 +68,7 @@ impl Setup {
     fn sample_grid(&self) -> Result<SampleGrid> {
         let Settings { spp, spec, .. } = self.settings();
         let pilot_spp = (spp / PILOT_PART).clamp(8, 64).next_multiple_of(SUBPIXELS);
-        // Two seeds of images that differ in the highest bits alone share their pilot, which is nobody's sample.
+        // Image seeds that differ in the highest bits alone share a pilot; no image uses its samples.
         let seed = PILOT_SEEDS | (spec.seed & !PILOT_SEEDS);
         let pilot = self.pilot(pilot_spp, seed)?.run(None)?;
         let least = (spp / EVEN_PART / SUBPIXELS * SUBPIXELS).max(SUBPIXELS);

@@ -1,4 +1,4 @@
-//! The table of axes: everything that tells one run from another, once.
+//! The table of axes: every setting that distinguishes one run from another, once.
 //!
 //! The command line, the matrix of an experiment, `--filter` and the ids of cells follow this table. A new axis is one row here, the
 //! field that holds its value, and the code that uses it.
@@ -11,7 +11,7 @@ use crate::scene::FILTERS;
 use crate::simd::{Level, levels};
 use Field::{Fitting, Name};
 
-/// Where the value of an axis is kept, and of which type it is.
+/// The field and the type of an axis's value.
 pub enum Field<'a> {
     /// A name.
     Name(&'a mut String),
@@ -37,7 +37,7 @@ pub struct Axis {
     pub name: &'static str,
     /// Whether another value gives another image. Every other axis changes only the schedule.
     pub changes_image: bool,
-    /// Whether it has a meaning for light alone, and none for a workload.
+    /// Whether it applies to light alone, and not to a workload.
     pub of_light: bool,
     /// The name of its option's value in the help.
     pub value_name: &'static str,
@@ -45,7 +45,7 @@ pub struct Axis {
     pub about: &'static str,
     /// The value without the option; empty if it depends on the scene or the machine.
     pub default: &'static str,
-    /// What an experiment means by `all`.
+    /// The values that an experiment means by `all`.
     pub all: Option<fn(&Lab) -> Vec<String>>,
     /// The field that holds its value.
     pub field: fn(&mut Settings) -> Field<'_>,

@@ -1,8 +1,9 @@
-//! Devices that take pieces beside the workers.
+//! Devices that render pieces beside the workers.
 //!
-//! For each a thread of its own claims pieces from the last one on, many at a time, and has the device render them; a worker that comes to a piece that is
-//! claimed has nothing to do there. So any strategy shares its pieces with a device, whose launches are as large as it likes and as the end of the
-//! run allows: no batch is more than half of what the device would get if both went on as fast as they have been.
+//! Each device has a thread that claims pieces, from the last one backwards and many at a time, and lets the device
+//! render them. A worker skips a piece that is claimed. Any strategy can therefore share its pieces with a device.
+//! Batches are as large as suits the device and the end of the run allows: at most half of the device's share of the
+//! rest, if it and the workers continue at their speeds so far.
 
 use super::ledger::Ledger;
 use super::output::Output;
@@ -13,24 +14,24 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Instant;
 
-/// A batch is to take so long, in seconds: launches that take longer are cut anyway.
+/// Intended duration of a batch, in seconds: launches that take longer are divided anyway.
 const BATCH_S: f64 = 0.25;
 
-/// Which pieces have been claimed; all are the workers' if there is no device.
+/// The pieces that have been claimed; without a device, all belong to the workers.
 pub(super) struct Claims {
     taken: Vec<AtomicBool>,
-    /// Pieces that nobody has claimed.
+    /// Number of pieces that are not claimed.
     left: AtomicUsize,
 }
 
 impl Claims {
-    /// Of so many pieces, which a device shares or not.
+    /// Returns claims for `pieces` pieces, all unclaimed; nothing is kept without a device.
     pub(super) fn new(pieces: usize, has_device: bool) -> Self {
         let pieces = if has_device { pieces } else { 0 };
         Self { taken: (0..pieces).map(|_| AtomicBool::new(false)).collect(), left: AtomicUsize::new(pieces) }
     }
 
-    /// Whether a piece is the caller's from now on.
+    /// Claims a piece; returns whether it is the caller's from now on.
     pub(super) fn take(&self, index: usize) -> bool {
         let Some(taken) = self.taken.get(index) else { return true };
         let is_free = !taken.swap(true, Ordering::Relaxed);
@@ -45,7 +46,7 @@ impl Claims {
     }
 }
 
-/// What was rendered already, as a kernel: an output is given it like anything else.
+/// A rendered piece, as a kernel: an output takes it as it takes any other.
 struct Rendered {
     tile: TileBuffer,
     counts: Counts,
@@ -61,7 +62,7 @@ impl Kernel for Rendered {
     }
 }
 
-/// What the device and the workers share.
+/// Data that the devices and the workers share.
 pub(super) struct Shared<'a> {
     pub(super) plan: &'a Plan,
     pub(super) claims: &'a Claims,
@@ -70,7 +71,7 @@ pub(super) struct Shared<'a> {
 }
 
 impl Shared<'_> {
-    /// Does `work` while each device renders pieces, served by a thread of its own.
+    /// Runs `work` while each device renders pieces, served by a separate thread.
     pub(super) fn beside(
         &self,
         devices: Vec<&dyn Kernel>,
@@ -86,7 +87,7 @@ impl Shared<'_> {
         })
     }
 
-    /// Pieces from the end that nobody has claimed, at most so many; `next` is the first that has been looked at.
+    /// Claims at most `most` free pieces from the end; the pieces from `next` on have been tried.
     fn claim(&self, next: &mut usize, most: usize) -> Vec<usize> {
         let mut claimed = Vec::new();
         while claimed.len() < most && *next > 0 {
@@ -98,7 +99,7 @@ impl Shared<'_> {
         claimed
     }
 
-    /// Has the device render pieces until none is left or it fails.
+    /// Lets the device render pieces until none is left or it fails.
     fn serve(&self, device: &dyn Kernel, start: Instant) {
         let pieces = self.plan.pieces();
         let (mut next, mut batch, mut done) = (pieces.len(), 1, 0);
@@ -123,7 +124,8 @@ impl Shared<'_> {
                 self.ledger.enter(*index, span, || self.output.render(*index, &Rendered { tile, counts }));
             }
             done += claimed.len();
-            // As many as take long enough, twice as many as before at most, and half of the device's share of what is left.
+            // As many as take long enough, at most twice the last limit, and at most half of the device's share of the
+            // rest.
             let by_workers = (pieces.len() - self.claims.left()).saturating_sub(done) as f64 / stop_s;
             let by_device = 1.0 / each_s.max(1e-9);
             let share = self.claims.left() as f64 * by_device / (by_device + by_workers);
@@ -139,7 +141,7 @@ mod tests {
     use crate::film::{Decomposition, Film};
     use std::sync::Mutex;
 
-    /// A device that tells by its sums which pieces it was given.
+    /// A device whose sums show which pieces it was given.
     struct Device;
 
     impl Kernel for Device {
@@ -150,7 +152,7 @@ mod tests {
         }
     }
 
-    /// Where pieces were delivered, and with which sums.
+    /// The delivered pieces, with their sums.
     #[derive(Default)]
     struct Delivered(Mutex<Vec<(usize, [f64; 3])>>, Plan);
 
@@ -167,7 +169,8 @@ mod tests {
         }
     }
 
-    /// Without workers the device renders every piece that is left, from the last one on, one after the other in its lane.
+    /// Without workers the device renders all remaining pieces, from the last one backwards, one after the other in its
+    /// lane.
     #[test]
     fn a_device_renders_what_is_left() {
         let plan = Decomposition::parse("tiles:4x4").unwrap().plan(40, 20, &(0..16));

@@ -1,11 +1,11 @@
-//! What a strategy's mechanism costs on this machine: empty jobs, timed.
+//! Calibration: the cost of a strategy's mechanism on this machine, from timed empty jobs.
 //!
-//! With nothing to do in a job, a run's time is the mechanism's alone. Each strategy runs two numbers of empty jobs on 1, 2, 4 and so on
-//! threads up to all that this process may use. As in a measured run (`Setup::run`), the strategy is made anew before the clock starts, so
-//! a pool's workers may still be on their way when the jobs come. All strategies take turns; every row is the median of [`ROUNDS`] rounds,
-//! or of as many as fit into [`BUDGET`], and a first round is thrown away.
+//! With empty jobs, a run's time is the mechanism's alone. Each strategy runs two numbers of empty jobs on 1, 2, 4 and
+//! so on threads, up to all that this process may use. As in a measured run (`Setup::run`), the strategy is made anew
+//! before the clock starts, so a pool's workers may still be starting when the jobs come. All strategies take turns.
+//! Each row is the median of [`ROUNDS`] rounds, or of as many as fit into [`BUDGET`]; a first round is discarded.
 //!
-//! What the rows mean is the simulator's business (`simulate::Overheads`).
+//! The simulator interprets the rows (`simulate::Overheads`).
 
 use super::available_threads;
 use super::usage::Usage;
@@ -22,13 +22,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-/// Most rounds that count.
+/// Most rounds that count towards the median.
 const ROUNDS: usize = 25;
-/// No round is begun after that; three are made in any case.
+/// No round begins after this time; at least three count.
 const BUDGET: Duration = Duration::from_millis(1200);
-/// Jobs of a run: few, for what a run costs, and many, for what a job costs.
+/// Jobs of a run: few, for the cost of a run, and many, for the cost of a job.
 const JOBS: [usize; 2] = [200, 20_000];
-/// Likewise where each job is a thread.
+/// The same if each job is a thread.
 const JOBS_WITH_THREADS: [usize; 2] = [16, 112];
 
 /// Median time of a run of empty jobs.
@@ -37,15 +37,15 @@ const JOBS_WITH_THREADS: [usize; 2] = [16, 112];
 pub struct CalibrationRow {
     /// Strategy, with its parameter if it has one.
     pub strategy: String,
-    /// Threads asked for; 1 where that has no meaning.
+    /// Requested threads; 1 where that has no meaning.
     pub threads: usize,
-    /// Empty jobs.
+    /// Number of empty jobs.
     pub jobs: usize,
     /// Seconds of the run.
     pub seconds: f64,
-    /// Seconds of CPU time that this process used meanwhile, on all processors; empty where the system does not tell.
+    /// CPU seconds that this process used meanwhile, on all processors; empty if the system does not report them.
     pub cpu_s: Option<f64>,
-    /// Threads of ours that the run itself started; 0 for pools.
+    /// Threads that the strategy started during the run; 0 for pools.
     pub started: usize,
 }
 
@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(read.unwrap(), rows);
     }
 
-    /// Each strategy gets a positive time for two numbers of jobs, and a strategy that is none is refused.
+    /// Each strategy gets a positive time for two numbers of jobs, and an unknown strategy is refused.
     #[test]
     fn every_strategy_is_timed() {
         let names: Vec<String> = STRATEGIES.iter().map(|entry| entry.name.to_owned()).collect();

@@ -1,8 +1,9 @@
-//! A render on disk that can go on: `render --checkpoint FILE`.
+//! A render on disk that can continue: `render --checkpoint FILE`.
 //!
-//! Layout: [`crate::film_file::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. What it is of stands in its header, and
-//! a file that is of anything else is refused, never overwritten. It is written between rounds, in one rename, so that a reader finds
-//! one round or the next. Two renders cannot write one file: a lock file stands beside it as long as the render runs.
+//! Layout: [`crate::film_file::SumFile`], with the subtrees of the film ([`GrowingFilm::parts`]) as images. The header
+//! identifies the render; a file of any other render is refused, never overwritten. The file is written between rounds,
+//! in one rename, so that a reader finds one round or the next. Two renders cannot write one file: a lock file stands
+//! beside it as long as the render runs.
 
 use super::{History, Position, Rounds};
 use crate::error::{InputError, Result};
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 const FILE: SumFile = SumFile { magic: "pathmark checkpoint 2", field: "checkpoint" };
 
-/// The part of an image that a checkpoint is of.
+/// The part of an image that a checkpoint holds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Part {
@@ -24,37 +25,37 @@ pub(super) struct Part {
     pub(super) spp: u32,
 }
 
-/// What a checkpoint says of itself.
+/// The header of a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
-    /// What the film is of, with the samples that it has.
+    /// The key of the film, with the number of its samples.
     pub(super) film: FilmKey,
-    /// The part that it is, if it is not the whole.
+    /// The part of the image, if it is not the whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) part: Option<Part>,
     pub(super) kernel: String,
     /// Seconds of rendering so far.
     rendering_s: f64,
-    /// The accuracy that it is on its way to, and the samples at which that is looked at next.
+    /// The target accuracy, and the samples at the next look.
     target_error: Option<f64>,
     look: u32,
     pub(super) history: History,
 }
 
 impl Header {
-    /// The samples that there are of the pixels it is of.
+    /// The samples that each of its pixels has.
     pub(super) fn samples(&self) -> Range<u32> {
         let FilmKey { width, height, spp, .. } = self.film;
         let start = match self.part {
-            // Where there are more shards than there can be, nothing is read, let alone allocated.
+            // If there are more shards than there can be, nothing is read, let alone allocated.
             Some(part) if part.shard.check(width, height, part.spp).is_ok() => part.shard.samples(part.spp).start,
             _ => 0,
         };
         start..spp
     }
 
-    /// Reads what a file says of itself, and trusts it.
+    /// Reads the header of a file, and trusts it.
     pub(super) fn of(path: &Path) -> Result<Self> {
         FILE.header(path)
     }
@@ -76,25 +77,26 @@ fn refused(path: &Path, problem: &str) -> InputError {
     InputError::new(FILE.field, path.display().to_string(), problem)
 }
 
-/// A file for one render's checkpoints.
+/// A file for the checkpoints of one render.
 pub struct Checkpoint {
     path: PathBuf,
     _lock: Lock,
     target_error: Option<f64>,
 }
 
-/// Where an earlier process was.
+/// The state that an earlier process saved.
 pub struct Saved {
     /// Its film.
     pub film: GrowingFilm,
-    /// How far it was.
+    /// Its progress.
     pub position: Position,
-    /// What happened on the film's paths.
+    /// The counts of the film's paths.
     pub history: History,
 }
 
 impl Checkpoint {
-    /// Locks the file and reads it, if there is one. Refuses what is damaged, of another render, or being written by one.
+    /// Locks the file and reads it, if it exists. Refuses a file that is damaged, of another render, or in use by a
+    /// render.
     pub fn open(path: &Path, rounds: &Rounds, target_error: Option<f64>) -> Result<(Self, Option<Saved>)> {
         let setup = rounds.setup();
         if !setup.is_deterministic() {
@@ -119,7 +121,7 @@ impl Checkpoint {
                 .into());
         }
         let Header { rendering_s, look, history, target_error: found, .. } = found;
-        // On the way to another accuracy, the next look is elsewhere.
+        // With another target accuracy, the next look is elsewhere.
         let look = if found == target_error { look } else { 0 };
         Ok((checkpoint, Some(Saved { film, position: Position { rendering_s, look }, history })))
     }
@@ -144,11 +146,11 @@ fn part_of(rounds: &Rounds) -> Option<Part> {
     rounds.shard().map(|shard| Part { shard, spp: rounds.setup().settings().spp })
 }
 
-/// The first field in which two headers differ, beyond how far they are.
+/// The first field in which two headers differ, apart from their progress.
 pub(super) fn difference(found: &Header, mine: &Header) -> Option<String> {
     let fields = |header: &Header| {
         let part = header.part.map(|Part { shard, spp }| format!("{shard} by {} of {spp} spp", shard.cut()));
-        // Whichever kernel: in the same precision all give the same bits.
+        // The kernel is not compared: in the same precision all kernels give the same bits.
         let mut fields = vec![("shard".to_string(), serde_json::Value::from(part))];
         if let Ok(serde_json::Value::Object(film)) = serde_json::to_value(&header.film) {
             fields.extend(film);

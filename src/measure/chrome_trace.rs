@@ -1,4 +1,4 @@
-//! A trace as a file that Perfetto and `chrome://tracing` open: one row a worker, one box a job.
+//! A trace as a file for Perfetto and `chrome://tracing`: one row per worker, one box per job.
 //!
 //! The JSON object format of the "Trace Event Format" (N. Duffy and D. Sinclair, Google, 2016): complete events (`"ph": "X"`) with
 //! start `ts` and length `dur` in microseconds, and metadata events (`"ph": "M"`) that name the process and its threads.
@@ -7,10 +7,10 @@ use serde_json::{Value, json};
 
 use super::trace::Trace;
 
-/// The one process of a trace; 0 would be taken for the idle process by some viewers.
+/// The one process of a trace; some viewers take 0 for the idle process.
 const PROCESS: u32 = 1;
 
-/// The events of `trace`, whose process is called `process` and whose job number i is called `name(i)`. Events stand in the order of
+/// The events of `trace`. The process is called `process`, and job number i is called `name(i)`. Events are ordered by
 /// their starts, after the names; `args.job` holds the job's index.
 pub fn chrome_trace(trace: &Trace, process: &str, name: impl Fn(usize) -> String) -> Value {
     let metadata = |what: &str, thread: u32, name: &str| json!({ "ph": "M", "name": what, "pid": PROCESS, "tid": thread, "args": { "name": name } });
@@ -35,7 +35,7 @@ pub fn chrome_trace(trace: &Trace, process: &str, name: impl Fn(usize) -> String
     json!({ "traceEvents": events, "displayTimeUnit": "ms" })
 }
 
-/// To the nanosecond: finer digits are noise of the clock and double the file.
+/// Microseconds, rounded to nanoseconds: finer digits are noise of the clock and double the file.
 fn microseconds(seconds: f64) -> f64 {
     (seconds * 1e9).round() / 1e3
 }

@@ -1,11 +1,11 @@
-//! The columns of `records.csv`, told by the type of a row itself.
+//! The columns of `records.csv`, derived from the type of a row.
 
 /// One column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Column {
-    /// Its head.
+    /// Its heading.
     pub name: &'static str,
-    /// What it holds, with its unit.
+    /// Its description, with the unit.
     pub about: &'static str,
     /// The type of its values in this program.
     pub(super) kind: &'static str,
@@ -24,7 +24,7 @@ const SINCE: &[(u32, &[&str])] = &[
 ];
 
 impl Column {
-    /// What its values are.
+    /// The kind of its values, in words.
     pub fn values(&self) -> &'static str {
         let kind = self.kind;
         if kind.contains("f64") {
@@ -38,12 +38,12 @@ impl Column {
         }
     }
 
-    /// Whether it may be empty: where nothing was measured.
+    /// Whether it may be empty: if nothing was measured.
     pub fn may_be_empty(&self) -> bool {
         self.kind.starts_with("Option")
     }
 
-    /// The unit of its values, where the name tells it.
+    /// The unit of its values, if its name shows it.
     pub fn unit(&self) -> Option<&'static str> {
         let units = [("_s", "seconds"), ("_bytes", "bytes")];
         units.iter().find(|(ending, _)| self.name.ends_with(ending)).map(|(_, unit)| *unit)
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use crate::measure::{COLUMNS, Record, SCHEMA};
 
-    /// The heads that a file really has, from the writer of CSV.
+    /// The headings of a real file, from the CSV writer.
     fn heads() -> Vec<String> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         writer.serialize(Record::default()).unwrap();

@@ -1,4 +1,4 @@
-//! When something happened, as text.
+//! Dates and times as text.
 
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 

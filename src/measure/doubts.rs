@@ -1,18 +1,18 @@
-//! How many rows have times in doubt, and why.
+//! Doubtful times: the number of rows that have them, and the reasons.
 
 use std::fmt;
 
-/// The warnings that concern the time of a run; others concern its image.
+/// The warnings about the time of a run; the others concern its image.
 const REASONS: [&str; 4] = ["foreign-load", "slowed", "drift", TOO_SHORT];
-/// The one that another run would have as well.
+/// The warning that another run would get as well.
 const TOO_SHORT: &str = "too-short";
 
-/// Rows, and those of them whose times are in doubt.
+/// The number of rows, and of those whose times are in doubt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Doubts {
     rows: usize,
     doubted: usize,
-    /// How many rows have each reason; a row may have several.
+    /// Number of rows with each reason; a row may have several.
     by_reason: [usize; REASONS.len()],
 }
 
@@ -29,7 +29,7 @@ impl Doubts {
         REASONS.iter().any(|reason| warnings.contains(reason))
     }
 
-    /// Whether another run might be without what makes the time of a row with these warnings doubtful.
+    /// Whether another run might be free of a reason for which the time of a row with these warnings is in doubt.
     pub fn may_pass(warnings: &str) -> bool {
         REASONS.iter().any(|reason| *reason != TOO_SHORT && warnings.contains(reason))
     }
@@ -52,7 +52,7 @@ impl Doubts {
         }
     }
 
-    /// How many rows are in doubt.
+    /// Number of rows in doubt.
     pub fn count(&self) -> usize {
         self.doubted
     }

@@ -1,4 +1,4 @@
-//! Other programs: rendered by their command, timed from outside, read from the file that they write.
+//! External programs: run by their command, timed from outside, with the image read from the file that they write.
 
 use super::Settings;
 use super::record::{Measured, Record, external_row};
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// What an external program gave.
+/// The result of an external program.
 pub struct ExternalRun {
     /// Its image.
     pub image: Image,
@@ -26,7 +26,7 @@ fn children_s() -> Option<[f64; 2]> {
     Some([counted.user_time(), counted.system_time()].map(|time| time.num_microseconds() as f64 * 1e-6))
 }
 
-/// What shells, and `env`, say of a program that is not there or cannot be run.
+/// Exit codes of shells, and of `env`, for a program that is missing or cannot be run.
 const NOT_THERE: [i32; 2] = [126, 127];
 
 /// Runs a command that writes `out`. `Ok(None)` if there is no such program.
@@ -55,7 +55,7 @@ pub fn run_external(command: &[String], out: &Path) -> Result<Option<ExternalRun
 }
 
 impl ExternalRun {
-    /// Its row: what it was measured to be, of settings whose estimator is the program's name.
+    /// Its row: the measurements, for settings whose estimator is the program's name.
     pub fn record(&self, settings: &Settings, scene_hash: &str, errors: Measured) -> Record {
         Record {
             scene_hash: scene_hash.to_string(),
@@ -69,7 +69,7 @@ impl ExternalRun {
     }
 }
 
-/// The row of a program that is not there: no failure, but nothing measured either.
+/// The row of a missing program: no failure, but without measurements.
 pub fn missing_external(settings: &Settings, scene_hash: &str) -> Record {
     let mut record = external_row(settings, Measured::default());
     record.scene_hash = scene_hash.to_string();

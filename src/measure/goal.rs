@@ -1,14 +1,15 @@
-//! When a render is good enough: after so many samples, at an accuracy, or when its time is up.
+//! Goals of a render: a number of samples, an accuracy, or a time limit.
 //!
-//! An accuracy is looked at at 16 samples a pixel and then at most at every doubling. The last step is planned from the noise of at least half
-//! of its samples, so that it ends a little below the target instead of somewhere between it and its half. A look stops the render if the
-//! squared error, by its estimate and the scatter of the image's own error around it ([`crate::film::Noise`]), is below the target with
-//! [`CONFIDENCE`]. Two things keep it from stopping by luck: the looks are few and their estimates share most of their samples, and heavy
-//! tails, which make a sample variance too small by luck, make the image's error small by the same luck. What no look can see is light that
-//! no sample has found yet.
+//! A look checks the accuracy: at 16 samples per pixel and then at most at every doubling. The last step is planned
+//! from the noise of at least half of its samples, so that it ends a little below the target instead of between the
+//! target and its half. A look stops the render if the squared error is below the target with [`CONFIDENCE`], by its
+//! estimate and the scatter of the image's own error around it ([`crate::film::Noise`]). Two facts prevent a stop by
+//! luck. The looks are few, and their estimates share most of their samples. Heavy tails, if they make a sample
+//! variance too small by luck, make the image's error small by the same luck. No look can see light that no sample has
+//! found yet.
 //!
-//! Looks follow from the film alone, so a render that was stopped in between comes to the same end. Between looks, a time limit or a
-//! checkpoint may cut the way into steps.
+//! Looks follow from the film alone, so a render that was stopped in between ends in the same way. Between looks, a
+//! time limit or a checkpoint may divide the samples into steps.
 
 use super::run::RoundTimes;
 use super::settings::LARGEST_SPP;
@@ -17,41 +18,41 @@ use crate::analysis::z_test::normal_quantile;
 use crate::error::{InputError, Result};
 use crate::film::{FEWEST_PIXELS, SAMPLE_BLOCK};
 
-/// How sure a render is that its own RMSE is below the target.
+/// Confidence with which the RMSE of a render must be below its target.
 pub const CONFIDENCE: f64 = 0.95;
-/// Rounds that add less than this share of the samples so far are left undone when time is nearly up.
+/// If time is nearly up, rounds that add less than this share of the samples so far are skipped.
 const LEAST_GAIN: f64 = 0.02;
 
-/// When to stop: at whichever comes first.
+/// When to stop: at the first of these that is reached.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// Samples per pixel, if it is they that are asked for.
+    /// Samples per pixel, if their number is requested.
     pub spp: Option<u32>,
     /// RMSE in linear radiance.
     pub target_error: Option<f64>,
     /// Seconds of rendering.
     pub time_limit_s: Option<f64>,
-    /// Seconds of rendering after which somebody wants to look in.
+    /// Seconds of rendering after which a round should end, so that the caller gets control.
     pub pause_s: Option<f64>,
 }
 
-/// Where a render is on its way, for whoever looks in between two rounds.
+/// The progress of a render, for the caller between two rounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
     /// Seconds of rendering, those of earlier processes included.
     pub rendering_s: f64,
-    /// Samples at which the goal is looked at next.
+    /// Samples at the next look.
     pub look: u32,
 }
 
-/// Who renders until there are so many samples a pixel: [`Rounds::extend_to`], or several processes.
+/// A function that renders up to so many samples per pixel: [`Rounds::extend_to`], or several processes.
 pub type Extend<'a> = &'a mut dyn FnMut(&mut Rounds, u32) -> Result<RoundTimes>;
 
-/// What happens between rounds.
+/// A function that is called after each round.
 pub type Between<'a> = &'a mut dyn FnMut(&Rounds, Position) -> Result<()>;
 
 impl Goal {
-    /// Refuses goals that nothing can reach or that say nothing.
+    /// Refuses goals that are unreachable or meaningless.
     pub fn check(&self, rounds: &Rounds) -> Result<()> {
         let is_positive = |value: f64| value.is_finite() && value > 0.0;
         for (field, value) in [("target-error", self.target_error), ("time-limit", self.time_limit_s)] {
@@ -104,7 +105,7 @@ impl Goal {
             return Some(look);
         }
         if last.paths == 0 {
-            // Nobody knows how long samples take: as few as possible where time is short.
+            // The time of a sample is unknown: as few as possible if there is a time limit.
             let few = if self.time_limit_s.is_some() { multiple } else { SAMPLE_BLOCK.next_multiple_of(multiple) };
             let is_first = spp == 0 || self.time_limit_s.is_none_or(|limit_s| rendering_s < limit_s);
             return is_first.then_some(look.min(spp + few));
@@ -116,7 +117,8 @@ impl Goal {
             let samples = (seconds / samples_s).clamp(0.0, f64::from(LARGEST_SPP)) as u32;
             block.saturating_add(samples).min(look) / multiple * multiple
         };
-        // What the last round took says little about one that is much longer; but a block is better rendered once than twice.
+        // The time of the last round says little about a much longer one; but a block should rather be rendered once
+        // than twice.
         let mut end = look.min(spp.saturating_mul(2).max(SAMPLE_BLOCK));
         if let Some(pause_s) = self.pause_s {
             end = end.min(fits(pause_s).max(spp + multiple));
@@ -128,14 +130,14 @@ impl Goal {
             }
             end = end.min(fitting);
         }
-        // On the way, rounds end with a block where they can, so that nothing is rendered twice.
+        // Before the look, rounds end with a block if possible, so that nothing is rendered twice.
         let aligned = end / SAMPLE_BLOCK.max(multiple) * SAMPLE_BLOCK.max(multiple);
         let end = if end < look && aligned > spp { aligned } else { end };
         (end > spp).then_some(end)
     }
 
-    /// Renders until the goal is reached, by `extend`. `before` is what was done already, where a checkpoint knows. Warns if time was up before the
-    /// target was reached.
+    /// Renders until the goal is reached, by `extend`. `before` is the progress of earlier processes, if a checkpoint
+    /// knows it. Warns if time was up before the target was reached.
     pub fn pursue(
         &self,
         rounds: &mut Rounds,

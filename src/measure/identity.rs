@@ -1,4 +1,4 @@
-//! The one identity of images and schedules: what tells two of them apart, whether they are asked for or measured.
+//! Identity of images and schedules: one key for each, whether they are requested or measured.
 //!
 //! Cells, rows, references and figures compare by these keys. A new axis is a field of one of the two; the tests compare them with the table of axes.
 
@@ -7,7 +7,8 @@ use crate::film_file::FilmKey;
 use crate::kernel;
 use std::fmt;
 
-/// What tells images apart: rows with equal keys have equal checksums, unless the sampler gives other numbers in each run.
+/// The identity of an image: rows with equal keys have equal checksums, unless the sampler draws other random numbers
+/// in each run.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct ImageKey {
     /// Name of the scene.
@@ -32,19 +33,19 @@ pub struct ImageKey {
     pub camera_rays: Option<u16>,
     /// Russian roulette rule, the estimator's own rule included; empty if there is none.
     pub roulette: String,
-    /// What is clamped; empty if nothing is.
+    /// Clamping rule; empty if nothing is clamped.
     pub clamp: String,
     /// Pixel filter; empty if it is the camera's own.
     pub filter: String,
-    /// Distance below which nothing is hit; empty if there is none.
+    /// Distance below which hits are dropped; empty if there is none.
     pub epsilon: String,
     /// Floating-point format of the kernel that renders.
     pub precision: String,
-    /// Whether tiles have as many samples as their noise calls for.
+    /// Whether the samples of each tile depend on its noise.
     pub adaptive: bool,
 }
 
-/// In one word without spaces, equal for equal keys alone.
+/// One word without spaces, equal only for equal keys.
 impl fmt::Display for ImageKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { scene, scene_hash, estimator, sampler, width, height, spp, seed, .. } = self;
@@ -69,42 +70,43 @@ impl fmt::Display for ImageKey {
     }
 }
 
-/// What tells schedules of one image apart: who renders which pieces by what means. Nothing of it may change a bit of the image.
+/// The identity of a schedule among those of one image: who renders which pieces, and how. It must not change a bit of
+/// the image.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub struct ScheduleKey {
     /// Strategy, with its parameter.
     pub strategy: String,
-    /// How the film is cut.
+    /// Decomposition of the film.
     pub decomposition: String,
-    /// Workers; of processes, in each.
+    /// Workers; with several processes, in each.
     pub threads: usize,
     /// Processes; `None` if there is one.
     pub ranks: Option<u16>,
-    /// Rule by which they share the jobs; empty if there is one.
+    /// Rule by which processes share the jobs; empty if there is one process.
     pub rank_rule: String,
     /// How pieces get into the film.
     pub output: String,
     /// Kernel that renders.
     pub kernel: String,
-    /// Why it is not the one that was asked for; empty if it is.
+    /// Why it is not the requested one; empty if it is.
     pub kernel_fallback: String,
     /// Instruction set of its lanes; empty if it has none.
     pub simd: String,
     /// Effect profile.
     pub effects: String,
-    /// What the search for the nearest primitive goes by.
+    /// Acceleration structure of the search for the nearest primitive.
     pub accelerator: String,
 }
 
 impl ScheduleKey {
-    /// Clears who renders, but not in which pieces.
+    /// Clears who renders, but keeps the pieces.
     pub fn forget_workers(&mut self) {
         self.strategy.clear();
         self.rank_rule.clear();
         (self.threads, self.ranks) = (0, None);
     }
 
-    /// Clears the kernel and what is chosen to fit it.
+    /// Clears the kernel and the options that are chosen to fit it.
     pub fn forget_kernel(&mut self) {
         let parts =
             [&mut self.kernel, &mut self.kernel_fallback, &mut self.simd, &mut self.effects, &mut self.accelerator];
@@ -112,7 +114,7 @@ impl ScheduleKey {
     }
 }
 
-/// In one word without spaces, equal for equal keys alone.
+/// One word without spaces, equal only for equal keys.
 impl fmt::Display for ScheduleKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}/{}t/{}", self.decomposition, self.strategy, self.threads, self.output)?;
@@ -129,7 +131,7 @@ impl fmt::Display for ScheduleKey {
 }
 
 impl Record {
-    /// What tells its image from others.
+    /// The identity of its image.
     pub fn image_key(&self) -> ImageKey {
         ImageKey {
             scene: self.scene.clone(),
@@ -151,7 +153,7 @@ impl Record {
         }
     }
 
-    /// What tells its schedule from others of the same image.
+    /// The identity of its schedule among those of the same image.
     pub fn schedule_key(&self) -> ScheduleKey {
         ScheduleKey {
             strategy: self.strategy.clone(),
@@ -171,17 +173,17 @@ impl Record {
 
 /// A setup has the keys that its rows will have.
 impl Setup {
-    /// What tells its image from others.
+    /// The identity of its image.
     pub fn image_key(&self) -> ImageKey {
         Record::of(self).image_key()
     }
 
-    /// What tells its schedule from others of the same image.
+    /// The identity of its schedule among those of the same image.
     pub fn schedule_key(&self) -> ScheduleKey {
         ScheduleKey { threads: self.threads(), ..Record::of(self).schedule_key() }
     }
 
-    /// What the film will be of.
+    /// The key of the film that it will render.
     pub fn film_key(&self) -> FilmKey {
         let key = self.image_key();
         FilmKey {
@@ -206,7 +208,7 @@ impl Setup {
     }
 }
 
-/// A part of a key, if there is one.
+/// A part of a key; `None` if it is empty.
 fn given(part: String) -> Option<String> {
     Some(part).filter(|part| !part.is_empty())
 }

@@ -1,27 +1,27 @@
-//! Two pieces of work, timed by turns, so that what slows the machine for a while slows both.
+//! Two operations timed in turns, so that a temporary slowdown of the machine affects both.
 
 use crate::analysis::quantile::{median, median_interval};
 use crate::analysis::{Estimate, Interval};
 use std::time::{Duration, Instant};
 
-/// What one round of either should take at least: far above a clock's resolution.
+/// Minimum duration of one round of either: far above a clock's resolution.
 const ROUND: Duration = Duration::from_millis(2);
-/// Doublings after which a piece of work is too quick to be timed.
+/// Doublings after which an operation counts as too quick to be timed.
 const MOST_DOUBLINGS: u32 = 40;
 
-/// Nanoseconds of one operation of either, and the ratio of the first to the second.
+/// Nanoseconds per operation of either, and the ratio of the first to the second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InTurns {
-    /// Median nanoseconds of an operation of the first.
+    /// Median nanoseconds per operation of the first.
     pub first_ns: f64,
-    /// Median nanoseconds of an operation of the second.
+    /// Median nanoseconds per operation of the second.
     pub second_ns: f64,
     /// First over second: median over the rounds, with a distribution-free interval.
     pub ratio: Estimate,
 }
 
-/// Times both in so many rounds, in each round either once, and by turns either first. Each is called with a number of operations to do.
-/// `None` for fewer than two rounds.
+/// Times both in `rounds` rounds: each is called once per round, and they take turns to be called first. The argument
+/// of a call is the number of operations to run. `None` for fewer than two rounds.
 pub fn in_turns(rounds: usize, first: &mut dyn FnMut(u64), second: &mut dyn FnMut(u64), level: f64) -> Option<InTurns> {
     let of_first = operations(|count| time(first, count));
     let of_second = operations(|count| time(second, count));
@@ -45,7 +45,7 @@ pub fn in_turns(rounds: usize, first: &mut dyn FnMut(u64), second: &mut dyn FnMu
     })
 }
 
-/// How many operations take a round.
+/// Returns how many operations a round needs.
 fn operations(mut time: impl FnMut(u64) -> Duration) -> u64 {
     let counts = (0..MOST_DOUBLINGS).map(|power| 1_u64 << power);
     counts.into_iter().find(|count| time(*count) >= ROUND).unwrap_or(1 << MOST_DOUBLINGS)
@@ -67,7 +67,7 @@ mod tests {
     use std::cell::RefCell;
     use std::thread::sleep;
 
-    /// Who was called, with a piece of work that is long enough to be timed at once.
+    /// Checks the order of the calls, with operations that are long enough to be timed at once.
     #[test]
     fn either_goes_first_by_turns() {
         let calls = RefCell::new(String::new());
@@ -85,7 +85,7 @@ mod tests {
         assert_eq!(in_turns(1, &mut call('a'), &mut call('b'), 0.95), None);
     }
 
-    /// What is quick is done twice as often each time, until it can be timed.
+    /// Quick operations are run twice as often each time, until they can be timed.
     #[test]
     fn quick_work_is_repeated() {
         assert_eq!(operations(|count| Duration::from_micros(100 * count)), 32);

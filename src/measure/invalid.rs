@@ -1,19 +1,20 @@
-//! Where the invalid samples of a run are. Kernels only count them; as samples can be had again by their address, the few that are worth telling
-//! are looked for afterwards, and a run without any pays nothing.
+//! The places of a run's invalid samples. Kernels only count them. A sample can be rendered again from its address, so
+//! the few that are reported are searched for afterwards, and a run without any pays nothing.
 
 use crate::film::{Piece, Plan};
 use crate::kernel::{Counts, Kernel, one_sample};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A sample that was NaN, infinite or negative, and where it can be had again: `pathmark replay --pixel X,Y --sample K`.
+/// A sample that was NaN, infinite or negative, with its address: `pathmark replay --pixel X,Y --sample K` renders it
+/// again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct InvalidSample {
     /// Row, from the top.
     pub y: u32,
     /// Column, from the left.
     pub x: u32,
-    /// Which of the pixel's samples.
+    /// The number of the sample within the pixel.
     pub sample: u32,
 }
 
@@ -23,10 +24,11 @@ impl fmt::Display for InvalidSample {
     }
 }
 
-/// So many are told.
+/// The most invalid samples that are reported.
 pub(super) const TOLD: usize = 10;
 
-/// The first invalid samples of the pieces, by row, column and number, however the film was cut. `counts` has what happened in each piece.
+/// The first invalid samples of the pieces, by row, column and number, whatever the decomposition. `counts` has the
+/// counts of each piece.
 pub(super) fn first_invalid(kernel: &dyn Kernel, plan: &Plan, counts: &[Counts]) -> Vec<InvalidSample> {
     let affected: Vec<&Piece> =
         plan.pieces().iter().zip(counts).filter(|(_, counts)| counts.invalid > 0).map(|(piece, _)| piece).collect();

@@ -1,7 +1,7 @@
-//! The account of a run: which job ran when, on which worker, and that each ran exactly once.
+//! Ledger of a run: which job ran when, on which worker, with a check that each ran exactly once.
 //!
-//! One entry a job, taken out and put back by a pointer swap, so that no job waits for another. Together with two readings of the
-//! clock that is what measuring a job costs: some 0.1 microseconds (`cargo bench`, group `trace`).
+//! Each job has one entry, taken out and put back by a pointer swap, so that no job waits for another. With two
+//! readings of the clock, measuring a job costs some 0.1 microseconds (`cargo bench`, group `trace`).
 
 use super::JobSpan;
 use crate::kernel::Counts;
@@ -10,7 +10,7 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::time::Instant;
 
-/// What is known of a job.
+/// The measurements of one job.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Entry {
     pub(super) counts: Counts,
@@ -21,21 +21,21 @@ pub(super) struct Entry {
 /// The entries of a run. One is missing while its job runs.
 pub(super) struct Ledger {
     entries: Vec<AtomicCell<Option<Box<Entry>>>>,
-    /// Jobs that found their entry missing: somebody else was running them.
+    /// Jobs that found their entry missing: another thread was running them.
     collisions: AtomicU32,
     workers: AtomicU32,
     run: u64,
-    /// Jobs done, for whoever shows progress.
+    /// Jobs done, for progress displays.
     done: AtomicU64,
 }
 
 thread_local! {
-    /// The run that this thread was last numbered in, and its number there: pools keep their threads over several runs.
+    /// The run that last numbered this thread, and its number there: pools keep their threads over several runs.
     static WORKER: Cell<(u64, u32)> = const { Cell::new((0, 0)) };
 }
 
 impl Ledger {
-    /// An account of jobs of which none has run.
+    /// Returns a ledger of jobs of which none has run.
     pub(super) fn new(jobs: usize) -> Self {
         static RUNS: AtomicU64 = AtomicU64::new(1);
         Self {
@@ -59,7 +59,7 @@ impl Ledger {
         })
     }
 
-    /// Runs job `index`, which is `work`, and notes when: the body of every strategy's job.
+    /// Runs `work` as job `index`, and records its times: the body of every strategy's job.
     pub(super) fn record(&self, index: usize, start: Instant, work: impl FnOnce() -> Counts) {
         let Some(mut entry) = self.entries[index].take() else {
             self.collisions.fetch_add(1, Ordering::Relaxed);
@@ -74,7 +74,7 @@ impl Ledger {
         self.done.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Notes of job `index` that it took from one time to another, for what was done together with others; `work` delivers it.
+    /// Records the times of job `index`, which ran together with others; `work` delivers its result.
     pub(super) fn enter(&self, index: usize, [start_s, stop_s]: [f64; 2], work: impl FnOnce() -> Counts) {
         let Some(mut entry) = self.entries[index].take() else {
             self.collisions.fetch_add(1, Ordering::Relaxed);
@@ -97,7 +97,7 @@ impl Ledger {
         self.workers.load(Ordering::Relaxed)
     }
 
-    /// Takes the entries out, in index order; says which job did not run exactly once.
+    /// Takes the entries out, in index order. The error names a job that did not run exactly once.
     pub(super) fn close(&self) -> Result<Vec<Entry>, String> {
         let collisions = self.collisions.load(Ordering::Relaxed);
         if collisions > 0 {

@@ -1,16 +1,16 @@
-//! The machine and the build that a measurement was taken with: seconds mean nothing without them.
+//! The machine and the build of a measurement: seconds mean nothing without them.
 
 use serde::{Deserialize, Serialize};
 use std::fs;
 
-/// What is known of the machine and the build. Unknown text is `unknown`.
+/// Facts about the machine and the build. Unknown text is `unknown`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// Processor model.
     pub cpu: String,
     /// Processors that this process may use.
     pub processors: usize,
-    /// Physical cores; 0 if the system does not tell.
+    /// Physical cores; 0 if the system does not report them.
     pub physical_cores: usize,
     /// Frequency governor.
     pub governor: String,
@@ -42,12 +42,12 @@ fn or_unknown(text: Option<String>) -> String {
     text.filter(|text| !text.is_empty()).unwrap_or_else(|| "unknown".to_string())
 }
 
-/// A fact that the build stamped. Through a function, because the compiler flags are usually the empty text.
+/// Returns a fact that the build stamped. It is a function because the compiler flags are usually the empty text.
 fn built_with(fact: &str) -> String {
     fact.to_string()
 }
 
-/// The value of `key: value` lines, one per line that has the key.
+/// The values of `key: value` lines, one for each line that has the key.
 fn values<'a>(text: &'a str, key: &'a str) -> impl Iterator<Item = &'a str> {
     text.lines().filter_map(move |line| {
         let (found, value) = line.split_once(':')?;
@@ -61,7 +61,7 @@ impl Machine {
         format!("{} processors, {}", self.processors, self.cpu)
     }
 
-    /// Looks at this machine and this build.
+    /// Inspects this machine and this build.
     pub fn look() -> Self {
         let cpuinfo = read("/proc/cpuinfo").unwrap_or_default();
         let meminfo = read("/proc/meminfo").unwrap_or_default();
@@ -87,7 +87,8 @@ impl Machine {
         }
     }
 
-    /// What must be the same for rows to belong together: rows of another processor or revision are no repetitions.
+    /// The facts that must be equal for rows to belong together: rows of another processor or revision are no
+    /// repetitions.
     pub fn identity(&self) -> [(&'static str, String); 8] {
         [
             ("rustc", self.rustc.clone()),

@@ -1,7 +1,8 @@
-//! Parts of an image put together: `pathmark merge PART...`.
+//! Merging of the parts of an image: `pathmark merge PART...`.
 //!
-//! A part is a checkpoint that says which shard it is of. Parts of samples are subtrees of each pixel's sum, and parts of tiles are pixels,
-//! so the merged film has the bits of one that was rendered at once, whoever rendered the parts and in whatever order they are named.
+//! A part is a checkpoint that names its shard. Parts of samples are subtrees of each pixel's sum, and parts of tiles
+//! are pixels. The merged film therefore has the bits of one that was rendered at once, for any order of the parts and
+//! any processes that rendered them.
 
 use super::checkpoint::{Header, Part, difference};
 use crate::error::{InputError, Result};
@@ -9,18 +10,18 @@ use crate::film::{Film, GrowingFilm, Shard, ShardCut};
 use crate::film_file::FilmKey;
 use std::path::{Path, PathBuf};
 
-/// Missing parts that are named.
+/// Maximum number of missing parts that are named.
 const MOST_TOLD: usize = 20;
 
 /// An image made of parts.
 pub struct Merged {
-    /// What the whole image is of.
+    /// The key of the whole image.
     pub key: FilmKey,
-    /// The sums of all parts that there are.
+    /// The sums of all parts that were found.
     pub film: Film,
-    /// How many samples of the image were NaN, infinite or negative.
+    /// Number of the image's samples that were NaN, infinite or negative.
     pub invalid: u64,
-    /// How many parts the image has.
+    /// Number of parts of the image.
     pub count: u32,
     /// The parts that are missing or not finished, in words; none if the film is the whole image.
     pub missing: Vec<String>,
@@ -40,7 +41,7 @@ impl Found {
         Ok(Self { path: path.to_path_buf(), header, part })
     }
 
-    /// What all parts of one image have in common: they may be of any kernel and as far as they are.
+    /// The header fields that all parts of one image share: kernel and progress may differ.
     fn whole(&self) -> Header {
         let Part { shard, spp } = self.part;
         let shard = Shard::new(1, shard.count(), shard.cut()).unwrap_or(shard);
@@ -50,7 +51,7 @@ impl Found {
         header
     }
 
-    /// What it still lacks, if anything.
+    /// The samples that it still lacks, in words; `None` if it is complete.
     fn lack(&self) -> Option<String> {
         let have = self.header.samples().len();
         let want = self.part.shard.samples(self.part.spp).len();
@@ -62,8 +63,7 @@ fn refused(path: &Path, problem: &str) -> InputError {
     InputError::new("part", path.display().to_string(), problem)
 }
 
-/// Puts parts together. Refuses parts of different images, one part in two files, and, unless `partial`, an image of which something is
-/// missing.
+/// Merges parts. Refuses parts of different images, one part in two files, and, unless `partial`, an incomplete image.
 pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
     let mut parts = paths.iter().map(|path| Found::of(path)).collect::<Result<Vec<_>>>()?;
     parts.sort_by_key(|found| found.part.shard.index());
@@ -98,7 +98,7 @@ pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
         invalid += header.history.counts().invalid;
         match cut {
             ShardCut::Tiles => film.take(&part.film(), |x, y| found.part.shard.owns(x, y)),
-            // Where samples are missing in between, there is no whole sum whose bits it could have.
+            // If samples are missing in between, there is no whole sum whose bits it could have.
             ShardCut::Samples if !missing.is_empty() => film = film.plus(&part.film()),
             ShardCut::Samples => {
                 part.into_parts().into_iter().for_each(|(samples, subtree)| growing.add(samples, subtree));
@@ -111,7 +111,7 @@ pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
     Ok(Merged { key, film, invalid, count, missing })
 }
 
-/// The parts that are not among those found, and those that are not finished.
+/// The parts that were not found or are not finished, in words.
 fn missing(parts: &[Found], count: u32) -> Vec<String> {
     let mut missing = Vec::new();
     let mut found = parts.iter().peekable();

@@ -1,7 +1,8 @@
 //! The only place where a strategy meets a kernel, and where a clock is read.
 //!
-//! [`Settings`] say what to render, in which pieces, and who does it; [`Setup::prepare`] checks them; [`Setup::run`] renders, times and
-//! verifies; the result is a film, a [`Trace`] and a [`Record`]. [`Rounds`] add more samples to a film that is there. [`calibrate`] times strategies on empty jobs, for the simulator.
+//! [`Settings`] say what to render, in which pieces, and on which workers; [`Setup::prepare`] checks them;
+//! [`Setup::run`] renders, times and verifies; the result is a film, a [`Trace`] and a [`Record`]. [`Rounds`] add more
+//! samples to an existing film. [`calibrate`] times strategies on empty jobs, for the simulator.
 
 mod adaptive;
 mod axes;

@@ -1,13 +1,13 @@
-//! A cheap look at what each piece will cost, for the order `tiles:WxH:cost`.
+//! Pilot: a cheap estimate of the cost of each piece, for the order `tiles:WxH:cost`.
 
 use crate::film::{Bounds, Piece, Plan, TileBuffer};
 use crate::kernel::Kernel;
 
-/// Every so many rows of a piece are looked at.
+/// One in this many rows of a piece is rendered.
 const STRIDE: u32 = 4;
 
-/// The rays that each piece will take, estimated from one sample in every pixel of every fourth row. Rays instead of seconds: the
-/// order is the same in each run then.
+/// The rays that each piece will take, estimated from one sample in every pixel of every fourth row. Rays instead of
+/// seconds keep the order the same in each run.
 pub(super) fn costs(plan: &Plan, kernel: &dyn Kernel) -> Vec<f64> {
     plan.pieces().iter().map(|piece| cost(piece, kernel)).collect()
 }

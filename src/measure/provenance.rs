@@ -1,4 +1,4 @@
-//! What a picture is of, kept beside its pixels in formats that hold notes.
+//! Provenance of a picture: the film that it shows, kept beside its pixels in formats that hold notes.
 
 use crate::film_file::FilmKey;
 use crate::image_io::Note;
@@ -11,7 +11,7 @@ const CHECKSUM: &str = "pathmark.checksum";
 /// The film that a picture shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Provenance {
-    /// What the film is of.
+    /// The key of the film.
     pub key: FilmKey,
     /// The film's checksum, if it has one.
     pub checksum: Option<String>,
@@ -26,7 +26,7 @@ impl Provenance {
         [Some(software), key, checksum].into_iter().flatten().collect()
     }
 
-    /// The film among a picture's notes; `None` where another program, or another version, wrote them.
+    /// Reads the film from a picture's notes; `None` if another program, or another version, wrote them.
     pub fn of_notes(notes: &[(String, String)]) -> Option<Self> {
         let find = |wanted| notes.iter().find(|(name, _)| name == wanted).map(|(_, text)| text);
         let key = serde_json::from_str(find(KEY)?).ok()?;

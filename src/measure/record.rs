@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub const SCHEMA: u32 = 9;
 
 columns! {
-    /// A row. A run that failed is a row too: `error` says why, and what was not measured is empty.
+    /// A row. A run that failed is a row too: `error` says why, and columns without a measurement are empty.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
     #[serde(deny_unknown_fields)]
     pub struct Record {
@@ -200,7 +200,7 @@ const TOLERANCE: f64 = 0.05;
 /// See [`Record::fireflies`].
 const WHITE: f64 = 1.0;
 
-/// The errors of an image, where there was a reference.
+/// The errors of an image, if there was a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Measured {
     /// See [`Record::mse`].
@@ -263,12 +263,12 @@ fn described(settings: &Settings) -> Record {
     }
 }
 
-/// A distance, small ones by their power of ten.
+/// A distance as text; small ones by their power of ten.
 fn distance(value: f64) -> String {
     if value > 0.0 && value < 1e-3 { format!("{value:e}") } else { value.to_string() }
 }
 
-/// The row of a run that failed.
+/// The row of a failed run.
 pub fn failure(settings: &Settings, error: &str) -> Record {
     Record { error: error.replace('\n', "; "), ..described(settings) }
 }
@@ -297,7 +297,7 @@ impl Record {
         Some(self.cpu_user_s? + self.cpu_system_s?)
     }
 
-    /// Seconds that its samples took: the makespan, and where a pilot shared the samples out, that too.
+    /// Seconds that its samples took: the makespan, plus the pilot if it distributed the samples.
     pub fn rendering_s(&self) -> Option<f64> {
         let pilot_s = if self.adaptive { self.pilot_s? } else { 0.0 };
         Some(self.makespan_s? + pilot_s)
@@ -313,13 +313,13 @@ impl Record {
         }
     }
 
-    /// Adds a doubt.
+    /// Adds a warning.
     pub fn warn(&mut self, warning: &Warning) {
         let separator = if self.warnings.is_empty() { "" } else { ";" };
         self.warnings = format!("{}{separator}{warning}", self.warnings);
     }
 
-    /// The row of a setup before it runs: what it really uses, not what was asked for.
+    /// The row of a setup before it runs, with the values that it really uses, not the requested ones.
     pub fn of(setup: &Setup) -> Self {
         let described = described(setup.settings());
         let mut record = Self { scene: setup.name().to_string(), scene_hash: setup.hash(), ..described };
@@ -342,7 +342,7 @@ impl Record {
         record
     }
 
-    /// The row of a run that was done.
+    /// The row of a finished run.
     pub fn new(setup: &Setup, outcome: &Outcome, errors: Measured) -> Self {
         let durations = outcome.trace.durations_s();
         let balance = outcome.trace.balance(outcome.makespan_s, outcome.workers_used as usize);
@@ -353,7 +353,7 @@ impl Record {
         record.started_utc.clone_from(&outcome.started_utc);
         if let Some((scene, choice)) = setup.scene() {
             record.box_tests = Some(counts.box_tests);
-            // Without a hierarchy every ray is tested against every primitive, and nobody counts.
+            // Without a hierarchy every ray is tested against every primitive, and no test is counted.
             let all = counts.rays * scene.owners.len() as u64;
             record.primitive_tests = Some(if choice.is_hierarchical() { counts.primitive_tests } else { all });
         }

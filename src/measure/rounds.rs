@@ -1,7 +1,8 @@
-//! Several rounds into one film: first some samples a pixel, then more. The film is the one that all samples at once give, bit for bit.
+//! Several rounds into one film: first some samples per pixel, then more. The film has the same bits as with all
+//! samples at once.
 //!
-//! Each round is a plan of its own for the same strategy, which is made once. Only rendering is timed. Rounds that end inside a block of
-//! [`crate::film::SAMPLE_BLOCK`] samples are possible, but what they rendered of that block is rendered again by the next.
+//! Each round has its own plan; the strategy is made once. Only rendering is timed. A round may end inside a block of
+//! [`crate::film::SAMPLE_BLOCK`] samples, but the next round then renders the samples of that block again.
 
 use super::run::{Account, RoundTimes, Watch};
 use super::settings::check_spp;
@@ -11,7 +12,7 @@ use crate::film::{Film, GrowingFilm, Shard};
 use crate::film_file::FilmKey;
 use std::ops::Range;
 
-/// A render that can go on.
+/// A render that can continue.
 pub struct Rounds {
     setup: Setup,
     shard: Option<Shard>,
@@ -20,12 +21,12 @@ pub struct Rounds {
 }
 
 impl Rounds {
-    /// Nothing rendered yet. The samples that the settings ask for do not matter.
+    /// Starts with an empty film. The number of samples in the settings does not matter.
     pub fn new(setup: Setup) -> Result<Self> {
         Self::of(setup, None)
     }
 
-    /// Nothing rendered yet of one part of the image that the settings ask for, or of all of it.
+    /// Starts with an empty film of one part of the image in the settings, or of the whole image.
     pub fn of(setup: Setup, shard: Option<Shard>) -> Result<Self> {
         setup.check_rounds()?;
         let (spec, spp) = (&setup.settings().spec, setup.settings().spp);
@@ -36,13 +37,14 @@ impl Rounds {
         Ok(Self { setup, shard, account: Account::new(), film })
     }
 
-    /// Goes on with a film of the same settings, and what happened in it as far as that is known, instead of what was rendered so far.
+    /// Continues with a film of the same settings, and its counts as far as they are known, instead of the samples so
+    /// far.
     pub fn adopt(&mut self, film: GrowingFilm, history: History) {
         self.film = film;
         self.account.history = history;
     }
 
-    /// Renders until there are `spp` samples a pixel. If there are as many already nothing happens: films do not shrink.
+    /// Renders until there are `spp` samples per pixel. Does nothing if there are as many already: films do not shrink.
     pub fn extend_to(&mut self, spp: u32, watch: Watch<'_>) -> Result<RoundTimes> {
         self.extend(spp, |Self { setup, shard, account, .. }, sections| {
             let plan = setup.plan_of(sections)?;
@@ -52,7 +54,8 @@ impl Rounds {
         })
     }
 
-    /// The same by several processes: `render` has them do the jobs of the sections that it is given. Not for a part of an image.
+    /// The same by several processes: `render` lets them run the jobs of the given sections. Not for a part of an
+    /// image.
     pub fn extend_by(
         &mut self,
         spp: u32,
@@ -63,7 +66,7 @@ impl Rounds {
         })
     }
 
-    /// Adds what is missing; `round` gives the film of each section.
+    /// Adds the missing samples; `round` returns the film of each section.
     fn extend(
         &mut self,
         spp: u32,
@@ -81,17 +84,17 @@ impl Rounds {
         Ok(self.account.last)
     }
 
-    /// What was asked for.
+    /// The setup of the render.
     pub fn setup(&self) -> &Setup {
         &self.setup
     }
 
-    /// Which part of the image it is, if it is not the whole.
+    /// The part of the image, if it is not the whole.
     pub fn shard(&self) -> Option<Shard> {
         self.shard
     }
 
-    /// How many pixels are rendered.
+    /// Number of pixels that are rendered.
     pub fn pixels(&self) -> u64 {
         let spec = &self.setup.settings().spec;
         let all = u64::from(spec.width) * u64::from(spec.height);
@@ -108,27 +111,27 @@ impl Rounds {
         self.film.film()
     }
 
-    /// The film with what is needed to go on.
+    /// The film with the data that further rounds need.
     pub fn growing(&self) -> &GrowingFilm {
         &self.film
     }
 
-    /// What happened on the paths of the film.
+    /// The counts of the film's paths.
     pub fn history(&self) -> &History {
         &self.account.history
     }
 
-    /// What the film so far is of.
+    /// The key of the film so far.
     pub fn film_key(&self) -> FilmKey {
         FilmKey { spp: self.spp(), ..self.setup.film_key() }
     }
 
-    /// What was asked for, when there are no more rounds.
+    /// Returns the setup, when there are no more rounds.
     pub fn into_setup(self) -> Setup {
         self.setup
     }
 
-    /// What all rounds came to.
+    /// The outcome of all rounds.
     pub fn outcome(&self) -> Outcome {
         self.account.outcome(&self.setup, self.spp(), self.film())
     }

@@ -22,71 +22,71 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// In shorter runs the start of threads and a single interruption weigh more than the schedule.
+/// In shorter runs, the start of threads and single interruptions weigh more than the schedule.
 const SHORTEST_S: f64 = 5e-3;
-/// The system counts in hundredths of a second, once for each processor: less than this may be rounding.
+/// The system counts in hundredths of a second, once for each processor: less than this may be rounding error.
 const FOREIGN_LEAST_S: f64 = 0.03;
 
-/// Who is told the number of jobs done now and then, from another thread.
+/// A function that another thread calls now and then with the number of jobs done.
 pub type Watch<'a> = Option<&'a (dyn Fn(u64) + Sync)>;
 
-/// What a run gave.
+/// The result of a run.
 pub struct Outcome {
     /// The image's sums.
     pub film: Film,
     /// Samples per pixel; their mean if the run was adaptive.
     pub spp: u32,
-    /// How often jobs were handed out.
+    /// Number of rounds in which jobs were handed out.
     pub rounds: u32,
     /// The pieces, in the order in which they were handed out.
     pub plan: Arc<Plan>,
-    /// Who did what when. Where there were several rounds, the time between them is left out.
+    /// Which worker ran which job when. The time between rounds is left out.
     pub trace: Trace,
-    /// What happened on the paths, job by job.
+    /// The counts of each job.
     pub job_counts: Vec<Counts>,
-    /// What happened on the paths of the film, those that earlier processes rendered included.
+    /// The counts of the film's paths, including those that earlier processes rendered.
     pub counts: Counts,
     /// The first samples that were NaN, infinite or negative: round by round, by row, column and number.
     pub invalid: Vec<InvalidSample>,
     /// Threads that ran at least one job.
     pub workers_used: u32,
-    /// Seconds to build the kernel and what accelerates the scene; once for all runs of a setup.
+    /// Seconds to build the kernel and the scene's acceleration structure; once for all runs of a setup.
     pub build_s: f64,
-    /// What of it devices took, if there were any.
+    /// The part of it that devices took, if there were any.
     pub device: Option<DeviceCosts>,
-    /// Seconds to find out what the pieces will cost, where their order depends on it.
+    /// Seconds to estimate the costs of the pieces, if their order depends on them.
     pub pilot_s: f64,
     /// Seconds to make the strategy.
     pub setup_s: f64,
     /// Seconds from handing over the jobs until all were done, over all rounds.
     pub makespan_s: f64,
-    /// Seconds to put the pieces together.
+    /// Seconds to merge the pieces.
     pub merge_s: f64,
-    /// The film's checksum; none if the sampler gives other numbers in each run.
+    /// The film's checksum; none if the sampler draws other random numbers in each run.
     pub checksum: Option<String>,
-    /// What a reader should know.
+    /// Doubts about the run.
     pub warnings: Vec<Warning>,
-    /// What the kernel says of how it rendered.
+    /// The kernel's remarks on how it rendered.
     pub remarks: Vec<String>,
     /// When it started; empty if the system's clock shows no date from 1970 to 9999.
     pub started_utc: String,
-    /// What the system counted during the makespan.
+    /// Resource usage during the makespan.
     pub(super) cpu: Option<Usage>,
 }
 
 impl Outcome {
-    /// What a picture of the film is of.
+    /// The provenance of a picture of the film.
     pub fn provenance(&self, setup: &Setup) -> Provenance {
         let key = FilmKey { spp: self.spp, ..setup.film_key() };
         Provenance { key, checksum: self.checksum.clone() }
     }
 
-    /// The warnings, as a row has them.
+    /// The warnings, in the format of a row.
     pub fn warned(&self) -> String {
         self.warnings.iter().map(ToString::to_string).collect::<Vec<_>>().join(";")
     }
 
-    /// What happened on the paths that this process rendered during the makespan.
+    /// The counts of the paths that this process rendered during the makespan.
     pub fn rendered(&self) -> Counts {
         let mut rendered = Counts::default();
         self.job_counts.iter().for_each(|job| rendered.add(job));
@@ -113,12 +113,12 @@ impl Setup {
     }
 }
 
-/// How long one round took.
+/// The times of one round.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoundTimes {
     /// Seconds from handing over the jobs until all were done.
     pub makespan_s: f64,
-    /// Seconds to put the pieces together.
+    /// Seconds to merge the pieces.
     pub merge_s: f64,
     /// CPU seconds during the makespan, in the program and in the system.
     pub cpu_s: Option<f64>,
@@ -126,7 +126,7 @@ pub struct RoundTimes {
     pub paths: u64,
 }
 
-/// What all rounds of a run came to so far. The strategy is made for the first and kept.
+/// The totals of all rounds of a run so far. The strategy is made for the first round and kept.
 pub(super) struct Account {
     strategy: Option<Box<dyn Strategy>>,
     rounds: u32,
@@ -135,7 +135,7 @@ pub(super) struct Account {
     job_counts: Vec<Counts>,
     pub(super) history: History,
     workers_used: u32,
-    /// Fewest workers that a round should have had.
+    /// Workers that the round with the largest shortage should have had.
     asked: usize,
     pub(super) build_s: f64,
     pilot_s: f64,
@@ -145,7 +145,7 @@ pub(super) struct Account {
     cpu: Option<Usage>,
     started_utc: String,
     pub(super) last: RoundTimes,
-    /// For what is made of the film when all rounds are done.
+    /// Memory for the results that are made from the film after all rounds.
     reserve: Cell<Reserve>,
 }
 
@@ -172,7 +172,7 @@ impl Account {
         }
     }
 
-    /// Renders the plan, each of whose pieces lies in one of the sections, and gives a film for each section.
+    /// Renders the plan, each of whose pieces lies in one of the sections, and returns a film for each section.
     pub(super) fn round(
         &mut self,
         setup: &Setup,
@@ -182,7 +182,7 @@ impl Account {
     ) -> Result<Vec<Film>> {
         let spec = &setup.settings().spec;
         let (width, height) = (spec.width, spec.height);
-        // All that is known to be needed comes first: a refusal after hours of work would lose them.
+        // All memory known to be needed is reserved first: a refusal after hours of work would lose them.
         let films = Sections::new(width, height, sections)?;
         if self.reserve.get_mut().pixels() == 0 {
             self.reserve.set(Reserve::new(width, height)?);
@@ -231,10 +231,10 @@ impl Account {
         Ok(films)
     }
 
-    /// Enters what a round did.
+    /// Adds the results of a round.
     pub(super) fn enter(&mut self, setup: &Setup, kernel: &dyn Kernel, round: Round<'_>) {
         let Round { plan, sections, spans, counts, workers, asked, timed, merge_s } = round;
-        // The round that missed its workers by most speaks for all.
+        // The round with the largest shortage of workers stands for all.
         if self.plan.is_empty()
             || asked.saturating_sub(workers as usize) > self.asked.saturating_sub(self.workers_used as usize)
         {
@@ -248,7 +248,7 @@ impl Account {
             let section = sections.partition_point(|section| section.end <= piece.samples.start);
             self.history.add(&sections[section], counts);
         }
-        // Only a sampler that gives the same numbers again shows where they were.
+        // Only with a deterministic sampler can the invalid samples be rendered again to find them.
         if self.history.tells_few() && setup.is_deterministic() && counts.iter().any(|counts| counts.invalid > 0) {
             self.history.tell(first_invalid(kernel, plan, &counts));
         }
@@ -266,7 +266,7 @@ impl Account {
         self.job_counts.extend(counts);
     }
 
-    /// What it came to, with the film that was made of the rounds' films.
+    /// The outcome of all rounds, with the film that was made of the rounds' films.
     pub(super) fn outcome(&self, setup: &Setup, spp: u32, film: Film) -> Outcome {
         self.reserve.take();
         let (counts, invalid) = (self.history.counts(), self.history.invalid.clone());
@@ -322,8 +322,8 @@ impl Account {
     }
 }
 
-/// Does `work` while a thread beside it tells how far the run is. Where the system gives no such thread, the work is not begun: it would most
-/// likely get no workers either.
+/// Runs `work` while another thread reports progress. If the system refuses that thread, the work is not begun: it
+/// would most likely get no workers either.
 fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> Result<T>) -> Result<T> {
     let Some(watch) = watch else { return work() };
     thread::scope(|scope| {
@@ -341,7 +341,7 @@ fn watched<T>(run: &Run, watch: Watch<'_>, work: impl FnOnce() -> Result<T>) -> 
     })
 }
 
-/// What all jobs of a round share.
+/// Data that all jobs of a round share.
 struct Run {
     kernel: Arc<dyn Kernel>,
     claims: Claims,
@@ -349,13 +349,13 @@ struct Run {
     output: Box<dyn Output>,
 }
 
-/// How long a round took, and what the system counted meanwhile.
+/// The duration of a round, and the resource usage meanwhile.
 pub(super) struct Timed {
     pub(super) makespan_s: f64,
     pub(super) cpu: Option<Usage>,
 }
 
-/// What a round did.
+/// The results of a round.
 pub(super) struct Round<'a> {
     pub(super) plan: &'a Plan,
     pub(super) sections: &'a [Range<u32>],

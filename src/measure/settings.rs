@@ -1,4 +1,4 @@
-//! The three axes of a run, by name: what is rendered, in which pieces, and who renders them when.
+//! The three axes of a run, by name: the image, its pieces, and the schedule.
 
 use crate::error::{InputError, Result};
 use crate::film::check_size;
@@ -10,15 +10,15 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::LazyLock;
 
-/// Most workers that can be asked for, and most threads that a strategy may start by its own rule: systems refuse some tens of
-/// thousands, some of them by ending the process.
+/// Most workers that a user may request, and most threads that a strategy may start by its own rule: systems refuse
+/// some tens of thousands, and some of them end the process.
 pub(super) const LARGEST_THREADS: usize = 1 << 14;
 /// Most samples per pixel.
 pub const LARGEST_SPP: u32 = 1 << 24;
 /// Largest seed of an image under test: the seeds above belong to references.
 pub const LARGEST_SEED: u64 = REFERENCE_SEEDS - 1;
 
-/// What to run. Every field is a name as it stands on the command line or in an experiment.
+/// The settings of a run. Every field is a name as on the command line or in an experiment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -26,26 +26,26 @@ pub struct Settings {
     pub scene: String,
     /// Samples per pixel.
     pub spp: u32,
-    /// Whether each cell of a grid has as many samples as its noise calls for; `spp` is their mean then.
+    /// Whether the samples of each cell of a grid depend on its noise; `spp` is then their mean.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub adaptive: bool,
-    /// What the kernel is built from.
+    /// The specification from which the kernel is built.
     pub spec: Spec,
-    /// How the film is cut into jobs.
+    /// Decomposition of the film into jobs.
     pub decomposition: String,
     /// How pieces get into the film.
     pub output: String,
-    /// Who renders them.
+    /// The strategy that schedules them.
     pub strategy: String,
-    /// How many workers; of processes, in each.
+    /// Number of workers; with several processes, in each.
     pub threads: usize,
-    /// The rule by which processes that MPI connects share the jobs, if there are any.
+    /// The rule by which processes connected by MPI share the jobs, if there are any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rank_rule: Option<String>,
-    /// How many processes.
+    /// Number of processes.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ranks: Option<u16>,
-    /// Folder in which hierarchies of large scenes are looked for and kept.
+    /// Folder in which hierarchies of large scenes are searched for and kept.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cache: Option<PathBuf>,
 }
@@ -68,12 +68,12 @@ impl Default for Settings {
     }
 }
 
-/// What a strategy on a decomposition is called.
+/// The name of a strategy on a decomposition.
 pub fn schedule_name<'a>(strategy: &'a str, decomposition: &str) -> &'a str {
     if strategy == "thread-per-job" && decomposition == "rows" { THREAD_PER_ROW } else { strategy }
 }
 
-/// Refuses numbers of samples that no image of the estimator can have, which takes multiples of a number.
+/// Refuses numbers of samples that no image of the estimator can have: it needs a multiple of `multiple`.
 pub(super) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> {
     if !(1..=LARGEST_SPP).contains(&spp) {
         let allowed = format!("1 to {LARGEST_SPP}");
@@ -89,7 +89,7 @@ pub(super) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> 
     Ok(())
 }
 
-/// Threads that this process may use at once, as it was when somebody first asked: the answer takes eight calls of the system.
+/// Threads that this process may use at once, as of the first call: the answer takes eight system calls.
 pub fn available_threads() -> usize {
     static THREADS: LazyLock<usize> =
         LazyLock::new(|| std::thread::available_parallelism().map_or(1, NonZeroUsize::get));
@@ -97,7 +97,7 @@ pub fn available_threads() -> usize {
 }
 
 impl Settings {
-    /// The same with [`THREAD_PER_ROW`] spelled out.
+    /// The same settings with [`THREAD_PER_ROW`] spelled out.
     #[must_use]
     pub fn resolved(mut self) -> Self {
         if self.strategy == THREAD_PER_ROW {
@@ -107,18 +107,18 @@ impl Settings {
         self
     }
 
-    /// Workers over all processes, where each has so many threads.
+    /// Workers over all processes, if each has `threads` threads.
     pub fn workers(&self, threads: usize) -> usize {
         threads * usize::from(self.ranks.unwrap_or(1))
     }
 
-    /// Whether it is one worker that does one job after the other.
+    /// Whether one worker runs one job after the other.
     pub fn is_serial(&self) -> bool {
         self.strategy == SERIAL && self.ranks.is_none()
     }
 
-    /// Refuses numbers out of range, before anything is allocated or started. Seeds of references are allowed; whoever takes a seed
-    /// from a user refuses those.
+    /// Refuses numbers out of range, before anything is allocated or started. Seeds of references are allowed; callers
+    /// that take a seed from a user refuse those.
     pub(super) fn check(&self) -> Result<()> {
         check_size(self.spec.width, self.spec.height)?;
         if !(1..=LARGEST_THREADS).contains(&self.threads) {

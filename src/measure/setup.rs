@@ -19,11 +19,12 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// A run that can start: everything that the user could have got wrong has been checked, and no name has to be looked up again.
+/// A run that can start: all user input has been checked, and all names have been looked up.
 pub struct Setup {
     settings: Settings,
     subject: Subject,
-    /// Made by the first run: what accelerates a large scene takes seconds to build, and whoever only checks settings needs no kernel.
+    /// Made by the first run: a large scene's acceleration structure takes seconds to build, and a check of settings
+    /// needs no kernel.
     built: OnceLock<Built>,
     decomposition: Decomposition,
     plan: Plan,
@@ -32,16 +33,16 @@ pub struct Setup {
     parameter: Option<String>,
 }
 
-/// What is worked on.
+/// The subject of a run.
 #[derive(Clone)]
 enum Subject {
-    /// A scene is rendered.
+    /// A scene to render.
     Scene { scene: Arc<Scene>, choice: Box<Choice> },
-    /// Work that has nothing to do with light.
+    /// Work that is unrelated to light.
     Workload(Workload),
 }
 
-/// A kernel, and how long it took to build.
+/// A kernel, and the seconds of its construction.
 struct Built {
     kernel: Arc<dyn Kernel>,
     build_s: f64,
@@ -57,7 +58,7 @@ impl Subject {
 }
 
 impl Lab {
-    /// Checks the settings, loads the scene and cuts the film.
+    /// Checks the settings, loads the scene and cuts the film into pieces.
     pub fn prepare(&self, settings: Settings) -> Result<Setup> {
         if let Some(workload) = self.workload_named(&settings.scene) {
             let Spec { width, height, seed, .. } = settings.spec;
@@ -69,7 +70,7 @@ impl Lab {
         self.prepare_scene(scene, settings)
     }
 
-    /// Likewise, for a scene that is already there; `settings.scene` is not looked at.
+    /// The same for a loaded scene; `settings.scene` is not read.
     pub fn prepare_scene(&self, scene: Arc<Scene>, settings: Settings) -> Result<Setup> {
         let choice = chosen(&scene, &settings, self.own_estimators())?;
         Setup::new(self, Subject::Scene { scene, choice }, settings)
@@ -77,12 +78,12 @@ impl Lab {
 }
 
 impl Setup {
-    /// [`Lab::prepare`] with what is built in.
+    /// [`Lab::prepare`] with the built-in parts.
     pub fn prepare(settings: Settings) -> Result<Self> {
         Lab::built_in().prepare(settings)
     }
 
-    /// [`Lab::prepare_scene`] with what is built in.
+    /// [`Lab::prepare_scene`] with the built-in parts.
     pub fn for_scene(scene: Arc<Scene>, settings: Settings) -> Result<Self> {
         Lab::built_in().prepare_scene(scene, settings)
     }
@@ -96,7 +97,7 @@ impl Setup {
         }
         let decomposition = Decomposition::parse(&settings.decomposition)?;
         let (strategy, parameter) = lab.strategy_named(&settings.strategy).map_err(|error| match error {
-            // Where a strategy is named together with its pieces, report A's name for both is allowed too.
+            // Report A's name for a strategy together with its pieces is allowed too.
             Error::Input(input) if !lab.strategies().iter().any(|entry| entry.name == input.value) => {
                 let allowed = format!("{}, {THREAD_PER_ROW}", input.allowed);
                 input.allowed(allowed).into()
@@ -122,7 +123,7 @@ impl Setup {
         Ok(setup)
     }
 
-    /// The same run of other samples of the same radiance, nothing of it clamped.
+    /// The same run with other samples of the same radiance, without clamping.
     pub(super) fn pilot(&self, spp: u32, seed: u64) -> Result<Self> {
         let mut settings = Settings { spp, ..self.settings.clone() };
         (settings.spec.seed, settings.spec.clamp, settings.adaptive) = (seed, None, false);
@@ -145,7 +146,7 @@ impl Setup {
         })
     }
 
-    /// The same run with an estimator of one's own, in the place of the one that the settings name. Records say `name`.
+    /// The same run with `estimator` in place of the one that the settings name. Records say `name`.
     ///
     /// ```
     /// use pathmark::effect::EffectSet;
@@ -180,7 +181,7 @@ impl Setup {
         Ok(self)
     }
 
-    /// What was asked for.
+    /// The settings of the run.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
@@ -193,7 +194,7 @@ impl Setup {
         }
     }
 
-    /// The scene's hash, or what stands for it where there is none.
+    /// The scene's hash, or for a workload a hash of its name.
     pub fn hash(&self) -> String {
         match &self.subject {
             Subject::Scene { scene, .. } => scene.hash.clone(),
@@ -206,12 +207,12 @@ impl Setup {
         self.scene().map_or(&[], |(scene, _)| &scene.files)
     }
 
-    /// What the scene's author should hear of how its files were read.
+    /// Remarks for the scene's author on how its files were read.
     pub fn remarks(&self) -> &[String] {
         self.scene().map_or(&[], |(scene, _)| &scene.remarks)
     }
 
-    /// The scene, and what the settings come to for it; `None` for a workload.
+    /// The scene, and the choices that the settings make for it; `None` for a workload.
     pub fn scene(&self) -> Option<(&Arc<Scene>, &Choice)> {
         match &self.subject {
             Subject::Scene { scene, choice } => Some((scene, choice)),
@@ -219,17 +220,17 @@ impl Setup {
         }
     }
 
-    /// Samples per pixel are a multiple of this.
+    /// The number of samples per pixel must be a multiple of this.
     pub fn spp_multiple(&self) -> u32 {
         self.subject.spp_multiple()
     }
 
-    /// Builds the kernel now and not with the first run.
+    /// Builds the kernel now instead of in the first run.
     pub fn build(&self) -> Result<()> {
         self.kernel().map(drop)
     }
 
-    /// The kernel, which the first to ask has to wait for, and how many seconds that took.
+    /// The kernel, for which the first caller waits, and the seconds of its construction.
     pub(super) fn kernel(&self) -> Result<(Arc<dyn Kernel>, f64)> {
         let built = if let Some(built) = self.built.get() {
             built
@@ -241,12 +242,12 @@ impl Setup {
         Ok((Arc::clone(&built.kernel), built.build_s))
     }
 
-    /// How many jobs there are.
+    /// Number of jobs.
     pub fn jobs(&self) -> usize {
         self.plan.len()
     }
 
-    /// How many workers there will be: what was asked for, unless the strategy has its own rule.
+    /// Number of workers: the requested one, unless the strategy has its own rule.
     pub fn threads(&self) -> usize {
         match self.strategy.workers {
             Workers::Caller => 1,
@@ -255,7 +256,8 @@ impl Setup {
         }
     }
 
-    /// Fewest samples per pixel that make a whole image: what the estimator needs, and one for each subpixel where the camera has them.
+    /// Fewest samples per pixel of a whole image: enough for the estimator, and one for each subpixel if the camera has
+    /// them.
     pub fn fewest_spp(&self) -> u32 {
         let multiple = self.spp_multiple();
         let subpixels = if self.has_subpixels() { SUBPIXELS } else { 1 };
@@ -266,17 +268,17 @@ impl Setup {
         self.scene().is_some_and(|(scene, choice)| choice.subpixels(scene) > 1)
     }
 
-    /// Whether the film's checksum says anything: whether the sampler gives the same numbers each time.
+    /// Whether the film's checksum is meaningful: the sampler draws the same random numbers each time.
     pub fn is_deterministic(&self) -> bool {
         self.scene().is_none_or(|(_, choice)| choice.sampler().deterministic)
     }
 
-    /// What the strategy does with its jobs.
+    /// The entry of the strategy in the table.
     pub fn strategy(&self) -> &strategy::Entry {
         &self.strategy
     }
 
-    /// The pieces of all samples that were asked for.
+    /// The pieces of all requested samples.
     pub(super) fn plan(&self) -> Plan {
         self.plan.clone()
     }
@@ -292,22 +294,22 @@ impl Setup {
         Ok(plan)
     }
 
-    /// Refuses more jobs than the strategy may start threads.
+    /// Refuses more jobs than the strategy may start threads for.
     pub(super) fn check_jobs(&self, jobs: usize) -> Result<()> {
         check_jobs(jobs, &self.strategy, &self.settings.decomposition)
     }
 
-    /// How the film is cut.
+    /// The decomposition of the film.
     pub(super) fn decomposition(&self) -> &Decomposition {
         &self.decomposition
     }
 
-    /// Whether the order of the pieces depends on what they cost.
+    /// Whether the order of the pieces depends on their costs.
     pub(super) fn is_by_cost(&self) -> bool {
         self.decomposition.is_by_cost()
     }
 
-    /// The plan in the order in which it is handed out.
+    /// The plan in the order of the hand-out.
     pub(super) fn ordered(&self, plan: Plan, kernel: &dyn Kernel) -> Plan {
         if self.is_by_cost() { plan.clone().longest_first(&pilot::costs(&plan, kernel)) } else { plan }
     }
@@ -330,14 +332,14 @@ impl Setup {
         Error::system("running strategy", self.strategy.name, std::io::Error::other(error))
     }
 
-    /// Doubts about a run of `spp` samples in which `workers_used` of the workers `asked` for had jobs.
+    /// Doubts about a run of `spp` samples in which `workers_used` of `asked` workers had jobs.
     pub(super) fn warnings(&self, counts: &Counts, spp: u32, asked: usize, workers_used: u32) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if (workers_used as usize) < asked {
             warnings.push(Warning::WorkersUnused { asked, used: workers_used });
         }
         let processors = available_threads();
-        // Those that serve devices wait for them.
+        // Workers that serve devices wait for them.
         let waiting = self.subject.choice().map_or(0, Choice::devices_beside);
         if workers_used as usize > processors + waiting {
             warnings.push(Warning::Oversubscribed { workers: workers_used, processors });
@@ -353,7 +355,7 @@ impl Setup {
         if choice.is_biased() {
             warnings.push(Warning::Biased);
         }
-        // Where a background says that the scene is open, or a depth that paths are to be cut, that is what was asked for.
+        // A background opens the scene on purpose, and a depth limit cuts paths on purpose.
         let leaks = if scene.background.is_none() { counts.escaped } else { 0 };
         let cuts = if choice.depth().is_none() { counts.truncated } else { 0 };
         let counted = [(leaks, Warning::Escaped(leaks)), (cuts, Warning::Truncated(cuts))];
@@ -378,7 +380,7 @@ impl Subject {
     }
 }
 
-/// The kernel of a scene, with hierarchies out of the folder of the settings.
+/// The choice of a scene's kernel, with hierarchies from the folder in the settings.
 fn chosen(scene: &Scene, settings: &Settings, own: &[OwnEstimator]) -> Result<Box<Choice>> {
     let choice = kernel::choose_among(scene, &settings.spec, own)?;
     let Some(folder) = &settings.cache else { return Ok(Box::new(choice)) };

@@ -1,6 +1,7 @@
-//! The jobs of a run that one of several processes does, handed to it a few at a time, and the run that all of them make together.
+//! One process's share of a run, whose jobs it gets a few at a time, and the run assembled from all shares.
 //!
-//! Which jobs these are is decided elsewhere: between processes as between threads, it cannot change a bit of the film.
+//! The assignment of jobs is decided elsewhere: between processes as between threads, it cannot change a bit of the
+//! film.
 
 use super::ledger::Ledger;
 use super::run::{Account, Round, Timed};
@@ -17,13 +18,13 @@ use std::slice::from_ref;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A job that a process has done.
+/// A job that a process has finished.
 pub struct DoneJob {
-    /// Which piece of the plan it was.
+    /// Index of its piece in the plan.
     pub index: usize,
-    /// When, in seconds since the run's start, and by which worker of all.
+    /// When it ran, in seconds since the run's start, and on which of all workers.
     pub span: JobSpan,
-    /// What happened on its paths.
+    /// The counts of its paths.
     pub counts: Counts,
     /// The sums of its pixels.
     pub tile: TileBuffer,
@@ -41,7 +42,7 @@ pub struct Share<'a> {
     done: Vec<DoneJob>,
 }
 
-/// What the jobs of one hand-out share.
+/// Data that the jobs of one hand-out share.
 struct Handout {
     kernel: Arc<dyn Kernel>,
     plan: Arc<Plan>,
@@ -50,7 +51,7 @@ struct Handout {
     ledger: Ledger,
 }
 
-/// The jobs of a round that several processes did.
+/// The jobs of a round that several processes rendered.
 pub struct Gathered {
     /// All of them, in any order.
     pub done: Vec<DoneJob>,
@@ -61,7 +62,7 @@ pub struct Gathered {
 }
 
 impl Setup {
-    /// A share of a round that renders these sections, which has done nothing yet, with the kernel and the workers that it will need.
+    /// Makes a share of a round that renders these sections, with its kernel and its workers, and no jobs done yet.
     pub fn share(&self, sections: &[Range<u32>]) -> Result<Share<'_>> {
         let (kernel, _) = self.kernel()?;
         let plan = Arc::new(self.ordered(self.plan_of(sections)?, &*kernel));
@@ -77,14 +78,14 @@ impl Share<'_> {
         &self.plan
     }
 
-    /// Makes buffers for jobs that it will get, in this order, so that the run need not.
+    /// Makes buffers for the jobs that it will get, in this order, so that the run need not make them.
     pub fn reserve(&mut self, jobs: &[usize]) -> Result<()> {
         let buffer = |job: &usize| Ok(Box::new(TileBuffer::try_new(self.plan.pieces()[*job].bounds)?));
         self.reserved = jobs.iter().map(buffer).collect::<Result<_>>()?;
         Ok(())
     }
 
-    /// The run begins now, for all processes.
+    /// Starts the run's clock, as all processes do now.
     pub fn begin(&mut self) {
         self.start = Instant::now();
     }
@@ -94,7 +95,7 @@ impl Share<'_> {
         self.start.elapsed().as_secs_f64()
     }
 
-    /// Does some jobs, with all workers of the strategy.
+    /// Runs some jobs, with all workers of the strategy.
     pub fn render(&mut self, jobs: Vec<usize>) -> Result<()> {
         let mut tiles = Vec::with_capacity(jobs.len());
         for job in &jobs {
@@ -139,19 +140,19 @@ impl Share<'_> {
         self.done.iter().fold(0.0, |sum, job| sum + job.span.duration_s())
     }
 
-    /// Its last jobs, so many of them.
+    /// Its last `count` jobs.
     pub fn last(&self, count: usize) -> &[DoneJob] {
         &self.done[self.done.len().saturating_sub(count)..]
     }
 
-    /// Takes what it has done.
+    /// Takes its finished jobs.
     pub fn take_done(&mut self) -> Vec<DoneJob> {
         mem::take(&mut self.done)
     }
 }
 
 impl Setup {
-    /// The run that several shares make together.
+    /// The outcome of the run that several shares make together.
     pub fn assembled(&self, gathered: Gathered) -> Result<Outcome> {
         let (spec, samples) = (&self.settings().spec, 0..self.settings().spp);
         let mut account = Account::new();
@@ -162,7 +163,7 @@ impl Setup {
 }
 
 impl Account {
-    /// A round that several shares have done: the film of each section. Each job must have been done once.
+    /// Merges a round of several shares: returns the film of each section. Each job must have been done once.
     pub(super) fn assemble(&mut self, setup: &Setup, sections: &[Range<u32>], gathered: Gathered) -> Result<Vec<Film>> {
         let Gathered { mut done, workers, makespan_s } = gathered;
         let spec = &setup.settings().spec;

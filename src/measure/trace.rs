@@ -1,25 +1,25 @@
-//! Who did what when.
+//! Traces of runs: which worker ran which job when.
 
 use crate::analysis::balance::{Balance, of_spans};
 
-/// One job's time, in seconds since the run's start.
+/// The time of one job, in seconds since the run's start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct JobSpan {
-    /// The worker, numbered in the order in which workers showed up.
+    /// The worker, numbered in the order in which workers ran their first jobs.
     pub worker: u32,
-    /// When it started.
+    /// Its start.
     pub start_s: f64,
-    /// When it stopped.
+    /// Its end.
     pub stop_s: f64,
 }
 
 impl JobSpan {
-    /// How long it took.
+    /// Its duration.
     pub fn duration_s(&self) -> f64 {
         self.stop_s - self.start_s
     }
 
-    /// The same job in a run that started earlier.
+    /// The same job in a run that started `offset_s` seconds earlier.
     #[must_use]
     pub(super) fn later_by(&self, offset_s: f64) -> Self {
         Self { start_s: self.start_s + offset_s, stop_s: self.stop_s + offset_s, ..*self }
@@ -34,12 +34,12 @@ pub struct Trace {
 }
 
 impl Trace {
-    /// Where the time of `workers` workers went in a run of that makespan; `None` for spans that cannot be.
+    /// How `workers` workers spent their time in a run of that makespan; `None` for impossible spans.
     pub fn balance(&self, makespan_s: f64, workers: usize) -> Option<Balance> {
         of_spans(self.jobs.iter().map(|job| (job.worker as usize, job.start_s, job.stop_s)), makespan_s, workers)
     }
 
-    /// How long each job took, in index order.
+    /// The duration of each job, in index order.
     pub fn durations_s(&self) -> Vec<f64> {
         self.jobs.iter().map(JobSpan::duration_s).collect()
     }

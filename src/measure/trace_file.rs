@@ -1,4 +1,4 @@
-//! The file of a trace: a line of JSON that says what was run, behind a `#`, then a row of CSV for each job.
+//! The file of a trace: a line of JSON behind a `#` that describes the run, then a row of CSV for each job.
 //!
 //! ```text
 //! # {"settings":{"scene":"cornell","spp":16,...},"makespan_s":0.18,"workers":2}
@@ -16,10 +16,11 @@ use std::io::ErrorKind::OutOfMemory;
 use std::io::{self, BufRead};
 use std::path::Path;
 
-/// A row has some 60 bytes: room for more jobs than a film can have pixels. The header has as many as the longest path of a scene and some 700.
+/// Limits with room for more jobs than a film can have pixels, at some 60 bytes a row. The header has some 700 bytes
+/// and the longest path of a scene.
 const LIMITS: Limits = Limits { bytes: 1 << 33, line: 1 << 14 };
 
-/// What was run and how long it took.
+/// The run and its duration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraceHeader {
@@ -38,17 +39,17 @@ pub struct TraceHeader {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraceRow {
-    /// Its index.
+    /// Index of the job.
     pub job: usize,
-    /// The worker, numbered in the order in which workers showed up.
+    /// The worker, numbered in the order in which workers ran their first jobs.
     pub worker: u32,
-    /// Seconds since the run's start when it started.
+    /// Start, in seconds since the run's start.
     pub start_s: f64,
-    /// When it stopped.
+    /// End, in seconds since the run's start.
     pub stop_s: f64,
-    /// Samples.
+    /// Number of samples.
     pub paths: u64,
-    /// Rays.
+    /// Number of rays.
     pub rays: u64,
     /// First column of its piece.
     pub x0: u32,
@@ -67,14 +68,14 @@ pub struct TraceRow {
 /// A run, job by job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceFile {
-    /// What was run.
+    /// The run and its duration.
     pub header: TraceHeader,
     /// The jobs in index order.
     pub rows: Vec<TraceRow>,
 }
 
 impl TraceFile {
-    /// The file of a run.
+    /// Returns the file of a run.
     pub fn new(setup: &Setup, outcome: &Outcome) -> Self {
         let jobs = outcome.trace.jobs.iter().zip(&outcome.job_counts).zip(outcome.plan.pieces()).enumerate();
         let rows = jobs.map(|(job, ((span, counts), piece))| {
@@ -90,7 +91,7 @@ impl TraceFile {
         Self { header, rows: rows.collect() }
     }
 
-    /// What was doubtful about the times when they were measured; `None` if nothing was.
+    /// A warning with the doubts about the times when they were measured; `None` if there were none.
     pub fn doubt(&self) -> Option<String> {
         let warnings = &self.header.warnings;
         Doubts::concern(warnings).then(|| format!("warning: the times of this trace are in doubt: {warnings}"))
@@ -101,7 +102,7 @@ impl TraceFile {
         self.trace().durations_s()
     }
 
-    /// Who did what when.
+    /// Which worker ran which job when.
     pub fn trace(&self) -> Trace {
         let span = |row: &TraceRow| JobSpan { worker: row.worker, start_s: row.start_s, stop_s: row.stop_s };
         Trace { jobs: self.rows.iter().map(span).collect() }

@@ -1,4 +1,4 @@
-//! The folder of `--cache`: hierarchies of large scenes, a file for each.
+//! The folder of `--cache`: hierarchies of large scenes, one file each.
 
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug)]
 pub(super) struct TreeFolder(PathBuf);
 
-/// Refuses what is no folder and cannot be made one. Makes nothing.
+/// Refuses a path that is no folder and cannot become one. Creates nothing.
 pub fn check_cache(folder: &Path) -> Result<()> {
     let refuse = |problem: &str| Err(InputError::new("cache", folder.display().to_string(), problem).into());
     match fs::metadata(folder) {
@@ -30,7 +30,7 @@ pub fn check_cache(folder: &Path) -> Result<()> {
 }
 
 impl TreeFolder {
-    /// The folder is made with the first file in it.
+    /// Checks the folder, which is created with its first file.
     pub(super) fn new(folder: &Path) -> Result<Self> {
         check_cache(folder)?;
         Ok(Self(folder.to_path_buf()))

@@ -1,4 +1,4 @@
-//! What the system counted for this process: CPU time and context switches (getrusage), peak memory (/proc).
+//! Resource usage of this process: CPU time and context switches (getrusage), peak memory (/proc).
 
 use nix::sys::resource::{Usage as Counted, UsageWho, getrusage};
 use nix::sys::time::TimeValLike;
@@ -11,12 +11,14 @@ pub(super) struct Usage {
     pub(super) voluntary_switches: i64,
     pub(super) involuntary_switches: i64,
     pub(super) peak_rss_bytes: Option<i64>,
-    /// CPU seconds of everything else on the machine: other programs, and what a virtual machine's host gave to others.
+    /// CPU seconds of everything else on the machine: other programs, and time that a virtual machine's host gave to
+    /// others.
     pub(super) foreign_s: Option<f64>,
 }
 
-/// CPU seconds that the machine's processors were not idle (proc(5), /proc/stat: user, nice, system, idle, iowait, irq, softirq, steal; guests are
-/// in user already). Read in hundredths of a second, which is what the kernel reports to programs whatever its own tick is.
+/// CPU seconds for which the machine's processors were busy (proc(5), /proc/stat: user, nice, system, idle, iowait,
+/// irq, softirq, steal; user already includes guests). The kernel reports hundredths of a second to programs, whatever
+/// its own tick is.
 fn machine_busy_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/stat").ok()?;
     let ticks: Vec<f64> =
@@ -25,7 +27,7 @@ fn machine_busy_s() -> Option<f64> {
     Some((user + nice + system + irq + softirq + steal) * 1e-2)
 }
 
-/// The most memory that this program had. Not getrusage's figure, which survives exec and so remembers the parent.
+/// Peak memory of this program. getrusage's figure is not used: it survives exec and so includes the parent's.
 fn peak_rss_bytes() -> Option<i64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
@@ -33,7 +35,7 @@ fn peak_rss_bytes() -> Option<i64> {
 }
 
 impl Usage {
-    /// Reads the totals; `None` where the system does not tell.
+    /// Reads the totals; `None` if the system does not report them.
     pub(super) fn now() -> Option<Self> {
         let counted: Counted = getrusage(UsageWho::RUSAGE_SELF).ok()?;
         let user_s = counted.user_time().num_microseconds() as f64 * 1e-6;
@@ -48,7 +50,7 @@ impl Usage {
         })
     }
 
-    /// What two stretches of time come to; the peak is that of both.
+    /// The sum of two periods; the peak is the larger one.
     pub(super) fn plus(&self, later: &Self) -> Self {
         Self {
             user_s: self.user_s + later.user_s,
@@ -60,7 +62,7 @@ impl Usage {
         }
     }
 
-    /// What was added since `before`; peak memory is no difference.
+    /// The increase since `before`; peak memory is a total.
     pub(super) fn since(&self, before: &Self) -> Self {
         Self {
             user_s: self.user_s - before.user_s,

@@ -1,16 +1,16 @@
-//! What a reader of a record should know before believing it.
+//! Warnings: facts that a reader of a record should know before trusting it.
 
 use super::InvalidSample;
 use std::fmt;
 
-/// A doubt about a run; it goes into the record's `warnings`.
+/// A doubt about a run; it is written to the record's `warnings`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Warning {
-    /// Fewer threads did work than were asked for.
+    /// Fewer threads ran jobs than were requested.
     WorkersUnused {
-        /// Asked for.
+        /// Requested threads.
         asked: usize,
-        /// Used.
+        /// Threads that ran jobs.
         used: u32,
     },
     /// More workers than processors.
@@ -25,25 +25,27 @@ pub enum Warning {
         /// Their share of all processors' time.
         percent: u32,
     },
-    /// The same cell took another time before.
+    /// The time differs from earlier rows of the same cell.
     Drift {
         /// By how much longer (or shorter, if negative) than the median so far.
         percent: i32,
     },
-    /// The same cell took less processor time before: processors that share a core, or a lower clock.
+    /// The run took more processor time than earlier rows of the same cell: processors share a core, or the clock was
+    /// lower.
     Slowed {
         /// By how much more than the median so far.
         percent: i32,
     },
-    /// The run ended before its beginning stopped to matter.
+    /// The run is so short that its start-up matters.
     TooShort,
-    /// The samples do not divide among the four subpixels, so the pixel's filter is lopsided.
+    /// The samples do not divide among the four subpixels, so the pixel's filter is not symmetric.
     PartialSubpixels,
-    /// Time was up before the image was as accurate as asked for.
+    /// Time was up before the image reached the requested accuracy.
     TargetMissed,
-    /// So many samples a pixel are an earlier process's: times and counts are of the others.
+    /// An earlier process rendered so many samples per pixel. Times are those of the last process.
     Resumed(u32),
-    /// Something changes what the image converges to: clamped subpixels, or paths that are cut after some bounces.
+    /// An option changes the limit of the image's convergence: clamped subpixels, or paths that are cut after some
+    /// bounces.
     Biased,
     /// Rays left the scene.
     Escaped(u64),
@@ -53,14 +55,14 @@ pub enum Warning {
     LeftOut(usize),
     /// Samples were NaN, infinite or negative, and contributed nothing.
     InvalidSamples {
-        /// How many.
+        /// Number of them.
         count: u64,
-        /// The first of them; none where samples cannot be had again.
+        /// The first of them; none if samples cannot be rendered again.
         first: Vec<InvalidSample>,
     },
-    /// The other program that was to be run is not there.
+    /// The external program is missing.
     NoProgram,
-    /// The GPU that was to render is not there.
+    /// The requested GPU is missing.
     NoDevice,
     /// The system's clock shows no date from 1970 to 9999.
     NoDate,
@@ -68,14 +70,14 @@ pub enum Warning {
     DebugBuild,
 }
 
-/// What a warning means, and what to do about it.
+/// The meaning of a warning, and advice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WarningEntry {
     /// Its name, which stands before any bracket.
     pub name: &'static str,
-    /// When a row carries it.
+    /// The condition under which a row has it.
     pub about: &'static str,
-    /// What to do.
+    /// The recommended action.
     pub advice: &'static str,
 }
 
@@ -123,7 +125,7 @@ pub const WARNINGS: &[WarningEntry] = &[
     },
     WarningEntry {
         name: "resumed",
-        about: "An earlier process rendered the first samples; times and counts are those of the last process.",
+        about: "An earlier process rendered the first samples; times are those of the last process.",
         advice: "Do not use the row's times; the image is complete.",
     },
     WarningEntry {
@@ -206,7 +208,7 @@ impl fmt::Display for Warning {
 mod tests {
     use super::*;
 
-    /// One of each kind; the match makes a new kind an error here until it is added.
+    /// One of each kind; a new kind makes the match fail to compile until it is added.
     fn one_of_each() -> Vec<Warning> {
         let all = vec![
             Warning::WorkersUnused { asked: 2, used: 1 },

@@ -1,16 +1,17 @@
-//! Mean squared error against two independent references, in which their noise cancels.
+//! Mean squared error against two independent references, whose noise cancels.
 //!
-//! With test picture T and references R1, R2 that share no samples, the expectation of (T - R1)(T - R2) is bias squared plus the
-//! variance of T, whatever the noise of R1 and R2: the noises enter only as products of independent numbers with mean 0. The
-//! plain mean squared error against one reference of M samples is too large by that reference's variance, which at N samples of
-//! the test makes the error look (1 + N/M)^(1/2) times as large and flattens the slope of a convergence plot.
+//! With test picture T and references R1, R2 that share no samples, the expectation of (T - R1)(T - R2) is bias squared
+//! plus the variance of T, whatever the noise of R1 and R2: their errors enter only as products of independent errors
+//! with mean 0. The plain mean squared error against one reference of M samples is too large by that reference's
+//! variance. At N samples of the test, the error then looks (1 + N/M)^(1/2) times as large, and the slope of a
+//! convergence plot is flattened.
 
 use super::{REL_MSE_EPSILON, check_sizes};
 use crate::error::Result;
 use crate::image_io::{Image, tone_map};
 
-/// The mean of (T - R1)(T - R2) over pixels and channels of linear radiance. Unbiased, and so it may come out negative when
-/// the true error is small against the noise of the references.
+/// Returns the mean of (T - R1)(T - R2) over pixels and channels of linear radiance. It is unbiased, so it can be
+/// negative if the true error is small compared with the noise of the references.
 pub fn cross_mse(test: &Image, reference1: &Image, reference2: &Image) -> Result<f64> {
     mean_product(test, reference1, reference2, |value| value)
 }
@@ -28,15 +29,15 @@ pub fn cross_products(test: &Image, reference1: &Image, reference2: &Image) -> R
 
 /// [`cross_mse`] of display values in [0, 1].
 ///
-/// Not exactly unbiased: the display value of a noisy mean is not, on average, the display value of the mean, since clamp and
-/// gamma are not linear. What is left is the squared curvature times variance of the references, far below the plain form's
-/// excess for references that are much better than the test.
+/// Not exactly unbiased: clamp and gamma are not linear, so the display value of a noisy mean is not, on average, the
+/// display value of the mean. The remaining bias is the squared curvature times variance of the references. It is far
+/// below the excess of the plain form for references that are much better than the test.
 pub fn cross_mse_display(test: &Image, reference1: &Image, reference2: &Image) -> Result<f64> {
     mean_product(test, reference1, reference2, tone_map::display)
 }
 
-/// The mean of (T - R1)(T - R2) over (R^2 + [`REL_MSE_EPSILON`]), with R the mean of the two references, whose noise is in the divisor still:
-/// nearly unbiased where they are much better than the test.
+/// Returns the mean of (T - R1)(T - R2) / (R^2 + [`REL_MSE_EPSILON`]), with R the mean of the two references. Their
+/// noise remains in the divisor: the result is nearly unbiased if they are much better than the test.
 pub fn cross_rel_mse(test: &Image, reference1: &Image, reference2: &Image) -> Result<f64> {
     check_sizes(test, reference1)?;
     check_sizes(test, reference2)?;
@@ -48,8 +49,9 @@ pub fn cross_rel_mse(test: &Image, reference1: &Image, reference2: &Image) -> Re
     Ok(ratios.sum::<f64>() / t.len() as f64)
 }
 
-/// The mean of (T1 - R1)(T2 - R2): the squared bias alone, for two test pictures of different seeds. The variance of the tests cancels as the
-/// references' does, so the result scatters around zero for an estimator without bias.
+/// Returns the mean of (T1 - R1)(T2 - R2), the squared bias alone, for two test pictures of different seeds. The
+/// variance of the tests cancels like the variance of the references, so the result scatters around zero for an
+/// unbiased estimator.
 pub fn bias_squared(tests: [&Image; 2], references: [&Image; 2]) -> Result<f64> {
     for other in [tests[1], references[0], references[1]] {
         check_sizes(tests[0], other)?;
@@ -60,8 +62,8 @@ pub fn bias_squared(tests: [&Image; 2], references: [&Image; 2]) -> Result<f64> 
     Ok(products.sum::<f64>() / t1.len() as f64)
 }
 
-/// The root of a cross mean squared error, to be drawn last: average over seeds first. `None` for a negative one, which says
-/// that the references are too noisy to tell the error, and for NaN.
+/// Returns the root of a cross mean squared error. Average over seeds first, and take the root last. `None` for NaN,
+/// and for a negative error, which shows that the references are too noisy to measure the error.
 pub fn root(mse: f64) -> Option<f64> {
     (mse >= 0.0).then(|| mse.sqrt())
 }

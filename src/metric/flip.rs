@@ -1,9 +1,10 @@
 //! FLIP: how large the difference looks to a person who flips between the two pictures on one screen, from 0 (none) to 1.
 //!
-//! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A difference evaluator for alternating images", 2020,
-//! the form for pictures of a limited range. The eye's contrast sensitivity blurs both (section 4.1), colours differ by the `HyAB` distance
-//! (4.2), edges and points count more (4.3, 4.4). The pictures are what our files show on a display that follows sRGB, looked at from 0.7 m
-//! on a screen 0.7 m wide with 3840 pixels a row, as the authors' own tool assumes.
+//! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A difference evaluator for
+//! alternating images", 2020, the form for pictures of a limited range. Both pictures are blurred by the eye's contrast
+//! sensitivity (section 4.1), colours are compared by the `HyAB` distance (4.2), and edges and points count more (4.3,
+//! 4.4). The pictures are taken as they look on an sRGB display, seen from 0.7 m on a screen 0.7 m wide with 3840
+//! pixels per row, as the authors' own tool assumes.
 
 use std::f64::consts::{PI, SQRT_2};
 
@@ -13,15 +14,15 @@ use super::separable::{Kernel, convolve};
 use crate::error::Result;
 use crate::image_io::{Image, tone_map};
 
-/// Pixels that one degree of sight covers.
+/// Pixels per degree of visual angle.
 const PIXELS_PER_DEGREE: f64 = 0.7 * (3840.0 / 0.7) * (PI / 180.0);
 /// Gaussians of the contrast sensitivity for light, red-green and blue-yellow: weight and width, in degrees squared.
 const SENSITIVITY: [&[(f64, f64)]; 3] = [&[(1.0, 0.0047)], &[(1.0, 0.0053)], &[(34.1, 0.04), (13.5, 0.025)]];
-/// The widest of them sets how far all filters reach.
+/// The widest of these Gaussians, which sets the radius of all contrast filters.
 const WIDEST: f64 = 0.04;
 /// Exponent of the colour difference.
 const COLOUR_EXPONENT: f64 = 0.7;
-/// Differences up to this share of the largest take [`NEAR_RANGE`] of the result.
+/// Differences up to this share of the largest take [`NEAR_RANGE`] of the range of the result.
 const NEAR: f64 = 0.4;
 const NEAR_RANGE: f64 = 0.95;
 /// Width of an edge that the eye detects best, in degrees.
@@ -34,19 +35,20 @@ const TO_XYZ: [[f64; 3]; 3] = [
     [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
     [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
 ];
-/// Its inverse.
+/// The inverse of [`TO_XYZ`].
 const FROM_XYZ: [[f64; 3]; 3] = [
     [3.241_003_232_976_358_7, -1.537_398_969_488_785_5, -0.498_615_881_996_363],
     [-0.969_224_252_202_516_6, 1.875_929_983_695_176, 0.041_554_226_340_084_724],
     [0.055_639_419_851_975_444, -0.204_011_206_123_909_97, 1.057_148_977_187_533_5],
 ];
 
-/// The mean of the map.
+/// Returns the mean of FLIP over the pixels.
 pub(super) fn flip(test: &Image, reference: &Image) -> f64 {
     mean(&differences(test, reference))
 }
 
-/// The mean of FLIP, and FLIP of each pixel as colours; the lightest stands for 1, the largest difference there is.
+/// Returns the mean of FLIP, and FLIP of each pixel as colours. The lightest colour stands for 1, the largest possible
+/// difference.
 pub fn flip_map(test: &Image, reference: &Image) -> Result<(f64, Heatmap)> {
     check_sizes(test, reference)?;
     let map = differences(test, reference);
@@ -73,13 +75,13 @@ fn times(matrix: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }
 
-/// Linear RGB to X, Y and Z, each over the white's.
+/// Converts linear RGB to X, Y and Z, each relative to white.
 fn relative_xyz(rgb: [f64; 3]) -> [f64; 3] {
     let (xyz, white) = (times(&TO_XYZ, rgb), times(&TO_XYZ, [1.0; 3]));
     std::array::from_fn(|i| xyz[i] / white[i])
 }
 
-/// The linear value of one coded by sRGB.
+/// Decodes an sRGB value to a linear one.
 fn decoded(coded: f64) -> f64 {
     if coded <= 0.040_45 { coded / 12.92 } else { libm::pow((coded + 0.055) / 1.055, 2.4) }
 }
@@ -96,11 +98,11 @@ fn opponent(image: &Image) -> [Vec<f64>; 3] {
     planes
 }
 
-/// The colours that are left at this distance, in Hunt-adjusted L*, a*, b*.
+/// Returns the colours that remain visible at the viewing distance, in Hunt-adjusted L*, a*, b*.
 fn seen(planes: &[Vec<f64>; 3], width: usize) -> Vec<[f64; 3]> {
     let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as usize;
     let blurred: [Vec<f64>; 3] = std::array::from_fn(|channel| {
-        // A sum of two Gaussians is no product of a row and a column, but each of them is.
+        // A sum of two Gaussians is not separable, but each of them is.
         let gaussians = SENSITIVITY[channel].iter().map(|&(weight, spread)| {
             let bell = Kernel::new(radius, |x| {
                 let degrees = x / PIXELS_PER_DEGREE;
@@ -133,7 +135,8 @@ fn hunt(rgb: [f64; 3]) -> [f64; 3] {
     [light, 0.01 * light * 500.0 * (x - y), 0.01 * light * 200.0 * (y - z)]
 }
 
-/// Distance of colours that are far apart: of lightness by its amount, of the other two by Euclid (Abasi, Amani Tehran and Fairchild 2020).
+/// `HyAB` distance, for colours that are far apart: the absolute difference of lightness plus the Euclidean distance of
+/// the other two (Abasi, Amani Tehran and Fairchild 2020).
 fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
     (a[0] - b[0]).abs() + length(a[1] - b[1], a[2] - b[2])
 }
@@ -142,7 +145,7 @@ fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
 
-/// Small differences get most of the range.
+/// Maps a difference to [0, 1]; small differences get most of the range.
 fn redistribute(difference: f64, largest: f64) -> f64 {
     let near = NEAR * largest;
     if difference < near {
@@ -152,7 +155,7 @@ fn redistribute(difference: f64, largest: f64) -> f64 {
     }
 }
 
-/// How much edges and points differ, from 0 to 1, for each pixel.
+/// Returns for each pixel how much edges and points differ, from 0 to 1.
 fn feature_difference(test: &[f64], reference: &[f64], width: usize) -> Vec<f64> {
     let spread = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let radius = (3.0 * spread).ceil() as usize;

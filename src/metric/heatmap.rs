@@ -1,9 +1,9 @@
-//! Where a picture differs from a reference, as colours: near black is equal, through violet, red and orange to a pale yellow at the
-//! scale and above.
+//! Heat maps: the difference of a picture from a reference, as colours. Near black is equal; the colours pass through
+//! violet, red and orange to a pale yellow at the scale and above.
 //!
-//! Equal steps of error are equal steps of lightness, so that the map reads the same printed in grey, and no colour makes a
-//! boundary that is not in the data. Lightness, chroma and hue are those of Oklab (Bjorn Ottosson, "A perceptual color space for
-//! image processing", 2020), coded for a display by the sRGB curve (IEC 61966-2-1).
+//! Equal steps of error are equal steps of lightness, so the map reads the same when printed in grey, and no colour
+//! shows a boundary that is not in the data. Lightness, chroma and hue are from Oklab (Bjorn Ottosson, "A perceptual
+//! color space for image processing", 2020), coded for a display by the sRGB curve (IEC 61966-2-1).
 
 use std::f64::consts::PI;
 
@@ -11,11 +11,13 @@ use super::{check_sizes, percentile};
 use crate::error::{InputError, Result};
 use crate::image_io::{Image, tone_map};
 
-/// No error has this colour, and no number: the error is NaN or infinite here.
+/// The colour of an error that is NaN or infinite; no finite error has it.
 const NOT_FINITE: [u8; 3] = [0, 255, 255];
-/// Colours of a map: neighbours differ by three steps of CIE L*, and a map packs into three quarters of the bytes that 256 take.
+/// Number of colours in a map. Neighbours differ by three steps of CIE L*, and a map compresses to three quarters of
+/// the size with 256 colours.
 const COLOURS: u32 = 32;
-/// The share of pixels that a scale chosen from the data leaves below its end; a few fireflies would leave the rest black.
+/// Share of the pixels below the end of a scale that is chosen from the data. With the largest error as the end, a few
+/// fireflies would leave the rest black.
 const QUANTILE: f64 = 0.99;
 
 /// Errors as colours, ready for a display.
@@ -27,21 +29,21 @@ pub struct Heatmap {
     pub height: u32,
     /// Red, green, blue per pixel, row 0 at the top, as a display shows them.
     pub pixels: Vec<[u8; 3]>,
-    /// What the lightest colour stands for, and more: an error of linear radiance, or FLIP.
+    /// The error that the lightest colour stands for, as for all larger ones: an error of linear radiance, or FLIP.
     pub scale: f64,
 }
 
 impl Heatmap {
-    /// The same colours as a picture: written to an 8-bit format it has exactly these bytes.
+    /// Returns the colours as a picture; an 8-bit format then contains exactly these bytes.
     pub fn to_image(&self) -> Image {
         let pixels = self.pixels.iter().map(|pixel| pixel.map(|v| tone_map::linear(f64::from(v) / 255.0))).collect();
         Image { width: self.width, height: self.height, pixels }
     }
 }
 
-/// The error of each pixel of `test`: the root of the mean over channels of the squared difference in linear radiance. `scale`
-/// is the error of the brightest colour; give the same to maps that are shown side by side. Without one it is the 99th percentile
-/// of this map's errors.
+/// Paints the error of each pixel of `test`: the root of the mean over channels of the squared difference in linear
+/// radiance. `scale` is the error of the brightest colour; give the same scale to maps that are shown side by side.
+/// Without one, it is the 99th percentile of this map's errors.
 pub fn heatmap(test: &Image, reference: &Image, scale: Option<f64>) -> Result<Heatmap> {
     check_sizes(test, reference)?;
     let errors = percentile::errors(test, reference);
@@ -52,7 +54,7 @@ pub fn heatmap(test: &Image, reference: &Image, scale: Option<f64>) -> Result<He
     Ok(painted(test, &errors, scale))
 }
 
-/// `errors` of the pixels of `image` as colours.
+/// Returns `errors` of the pixels of `image` as colours.
 pub(super) fn painted(image: &Image, errors: &[f64], scale: f64) -> Heatmap {
     let last = f64::from(COLOURS - 1);
     let colours: Vec<[u8; 3]> = (0..COLOURS).map(|step| heat_colour(f64::from(step) / last)).collect();
@@ -62,17 +64,17 @@ pub(super) fn painted(image: &Image, errors: &[f64], scale: f64) -> Heatmap {
     Heatmap { width: image.width, height: image.height, pixels: errors.iter().map(paint).collect(), scale }
 }
 
-/// The scale that the data choose: 1 where there is no error to show.
+/// Chooses the scale from the data; 1 if there is no error.
 fn quantile(errors: &[f64]) -> f64 {
     let mut finite: Vec<f64> = errors.iter().copied().filter(|error| error.is_finite()).collect();
     finite.sort_by(f64::total_cmp);
     let index = (finite.len() as f64 * QUANTILE) as usize;
-    // Few wrong pixels in a picture that is otherwise exact: the quantile is 0, and the largest error is what to see.
+    // If few pixels are wrong and the rest are exact, the quantile is 0, and the largest error is the scale.
     let candidates = [finite.get(index), finite.last()];
     candidates.into_iter().flatten().copied().find(|&error| error > 0.0).unwrap_or(1.0)
 }
 
-/// The display colour for an error of `t` times the scale, `t` in [0, 1].
+/// Returns the display colour for an error of `t` times the scale, `t` in [0, 1].
 pub fn heat_colour(t: f64) -> [u8; 3] {
     // Chosen inside the sRGB gamut for every t, so that no channel needs clipping.
     let lightness = 0.2 + 0.77 * t;

@@ -1,11 +1,11 @@
-//! How far a picture is from a reference: one number each, listed in [`METRICS`]; against two references without their noise
-//! ([`cross_mse`]); and as pictures ([`heatmap`], [`flip_map`]).
+//! Metrics of the difference between a picture and a reference. [`METRICS`] lists the single values; [`cross_mse`] uses
+//! two references, to exclude their noise; [`heatmap`] and [`flip_map`] return pictures.
 //!
-//! The error of a Monte Carlo estimate is the one of linear radiance: `linear` metrics fall as spp grows along the law that
-//! theory gives. The others compare what a display shows (clamp and gamma, [`crate::image_io::tone_map`]), which bends the curve
-//! wherever pixels saturate, and are there for comparison with reports that measured pictures.
+//! The error of a Monte Carlo estimate is the error of linear radiance: `linear` metrics fall with growing spp as
+//! theory predicts. The others compare display values (clamp and gamma, [`crate::image_io::tone_map`]), which bend the
+//! curve where pixels saturate. They are there for comparison with reports that measured pictures.
 //!
-//! A NaN in either picture makes every number that it enters NaN. Pictures of different sizes are an [`InputError`].
+//! A NaN in either picture makes every metric that uses it NaN. Pictures of different sizes are an [`InputError`].
 
 mod cross;
 mod flip;
@@ -25,23 +25,23 @@ pub use tolerance::{brighter_pixels, share_within};
 use crate::error::{InputError, Result};
 use crate::image_io::Image;
 
-/// A number that compares two pictures.
+/// A metric: one value that compares two pictures.
 #[derive(Debug)]
 pub struct Entry {
     /// Its name on the command line and in tables.
     pub name: &'static str,
-    /// One line for a list.
+    /// One-line description for a list.
     pub about: &'static str,
-    /// Whether it measures linear radiance; otherwise what a display shows.
+    /// Whether it measures linear radiance; otherwise display values.
     pub linear: bool,
     /// Its value for equal pictures.
     pub best: f64,
-    /// Picture, reference, which are of one size.
+    /// Computes the metric of a picture and a reference of the same size.
     formula: Formula,
 }
 
 impl Entry {
-    /// The number for `test` against `reference`.
+    /// Computes the metric of `test` against `reference`.
     pub fn compute(&self, test: &Image, reference: &Image) -> Result<f64> {
         check_sizes(test, reference)?;
         Ok((self.formula)(test, reference))
@@ -55,7 +55,7 @@ const fn error(name: &'static str, about: &'static str, formula: Formula) -> Ent
     Entry { name, about, linear: true, best: 0.0, formula }
 }
 
-/// A number about what a display shows.
+/// A metric of display values.
 const fn displayed(name: &'static str, about: &'static str, best: f64, formula: Formula) -> Entry {
     Entry { name, about, linear: false, best, formula }
 }
@@ -93,7 +93,7 @@ pub fn find(name: &str) -> Result<&'static Entry> {
     })
 }
 
-/// Pictures are compared pixel by pixel, so their sizes must agree.
+/// Refuses pictures of different sizes, since pictures are compared pixel by pixel.
 fn check_sizes(test: &Image, reference: &Image) -> Result<()> {
     let size = |image: &Image| format!("{}x{}", image.width, image.height);
     if size(test) != size(reference) {

@@ -1,7 +1,7 @@
-//! Below which error so many of the pixels are: a mean says nothing of where the error sits.
+//! Percentiles of the pixel error: unlike a mean, they show how the error is distributed over pixels.
 //!
-//! The error of a pixel is the root of the mean over channels of the squared difference in linear radiance, as in the heat map. Half of the pixels have
-//! at most the error of 50 %. A few fireflies show in the last numbers alone.
+//! The error of a pixel is the root of the mean over channels of the squared difference in linear radiance, as in the
+//! heat map. Half of the pixels have at most the 50 % error. A few fireflies affect only the highest percentiles.
 
 use crate::image_io::Image;
 
@@ -14,7 +14,8 @@ pub(super) fn errors(test: &Image, reference: &Image) -> Vec<f64> {
     test.pixels.iter().zip(&reference.pixels).map(error).collect()
 }
 
-/// The smallest error that at least this share of the pixels does not exceed; NaN if any is, or without pixels.
+/// Returns the smallest error that at least this share of the pixels does not exceed; NaN if any error is NaN, or
+/// without pixels.
 fn at(share: f64, test: &Image, reference: &Image) -> f64 {
     let mut errors = errors(test, reference);
     if errors.is_empty() || errors.iter().any(|error| error.is_nan()) {

@@ -1,9 +1,9 @@
-//! Metrics that are a mean over all channels of all pixels. NaN for pictures without pixels.
+//! Pointwise metrics: means over all channels of all pixels. NaN for pictures without pixels.
 
 use crate::image_io::{Image, tone_map};
 
-/// Keeps black pixels of the reference from deciding the relative error alone. In squared radiance; numbers are comparable for one
-/// value only, so it is fixed.
+/// Keeps black pixels of the reference from dominating the relative error. In squared radiance. It is fixed, since
+/// errors are comparable only for one value.
 pub const REL_MSE_EPSILON: f64 = 0.01;
 
 /// The mean of `f(test, reference)` over channels and pixels, summed in their order.
@@ -41,7 +41,8 @@ pub(super) fn rmse_display(test: &Image, reference: &Image) -> f64 {
     mse_display(test, reference).sqrt()
 }
 
-/// In dB, of display values, whose peak is 1: linear radiance has no peak. Infinite for equal pictures.
+/// Peak signal-to-noise ratio in dB of display values, whose peak is 1; linear radiance has no peak. Infinite for equal
+/// pictures.
 pub(super) fn psnr(test: &Image, reference: &Image) -> f64 {
     -10.0 * libm::log10(mse_display(test, reference))
 }

@@ -1,10 +1,10 @@
-//! Filters that are a product of a row and a column; pixels outside repeat the nearest inside.
+//! Separable filters: products of a row and a column. Outside the plane, the nearest value inside is repeated.
 
 /// Weights at -radius, .., radius.
 pub(super) struct Kernel(Vec<f64>);
 
 impl Kernel {
-    /// The weight at each offset.
+    /// Creates a kernel from the weight at each offset.
     pub(super) fn new(radius: usize, weight: impl Fn(f64) -> f64) -> Self {
         Self((0..=2 * radius).map(|k| weight(k as f64 - radius as f64)).collect())
     }
@@ -27,7 +27,8 @@ impl Kernel {
     }
 }
 
-/// The plane of rows of `width` values, weighted by `row` along them and by `column` across. A kernel is laid over the plane and not mirrored.
+/// Filters a plane of rows of `width` values: by `row` along the rows, and by `column` across them. Kernels are not
+/// mirrored.
 pub(super) fn convolve(plane: &[f64], width: usize, row: &Kernel, column: &Kernel) -> Vec<f64> {
     let height = plane.len() / width;
     let within = |place: usize, k: usize, kernel: &Kernel, length: usize| {

@@ -14,7 +14,7 @@ const C2: f64 = 0.03 * 0.03;
 /// Luma of gamma-coded red, green and blue: ITU-R BT.601.
 const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
 
-/// 1 for equal pictures; NaN where no window fits.
+/// Returns the similarity: 1 for equal pictures; NaN if no window fits.
 pub(super) fn ssim(test: &Image, reference: &Image) -> f64 {
     let (width, height) = (test.width as usize, test.height as usize);
     if width < WINDOW || height < WINDOW {
@@ -41,8 +41,8 @@ fn luma(image: &Image) -> Vec<f64> {
     image.pixels.iter().map(of).collect()
 }
 
-/// The weighted mean around every place where the window fits: smaller by `WINDOW - 1` in both directions. The window is a
-/// product, so rows come first and columns after.
+/// Returns the weighted mean around every pixel where the window fits: smaller by `WINDOW - 1` in both directions. The
+/// window is separable, so it is applied to rows first and to columns after.
 fn blur(values: &[f64], width: usize) -> Vec<f64> {
     let weights = weights();
     let along = |at: &dyn Fn(usize) -> f64| weights.iter().enumerate().map(|(k, weight)| weight * at(k)).sum::<f64>();

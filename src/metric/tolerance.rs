@@ -1,6 +1,6 @@
-//! How many pixels are right, and how many are far too bright, against the mean of two half-references.
+//! Counts of pixels within a tolerance, and of pixels that are far too bright, against the mean of two half-references.
 //!
-//! Both are counts of pixels, so the reference's own noise enters: a reference wants many more samples than the picture.
+//! The noise of the reference affects both counts, so a reference needs many more samples than the picture.
 
 use super::check_sizes;
 use crate::error::Result;
@@ -15,14 +15,16 @@ fn count(test: &Image, halves: [&Image; 2], is_wanted: impl Fn([f64; 3], [f64; 3
     Ok(means.filter(|(test, reference)| is_wanted(*test, *reference)).count())
 }
 
-/// The share of pixels whose display value is at most `tolerance` from the reference's in every channel; NaN for pictures without pixels.
+/// Returns the share of pixels whose display value is at most `tolerance` from the reference's in every channel; NaN
+/// for pictures without pixels.
 pub fn share_within(test: &Image, first: &Image, second: &Image, tolerance: f64) -> Result<f64> {
     let is_near = |(t, r): (&f64, &f64)| (tone_map::display(*t) - tone_map::display(*r)).abs() <= tolerance;
     let near = count(test, [first, second], |test, reference| test.iter().zip(&reference).all(is_near))?;
     Ok(near as f64 / test.pixels.len() as f64)
 }
 
-/// The pixels that are brighter than the reference by more than `excess` in linear radiance, in any channel: fireflies, if it is large.
+/// Returns the number of pixels that are brighter than the reference by more than `excess` in linear radiance, in any
+/// channel. With a large `excess`, these are fireflies.
 pub fn brighter_pixels(test: &Image, first: &Image, second: &Image, excess: f64) -> Result<u64> {
     let is_brighter = |(t, r): (&f64, &f64)| t - r > excess;
     let bright = count(test, [first, second], |test, reference| test.iter().zip(&reference).any(is_brighter))?;
@@ -37,7 +39,8 @@ mod tests {
         Image { width: values.len() as u32, height: 1, pixels: values.iter().map(|value| [*value, 0.5, 0.5]).collect() }
     }
 
-    /// The mean of the halves is 0.5 everywhere; on the display 0.5 is 0.7297, and 0.05 more or less is from 0.428 to 0.579 in radiance.
+    /// The mean of the halves is 0.5 everywhere, a display value of 0.7297. Within 0.05 of it, the radiance is from
+    /// 0.428 to 0.579.
     #[test]
     fn pixels_count_by_their_distance_to_the_mean_of_the_halves() {
         let (first, second) = (picture(&[0.25; 5]), picture(&[0.75; 5]));

@@ -1,11 +1,11 @@
-//! How far predictions are from what was measured.
+//! Agreement of predictions with measurements, as relative errors.
 
 use crate::analysis::quantile::median;
 
 /// Relative errors of predictions, as (predicted - measured) / measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
-    /// The median of the errors: a systematic one, if it is far from 0.
+    /// The median error; a value far from 0 shows a systematic error.
     pub bias: f64,
     /// The median of the absolute errors.
     pub median_absolute: f64,

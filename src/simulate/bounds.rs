@@ -1,4 +1,4 @@
-//! What no schedule can beat, and what no greedy one can miss.
+//! Bounds on makespans: a lower one for every schedule, an upper one for greedy schedules.
 //!
 //! Graham, "Bounds for certain multiprocessing anomalies", Bell System Technical Journal 45(9), 1966: a schedule that never leaves a
 //! worker idle while a job waits ends at W/P + (1 - 1/P) L at the latest, for work W, longest job L and P equal workers; since no
@@ -8,11 +8,11 @@
 /// The bounds for jobs without overheads on equal workers of speed 1, in seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// All jobs' time shared out evenly: W/P.
+    /// The time of all jobs, shared evenly: W/P.
     pub share_s: f64,
     /// The longest job's time.
     pub longest_s: f64,
-    /// The later of the two: no schedule ends before.
+    /// The larger of the two: no schedule ends earlier.
     pub lower_s: f64,
     /// W/P + (1 - 1/P) L: every greedy schedule ends by then.
     pub greedy_s: f64,
@@ -27,7 +27,7 @@ pub fn bounds(costs: &[f64], workers: usize) -> Bounds {
     Bounds { share_s, longest_s, lower_s, greedy_s: share_s + (1.0 - 1.0 / workers) * longest_s }
 }
 
-/// The order in which jobs of these costs are taken if the longest goes first; equal ones keep their order.
+/// Returns the order in which the longest of these jobs goes first; equal ones keep their order.
 pub fn longest_first(costs: &[f64]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..costs.len()).collect();
     order.sort_by(|&a, &b| costs[b].total_cmp(&costs[a]));

@@ -1,4 +1,4 @@
-//! Who competes in a forecast: strategies of the table with what they cost on this machine, and a yardstick.
+//! Contenders of a forecast: strategies of the table with their costs on this machine, and an ideal one for comparison.
 
 use super::bounds::longest_first;
 use super::hardware::Hardware;
@@ -12,28 +12,28 @@ use crate::strategy::{ChunkRule, Discipline};
 /// A discipline with a name and its mechanism's cost.
 #[derive(Debug, Clone)]
 pub struct Contender {
-    /// What it is called in tables: a strategy with its parameter if it has one.
+    /// The name in tables: a strategy with its parameter if it has one.
     pub name: String,
     /// How it hands out jobs.
     pub discipline: Discipline,
-    /// In which order the jobs are put before it.
+    /// The order in which it gets the jobs.
     pub order: Order,
-    /// What its mechanism costs.
+    /// The costs of its mechanism.
     pub overheads: Overheads,
 }
 
-/// In which order the jobs are put before a discipline.
+/// The order in which a discipline gets the jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// As they are.
+    /// By job index.
     ByIndex,
-    /// The longest first, which takes somebody who knows all costs beforehand.
+    /// The longest first, which requires all costs to be known beforehand.
     LongestFirst,
 }
 
 impl Contender {
-    /// The longest job first, one at a time, at no cost (LPT; Graham 1969). No strategy of the table can do that, since none knows the
-    /// costs: it is what knowing them would be worth.
+    /// The longest job first, one at a time, at no cost (LPT; Graham 1969). No strategy of the table can do that, since
+    /// none knows the costs beforehand: this contender shows the value of knowing them.
     pub fn longest_first() -> Self {
         Self {
             name: "longest-first".to_owned(),
@@ -43,12 +43,13 @@ impl Contender {
         }
     }
 
-    /// Whether each job has a thread of its own, so that its workers are no processors.
+    /// Whether each job has its own thread, so that a worker is not a processor.
     pub fn has_a_thread_per_job(&self) -> bool {
         matches!(self.discipline, Discipline::AllAtOnce)
     }
 
-    /// Replays jobs of these costs, in seconds and in index order. The spans are in index order too, whatever the order of work.
+    /// Replays jobs of these costs, in seconds and in index order. The spans are in index order too, whatever the order
+    /// of execution.
     pub fn replay(&self, costs: &[f64], workers: usize, hardware: &Hardware) -> Replay {
         let overhead = self.overheads.at(workers);
         let order = match self.order {
@@ -66,10 +67,12 @@ impl Contender {
     }
 }
 
-/// The strategies that `rows` are about, in the order of their first row; those that this build does not have are left out.
+/// Contenders for the strategies in `rows`, in the order of their first row; strategies that this build lacks are left
+/// out.
 ///
-/// What a chunk costs under rules whose chunks are too few to be timed is taken from the cheapest rule that hands out single jobs. A thread's
-/// start is the same whoever starts it, so strategies that start their workers in the run share the median of what was fitted to each.
+/// Rules with too few chunks to be timed take their cost per chunk from the cheapest rule that hands out single jobs.
+/// Starting a thread costs the same under every strategy, so strategies that start their workers in the run share the
+/// median of their fitted costs.
 pub fn contenders(lab: &Lab, rows: &[CalibrationRow]) -> Vec<Contender> {
     let mut contenders: Vec<Contender> = Vec::new();
     for row in rows {

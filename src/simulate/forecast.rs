@@ -6,7 +6,7 @@ use super::hardware::Hardware;
 use crate::strategy::Discipline;
 use serde::{Deserialize, Serialize};
 
-/// One row.
+/// A row of the table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Forecast {
@@ -16,20 +16,20 @@ pub struct Forecast {
     pub workers: usize,
     /// Seconds until all jobs are done.
     pub makespan_s: f64,
-    /// The sum of all costs over the makespan: against the jobs alone, one after the other, at no cost.
+    /// The sum of all costs over the makespan: the reference is the jobs in sequence, without overhead.
     pub speedup: f64,
-    /// Speedup a worker.
+    /// Speedup per worker.
     pub efficiency: f64,
-    /// Work a worker, in seconds: no schedule ends before, if no processor is faster than 1.
+    /// Work per worker, in seconds: no schedule ends earlier if no processor is faster than 1.
     pub share_s: f64,
-    /// The longest job, in seconds: no schedule ends before.
+    /// The longest job, in seconds: no schedule ends earlier.
     pub longest_s: f64,
     /// Graham's bound in seconds: every greedy schedule ends by then, on equal workers and without overheads.
     pub greedy_s: f64,
 }
 
-/// Replays jobs of these costs (seconds, in index order) by every contender on every number of workers. One that works in order on the
-/// caller's thread has one worker, whatever is asked, and one row.
+/// Replays jobs of these costs (seconds, in index order) by every contender on every number of workers. A contender
+/// that runs the jobs in order on the caller's thread has one worker, whatever `workers` says, and one row.
 pub fn forecast(costs: &[f64], contenders: &[Contender], workers: &[usize], hardware: &Hardware) -> Vec<Forecast> {
     let mut rows = Vec::new();
     for contender in contenders {

@@ -1,42 +1,42 @@
-//! The processors that a replay runs on: how fast each of them is, and what the operating system takes of it.
+//! The processors of a replay: their speeds, and the time that the operating system takes from them.
 //!
-//! Speeds are relative: 1 is the processor that the job costs were measured on. A worker has a processor of its own, so worker w's
-//! speed is processor w's.
+//! Speeds are relative: 1 is the processor on which the job costs were measured. Each worker has its own processor:
+//! worker w has the speed of processor w.
 
 use rand::Rng;
 use rand_pcg::Pcg32;
 
-/// What the workers run on.
+/// The processors of the workers.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hardware {
-    /// How fast each processor is.
+    /// The speed of each processor.
     pub speeds: Speeds,
-    /// What interrupts them; `None` for nothing.
+    /// Interruptions of the processors; `None` for none.
     pub noise: Option<Noise>,
 }
 
-/// How fast each processor is, relative to the one that the costs were measured on.
+/// The speed of each processor, relative to the one on which the costs were measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Speeds {
-    /// All alike, as fast as that one.
+    /// All as fast as that one.
     #[default]
     Identical,
-    /// The first one has this speed, the others 1.
+    /// The first processor has this speed, the others 1.
     OneSlow(f64),
     /// Performance and efficient cores. The system fills the fast ones first.
     Mixed {
-        /// How many processors have speed 1.
+        /// Number of processors with speed 1.
         performance: usize,
-        /// The speed of all further ones.
+        /// The speed of all other processors.
         efficient: f64,
     },
 }
 
-/// Interruptions by the operating system: they come to each processor at random times (a Poisson process of its working time) and
-/// all last equally long.
+/// Interruptions by the operating system: they hit each processor at random times (a Poisson process of its working
+/// time) and all last equally long.
 ///
-/// Petrini, Kerbyson and Pakin, "The case of the missing supercomputer performance", SC 2003, is what such noise does to a machine
-/// whose processors wait for each other.
+/// Petrini, Kerbyson and Pakin, "The case of the missing supercomputer performance", SC 2003, describe the effect of
+/// such noise on a machine whose processors wait for each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
     fraction: f64,
@@ -51,7 +51,8 @@ impl Noise {
         sensible.then_some(Self { fraction, length_s, seed })
     }
 
-    /// How often work of so many seconds is interrupted on average: r times a second, where r L / (1 + r L) of the time is lost.
+    /// The mean number of interruptions of `work_s` seconds of work. At r of them per second, each of L seconds, the
+    /// fraction r L / (1 + r L) of the time is lost.
     pub fn interruptions(&self, work_s: f64) -> f64 {
         work_s * self.fraction / ((1.0 - self.fraction) * self.length_s)
     }
@@ -67,7 +68,7 @@ impl Hardware {
         }
     }
 
-    /// The speeds of the first `processors`, fastest first, less what noise takes on average.
+    /// The speeds of the first `processors` processors, fastest first, reduced by the average loss to noise.
     pub(super) fn average_speeds(&self, processors: usize) -> Vec<f64> {
         let share = 1.0 - self.noise.map_or(0.0, |noise| noise.fraction);
         let mut speeds: Vec<f64> = (0..processors).map(|processor| share * self.speed(processor)).collect();
@@ -102,7 +103,7 @@ impl Processor {
         Self { speed: hardware.speed(processor), interruptions }
     }
 
-    /// How long it needs for work that takes a processor of speed 1 `work_s` seconds.
+    /// Returns the seconds that it needs for work that takes a processor of speed 1 `work_s` seconds.
     pub(super) fn elapsed_s(&mut self, work_s: f64) -> f64 {
         let own_s = work_s / self.speed;
         self.interruptions.as_mut().map_or(own_s, |interruptions| own_s + interruptions.lost_s(own_s))
@@ -122,7 +123,7 @@ impl Interruptions {
     }
 }
 
-/// A time from the exponential distribution, by inversion; the uniform number is in (0, 1].
+/// Draws a time from the exponential distribution, by inversion; the uniform random number is in (0, 1].
 fn exponential(random: &mut Pcg32, mean_s: f64) -> f64 {
     let uniform = (f64::from(random.next_u32()) + 1.0) / 4_294_967_296.0;
     -mean_s * libm::log(uniform)
@@ -141,7 +142,7 @@ mod tests {
         assert_eq!(Processor::new(&mixed, 3).elapsed_s(2.0), 8.0);
     }
 
-    /// 10 000 seconds of work in pieces, 100 000 interruptions and so 0.4 % of statistical error in what is lost.
+    /// 10 000 pieces of 1 s of work: 100 000 interruptions, and so a statistical error of 0.4 % in the lost time.
     #[test]
     fn noise_takes_its_fraction() {
         for fraction in [0.05, 0.2, 0.5] {

@@ -1,8 +1,8 @@
-//! Measured job costs on workers that this machine does not have.
+//! Simulated schedules: measured job costs on workers that this machine does not have.
 //!
-//! A replay takes the costs of all jobs in seconds, a strategy's [`Discipline`], a number of workers, what the mechanism costs
-//! ([`Overhead`], fitted to timed runs of empty jobs) and what the workers run on ([`Hardware`]), and says who would do what when. It is
-//! a pure function: no clock, no thread, seeded random numbers.
+//! A replay takes the costs of all jobs in seconds, a strategy's [`Discipline`], a number of workers, the costs of the
+//! mechanism ([`Overhead`], fitted to timed runs of empty jobs) and the processors ([`Hardware`]). It returns which
+//! worker would run which job when. It is a pure function: no clock, no thread, seeded random numbers.
 //!
 //! ```
 //! use pathmark::simulate::{Hardware, Overhead, bounds, replay};
@@ -16,15 +16,15 @@
 //! # Ok::<(), pathmark::strategy::StrategyError>(())
 //! ```
 //!
-//! # What the model leaves out
+//! # Simplifications of the model
 //!
 //! * A job costs the same on every worker and beside every neighbour: no shared caches, memory bandwidth, clock rates or sibling threads.
-//! * A worker has a processor of its own. More workers than processors are modelled for a thread per job alone.
-//! * A worker that finds nothing goes home; real ones search on, and take something of the others by it.
-//! * Moving jobs between queues takes no time of its own; real thieves pay more than owners do.
-//! * Threads that run a job cost more than empty ones (their stacks are touched, they are moved and preempted), so a thread per job
-//!   comes out too well, by up to a tenth where jobs take a millisecond.
-//! * The contention at a place that all share is that of the largest number of threads that was measured.
+//! * Each worker has its own processor. Only a thread per job is modelled with more threads than processors.
+//! * A worker that finds no job stops; a real one searches on, which slows the others.
+//! * Moving jobs between queues takes no extra time; real thieves pay more than owners.
+//! * Threads that run a job cost more than empty ones (their stacks are touched, they are moved and preempted). A
+//!   thread per job therefore looks too fast, by up to a tenth where jobs take a millisecond.
+//! * Contention at a shared place is that of the largest number of threads that was measured.
 //!
 //! [`Discipline`]: crate::strategy::Discipline
 

@@ -1,58 +1,61 @@
-//! What a strategy's mechanism costs, and how it is found from runs of empty jobs.
+//! Overheads of a strategy's mechanism, fitted to runs of empty jobs.
 //!
 //! The model of n empty jobs on p workers is a line in n for each p,
 //!
 //! T(n, p) = run + p start + n max((job + take) / p, shared),
 //!
-//! whose five numbers are in seconds. What makes the lines are measured rows ([`CalibrationRow`]); the lines' intercepts over p give `run`
-//! and `start`, the slope at one worker gives what a hand-out takes, and the slopes at more workers how fast the place that all share
-//! serves them. Ordinary least squares throughout; what noise makes negative is 0.
+//! whose five parameters are in seconds. The lines are fitted to measured rows ([`CalibrationRow`]). The lines'
+//! intercepts over p give `run` and `start`. The slope at one worker gives the cost of a hand-out. The slopes at more
+//! workers give the rate of the shared place: the counter or queue from which all workers take. All fits are ordinary
+//! least squares; values that noise makes negative are set to 0.
 
 use crate::measure::CalibrationRow;
 use crate::strategy::{Discipline, Start};
 
-/// What the mechanism costs with one number of workers. The default is a mechanism that costs nothing.
+/// The mechanism's costs with one number of workers. The default costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Overhead {
     /// Seconds that a run takes without workers and jobs.
     pub run_s: f64,
-    /// Seconds of the caller to start (or wake) one more worker, or thread; one after the other.
+    /// The caller's seconds to start (or wake) one more worker, or thread; one after the other.
     pub start_s: f64,
-    /// Seconds of a worker for each job: the call, and taking it from what is the worker's own.
+    /// A worker's seconds for each job: the call, and taking the job from the worker's own queue or range.
     pub job_s: f64,
-    /// Seconds of a worker for each chunk that it takes from the place that all share.
+    /// A worker's seconds for each chunk that it takes from the shared place.
     pub take_s: f64,
-    /// Seconds for which the place that all share is taken by each chunk (each job of a batch) that leaves it, whoever wants it.
+    /// Seconds for which each chunk (each job of a batch) occupies the shared place, whichever worker takes it.
     pub shared_s: f64,
 }
 
-/// What the mechanism of one strategy costs, over numbers of workers. The default costs nothing.
+/// The costs of one strategy's mechanism, over numbers of workers. The default costs nothing.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overheads {
     run_s: f64,
     start_s: f64,
     job_s: f64,
-    /// What a chunk costs; `None` if the rows cannot tell, because they have too few chunks.
+    /// The cost of a chunk; `None` if the rows have too few chunks to fit it.
     place: Option<Place>,
 }
 
-/// The place from which all workers take.
+/// The shared place: all workers take from it.
 #[derive(Debug, Clone, PartialEq, Default)]
 struct Place {
     take_s: f64,
-    /// Seconds between two hand-outs if this many workers, at least 2, want nothing but jobs; ascending.
+    /// Seconds between two hand-outs if this many workers, at least 2, ask without a pause; ascending.
     served: Vec<(usize, f64)>,
 }
 
 impl Overheads {
-    /// From rows of empty jobs run by one strategy, at one number of jobs or (better) several for each number of threads.
+    /// Fits the costs to rows of empty jobs run by one strategy, at one number of jobs or (better) several for each
+    /// number of threads.
     ///
-    /// * Under [`Discipline::AllAtOnce`] the caller pays for each job: its slope is `start`. What the slope of the CPU time has above that
-    ///   is the thread's own beginning and end, on another processor: `job`.
-    /// * A chunk rule that hands out single jobs, and a queue in which all jobs start, are the place that all share; their slope at
-    ///   p threads is taken for its rate, although the place could be faster than p workers are.
-    /// * A rule with larger chunks, or with chunks that depend on the clock, has too few of them to be told from its jobs: [`Overheads::knows_chunks`] is false and chunks are
-    ///   free until [`Overheads::with_chunks_of`].
+    /// * Under [`Discipline::AllAtOnce`] the caller pays for each job: the slope is `start`. The slope of the CPU time
+    ///   minus that slope is the thread's own start and end, on another processor: `job`.
+    /// * The shared place is a chunk rule that hands out single jobs, or a queue in which all jobs start. The slope at
+    ///   p threads is used as its rate, although the place could be faster than p workers.
+    /// * A rule with larger chunks, or with chunks that depend on the clock, has too few chunks to separate their cost
+    ///   from the jobs'. [`Overheads::knows_chunks`] is then false, and chunks are free until
+    ///   [`Overheads::with_chunks_of`].
     pub fn fit<'a>(rows: impl IntoIterator<Item = &'a CalibrationRow>, discipline: Discipline) -> Self {
         let rows: Vec<&CalibrationRow> = rows.into_iter().collect();
         let mut threads: Vec<usize> = rows.iter().map(|row| row.threads).collect();
@@ -88,35 +91,36 @@ impl Overheads {
         Self { run_s: over_threads.at_zero, start_s: over_threads.slope, job_s, place }
     }
 
-    /// Whether the rows told what a chunk costs.
+    /// Whether the rows determined the cost of a chunk.
     pub fn knows_chunks(&self) -> bool {
         self.place.is_some()
     }
 
-    /// The same, with chunks that cost what they cost `other`.
+    /// Returns these costs, with the cost of a chunk from `other`.
     #[must_use]
     pub fn with_chunks_of(self, other: &Self) -> Self {
         Self { place: other.place.clone(), ..self }
     }
 
-    /// What one more worker costs the caller.
+    /// The caller's seconds for one more worker.
     pub(super) fn start_s(&self) -> f64 {
         self.start_s
     }
 
-    /// The same, with workers that cost this much to start.
+    /// Returns these costs, with `start_s` seconds to start a worker.
     #[must_use]
     pub(super) fn with_start(self, start_s: f64) -> Self {
         Self { start_s, ..self }
     }
 
-    /// What one worker pays for a chunk.
+    /// A worker's seconds for a chunk.
     pub(super) fn take_s(&self) -> Option<f64> {
         self.place.as_ref().map(|place| place.take_s)
     }
 
-    /// With this many workers. The shared place serves them as fast as it served the largest number up to theirs that was measured: for
-    /// more workers than the machine has, that is an extrapolation, and a kind one, since contention grows.
+    /// Returns the costs with `workers` workers. The rate of the shared place is that of the largest measured number of
+    /// workers up to `workers`. Beyond the machine's processors that is an extrapolation, and an optimistic one, since
+    /// contention grows.
     pub fn at(&self, workers: usize) -> Overhead {
         let place = self.place.clone().unwrap_or_default();
         let shared_s = place.served.iter().take_while(|(threads, _)| *threads <= workers).last().map_or(0.0, |s| s.1);
@@ -125,7 +129,7 @@ impl Overheads {
     }
 }
 
-/// A line that neither falls nor is negative at 0.
+/// A line that does not fall and is not negative at 0.
 #[derive(Debug, Clone, Copy, Default)]
 struct Line {
     at_zero: f64,
@@ -133,7 +137,7 @@ struct Line {
 }
 
 impl Line {
-    /// The best line under both conditions; a level one if all points have the same x.
+    /// The best line under both conditions; a horizontal one if all points have the same x.
     fn rising(points: &[(f64, f64)]) -> Self {
         let n = points.len() as f64;
         if points.is_empty() {
@@ -217,7 +221,7 @@ mod tests {
         let mut rows = rows(&[1], |n, _| RUN + n * START);
         let at = Overheads::fit(&rows, Discipline::AllAtOnce).at(64);
         assert!(close(at.run_s, RUN) && close(at.start_s, START) && at.job_s == 0.0, "{at:?}");
-        // Half as much again is used by the threads themselves.
+        // The threads themselves use half as much again.
         for row in &mut rows {
             row.cpu_s = Some(1e-3 + row.jobs as f64 * 1.5 * START);
         }

@@ -1,57 +1,59 @@
-//! The real machine predicted: measured makespans beside those that the simulator finds for the same jobs.
+//! Predictions for the real machine: measured makespans beside simulated ones of the same jobs.
 
 use super::contender::Contender;
 use super::hardware::Hardware;
 use crate::analysis::quantile::median;
 use std::collections::BTreeMap;
 
-/// Relative difference in CPU time from which a run, or the serial one beside it, was disturbed by something that is no schedule.
+/// Relative difference in CPU time above which a run, or the serial run beside it, counts as disturbed: no schedule
+/// causes it.
 pub const DISTURBED: f64 = 0.1;
 
 /// A measured run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Observed {
-    /// How the film was cut.
+    /// The decomposition of the film.
     pub decomposition: String,
-    /// Strategy, with its parameter if it has one.
+    /// The strategy, with its parameter if it has one.
     pub strategy: String,
-    /// Its workers.
+    /// Number of workers.
     pub workers: usize,
-    /// What it took, in seconds.
+    /// The measured makespan, in seconds.
     pub makespan_s: f64,
-    /// Its CPU time over that of the serial run beside it; 1 if that is not known. Above 1 the jobs themselves took longer than the serial run
-    /// says, which no schedule can help: processors that share a core, a lower clock.
+    /// Its CPU time over the CPU time of the serial run beside it; 1 if unknown. Above 1, the jobs themselves took
+    /// longer than in the serial run, which no schedule can mend: processors share a core, or the clock rate is lower.
     pub inflation: f64,
 }
 
-/// The runs of one schedule, predicted.
+/// The prediction for all runs of one schedule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// How the film was cut.
+    /// The decomposition of the film.
     pub decomposition: String,
-    /// Strategy.
+    /// The strategy.
     pub strategy: String,
-    /// Its workers.
+    /// Number of workers.
     pub workers: usize,
-    /// How many runs there were.
+    /// Number of runs.
     pub runs: usize,
-    /// Median of what the simulator finds, in seconds.
+    /// Median simulated makespan, in seconds.
     pub predicted_s: f64,
-    /// Median of what was measured, in seconds.
+    /// Median measured makespan, in seconds.
     pub measured_s: f64,
-    /// How many of them were undisturbed: their CPU time is within [`DISTURBED`] of that of the serial run beside them.
+    /// Number of undisturbed runs: their CPU time is within [`DISTURBED`] of the serial run's beside them.
     pub undisturbed: usize,
     /// Median of predicted over measured, over the undisturbed runs; `None` if there is none.
     pub undisturbed_ratio: Option<f64>,
-    /// Median of predicted over measured, run by run, for jobs that cost what they cost the serial run.
+    /// Median of predicted over measured, run by run, for jobs with the costs of the serial run.
     pub plain_ratio: f64,
-    /// The same for jobs that cost more by the run's inflation.
+    /// The same, with each run's job costs multiplied by its inflation.
     pub ratio: f64,
 }
 
-/// Predicts each run from the costs of its jobs, which should come from a serial run made beside it; runs of no contender are left out.
+/// Predicts each run from the costs of its jobs, ideally from a serial run made beside it; runs without a contender are
+/// left out.
 ///
-/// A strategy with a thread for each job runs on all processors of this machine, however many threads it has.
+/// A strategy with a thread for each job runs on all `processors` of this machine, whatever its number of threads.
 pub fn predict<'a>(
     runs: impl IntoIterator<Item = (Observed, &'a [f64])>,
     contenders: &[Contender],
@@ -113,7 +115,7 @@ mod tests {
         let runs = [(run(2.0), &[1.0, 1.0][..]), (run(5.0), &[2.0, 2.0]), (run(8.0), &[3.0, 3.0]), (other, &[1.0])];
         let found = predict(runs, std::slice::from_ref(&contender), 2);
         assert_eq!(found.len(), 1);
-        // Predicted 2, 4, 6 against 2, 5, 8: ratios 1, .8, .75.
+        // Predicted 2, 4, 6; measured 2, 5, 8: ratios 1, .8, .75.
         assert_eq!((found[0].runs, found[0].predicted_s, found[0].measured_s, found[0].ratio), (3, 4.0, 5.0, 0.8));
         assert_eq!((found[0].plain_ratio, found[0].undisturbed, found[0].undisturbed_ratio), (0.8, 3, Some(0.8)));
 

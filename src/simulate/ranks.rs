@@ -1,8 +1,9 @@
-//! The replay of ranks: jobs of known costs on processes that share them by a rule, each with threads that share its jobs by a strategy.
+//! Replays of ranks: processes share jobs of known costs by a rule, and the threads of each share its jobs by a
+//! strategy.
 //!
-//! A rank's chunk is replayed as a run of its own ([`Contender::replay`]), so the threads of a rank wait for the last of them before the next
-//! chunk, as they do in `crate::cluster`. Messages cost what was measured between two processes ([`Messages`]). Waiting takes no
-//! processor here: there must be one for each thread of each rank.
+//! Each chunk of a rank is replayed as a separate run ([`Contender::replay`]). As in `crate::cluster`, the threads of a
+//! rank therefore wait for the last of them before the next chunk. Messages cost the times measured between two
+//! processes ([`Messages`]). Waiting takes no processor here, so each thread of each rank must have one.
 
 use super::contender::Contender;
 use super::hardware::{Hardware, Speeds};
@@ -11,44 +12,44 @@ use crate::strategy::{ChunkRule, LearnedRule, Ledger, Seen};
 use serde::Serialize;
 use std::ops::Range;
 
-/// What it costs to bring jobs to ranks and their pieces back, in seconds. The default costs nothing.
+/// The costs of messages that bring jobs to ranks and pieces back, in seconds. The default costs nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Messages {
-    /// A request to rank 0, which waits for it, and its answer.
+    /// A request to rank 0 and its answer, while rank 0 waits for it.
     pub request_s: f64,
-    /// A fetch-and-op in the memory of rank 0, which waits.
+    /// A fetch-and-op in the memory of rank 0, while rank 0 waits.
     pub fetch_s: f64,
-    /// How far it needs rank 0: 1 if it waits until rank 0 looks after MPI, 0 if it does not.
+    /// How far a fetch depends on rank 0: 1 if it waits until rank 0 looks after MPI, 0 if it does not.
     pub needs_rank_0: f64,
-    /// A byte that rank 0 gathers.
+    /// Gathering one byte on rank 0.
     pub gathered_byte_s: f64,
 }
 
-/// Ranks and the threads of each.
+/// Numbers of ranks and of threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Crew {
     /// Processes, at least 1.
     pub ranks: usize,
-    /// Threads of each, at least 1.
+    /// Threads of each process, at least 1.
     pub threads: usize,
 }
 
-/// The machines and what runs on them.
+/// The simulated machines and their configuration.
 pub struct Cluster<'a> {
     /// Ranks and threads.
     pub crew: Crew,
     /// The strategy within a rank.
     pub within: &'a Contender,
-    /// What messages cost.
+    /// The costs of messages.
     pub messages: Messages,
     /// The processors of each rank. One slow core stands for a slow rank 0.
     pub hardware: Hardware,
 }
 
-/// A rank's part in a replay.
+/// The state of a rank in a replay.
 #[derive(Debug, Clone, Copy)]
 struct Rank {
-    /// When it wants to know its next chunk, and when it could begin with it.
+    /// When it asks for its next chunk, and the earliest time at which it can begin that chunk.
     asks_s: f64,
     free_s: f64,
     seen: Seen,
@@ -70,13 +71,13 @@ impl Cluster<'_> {
         }
     }
 
-    /// Seconds to gather a film of so many bytes, of which each rank has its share.
+    /// Seconds to gather a film of so many bytes, of which each rank holds an equal share.
     pub fn gather_s(&self, bytes: f64) -> f64 {
         let ranks = self.crew.ranks as f64;
         bytes * (ranks - 1.0) / ranks * self.messages.gathered_byte_s
     }
 
-    /// How long a rank takes for jobs of these costs, and what it sees of them.
+    /// The seconds that a rank takes for jobs of these costs, and the job durations that it observes.
     fn chunk(&self, rank: usize, costs: &[f64]) -> (f64, Seen) {
         let (speed, hardware) = match self.hardware.speeds {
             Speeds::OneSlow(_) => (self.hardware.speed(rank), Hardware { speeds: Speeds::Identical, ..self.hardware }),
@@ -98,8 +99,9 @@ impl Cluster<'_> {
         vec![Some(Rank { asks_s: 0.0, free_s: 0.0, seen: Seen::default() }); self.crew.ranks]
     }
 
-    /// A rank asks while it renders a small chunk, and otherwise when it has none; its number in the order of asking is its chunk's. Rank 0
-    /// looks after the others after each of its chunks and every [`LOOK`]; half of the time between two looks goes by on average.
+    /// A rank asks while it renders a small chunk, and otherwise when it has none; chunks are numbered in the order of
+    /// the requests. Rank 0 looks after requests after each of its chunks and every [`LOOK`]; a request waits half of
+    /// the time between two looks on average.
     fn counted(&self, costs: &[f64], rule: ChunkRule) -> f64 {
         let Messages { fetch_s, needs_rank_0, .. } = self.messages;
         let mut chunks = rule.chunks(costs.len(), self.crew.ranks);
@@ -122,7 +124,7 @@ impl Cluster<'_> {
         last_s
     }
 
-    /// Rank 0 answers one request after the other, each for half of the time between a request and its answer.
+    /// Rank 0 answers one request after the other; each answer occupies it for half of the request's round trip.
     fn with_a_master(&self, costs: &[f64], rule: ChunkRule) -> f64 {
         let mut chunks = rule.chunks(costs.len(), self.crew.ranks.saturating_sub(1).max(1));
         let (mut ranks, mut master_free_s, mut last_s) = (self.ranks(), 0.0_f64, 0.0_f64);
@@ -159,7 +161,7 @@ impl Cluster<'_> {
         last_s
     }
 
-    /// Rank 0 looks after requests while it renders; half of the time between two looks goes by on average.
+    /// Rank 0 looks after requests while it renders; a request waits half of the time between two looks on average.
     fn told(&self, costs: &[f64], rule: LearnedRule) -> f64 {
         let mut ledger = Ledger::new(costs.len(), self.crew.ranks, rule.weights);
         let (mut ranks, mut last_s) = (self.ranks(), 0.0_f64);
@@ -174,14 +176,14 @@ impl Cluster<'_> {
         last_s
     }
 
-    /// A rank that begins with a chunk then, and asks when it has done it.
+    /// Returns the state of a rank that begins a chunk at `begin_s` and asks again at its end.
     fn with_chunk(&self, rank: usize, costs: &[f64], begin_s: f64) -> Rank {
         let (seconds, seen) = self.chunk(rank, costs);
         Rank { asks_s: begin_s + seconds, free_s: begin_s + seconds, seen }
     }
 }
 
-/// The rank that asks first; of several the one with the lowest number.
+/// The rank that asks first; of several, the one with the lowest number.
 fn first(ranks: &[Option<Rank>]) -> Option<(usize, Rank)> {
     let asking = ranks.iter().enumerate().filter_map(|(number, rank)| Some((number, (*rank)?)));
     asking.min_by(|(_, a), (_, b)| a.asks_s.total_cmp(&b.asks_s))
@@ -207,7 +209,7 @@ mod tests {
         Cluster { crew, within: &strategy, messages, hardware }.makespan_s(costs, way)
     }
 
-    /// Without costs of messages ranks of one thread are the threads of one process, by the simulator for threads.
+    /// If messages cost nothing, ranks of one thread behave as the threads of one process in the simulator for threads.
     #[test]
     fn ranks_of_one_thread_are_threads() {
         let costs: Vec<f64> = (0..200).map(|job| 1.0 + f64::from(job * 37 % 101)).collect();
@@ -215,15 +217,15 @@ mod tests {
             for ranks in [1, 2, 3, 8] {
                 let threads = within(rule).replay(&costs, ranks, &Hardware::default()).makespan_s;
                 let found = makespan_s(rule, ranks, 1, Messages::default(), &costs);
-                // Rank 0 waits for nobody; of the others each waits for half a look.
+                // Rank 0 does not wait; each other rank waits for half a look.
                 let waits = if rule.starts_with("awf") { 1.0 } else { 1e-9 };
-                // A chunk that was asked for early may go to another rank than it would have gone to.
+                // A rank that asks early may get a chunk that would have gone to another rank.
                 let tolerance = if ranks > 1 { waits + 102.0 } else { waits };
                 assert!((found - threads).abs() <= tolerance, "{rule}, {ranks} ranks: {found} and {threads}");
                 assert!(found >= costs.iter().sum::<f64>() / ranks as f64 - 1e-9, "{rule}");
             }
         }
-        // Chunks that nobody asks for early are the threads' own.
+        // Without early requests the makespans are equal.
         for rule in ["guided", "dynamic:50"] {
             let chunky = |ranks| makespan_s(rule, ranks, 1, Messages::default(), &costs[..20]);
             let (name, parameter) = rule.split_once(':').map_or((rule, None), |(name, size)| (name, Some(size)));
@@ -237,19 +239,22 @@ mod tests {
     fn messages_by_hand() {
         let costs = [1.0; 8];
         let messages = Messages { request_s: 0.5, fetch_s: 0.25, needs_rank_0: 0.0, gathered_byte_s: 1e-3 };
-        // Chunks of four jobs: rank 0 has the first at once, rank 1 the second after a quarter, and hears after another that none is left.
+        // Chunks of four jobs: rank 0 has the first at once, rank 1 the second after 0.25 s. After 0.25 s more it
+        // learns that none is left.
         assert_eq!(makespan_s("dynamic:4", 2, 1, messages, &costs), 4.5);
-        // Rank 1 hears that long before rank 0 has done all.
+        // Rank 1 learns that none is left long before rank 0 has done all.
         assert_eq!(makespan_s("dynamic:8", 2, 1, messages, &costs), 8.0);
-        // Where the library needs rank 0, which looks every millisecond, it is half of one more.
+        // If the library needs rank 0, which looks every millisecond, each request takes half a millisecond longer.
         let needy = Messages { needs_rank_0: 1.0, ..messages };
         let found = makespan_s("dynamic:4", 2, 1, needy, &costs);
         assert!((found - 4.5 - LOOK.as_secs_f64()).abs() < 1e-9, "{found}");
-        // A master and two who work: each waits for an answer, the second for a quarter longer, and in the end for one more.
+        // A master and two workers: each waits for an answer, the second for 0.25 s longer, and for one more answer at
+        // the end.
         assert_eq!(makespan_s("master-worker:4", 3, 1, messages, &costs), 0.25 + 0.5 + 4.0 + 0.5);
-        // The master answers first, for a quarter, and then does its four; the other waits until then to hear that nothing is left.
+        // The master answers first, for 0.25 s, and then runs its own four; rank 1 waits until then to learn that none
+        // is left.
         assert_eq!(makespan_s("working-master:4", 2, 1, messages, &costs), 0.5 + 4.0 + 0.5);
-        // Two threads of each rank halve the time of what they share.
+        // The two threads of each rank share its jobs and halve its time.
         assert_eq!(makespan_s("static-blocks", 2, 2, messages, &costs), 2.0);
         let strategy = within("serial");
         let crew = Crew { ranks: 4, threads: 1 };
@@ -257,7 +262,8 @@ mod tests {
         assert_eq!(cluster.gather_s(4000.0), 3.0);
     }
 
-    /// A rank of half the speed has half of the jobs of another where chunks are small, and half of all where they are dealt.
+    /// A rank of half the speed gets half as many jobs as the other if chunks are small, and half of all jobs if they
+    /// are dealt.
     #[test]
     fn a_slow_rank_gets_less_where_it_asks() {
         let costs = [1.0; 300];

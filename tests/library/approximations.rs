@@ -1,4 +1,5 @@
-//! Approximations that a render may ask for: an epsilon, another pixel filter, a light that ends. Expected values are closed forms.
+//! Optional approximations of a render: an epsilon, another pixel filter, a light with a limited reach. Expected
+//! values are closed forms.
 
 use pathmark::film::Film;
 use pathmark::kernel::Spec;
@@ -24,7 +25,7 @@ fn mean(film: &Film) -> (f64, f64) {
     (mean, (variance / n).sqrt())
 }
 
-/// A hollow sphere of radius 1 with albedo 0.9 that gives off 0.1, seen from its middle.
+/// A hollow sphere of radius 1 with albedo 0.9 and emission 0.1, seen from its centre.
 const HOLLOW: &str = r#"
 about = "an approximation"
 estimator = "bsdf"
@@ -40,8 +41,9 @@ material = { diffuse = { albedo = [0.9, 0.9, 0.9] } }
 emission = [0.1, 0.1, 0.1]
 "#;
 
-/// A chord that leaves at an angle with the cosine c has the length 2c, and a share of e^2/4 of all directions that follow the cosine has chords
-/// shorter than e. These are lost, so that the radiance is 0.1/(1 - 0.9 (1 - e^2/4)) instead of 1. Two-sided at 5 standard errors.
+/// A chord that leaves at an angle with cosine c has the length 2c. So a share of e^2/4 of all cosine-distributed
+/// directions has chords shorter than e. These are lost, and the radiance is 0.1/(1 - 0.9 (1 - e^2/4)) instead of 1.
+/// Two-sided at 5 standard errors.
 #[test]
 fn an_epsilon_loses_the_light_of_shorter_ways() {
     for (epsilon, exact) in [("none", 1.0), ("1e-6", 1.0), ("0.5", 0.1 / (1.0 - 0.9 * (1.0 - 0.0625))), ("1.5", 0.0)] {
@@ -70,8 +72,8 @@ material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
 emission = [1.0, 1.0, 1.0]
 "#;
 
-/// Through the centre a pixel is lit or dark. Spread over the pixel its samples give the share of it that is lit, and the mean over the image is the
-/// lamp's solid angle on the image plane either way, but for the edge.
+/// With rays through the centre, a pixel is either lit or dark. Samples spread over the pixel give the lit share of
+/// it. The mean over the image is the lamp's solid angle on the image plane in both cases, except for the edge.
 #[test]
 fn rays_through_the_centre_see_no_part_of_a_pixel() {
     for kernel in ["scalar", "lanes"] {
@@ -86,7 +88,7 @@ fn rays_through_the_centre_see_no_part_of_a_pixel() {
     }
 }
 
-/// The camera's own filter by its name is no change: the same bits, and nothing biased.
+/// Naming the camera's default filter changes nothing: the same bits, and no bias.
 #[test]
 fn the_filter_of_the_camera_is_no_approximation() {
     let plain = run(LAMP, spec("bsdf", "lanes"), 16);
@@ -94,7 +96,7 @@ fn the_filter_of_the_camera_is_no_approximation() {
     assert_eq!(plain.checksum, named.checksum);
 }
 
-/// A floor under a lamp without size, which ends after `reach`.
+/// A floor under a point light with the reach `reach`.
 fn floor(reach: &str) -> String {
     format!(
         r#"
@@ -118,7 +120,7 @@ material = {{ diffuse = {{ albedo = [0.5, 0.5, 0.5] }} }}
     )
 }
 
-/// The floor is lit in a circle of radius sqrt(reach^2 - 1) and dark around it; within, nothing changes.
+/// The floor is lit within a circle of radius sqrt(reach^2 - 1) and dark outside. Within, nothing changes.
 #[test]
 fn a_light_ends_at_its_reach() {
     let spec = || Spec { filter: Some("center".into()), ..spec("whitted", "scalar") };

@@ -1,4 +1,4 @@
-//! Outputs appear whole or not at all, and what cannot be written is known beforehand.
+//! Atomic output files: they appear whole or not at all, and an output that cannot be written is refused beforehand.
 
 use std::fs;
 use std::io;
@@ -91,8 +91,8 @@ fn a_name_that_can_be_no_file_is_the_users_to_mend() {
     assert_eq!(fs::read(root.join("file")).unwrap(), b"old");
 }
 
-/// What a killed writer leaves goes with the next write into its folder. A living writer's file stays, and so does one of another host that may be
-/// living: where locks do not reach from host to host, only its age tells.
+/// The next write into a folder removes the file of a killed writer. It keeps a living writer's file, and the file of
+/// another host that may be living: where locks do not reach from host to host, only the file's age tells.
 #[test]
 fn the_next_writer_removes_what_killed_ones_left() {
     let directory = tempfile::tempdir().unwrap();
@@ -105,13 +105,13 @@ fn the_next_writer_removes_what_killed_ones_left() {
     let file = fs::File::options().write(true).open(another("older")).unwrap();
     file.set_modified(yesterday).unwrap();
     drop(file);
-    // A writer in its midst, which is asked for the name of its file.
+    // A writer in progress, which yields the name of its temporary file.
     let mut inner = Vec::new();
     write(&at("slow.csv"), |out| {
         out.write_all(b"first")?;
         inner = names(root);
         write(&at("quick.csv"), |out| out.write_all(b"x")).unwrap();
-        // As a kill would: the file stays, and nobody has it open.
+        // Like a kill: the file stays, and no process has it open.
         let own = inner.iter().find(|name| name.contains(".tmp") && !name.contains("other") && !name.starts_with('p'));
         let left = own.unwrap().replace(".tmp", "-dead.tmp");
         fs::write(at(&left), "x").unwrap();
@@ -128,7 +128,7 @@ fn the_next_writer_removes_what_killed_ones_left() {
 
 #[test]
 fn a_file_name_alone_is_written_here() {
-    // Only asked: a test that changes the working directory would disturb the others.
+    // Only asks: a test that changes the working directory would disturb the others.
     check_writable("image", Path::new("a-name-alone.csv")).unwrap();
 }
 
@@ -158,7 +158,7 @@ mod unix {
         assert_eq!(fs::read(root.join("far/file")).unwrap(), b"new");
         assert!(fs::symlink_metadata(root.join("link")).unwrap().is_symlink());
         assert_eq!(names(&root.join("far")), ["file"]);
-        // A link to a file that is not there yet makes that file.
+        // A link to a missing file creates that file.
         symlink("far/later", root.join("dangling")).unwrap();
         check_writable("image", &root.join("dangling")).unwrap();
         write(&root.join("dangling"), |out| out.write_all(b"new")).unwrap();
@@ -183,7 +183,7 @@ mod unix {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_refusal_of_the_system_is_told_as_one() {
-        // Nobody, root included, may create a file in /proc.
+        // No user, not even root, may create a file in /proc.
         for error in
             [check_writable("image", Path::new("/proc/out.csv")), write(Path::new("/proc/out.csv"), |_| Ok(()))]
         {
@@ -195,7 +195,7 @@ mod unix {
 
     #[test]
     fn what_is_no_plain_file_is_not_replaced_by_one() {
-        // A socket stands for /dev/null, which a superuser's mistake would take from the whole machine.
+        // The socket stands for /dev/null: replacing that as superuser would take it from the whole machine.
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("socket");
         let _socket = std::os::unix::net::UnixListener::bind(&path).unwrap();

@@ -1,4 +1,4 @@
-//! The references' noise does not bend the error.
+//! Noisy references do not inflate the measured error.
 
 use pathmark::experiment::reference_seed;
 use pathmark::image_io::Image;
@@ -19,8 +19,8 @@ fn render(spp: u32, seed: u64) -> Image {
     Setup::prepare(settings).unwrap().run(None).unwrap().film.image()
 }
 
-/// Against a reference of as many samples a plain squared error is twice the image's own. The cross form of two such halves
-/// agrees within 10 % with that of halves of a hundred times the samples.
+/// With a reference of as many samples, a plain squared error is twice the image's own. The cross form of two such
+/// halves agrees within 10 % with the cross form of halves with a hundred times the samples.
 #[test]
 fn noisy_references_do_not_inflate_the_error() {
     let halves = [0, 1].map(|half| render(20, reference_seed(half)));

@@ -1,4 +1,5 @@
-//! One set of numbers, one image: docs/determinism.md, and G10, F12 of the catalogue of hard cases. Recorded checksums are in its table (`src/check/path/platform.rs`).
+//! Determinism: equal settings give equal images (docs/determinism.md, and G10, F12 of the catalogue of hard cases).
+//! The recorded checksums are in its table (`src/check/path/platform.rs`).
 
 use crate::scene_text::{Ball, load_scene};
 use pathmark::film::{Bounds, Piece, PixelSum, TileBuffer};
@@ -24,7 +25,7 @@ fn checksum(scene: &Scene, spec: Spec) -> String {
     run(&Arc::new(scene.clone()), spec).checksum.unwrap()
 }
 
-/// The checksum would notice: another seed, one more sample and another size all change it.
+/// The checksum tells images apart: another seed, estimator or size changes it.
 #[test]
 fn a_checksum_tells_images_apart() {
     let scene = load("cornell").unwrap();
@@ -40,7 +41,7 @@ fn a_checksum_tells_images_apart() {
     assert_eq!(checksums.len(), 4);
 }
 
-/// Numbers belong to addresses, so an object that no ray can reach shifts nobody's.
+/// Random numbers belong to addresses, so an object that no ray can reach changes none of them.
 #[test]
 fn an_unreachable_object_changes_nothing() {
     let cornell = load("cornell").unwrap();
@@ -52,7 +53,7 @@ fn an_unreachable_object_changes_nothing() {
     for estimator in ["smallpt", "bsdf"] {
         assert_eq!(checksum(&larger, spec(estimator)), checksum(&cornell, spec(estimator)), "{estimator}");
     }
-    // Through a hierarchy, too, and if it is a triangle.
+    // The same holds with a hierarchy, and for a triangle.
     let mut another = larger.clone();
     let corners = [[-500.0, 0.0, 0.0], [-500.0, 90.0, 0.0], [-500.0, 0.0, 90.0]].map(Vec3::from);
     another.primitives.triangles.push(Triangle { corners });
@@ -61,7 +62,7 @@ fn an_unreachable_object_changes_nothing() {
         let spec = Spec { accelerator: Some(accelerator.into()), ..spec("bsdf") };
         assert_eq!(checksum(&another, spec.clone()), checksum(&cornell, spec), "{accelerator}");
     }
-    // And the checksum does see an object that can be reached.
+    // The checksum does change if the object can be reached.
     larger.primitives.spheres.last_mut().unwrap().center = [50.0, 30.0, 60.0].into();
     assert_ne!(checksum(&larger, spec("bsdf")), checksum(&cornell, spec("bsdf")));
 }
@@ -95,8 +96,8 @@ fn a_larger_effect_profile_changes_nothing() {
     assert_eq!(diffuse.checksum, Some(checksum(&scene, spec("smallpt"))), "the smallest profile is not `diffuse`");
 }
 
-/// A sample is a function of its index, whatever the sampler: the first 16 of 32 samples are the 16-sample image, both halves add up to
-/// the whole to the bit, and a window of the film is that window of the whole.
+/// A sample is a function of its index, with every sampler. The first 16 of 32 samples are the 16-sample image. Both
+/// halves add up to the whole, to the bit. A window of the film equals that window of the whole.
 #[test]
 fn parts_are_parts_of_the_whole() {
     let scene = Arc::new(load("cornell").unwrap());

@@ -1,9 +1,9 @@
-//! The documents can be read: short pages of short lines, links that lead somewhere, and no page that the map leaves out.
+//! Readable documents: short pages of short lines, links with existing targets, and a map that lists every page.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// A page is read in five minutes.
+/// A reader needs five minutes for a page of this length.
 const MOST_LINES: usize = 200;
 const LONGEST_LINE: usize = 120;
 
@@ -31,13 +31,13 @@ fn pages_and_lines_are_short() {
     }
 }
 
-/// The heading as a browser's address has it.
+/// The heading as an anchor in a link.
 fn anchor(heading: &str) -> String {
     let kept = heading.chars().filter(|c| c.is_alphanumeric() || *c == ' ' || *c == '-');
     kept.collect::<String>().to_lowercase().replace(' ', "-")
 }
 
-/// The targets of a document's links that stay in the repository.
+/// The targets of a document's links within the repository.
 fn links(text: &str) -> Vec<&str> {
     let inline = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
     let named =
@@ -73,7 +73,7 @@ fn the_map_has_every_page() {
     }
 }
 
-/// The figures below a folder, but for those of earlier versions.
+/// The figures below a folder, without those of earlier versions.
 fn figures(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let (folders, files): (Vec<PathBuf>, Vec<PathBuf>) = entries.partition(|path| path.is_dir());

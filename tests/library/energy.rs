@@ -1,4 +1,5 @@
-//! The agreement of the estimators that split and do not split. What has a closed form is in the table of hard cases (`src/check`).
+//! Agreement of the estimators that split paths and those that do not. Closed forms are in the table of hard cases
+//! (`src/check`).
 //!
 //! Levels are family-wise 1e-3 (Sidak) within each test, two-sided.
 
@@ -25,7 +26,8 @@ fn spec(estimator: &str, (width, height): (u32, u32), seed: u64) -> Spec {
     Spec { width, height, seed, estimator: estimator.into(), ..Spec::default() }
 }
 
-/// Means over blocks of 8 x 8 pixels and the channels, seed by seed: block -> (mean over seeds, its squared standard error).
+/// Means over blocks of 8 x 8 pixels and the channels. Each block has its mean over seeds and the squared standard
+/// error of it.
 fn blocks(estimator: &str, seeds: std::ops::Range<u64>) -> Vec<(f64, f64)> {
     const SIZE: (u32, u32) = (96, 72);
     let scene = load("cornell").unwrap();
@@ -44,15 +46,16 @@ fn blocks(estimator: &str, seeds: std::ops::Range<u64>) -> Vec<(f64, f64)> {
     sums.iter().map(|(sum, square)| (sum / n, (square / n - sum * sum / n / n).max(0.0) / (n - 1.0))).collect()
 }
 
-/// Splitting glass or choosing at random is the same light: 108 block means over 16 seeds each, disjoint seeds. The sum of squares of the
-/// scores is chi-square distributed, widened a little by the 30 degrees of freedom of each error; too small is wrong too.
+/// Splitting at glass and choosing at random give the same light: 108 block means over 16 seeds each, disjoint seeds.
+/// The sum of squared scores is chi-square distributed, slightly widened by the 30 degrees of freedom of each error.
+/// Too small a sum is wrong, too.
 #[test]
 fn the_estimators_agree() {
     let (a, b) = (blocks("smallpt", 100..116), blocks("bsdf", 200..216));
     let mut squares = 0.0;
     for (index, ((a, va), (b, vb))) in a.iter().zip(&b).enumerate() {
         let z = (a - b) / (va + vb).sqrt();
-        // Student's t with 30 degrees of freedom passes 4.9 as often as a normal value passes 4.
+        // Student's t with 30 degrees of freedom exceeds 4.9 as often as a normal variate exceeds 4.
         assert!(z.abs() < limit(108) * 4.9 / 4.0, "block {index}: smallpt {a}, bsdf {b}, {z} errors");
         squares += z * z * 28.0 / 30.0;
     }

@@ -1,4 +1,4 @@
-//! Every shipped scene has one image: whoever renders it, whatever finds the nearest surface, and however many effects the kernel knows.
+//! Every shipped scene has one image, with every strategy, every accelerator and every effect profile.
 
 use pathmark::kernel::{Counts, Spec, choose};
 use pathmark::measure::{Outcome, Settings, Setup};
@@ -12,7 +12,7 @@ fn scenes() -> impl Iterator<Item = Arc<Scene>> {
     SCENES.iter().map(|(name, _)| Arc::new(load(name).unwrap()))
 }
 
-/// The scene's own estimator on 10 x 6 pixels, which no tile divides.
+/// The scene's default estimator on 10 x 6 pixels, which no tile divides.
 fn spec(scene: &Scene) -> Spec {
     let estimator = scene.default_estimator.clone().unwrap_or_else(|| "bsdf".to_string());
     Spec { width: 10, height: 6, seed: 5, estimator, ..Spec::default() }
@@ -24,7 +24,7 @@ fn render(scene: &Arc<Scene>, spec: Spec, strategy: &str) -> Outcome {
     Setup::for_scene(Arc::clone(scene), settings).unwrap().run(None).unwrap()
 }
 
-/// Checksum, and what was counted apart from the hierarchy's own tests.
+/// The checksum and the counts, without the tests of the hierarchy.
 fn image(outcome: &Outcome) -> (&str, Counts) {
     let checksum = outcome.checksum.as_deref().expect("a checksum");
     (checksum, Counts { box_tests: 0, primitive_tests: 0, ..outcome.counts })

@@ -1,4 +1,5 @@
-//! The table of hard cases that `pathmark check` prints. `PATHMARK_THOROUGH=1` takes as many random inputs as the catalogue asks for.
+//! The table of hard cases that `pathmark check` prints. `PATHMARK_THOROUGH=1` uses as many random inputs as the
+//! catalogue requires.
 
 use pathmark::check::{Case, Effort, Outcome, cases, run};
 use pathmark::measure::available_threads;
@@ -8,7 +9,7 @@ fn effort() -> Effort {
     if std::env::var_os("PATHMARK_THOROUGH").is_some() { Effort::Thorough } else { Effort::Quick }
 }
 
-/// What went wrong in a case, if anything.
+/// The failures of a case, if any.
 fn wrong(case: &Case, outcome: &Outcome) -> Vec<String> {
     let name = format!("{} {}", case.id, case.tries);
     let failures: Vec<String> = outcome.failures().map(|trial| format!("{name}: {trial:?}")).collect();
@@ -27,7 +28,7 @@ fn all_cases_pass() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// A panic is a failed trial, and a case that tries nothing and does not say why has not passed.
+/// A panic is a failed trial. A case without trials fails unless it states why.
 #[test]
 fn cases_can_fail() {
     let case = |run| Case { id: "X00", tries: "to fail", run };

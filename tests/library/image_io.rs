@@ -1,4 +1,4 @@
-//! Pictures in files: what is written comes back, and no file, however damaged, does worse than an error.
+//! Image files: written images are read back, and a damaged file never causes more than an error.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::Rng;
 use tempfile::TempDir;
 
-/// A picture with every kind of value that each format can hold.
+/// An image with every kind of value that each format can hold.
 fn sample(width: u32, height: u32) -> Image {
     let mut random = Pcg64Mcg::new(7);
     let mut image = Image::new(width, height);
@@ -39,7 +39,7 @@ fn decoded(format: &str, bytes: &[u8]) -> Result<Image, Error> {
     image_io::read(&path)
 }
 
-/// The message of a refusal, which must be the user's to mend and name the file.
+/// The message of a refusal. It must be an input error, which the user can mend, and name the file.
 fn refusal(format: &str, bytes: &[u8]) -> String {
     let error = decoded(format, bytes).expect_err("a damaged file");
     assert_eq!(error.exit_code(), 2, "{error}");
@@ -48,7 +48,7 @@ fn refusal(format: &str, bytes: &[u8]) -> String {
     message
 }
 
-/// Equal to the bit.
+/// Asserts equality to the bit.
 #[track_caller]
 fn same(pixel: [f64; 3], expected: [f64; 3]) {
     assert!(pixel.map(f64::to_bits) == expected.map(f64::to_bits), "{pixel:?} is not {expected:?}");
@@ -179,7 +179,7 @@ fn a_header_that_claims_too_much_is_refused_before_memory_is_asked_for() {
         refusal("hdr", &[header.as_bytes(), b"\x02\x02\0\x05abcdefgh"].concat());
     }
     assert!(refusal("pfm", b"PF\n60000 60000\n-1.0\n").contains("in all"), "sides in order, too many pixels");
-    // Width and height as big-endian words behind the first chunk's name, whose checksum follows the chunk.
+    // Width and height are big-endian words behind the first chunk's name. The chunk's checksum follows the chunk.
     let png = encoded("png", &sample(5, 3));
     for side in [u32::MAX, 1 << 31, 65537, 65536, 16384] {
         let mut bytes = png.clone();
@@ -291,7 +291,7 @@ fn quantisation_has_no_surprises_at_its_edges() {
         (1.0, 255),
         (1.0 + f64::EPSILON, 255),
         (f64::INFINITY, 255),
-        // Half a step rounds up from just above and down from just below.
+        // Values just above half a step round up, values just below round down.
         (tone_map::linear(0.5 / 255.0) * (1.0 - 1e-12), 0),
         (tone_map::linear(0.5 / 255.0) * (1.0 + 1e-12), 1),
         (tone_map::linear(254.5 / 255.0) * (1.0 - 1e-12), 254),

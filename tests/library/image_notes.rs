@@ -1,4 +1,4 @@
-//! Texts beside the pixels of a picture.
+//! Texts stored beside the pixels of an image.
 
 use pathmark::image_io::{self, FORMATS, Image};
 

@@ -1,11 +1,11 @@
-//! Each module imports only modules above it (CONTRIBUTING, Layers), so that a part can be understood, tested and replaced without those that
-//! use it. The compiler does not mind cycles among modules; this test does.
+//! Layers of modules: each module imports only modules above it (CONTRIBUTING, Layers), so that a part can be
+//! understood, tested and replaced without its users. The compiler accepts cycles among modules; this test does not.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What some modules may import: besides the layers above, some of their own; or nothing but what is named.
+/// An exception to the layers: more modules besides those above, or only the named modules.
 enum Exception {
     Besides(&'static [&'static str]),
     Only(&'static [&'static str]),
@@ -13,27 +13,27 @@ enum Exception {
 
 use Exception::{Besides, Only};
 
-/// The layers are the table in CONTRIBUTING.md. An exception to them gets its line here, and the line is where to argue about it.
+/// The layers are the table in CONTRIBUTING.md. Each exception to them has a line here, with its reason.
 const EXCEPTIONS: &[(&str, Exception)] = &[
     ("input", Besides(&["error", "math"])), // errors with a place; numbers that become vectors and colours
-    ("simd", Besides(&["math"])),           // the same formulas, several numbers at once
+    ("simd", Besides(&["math"])),           // the same formulas, in lanes
     ("lock", Besides(&["error", "digest", "file_id"])),
     ("temporary", Besides(&["disk", "lock"])),
     ("atomic_file", Besides(&["error", "disk", "file_id", "temporary"])),
     ("files", Besides(&["error", "file_id", "atomic_file"])),
     ("metric", Besides(&["image_io"])),        // metrics compare images
     ("analysis", Only(&[])),                   // statistics on plain numbers, whatever was measured
-    ("lab", Besides(&["kernel", "strategy"])), // what there is to choose from
-    // A strategy schedules integers: in a crate of its own it cannot see a pixel. It shares the kernel's layer, so that only `measure`
-    // and what uses it can bring the two together.
+    ("lab", Besides(&["kernel", "strategy"])), // the kernels and strategies that a lab offers
+    // A strategy schedules integers: in a separate crate it cannot access pixels. It shares the kernel's layer, so
+    // that only `measure` and its users can combine the two.
     ("strategy", Only(&[])),
     ("simulate", Only(&["analysis", "lab", "measure", "strategy"])), // numbers in, numbers out: no pixel, no thread, no clock
-    ("check", Besides(&["experiment"])),                             // tries all that the renderer is made of
+    ("check", Besides(&["experiment"])),                             // tests all parts of the renderer
     ("plot", Only(&["error", "atomic_file", "metric", "image_io"])), // draws numbers, whatever they were measured on
     ("report", Besides(&["plot"])),
 ];
 
-/// The modules and the rows of the table in CONTRIBUTING.md in which they stand.
+/// The modules, each with its row in the table of CONTRIBUTING.md.
 fn layers() -> BTreeMap<String, usize> {
     let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
     let (_, section) = text.split_once("\n## Layers\n").unwrap();
@@ -59,20 +59,20 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Where code of ours lies: its lints and its lines are everyone's.
+/// The folders of the project's own code, to which the limits on lints and lines apply.
 const FOLDERS: [&str; 5] = ["src", "tests", "benches", "crates", "examples"];
 
-/// Where modules are that call each other by `crate`: the package, and the crate of what renders.
+/// The source folders whose modules refer to each other by `crate`: the package and the tracer's crate.
 const SOURCES: [&str; 2] = ["src", "crates/pathmark-tracer/src"];
 
-/// Where a module's files are: a crate of its own that the package re-exports, a folder or a file.
+/// The location of a module's files: a separate crate that the package re-exports, a folder or a file.
 fn home(module: &str) -> Option<PathBuf> {
     let inside = SOURCES.iter().flat_map(|source| [format!("{source}/{module}"), format!("{source}/{module}.rs")]);
     let places = [format!("crates/pathmark-{module}")].into_iter().chain(inside);
     places.into_iter().map(|place| root().join(place)).find(|place| place.exists())
 }
 
-/// The Rust files below a folder of the package; none if there is no such folder.
+/// The Rust files below a folder of the package; empty if there is no such folder.
 fn rust_files(folder: &str) -> Vec<PathBuf> {
     let (mut files, mut folders) = (Vec::new(), vec![root().join(folder)]);
     while let Some(entries) = folders.pop().map(fs::read_dir) {
@@ -88,7 +88,7 @@ fn rust_files(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-/// The code without what follows `//`, so that documentation may mention any module.
+/// The code without the text behind `//`, so that documentation may mention any module.
 fn code(text: &str) -> String {
     text.lines().map(|line| line.split("//").next().unwrap_or("")).collect::<Vec<_>>().join("\n")
 }
@@ -116,7 +116,7 @@ fn heads(rest: &str) -> Vec<String> {
     heads
 }
 
-/// The top-level modules that a file at this depth names: `crate::x`, and as many `super::` as lead to the root.
+/// The top-level modules that a file at this depth names, by `crate::x` or by as many `super::` as lead to the root.
 fn imports(text: &str, depth: usize) -> BTreeSet<String> {
     let code = code(text);
     let mut found = BTreeSet::new();
@@ -131,7 +131,7 @@ fn imports(text: &str, depth: usize) -> BTreeSet<String> {
 
 #[test]
 fn imports_are_found_wherever_they_stand() {
-    // `strategy` is a crate, which looks like a module to those that import it.
+    // `strategy` is a crate, but its users import it like a module.
     assert_eq!(Vec::from_iter(imports("use crate::strategy::{Config, find};", 1)), ["strategy"]);
     let text = "use crate::{error::{Error, Result}, film::Film};\nuse crate::math::Vec3; // crate::cli\nfn f() { crate::scene::load() }";
     assert_eq!(Vec::from_iter(imports(text, 1)), ["error", "film", "math", "scene"]);
@@ -172,7 +172,7 @@ fn modules_import_only_those_above() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// The front page of `cargo doc` has a row for each module that is shown, and for no other.
+/// The front page of `cargo doc` has a row for each public module, and for no other.
 #[test]
 fn the_front_page_lists_the_public_modules() {
     let text = fs::read_to_string(root().join("src/lib.rs")).unwrap();
@@ -194,10 +194,10 @@ fn the_front_page_lists_the_public_modules() {
     assert_eq!(listed.len(), shown.len(), "a module is listed twice");
 }
 
-/// A lint is satisfied or argued about in Cargo.toml, where it is seen.
+/// A lint is satisfied, or relaxed in Cargo.toml, where readers see it.
 #[test]
 fn no_file_silences_a_lint() {
-    // In two parts, or this file would accuse itself.
+    // Split in two, so that this file does not match itself.
     let silenced = [concat!("#[al", "low("), concat!("#![al", "low("), concat!(", al", "low(")];
     let mut wrong = Vec::new();
     for file in FOLDERS.into_iter().flat_map(rust_files) {

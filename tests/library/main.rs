@@ -1,4 +1,5 @@
-//! What the library promises, without the program: one test program, because each one that links the library costs seconds to build.
+//! Tests of the library without the program, in one test program, because each one that links the library takes
+//! seconds to build.
 
 mod approximations;
 mod atomic_file;

@@ -1,4 +1,4 @@
-//! Metrics against numbers that can be worked out by hand.
+//! Metrics compared with values that can be computed by hand.
 
 use pathmark::image_io::{self, Image, tone_map};
 use pathmark::metric::{
@@ -72,7 +72,7 @@ fn display_metrics_see_what_a_display_shows() {
     let test = map(&reference, |_| tone_map::linear(0.1));
     assert_close(value("rmse-display", &test, &reference), 0.1);
     assert_close(value("psnr", &test, &reference), 20.0);
-    // What is brighter than white is white.
+    // A display shows values above white as white.
     let (white, sun) = (map(&reference, |_| 1.0), map(&reference, |_| 50.0));
     assert_close(value("rmse-display", &sun, &white), 0.0);
     assert_close(value("rmse", &sun, &white), 49.0);
@@ -176,8 +176,8 @@ fn the_cross_form_does_not_see_the_noise_of_the_references() {
     assert!((display - 1.0).abs() < 0.1, "nearly unbiased: {display}");
 }
 
-/// With references of only four times the test's samples, so a quarter of its variance each: measured plainly the RMSE is
-/// sqrt(1 + 1/4) times the truth, in the cross form it is right.
+/// Each reference has only four times the test's samples, so a quarter of its variance. The plain RMSE is then sqrt(1
+/// + 1/4) times the truth, and the cross form is right.
 #[test]
 fn a_reference_of_four_times_the_samples_is_enough_for_the_cross_form() {
     let truth = scene(256, 192);
@@ -200,7 +200,7 @@ fn percentiles_count_pixels() {
     let reference = Image::new(20, 10);
     let mut test = reference.clone();
     for (index, pixel) in test.pixels.iter_mut().enumerate() {
-        // Errors 1 to 200 in another order, all in one channel and so divided by the root of 3.
+        // Errors 1 to 200 in another order. They are in one channel only, so the metric divides them by the root of 3.
         *pixel = [0.0, ((index * 77) % 200 + 1) as f64 * 3.0_f64.sqrt(), 0.0];
     }
     for (name, expected) in [("error-50", 100.0), ("error-90", 180.0), ("error-99", 198.0), ("error-100", 200.0)] {
@@ -263,11 +263,11 @@ fn a_heatmap_grows_lighter_in_equal_steps() {
     let map = heatmap(&test, &reference, Some(1.0)).unwrap();
     let lightness: Vec<f64> = map.pixels.iter().copied().map(cie_lightness).collect();
     let steps: Vec<f64> = lightness.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step != 0.0).collect();
-    // CIE L* is a measure that the map was not made from. Its range of 90 is divided into 31 steps, between 32 colours.
+    // CIE L* was not used to construct the map. Its range of 90 is divided into 31 steps, between 32 colours.
     assert_eq!(steps.len(), 31);
     assert!(steps.iter().all(|step| (2.0..4.0).contains(step)), "{steps:?}");
     assert!(lightness[0] < 8.0 && lightness[255] > 93.0, "{} {}", lightness[0], lightness[255]);
-    // The scale is where the colours end, and a negative difference counts as a positive one.
+    // The colours end at the scale, and a negative difference counts like a positive one.
     let double = heatmap(&test, &reference, Some(2.0)).unwrap();
     assert_eq!(double.pixels[254], map.pixels[127]);
     assert_eq!(heatmap(&test, &reference, Some(0.5)).unwrap().pixels[200], map.pixels[255]);

@@ -1,6 +1,8 @@
-//! The estimator `smallpt` against another program of the same estimator: the C++ yardstick in `experiments/peers/`.
+//! Comparison of the estimator `smallpt` with another program of the same estimator: the C++ yardstick in
+//! `experiments/peers/`.
 //!
-//! The two share nothing: language, random numbers, intersection formula, recursion. Where there is no g++ the test says so and passes.
+//! The two differ in language, random numbers, intersection formula and recursion. Without g++ the test reports this
+//! and passes.
 
 use pathmark::analysis::mean::Moments;
 use pathmark::image_io::{self, Image};
@@ -41,7 +43,7 @@ fn ours(seed: u64) -> Image {
     Setup::prepare(settings).unwrap().run(None).unwrap().film.image()
 }
 
-/// Builds the yardstick; `None` without a C++ compiler.
+/// Builds the yardstick. Returns `None` without a C++ compiler.
 fn build_peer(folder: &Path) -> Option<std::path::PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/peers/smallpt_peer.cpp");
     let program = folder.join("smallpt_peer");
@@ -64,8 +66,8 @@ fn theirs(program: &Path, folder: &Path, seed: u64) -> Image {
     image_io::read(&out).unwrap()
 }
 
-/// Welch's t of every block over 16 seeds each: none beyond its two-sided Sidak level (1e-3 over all), and their squares add up to what
-/// chance gives, neither too much nor too little (two-sided 1e-3).
+/// Welch's t of every block over 16 seeds each: none exceeds its two-sided Sidak level (1e-3 over all). The sum of
+/// their squares agrees with chance, and is neither too large nor too small (two-sided 1e-3).
 #[test]
 fn block_means_agree_with_the_yardstick() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,7 +91,7 @@ fn block_means_agree_with_the_yardstick() {
         let (ea, eb) = (a.standard_error().unwrap(), b.standard_error().unwrap());
         let t = (a.mean().unwrap() - b.mean().unwrap()) / (ea * ea + eb * eb).sqrt();
         assert!(t.abs() < limit, "block {index}: t = {t:.2}, limit {limit:.2}");
-        // Brings the t to a standard normal deviate of the same probability.
+        // Maps t to a standard normal deviate of the same probability.
         let z = pathmark::analysis::z_test::normal_quantile(student.cdf(t)).unwrap();
         chi2 += z * z;
     }

@@ -1,4 +1,4 @@
-//! The project speaks plain technical English: turns of phrase that readers stumbled over do not come back.
+//! Plain technical English: phrases that readers stumbled over do not come back.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,7 +31,7 @@ const ENDINGS: &[&str] = &["rs", "toml", "md", "js", "css"];
 fn texts(path: &Path, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(path).unwrap().map(Result::unwrap) {
         let path = entry.path();
-        // Targets of crates that are built in their own folder are not ours.
+        // Build targets of crates with their own folder are not part of the project.
         if path.is_dir() && !path.ends_with("target") {
             texts(&path, found);
         } else if path.extension().is_some_and(|ending| ENDINGS.iter().any(|own| ending == *own)) {

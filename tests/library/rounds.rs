@@ -1,4 +1,4 @@
-//! Renders that decide for themselves: where they stop, and where their samples go.
+//! Renders that choose their end and the distribution of their samples.
 
 use crate::scene_text::{Ball, load_scene};
 use pathmark::analysis::z_test::{critical_value, normal_quantile, z_score};
@@ -25,7 +25,7 @@ fn goal() -> Goal {
     Goal { spp: None, target_error: None, time_limit_s: None, pause_s: None }
 }
 
-/// This process renders.
+/// Renders in this process.
 fn by_itself(rounds: &mut Rounds, spp: u32) -> Result<RoundTimes> {
     rounds.extend_to(spp, None)
 }
@@ -35,8 +35,9 @@ fn pursue(rounds: &mut Rounds, goal: Goal) -> Option<Warning> {
     goal.pursue(rounds, None, &mut by_itself, &mut |_, _| Ok(())).unwrap()
 }
 
-/// A closed diffuse sphere of albedo 1/2 and emission 1 around the camera (P07): the radiance is 2 everywhere. Five vertices are certain,
-/// the others follow roulette, so the variance of a sample is (1/2)^10 · (1/2) / (1/2)^2 = 1/512, with the channels all alike.
+/// A closed diffuse sphere of albedo 1/2 and emission 1 around the camera (P07): the radiance is 2 everywhere. Five
+/// vertices are certain, the others follow roulette, so the variance of a sample is (1/2)^10 · (1/2) / (1/2)^2 =
+/// 1/512, and all channels are equal.
 fn furnace() -> Arc<Scene> {
     let material = "{ diffuse = { albedo = [0.5, 0.5, 0.5] } }".to_string();
     let ball = Ball { center: [0.0; 3], radius: 2.0, material, emission: [1.0; 3] };
@@ -49,8 +50,8 @@ fn error_in_furnace(film: &Film) -> f64 {
     (squares.sum::<f64>() / (3 * image.pixels.len()) as f64).sqrt()
 }
 
-/// The target is what 64 samples reach on average. With the margin it takes a few more, whatever the seed, and over 50 seeds the error itself
-/// is below the target about as often as said, and not far below.
+/// The target is the error that 64 samples reach on average. With the margin every seed takes slightly more samples.
+/// Over 50 seeds the error is below the target about as often as stated, and not far below.
 #[test]
 fn a_target_is_hit_as_often_as_said_and_not_by_much_more() {
     const SEEDS: u64 = 50;
@@ -68,7 +69,7 @@ fn a_target_is_hit_as_often_as_said_and_not_by_much_more() {
     reached.sort_by(|a, b| a.0.total_cmp(&b.0));
     let misses = reached.iter().filter(|(error, _)| *error > 1.0).count();
     println!("{misses} misses: {reached:?}");
-    // Of Binomial(50, 0.05), 9 and more have a probability below 1e-3. None is no fault (0.08).
+    // Binomial(50, 0.05) is at least 9 with a probability below 1e-3. No miss at all is acceptable (0.08).
     assert!(misses < 9, "{reached:?}");
     let median = reached[SEEDS as usize / 2].0;
     assert!((0.93..0.98).contains(&median), "{median}");
@@ -76,7 +77,7 @@ fn a_target_is_hit_as_often_as_said_and_not_by_much_more() {
     assert!(reached.iter().all(|(_, spp)| (ON_AVERAGE..1.17 * ON_AVERAGE).contains(&f64::from(*spp))), "{reached:?}");
 }
 
-/// What stopped at its goal is what that many samples at once give, and says if it came too late.
+/// A render that stops at its goal equals a render of that many samples at once. It warns if it missed its target.
 #[test]
 fn a_goal_changes_no_bit() {
     let scene = Arc::new(load("cornell").unwrap());
@@ -97,16 +98,16 @@ fn a_goal_changes_no_bit() {
         assert_eq!(rounds.outcome().checksum, at_once.checksum);
         reached.push(rounds.spp());
     }
-    // Stops on the way do not move the end; a limit that nothing fits in leaves one round.
+    // Pauses do not move the end. A time limit too short for any round leaves one round.
     assert_eq!((reached[0], reached[1], reached[4]), (reached[5], 1, 53));
 }
 
-/// A film that is continued, by this process or by another one from a checkpoint, has all that happened in it, and each sample once: also those of
-/// an unfinished block, which every round renders again.
+/// The counts of a continued film cover the whole film, whether this process or another one continues it from a
+/// checkpoint. Each sample counts once, also in an unfinished block, which every round renders again.
 #[test]
 fn counts_are_of_the_whole_film() {
     let mut scene = load("cornell").unwrap();
-    // The reader of scenes would refuse a lamp that shines NaN: every path that meets it is an invalid sample.
+    // The scene reader would refuse a lamp that emits NaN: every path that hits it is an invalid sample.
     let lamp = scene.objects.iter_mut().find(|object| !object.emission.is_black()).unwrap();
     lamp.emission = Rgb { r: f64::NAN, g: f64::NAN, b: f64::NAN };
     let scene = Arc::new(scene);
@@ -140,7 +141,7 @@ fn counts_are_of_the_whole_film() {
     }
 }
 
-/// On the way to more samples than are asked for now, as a checkpoint may say: it stops where it is told to.
+/// A checkpoint may plan its next look beyond the samples that are now requested: the render stops at its goal.
 #[test]
 fn an_earlier_look_does_not_lead_beyond_the_goal() {
     let scene = Arc::new(load("cornell").unwrap());
@@ -169,7 +170,7 @@ fn goals_that_say_nothing_are_refused() {
         refused(Goal { time_limit_s: Some(value), ..goal() }, 8);
     }
     refused(Goal { target_error: Some(0.1), ..goal() }, 7);
-    // More samples than an image can have: found out at the first look, not after hours.
+    // More samples than an image can have: detected at the first look, not after hours.
     let mut rounds = Rounds::new(setup(&scene, 8, 8, 1, 16)).unwrap();
     let error =
         Goal { target_error: Some(1e-6), ..goal() }.pursue(&mut rounds, None, &mut by_itself, &mut |_, _| Ok(()));
@@ -177,18 +178,18 @@ fn goals_that_say_nothing_are_refused() {
     assert_eq!(rounds.spp(), 16);
 }
 
-/// The same samples on average, more of them where the noise is.
+/// Renders the same number of samples on average, with more of them where the noise is.
 fn run_adaptive(setup: &Setup) -> Result<Outcome> {
     let (scene, _) = setup.scene().unwrap();
     Setup::for_scene(Arc::clone(scene), Settings { adaptive: true, ..setup.settings().clone() })?.run(None)
 }
 
-/// A pixel that is a cell of its own has many samples where the pilot was bright and few where it was dark. Over many seeds its mean is
-/// that of equally many everywhere: z-test on one pixel, two-sided, at 1e-3.
+/// A pixel that is a separate cell has many samples where the pilot was bright and few where it was dark. Over many
+/// seeds its mean equals the mean with equally many samples everywhere: z-test on one pixel, two-sided, at 1e-3.
 #[test]
 fn adaptive_sampling_is_unbiased() {
     const SEEDS: u64 = 3000;
-    // Seen from inside a closed ball, a lamp that paths find seldom.
+    // A lamp that paths seldom hit, seen from inside a closed ball.
     let ball = |center, radius, albedo: &str, emission| Ball {
         center,
         radius,
@@ -216,7 +217,7 @@ fn adaptive_sampling_is_unbiased() {
     assert!(z.abs() < critical_value(LEVEL).unwrap(), "{adaptive:?} against {even:?}: z = {z}");
 }
 
-/// As many samples as asked for, to a step in one cell, more of them where the noise is, and less noise for it.
+/// The total is as requested, to a step in one cell. Noisy cells get more samples, and the noise is lower.
 #[test]
 fn adaptive_sampling_keeps_its_total_and_lowers_the_noise() {
     let scene = Arc::new(load("cornell").unwrap());

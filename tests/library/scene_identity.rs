@@ -1,4 +1,4 @@
-//! Two scenes are two scenes, whatever their files are called.
+//! Different scenes stay different, even if their files have the same name.
 
 use pathmark::experiment::{Definition, Profile};
 use pathmark::scene::SCENES;
@@ -24,7 +24,8 @@ size = [8, 6]
 repetitions = 1
 "#;
 
-/// Cells are found again by their word, and rows of one word must have one checksum: the word must tell the two apart.
+/// Cells are identified by their word, and rows with one word must have one checksum. So the word must distinguish the
+/// two scenes.
 #[test]
 fn scene_files_of_the_same_name_are_different_cells() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Who renders what when, in which pieces and delivered how, changes no bit (docs/determinism.md).
+//! Schedule invariance: workers, order, pieces and outputs change no bit (docs/determinism.md).
 
 use pathmark::kernel::Spec;
 use pathmark::measure::{OUTPUTS, Outcome, Rounds, Settings, Setup};
@@ -21,7 +21,7 @@ const DECOMPOSITIONS: [&str; 11] = [
     "samples:32:24x16",
 ];
 
-/// No multiple of a block of samples, so that the last part of a pixel is shorter than the others.
+/// Not a multiple of a block of samples, so that the last part of a pixel is shorter than the others.
 const SPP: u32 = 40;
 
 static SCENE: LazyLock<Arc<Scene>> = LazyLock::new(|| Arc::new(load("cornell").unwrap()));
@@ -45,7 +45,7 @@ fn assert_same(found: &Outcome, expected: &Outcome, what: &str) {
 fn strategies_threads_and_decompositions() {
     let expected = run(settings());
     for strategy in STRATEGIES {
-        // Where the number of threads has no meaning, one is enough.
+        // One thread is enough for strategies that ignore the number of threads.
         let threads: &[usize] = if strategy.workers == Workers::Threads { &[1, 2, 3, 5, 8, 64] } else { &[1] };
         for &threads in threads {
             for decomposition in DECOMPOSITIONS {
@@ -57,7 +57,7 @@ fn strategies_threads_and_decompositions() {
     }
 }
 
-/// A device beside the workers: whoever renders a piece, the image is the same, in either precision.
+/// A device beside the workers: the image is the same whichever of them renders a piece, in either precision.
 #[test]
 fn a_device_beside_any_strategy() {
     let with = |kernel: &str, precision: &str, changed: Settings| {
@@ -100,7 +100,7 @@ fn outputs() {
     }
 }
 
-/// The rounds: up to one of the numbers of samples after the other. The last is [`SPP`], so that the expected film is the same.
+/// Renders in rounds that end at these numbers of samples. The last is [`SPP`], so that the expected film is the same.
 fn run_in_rounds(settings: Settings, rounds: &[u32]) -> Outcome {
     let mut film = Rounds::new(Setup::for_scene(Arc::clone(&SCENE), settings).unwrap()).unwrap();
     for &spp in rounds {
@@ -110,7 +110,7 @@ fn run_in_rounds(settings: Settings, rounds: &[u32]) -> Outcome {
     film.outcome()
 }
 
-/// Several rounds give the bits of one, whoever renders them in which pieces, wherever they end.
+/// Several rounds give the bits of a single one, with every strategy, decomposition and output, wherever they end.
 #[test]
 fn rounds() {
     let expected = run(settings());
@@ -132,7 +132,8 @@ fn rounds() {
     }
 }
 
-/// Samples where the noise is: as many in each pixel, and the same bits, whoever renders them in which pieces.
+/// Adaptive sampling: each pixel has the same number of samples and the same bits, with every strategy, decomposition
+/// and output.
 #[test]
 fn adaptive() {
     let run = |settings| {
@@ -152,7 +153,7 @@ fn adaptive() {
     }
 }
 
-/// What rounds cannot render they refuse, and a film never shrinks.
+/// Rounds refuse settings that they cannot render, and a film never shrinks.
 #[test]
 fn rounds_refuse() {
     let prepared = |settings| Setup::for_scene(Arc::clone(&SCENE), settings).unwrap();
@@ -166,8 +167,8 @@ fn rounds_refuse() {
     assert_eq!((film.spp(), film.film()), (20, before));
 }
 
-/// A sampler that is said not to be deterministic gives no checksum, and pixels in another order have other numbers from it. One that is said to be
-/// gives the same in any order, and by several threads.
+/// A sampler that is marked as not deterministic gives no checksum, and another order of the pixels changes their
+/// random numbers. A deterministic sampler gives the same in any order, and with several threads.
 #[test]
 fn only_deterministic_samplers_have_a_checksum() {
     for sampler in SAMPLERS {
@@ -187,7 +188,7 @@ fn only_deterministic_samplers_have_a_checksum() {
     }
 }
 
-/// The order by cost hands out the dearest tile first, as a render of all samples finds it afterwards.
+/// The order by cost hands out the most expensive tiles first, judged by the ray counts of the full render.
 #[test]
 fn the_order_by_cost_follows_the_rays() {
     let spec = Spec { width: 96, height: 72, ..settings().spec };
@@ -195,7 +196,7 @@ fn the_order_by_cost_follows_the_rays() {
     let rays: Vec<f64> = outcome.job_counts.iter().map(|counts| counts.rays as f64).collect();
     let third = rays.len() / 3;
     let (first, last): (f64, f64) = (rays[..third].iter().sum(), rays[rays.len() - third..].iter().sum());
-    // 30 tiles, the lower two of which rows are cut: sizes and contents differ by more than a pilot can be wrong.
+    // 30 tiles, some of them cut at the lower edge: sizes and contents differ by more than a pilot can be wrong.
     assert!(first > 1.3 * last, "{rays:?}");
     let largest = rays.iter().copied().fold(0.0, f64::max);
     assert!(rays[..third].contains(&largest), "{rays:?}");

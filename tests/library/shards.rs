@@ -1,4 +1,4 @@
-//! Parts of an image, rendered apart and merged: the bits of the image that is rendered at once, or a refusal.
+//! Shards: parts of an image that are rendered apart and merged give the bits of the whole image, or are refused.
 
 use pathmark::film::{Shard, ShardCut};
 use pathmark::kernel::Spec;
@@ -21,7 +21,7 @@ fn shard(index: u32, count: u32, cut: ShardCut) -> Shard {
     Shard::new(index, count, cut).unwrap()
 }
 
-/// Renders a part in rounds that end where they like, and keeps it in a file.
+/// Renders a part in rounds that end at `steps`, and keeps it in a file.
 fn render(folder: &Path, settings: Settings, shard: Shard, steps: &[u32]) -> PathBuf {
     let path = folder.join(format!("{}-{}-{}", shard.index(), shard.count(), shard.cut()));
     let end = shard.samples(settings.spp).end;
@@ -34,7 +34,8 @@ fn render(folder: &Path, settings: Settings, shard: Shard, steps: &[u32]) -> Pat
     path
 }
 
-/// Every cut into 1, 2, 3, 5 and 7 parts, by different kernels, strategies and decompositions, in several rounds, named in any order.
+/// Every cut into 1, 2, 3, 5 and 7 parts, with different kernels, strategies and decompositions, in several rounds,
+/// merged in any order.
 #[test]
 fn merged_parts_have_the_bits_of_the_whole() {
     for precision in ["f64", "f32"] {
@@ -117,7 +118,7 @@ fn parts_that_do_not_make_an_image_are_refused() {
         }
         let quarter = render(other.path(), image(), shard(2, 4, cut), &[]);
         refused(&[one.clone(), quarter, three.clone()], &["shard", "belong"]);
-        // A byte that is lost or changed, in the header and in the sums.
+        // A missing or changed byte, in the header and in the sums.
         let bytes = fs::read(&two).unwrap();
         for damaged in [bytes[..bytes.len() - 1].to_vec(), bytes[..100].to_vec(), Vec::new()] {
             fs::write(&copy, damaged).unwrap();
@@ -137,7 +138,7 @@ fn parts_that_do_not_make_an_image_are_refused() {
     }
 }
 
-/// An image of what there is: missing tiles are black, and missing samples are not among the mean's.
+/// A partial image contains the available parts: missing tiles are black, and missing samples do not enter the mean.
 #[test]
 fn a_partial_image_is_of_the_parts_that_there_are() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,7 +1,9 @@
-//! With independent samples the error of an unbiased estimator falls with the root of the samples: the slope -1/2, in a narrow interval.
+//! Convergence of independent samples: the error of an unbiased estimator falls with the root of the samples: the
+//! slope -1/2, in a narrow interval.
 //!
-//! Each curve is one long render, looked at on its way. Where the exact image is known the error is the distance from it; elsewhere it is the
-//! spread over seeds, which says the same of an estimator without bias (that they have none, `tests/estimators` and the analytic scenes test).
+//! Each curve is one long render, read out at several numbers of samples. Where the exact image is known, the error is
+//! the distance from it. Elsewhere it is the spread over seeds, which is equivalent for an unbiased estimator
+//! (`tests/estimators` and the analytic scenes test the bias).
 
 use pathmark::analysis::Estimate;
 use pathmark::analysis::jackknife::{Curve, SeedCurves};
@@ -13,7 +15,7 @@ use pathmark::measure::{Rounds, Settings, Setup};
 use pathmark::scene::{SCENES, Scene, load};
 use std::sync::Arc;
 
-/// The widest that an interval of 95 % may be, to either side.
+/// Largest half-width of a 95 % interval.
 const HALF_WIDTH: f64 = 0.01;
 
 struct Curves {
@@ -49,7 +51,7 @@ impl Curves {
         self.spps.iter().map(|spp| f64::from(*spp)).collect()
     }
 
-    /// The slope by the spread over seeds.
+    /// The slope computed from the spread over seeds.
     fn by_spread(&self, seeds: u64, level: f64) -> Option<PowerLaw> {
         let images: Vec<Vec<Vec<f64>>> = (0..seeds).map(|seed| self.images(500 + seed)).collect();
         let at = |point: usize| images.iter().map(|of| of[point].as_slice()).collect();
@@ -57,7 +59,7 @@ impl Curves {
         power_law(&SeedCurves::of_images(&self.at(), &seen)?, level)
     }
 
-    /// The slope by the distance from the exact value, which all pixels have.
+    /// The slope computed from the distance to the exact value, which is the same for all pixels.
     fn by_truth(&self, exact: f64, seeds: u64, level: f64) -> Option<PowerLaw> {
         let mse = |image: &Vec<f64>| {
             image.iter().map(|value| (value - exact) * (value - exact)).sum::<f64>() / image.len() as f64
@@ -96,7 +98,8 @@ fn analytic_scenes() {
     }
 }
 
-/// smallpt's own way of looking for light. With `mis` the interval is twice as wide: what little error is left comes from rare paths.
+/// smallpt's method of finding light. With `mis` the interval is twice as wide, because the small remaining error
+/// comes from rare paths.
 #[test]
 fn smallpts_box() {
     let spps = (2..=8).map(|power| 1 << power).collect();
@@ -104,8 +107,8 @@ fn smallpts_box() {
     check("cornell", curves.by_spread(16, 0.95));
 }
 
-/// All scenes, shortly: -1/2 lies in their intervals at the family-wise level 1e-3. Where few paths carry much light, as on `nightsky`, an interval
-/// of this length is so wide that it says little.
+/// Short renders of all scenes: -1/2 lies in their intervals at the family-wise level 1e-3. Where few paths carry much
+/// light, as on `nightsky`, the interval of so short a render is too wide to say much.
 #[test]
 fn every_scene() {
     let level = 1.0 - sidak(1e-3, SCENES.len()).unwrap();
@@ -114,7 +117,7 @@ fn every_scene() {
         let name = if *name == "spheres" { "spheres:100" } else { name };
         let spps = vec![4, 8, 16, 32, 64];
         let curves = Curves { scene: Arc::new(load(name).unwrap()), estimator: "mis", size: (16, 12), spps };
-        // A scene of which nothing is left to chance has no slope.
+        // A scene in which nothing is random has no slope.
         let Some(law) = curves.by_spread(12, level) else {
             println!("{name}: no slope");
             continue;

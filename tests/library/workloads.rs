@@ -1,4 +1,4 @@
-//! Work that has nothing to do with light keeps the same promise: one result, whoever does it, in whatever pieces.
+//! Workloads other than light keep the same promise: one result with every strategy and decomposition.
 
 use pathmark::kernel::workload::WORKLOADS;
 use pathmark::measure::{Measured, Record, Settings, Setup};
@@ -43,7 +43,7 @@ fn a_row_says_what_was_done_and_nothing_of_light() {
     assert_eq!(setup.image_key().scene_hash, row.scene_hash);
 }
 
-/// Another seed is other work, where there is chance in it.
+/// Another seed changes the result of a workload that draws random numbers.
 #[test]
 fn seeds_change_what_is_drawn() {
     let checksum = |seed: u64| {

@@ -1,4 +1,4 @@
-//! What estimators make of scenes in a few words, with error bars.
+//! Estimates of small scenes, with error bars.
 
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::check::exact;
@@ -10,13 +10,13 @@ use std::sync::Arc;
 pub(crate) use pathmark::check::exact::{arriving_estimators, full_estimators};
 pub(crate) use pathmark::check::stage::*;
 
-/// The chance of a false alarm in each test, over all its comparisons, two-sided.
+/// Probability of a false alarm in each test, over all its comparisons, two-sided.
 const LEVEL: f64 = 1e-3;
-/// A test whose interval is wider than this share of the exact value sees nothing.
+/// A test whose interval is wider than this share of the exact value has no power.
 const WIDEST: f64 = 3e-3;
-/// The spot is 2e-8 wide at distance 1, and a value is the sum of many.
+/// Relative tolerance for the width of the spot, 2e-8 at distance 1, and for the rounding error of a sum.
 const ROUNDING: f64 = 1e-7;
-/// Pixels in a row and in a column; all see the same.
+/// Pixels per row and per column; all see the same value.
 const SIDE: u32 = 32;
 
 /// Renders about so many samples of the scene's spot in all.
@@ -35,7 +35,8 @@ pub(crate) fn mean(outcome: &Outcome, channel: usize) -> (f64, f64) {
     exact::mean(&outcome.film, channel)
 }
 
-/// Insists that a channel has the exact value: within its error bar, which must be narrow. `tests` are all comparisons of the test.
+/// Asserts that a channel has the exact value within its error bar, which must be narrow. `tests` is the number of
+/// comparisons in the test.
 pub(crate) fn assert_exact(what: &str, outcome: &Outcome, channel: usize, exact: f64, tests: usize) {
     let most = critical_value(sidak(LEVEL, tests).unwrap()).unwrap();
     let (found, error) = mean(outcome, channel);

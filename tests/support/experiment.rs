@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Five cells (`serial` ignores threads) of one image, three times.
+/// Five cells (`serial` ignores threads) of one image, with three repetitions.
 pub(crate) const TINY: &str = r#"title = "Tiny"
 question = "Does it run?"
 analysis = "It did."

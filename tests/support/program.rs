@@ -7,10 +7,10 @@ use std::process::{Child, Command, Stdio};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Far above what any of these runs needs on a loaded machine; only a hang reaches it.
+/// Far above the time of any run on a loaded machine; only a hang reaches it.
 const LIMIT: Duration = Duration::from_mins(10);
 
-/// What a run left on its streams, and how it ended.
+/// The output streams and the exit code of a run.
 pub(crate) struct Finished {
     /// `None` if a signal ended it.
     pub(crate) code: Option<i32>,
@@ -18,7 +18,7 @@ pub(crate) struct Finished {
     pub(crate) err: String,
 }
 
-/// `pathmark ARGUMENTS`, in a folder of its own and with nothing to read.
+/// `pathmark ARGUMENTS`, run in this folder and with an empty input.
 pub(crate) fn pathmark(folder: &Path, arguments: &[impl AsRef<OsStr>]) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("pathmark"));
     command.args(arguments).current_dir(folder);
@@ -31,7 +31,7 @@ pub(crate) fn finish(mut command: Command) -> Finished {
     wait(command.spawn().expect("the program starts"))
 }
 
-/// Waits for the end of a program and collects what it said on the streams that are piped.
+/// Waits for the end of a program and collects its output from the piped streams.
 pub(crate) fn wait(mut child: Child) -> Finished {
     let (out, err) = (reader(child.stdout.take()), reader(child.stderr.take()));
     let start = Instant::now();
@@ -50,7 +50,7 @@ pub(crate) fn wait(mut child: Child) -> Finished {
     Finished { code: status.code(), out: text(out), err: text(err) }
 }
 
-/// Pipes are emptied while the program runs, or a long answer would block it.
+/// Reads a pipe while the program runs; otherwise a long output would block it.
 fn reader(stream: Option<impl Read + Send + 'static>) -> JoinHandle<String> {
     thread::spawn(move || {
         let mut bytes = Vec::new();
@@ -62,7 +62,7 @@ fn reader(stream: Option<impl Read + Send + 'static>) -> JoinHandle<String> {
 }
 
 impl Finished {
-    /// Insists on the exit code, and that nothing panicked on the way to it.
+    /// Asserts the exit code, and that nothing panicked.
     pub(crate) fn with_code(self, code: i32) -> Self {
         let Self { out, err, .. } = &self;
         assert_eq!(self.code, Some(code), "exit code\n--- stdout\n{out}\n--- stderr\n{err}");

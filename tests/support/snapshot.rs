@@ -1,10 +1,10 @@
-//! Everything in a folder, to prove that a refused command touched none of it.
+//! The contents of a folder, to prove that a refused command changed none of it.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Paths below a folder; `None` for what is not a regular file.
+/// Paths below a folder; `None` for anything but a regular file.
 pub(crate) type Snapshot = BTreeMap<PathBuf, Option<Vec<u8>>>;
 
 /// Names and contents of all files below `folder`.
@@ -25,7 +25,7 @@ pub(crate) fn snapshot(folder: &Path) -> Snapshot {
     found
 }
 
-/// Insists that nothing has come, gone or changed. Names what has, instead of printing its bytes.
+/// Asserts that no file was added, removed or changed. Prints the paths rather than their bytes.
 pub(crate) fn assert_untouched(before: &Snapshot, after: &Snapshot) {
     let differs = |path: &&PathBuf| before.get(*path) != after.get(*path);
     let changed: Vec<&PathBuf> = before.keys().chain(after.keys()).filter(differs).collect();

@@ -1,22 +1,24 @@
-//! Ends the whole test program, naming the test, when one runs longer than anything but a hang could: a thread that never answers cannot
-//! be ended alone, and a hang in a `drop` would stop the report of the test that failed.
+//! A watchdog for tests: aborts the whole test program, and names the test, if a test runs longer than anything but a
+//! hang could. A thread that never answers cannot be ended alone, and a hang in a `drop` would stop the report of the
+//! failed test.
 
 use std::process;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Machines that do much else at the same time are so much slower than the ones that limits are made for.
+/// Allowance for busy machines, which are so much slower than the machines for which the limits were chosen.
 const SLACK: u32 = 10;
 
-/// Watches until it is dropped.
+/// Watches a test until it is dropped.
 pub(crate) struct Watchdog {
     tell: Sender<String>,
 }
 
 impl Watchdog {
-    /// For the test that the calling thread runs. `limit` is far above what it takes: what is watched is whether it ends, not how fast it
-    /// is. A machine so busy that a test takes ten times as long as that cannot be told from a hang.
+    /// Watches the test of the calling thread. `limit` is far above its usual time: the watchdog checks whether the
+    /// test ends, not how fast it is. A machine so busy that a test takes ten times the limit cannot be told from a
+    /// hang.
     pub(crate) fn new(limit: Duration) -> Self {
         let test = thread::current().name().unwrap_or("a test without a name").to_owned();
         let (tell, told) = channel();
@@ -24,7 +26,7 @@ impl Watchdog {
         Self { tell }
     }
 
-    /// Says what is tried next, which has the whole limit for itself.
+    /// Names the next step, which has the whole limit for itself.
     pub(crate) fn now(&self, what: impl Into<String>) {
         self.tell.send(what.into()).expect("the watchdog lives as long as what it watches");
     }

@@ -1,9 +1,10 @@
-//! Do intervals miss as often as they say? Equal things are compared with each other many times (A against A), so that every interval of
-//! their ratio should contain 1; of those with level 0.95, one in twenty should not.
+//! A/A tests: whether intervals miss as often as their level states. A configuration is compared with itself many times
+//! (A against A), so the true ratio is 1, and one in twenty intervals of level 0.95 should miss it.
 //!
-//! The number of misses is a sum of independent yes-or-no trials with probabilities 1 - level: binomial if all levels are equal,
-//! Poisson-binomial (S. D. Poisson 1837) if they differ, as those of order statistics do. Its distribution is computed exactly. Too few misses
-//! are as suspicious as too many: such intervals are wider than they say and hide effects.
+//! The number of misses is a sum of independent trials, each with probability 1 - level. It is binomial if all levels
+//! are equal, and Poisson-binomial (S. D. Poisson 1837) if they differ, as the levels of order statistics do. Its
+//! distribution is computed exactly. Too few misses are as suspicious as too many: the intervals are then wider than
+//! stated and hide effects.
 
 use std::fmt;
 
@@ -11,16 +12,16 @@ use serde::Serialize;
 
 use super::interval::is_level;
 
-/// One comparison of a thing with itself.
+/// One comparison of a configuration with itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Comparison {
-    /// The confidence that its interval states.
+    /// The stated confidence of its interval.
     pub level: f64,
-    /// Whether the interval contains 1, which is the truth.
+    /// Whether the interval contains 1, the true ratio.
     pub contains_truth: bool,
 }
 
-/// What many comparisons say about the intervals.
+/// The verdict on the intervals after many comparisons.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -42,29 +43,30 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// How many intervals missed and how likely that is.
+/// The number of misses, and whether the stated levels explain it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Calibration {
-    /// How many comparisons there were.
+    /// Number of comparisons.
     pub comparisons: usize,
-    /// Misses that the levels lead one to expect.
+    /// Expected number of misses, by the levels.
     pub expected: f64,
-    /// Misses found.
+    /// Number of misses found.
     pub found: usize,
-    /// Two-sided: twice the probability of a number at least as far out on the same side, at most 1.
+    /// Two-sided: twice the probability of a number of misses at least as extreme on the same side, at most 1.
     pub p_value: f64,
-    /// Judged at the significance that was asked for.
+    /// The verdict at the requested significance.
     pub verdict: Verdict,
 }
 
 /// Compares the number of misses with the stated levels at significance `alpha`; `None` without comparisons or for a level outside (0, 1).
 ///
-/// A few comparisons can't have too few misses: at 0.95 and `alpha` 0.05, no miss at all is suspicious from 72 comparisons on.
+/// A small number of comparisons can't have too few misses: at 0.95 and `alpha` 0.05, zero misses are suspicious from
+/// 72 comparisons on.
 pub fn calibration(comparisons: &[Comparison], alpha: f64) -> Option<Calibration> {
     if comparisons.is_empty() || !is_level(alpha) || comparisons.iter().any(|comparison| !is_level(comparison.level)) {
         return None;
     }
-    // chances[k]: the probability of k misses among the comparisons taken in so far.
+    // chances[k]: the probability of k misses among the comparisons so far.
     let mut chances = vec![1.0];
     for miss in comparisons.iter().map(|comparison| 1.0 - comparison.level) {
         chances.push(0.0);
@@ -114,7 +116,7 @@ mod tests {
 
     #[test]
     fn levels_may_differ() {
-        // Misses of probability 0.5 and 0.1, both seen: 0.05 on the upper side.
+        // Both comparisons miss, with probabilities 0.5 and 0.1: 0.05 on the upper side.
         let pair = [Comparison { level: 0.5, contains_truth: false }, Comparison { level: 0.9, contains_truth: false }];
         let both = calibration(&pair, 0.2).unwrap();
         assert!((both.p_value - 0.1).abs() < 1e-12 && (both.expected - 0.6).abs() < 1e-12);

@@ -1,19 +1,20 @@
-//! Where the workers' time went in one run: into jobs, into the gaps between them, and into waiting for the last.
+//! Balance of one run: the workers' time in jobs, in the gaps between them, and in waiting for the last job.
 //!
-//! p workers over a makespan T have p T seconds between them, and each second is one of three: *busy* inside a job; *gap*, before
-//! a job while this worker still has one to come (starting up, fetching work, being descheduled); *tail*, after the worker's last job. The three
-//! add up to p T. Load imbalance is max busy / mean busy - 1 (O. Pearce and others, "Quantifying the effectiveness of load balance
-//! algorithms", ICS 2012). All times are in seconds since the run's start.
+//! p workers have p T seconds in total over a makespan T. Each second is one of three: *busy* inside a job; *gap*,
+//! before a job while this worker still has one to run (starting up, fetching a job, being descheduled); *tail*, after
+//! the worker's last job. The three add up to p T. Load imbalance is max busy / mean busy - 1 (O. Pearce and others,
+//! "Quantifying the effectiveness of load balance algorithms", ICS 2012). All times are in seconds since the run's
+//! start.
 
 use serde::Serialize;
 
 /// One job's time: its worker, its start and its stop.
 pub type Span = (usize, f64, f64);
 
-/// Where one worker's time went.
+/// The time of one worker, by its use.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Share {
-    /// How many jobs it did.
+    /// Number of its jobs.
     pub jobs: usize,
     /// Seconds in jobs.
     pub busy_s: f64,
@@ -23,7 +24,7 @@ pub struct Share {
     pub tail_s: f64,
 }
 
-/// Where the time of all workers went.
+/// The time of all workers, by its use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Balance {
     /// From the run's start to its end, in seconds.
@@ -34,8 +35,9 @@ pub struct Balance {
 
 /// The balance of a run of `workers` workers.
 ///
-/// `None` without workers, for a makespan that is not positive and finite, or for spans that can't be: of a worker that does not exist, that
-/// stop before they start, that lie outside the run, or that overlap on one worker. Rounding of 1e-9 of the makespan is forgiven.
+/// `None` without workers, for a makespan that is not positive and finite, or for impossible spans: of a worker that
+/// does not exist, with a stop before the start, outside the run, or overlapping on one worker. Rounding errors up to
+/// 1e-9 of the makespan are allowed.
 pub fn of_spans(spans: impl IntoIterator<Item = Span>, makespan_s: f64, workers: usize) -> Option<Balance> {
     if workers == 0 || !(makespan_s > 0.0 && makespan_s.is_finite()) {
         return None;
@@ -63,8 +65,9 @@ pub fn of_spans(spans: impl IntoIterator<Item = Span>, makespan_s: f64, workers:
     Some(Balance { makespan_s, workers: shares })
 }
 
-/// The share of the processors' time in which a job was there to run, in [0, 1]: the mean over the run of the smaller of jobs under way and
-/// processors, over processors. Where workers have to share processors, their own busy time says nothing: it counts the waiting for one.
+/// Returns the share of the processors' time in which a job was there to run, in [0, 1]. It is the mean over the run of
+/// the smaller of running jobs and processors, divided by the processors. If workers share processors, their busy time
+/// is no measure of it, since it includes the time spent waiting for a processor.
 pub fn processors_in_use(spans: impl IntoIterator<Item = Span>, makespan_s: f64, processors: usize) -> f64 {
     let ends = spans.into_iter().flat_map(|(_, start_s, stop_s)| [(start_s, 1), (stop_s, -1)]);
     let mut ends: Vec<(f64, isize)> = ends.collect();
@@ -93,7 +96,7 @@ impl Balance {
         self.workers.iter().map(|share| share.tail_s).sum()
     }
 
-    /// How many jobs there were.
+    /// Number of jobs.
     pub fn jobs(&self) -> usize {
         self.workers.iter().map(|share| share.jobs).sum()
     }
@@ -103,14 +106,14 @@ impl Balance {
         self.busy_s() / (self.workers.len() as f64 * self.makespan_s)
     }
 
-    /// max busy / mean busy - 1: 0 for equal loads, p - 1 if one worker did everything. `None` if no worker did anything.
+    /// max busy / mean busy - 1: 0 for equal loads, p - 1 if one worker ran all jobs. `None` if no worker was busy.
     pub fn imbalance(&self) -> Option<f64> {
         let mean = self.busy_s() / self.workers.len() as f64;
         let most = self.workers.iter().map(|share| share.busy_s).fold(0.0, f64::max);
         (mean > 0.0).then(|| most / mean - 1.0)
     }
 
-    /// Seconds of gap a job: what handing out one job cost. `None` without jobs.
+    /// Seconds of gap per job: the cost of handing out one job. `None` without jobs.
     pub fn overhead_per_job_s(&self) -> Option<f64> {
         (self.jobs() > 0).then(|| self.gap_s() / self.jobs() as f64)
     }

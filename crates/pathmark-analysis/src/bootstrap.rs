@@ -1,4 +1,4 @@
-//! Percentile bootstrap: how much a statistic would have differed had other values of the same kind been drawn.
+//! Percentile bootstrap: the interval of a statistic from resamples of its values.
 //!
 //! B. Efron, "Bootstrap methods: another look at the jackknife", Annals of Statistics 7 (1979). Resamples are drawn from a generator
 //! with a fixed seed, so the same values give the same interval on every machine. The percentile interval is somewhat too narrow for small
@@ -10,13 +10,13 @@ use rand_pcg::Pcg64Dxsm;
 use super::interval::{Estimate, Interval, all_finite, is_level};
 use super::quantile::{quantile_of_sorted, sorted};
 
-/// Resamples per interval: the ends then move by about a tenth of the interval's width at most if the seed is changed.
+/// Resamples per interval. Another seed then moves the ends by at most about a tenth of the interval's width.
 pub const RESAMPLES: usize = 4000;
 
-/// The intervals of several numbers that are computed together from independent samples, such as the parameters of a curve through
-/// the repetitions at each number of workers: every sample is resampled by itself.
+/// Estimates several values that are computed together from independent samples, with their intervals. Every sample is
+/// resampled separately. An example is the parameters of a curve through the repetitions at each number of workers.
 ///
-/// `None` for no group, a value that is not finite, no spread in any group, or numbers that do not exist on one of the resamples.
+/// `None` for no group, a value that is not finite, no spread in any group, or if `statistic` fails on a resample.
 pub fn of_groups<const N: usize>(
     groups: &[Vec<f64>],
     level: f64,
@@ -39,7 +39,7 @@ pub fn of_groups<const N: usize>(
     each.collect::<Option<Vec<Estimate>>>()?.try_into().ok()
 }
 
-/// The percentile interval of `replicates` around `value`. A statistic that fails on one resample has no interval.
+/// The percentile interval of `replicates` around `value`; `None` if a replicate is `None`.
 fn estimate(value: f64, replicates: impl Iterator<Item = Option<f64>>, level: f64) -> Option<Estimate> {
     if !is_level(level) || !value.is_finite() {
         return None;
@@ -51,28 +51,29 @@ fn estimate(value: f64, replicates: impl Iterator<Item = Option<f64>>, level: f6
     Some(Estimate { value, interval })
 }
 
-/// Two values at least, all finite, not all equal.
+/// Whether there are two different values and all are finite.
 fn can_vary(values: &[f64]) -> bool {
     all_finite(values) && values.iter().any(|value| Some(value) != values.first())
 }
 
-/// Draws with replacement.
+/// A source of draws with replacement.
 struct Resampler(Pcg64Dxsm);
 
 impl Resampler {
-    /// The seed is any odd-looking constant with about as many ones as zeros: two words of the digits of pi's fraction.
+    /// Creates the source. The seed is an arbitrary constant with about as many ones as zeros: two words of the digits
+    /// of pi's fraction.
     fn new() -> Self {
         Self(Pcg64Dxsm::new(0x243f_6a88_85a3_08d3_1319_8a2e_0370_7344, 0xa409_3822_299f_31d0_082e_fa98_ec4e_6c89))
     }
 
-    /// Replaces `out` by as many values as there are, drawn from them with replacement.
+    /// Replaces `out` by `values.len()` draws from `values` with replacement.
     fn fill(&mut self, values: &[f64], out: &mut Vec<f64>) {
         out.clear();
         out.extend((0..values.len()).map(|_| values[self.index(values.len())]));
     }
 
-    /// An index below `n`. The high half of a product is biased by at most n / 2^64, and unlike the generators' own ranges it may not
-    /// change with a new version of a library.
+    /// A random index below `n`. The high half of the product is biased by at most n / 2^64. Unlike the ranges of the
+    /// `rand` crate, this method does not change with a new version of a library.
     fn index(&mut self, n: usize) -> usize {
         ((u128::from(self.0.next_u64()) * n as u128) >> 64) as usize
     }
@@ -84,12 +85,12 @@ mod tests {
     use crate::mean::Moments;
     use crate::quantile::median;
 
-    /// The interval of one number of one sample.
+    /// The interval of one statistic of one sample.
     fn of_sample(values: &[f64], level: f64, statistic: impl Fn(&[f64]) -> Option<f64>) -> Option<Estimate> {
         of_groups(&[values.to_vec()], level, |groups| Some([statistic(&groups[0])?])).map(|[estimate]| estimate)
     }
 
-    /// Twelve normal deviates or so: sums of uniforms, minus their mean (the classic Irwin-Hall construction).
+    /// An approximately normal deviate: the sum of twelve uniforms, minus its mean (Irwin-Hall).
     fn normal(draw: &mut Resampler) -> f64 {
         (0..12).map(|_| (draw.0.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0).sum::<f64>() - 6.0
     }

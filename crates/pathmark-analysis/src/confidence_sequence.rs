@@ -1,48 +1,52 @@
-//! Intervals for a median that hold at all times at once: one may look after every value and stop when one likes.
+//! Confidence sequences for a median: all their intervals hold together, so that sampling may stop after any value.
 //!
-//! If m is the median, each value is above m with probability 1/2 at most, whatever came before. Betting on "above" with shares drawn evenly from
-//! (1/2, 1] turns one unit into
+//! If m is the median, each value is above m with probability 1/2 at most, whatever the values before it. A bet on
+//! "above", with shares drawn uniformly from (1/2, 1], turns one unit into
 //!
 //! M = 2 (n + 1)^-1 P(B' <= s) / P(B = s),
 //!
-//! where s of n values are above m, B is binomial (n, 1/2) and B' is binomial (n + 1, 1/2). That is a supermartingale, so it ever reaches 2 / miss
-//! with a probability of miss / 2 (J. Ville, 1939). The values m at which neither the bet on "above" nor that on "below" has reached it lie between
-//! two order statistics. It is the mixture of H. Robbins ("Statistical methods related to the law of the iterated logarithm", 1970) for the sign
-//! test; S. R. Howard and A. Ramdas ("Sequential estimation of quantiles with applications to A/B testing and best-arm identification", 2022) have
-//! it as the beta-binomial boundary, beside a closed form that takes about three times as many values for an interval of the same ranks.
+//! where s of n values are above m, B is binomial (n, 1/2) and B' is binomial (n + 1, 1/2). M is a supermartingale, so
+//! the probability that it ever reaches 2 / miss is at most miss / 2 (J. Ville, 1939). The values m at which neither
+//! the bet on "above" nor the bet on "below" has reached it lie between two order statistics. This is the mixture of H.
+//! Robbins ("Statistical methods related to the law of the iterated logarithm", 1970) for the sign test. S. R. Howard
+//! and A. Ramdas (2022, "Sequential estimation of quantiles with applications to A/B testing and best-arm
+//! identification") have it as the beta-binomial boundary. Their closed form beside it needs about three times as many
+//! values for an interval of the same ranks.
 
 use super::interval::{Interval, is_level};
 use super::quantile::{median_interval, sorted};
 
-/// The fewest values of which an interval at every look can say anything at 95 %.
+/// The fewest values for which an interval at every look exists at 95 %.
 pub(super) const FEWEST: usize = 8;
 
-/// How it was decided how many values there are.
+/// How the number of values was chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Stopping {
-    /// Before there were any.
+    /// Before the first value.
     #[default]
     Fixed,
-    /// By what the values said.
+    /// From the values themselves.
     Sequential,
 }
 
 impl Stopping {
-    /// The interval of the median that such a number of values allows: of order statistics, or one that holds at every look.
+    /// Returns the interval of the median for a number of values chosen in this way: of order statistics, or one that
+    /// holds at every look.
     pub fn median_interval(self, values: &[f64], level: f64) -> Option<Interval> {
         match self {
             Self::Fixed => median_interval(values, level),
-            // Nothing could be decided by so few, so their number did not depend on them.
+            // So few values cannot decide when to stop, so their number did not depend on them.
             Self::Sequential if values.len() < FEWEST => median_interval(values, level),
             Self::Sequential => median_sequence(values, level),
         }
     }
 }
 
-/// The interval of the median after these values. With probability `level` the true median is in the intervals after every number of values. `None`
-/// while there are too few values for two ends, seven or less at 95 %, and for one that is not finite.
+/// Returns the interval of the median after these values. With probability `level`, the intervals after every number of
+/// values contain the true median. `None` while there are too few values for two ends (seven or fewer at 95 %), and for
+/// a value that is not finite.
 ///
-/// It assumes that no value says anything about whether the next one is above the median.
+/// It assumes that no value predicts whether the next one is above the median.
 ///
 /// ```
 /// use pathmark_analysis::confidence_sequence::median_sequence;
@@ -57,7 +61,8 @@ pub fn median_sequence(values: &[f64], level: f64) -> Option<Interval> {
     Interval::between(ordered[ordered.len() - rank], ordered[rank - 1], level)
 }
 
-/// The least number of values on one side of a point that shows that it is not the median; `None` if not even all of them do.
+/// The least number of values on one side of a point that excludes the point as the median; `None` if even all `n` do
+/// not.
 fn rank(n: usize, level: f64) -> Option<usize> {
     let enough = 2.0 / (1.0 - level);
     let count = n as f64;
@@ -87,7 +92,7 @@ mod tests {
 
     const LEVEL: f64 = 0.95;
 
-    /// Seven values were not stopped by what they said, and eight may have been.
+    /// Seven values cannot have decided when to stop; eight can.
     #[test]
     fn a_number_of_values_that_no_look_can_have_chosen_is_fixed() {
         let values: Vec<f64> = (0..9).map(f64::from).collect();
@@ -102,7 +107,7 @@ mod tests {
         assert!(sequential.low < fixed.low && fixed.high < sequential.high);
     }
 
-    /// From an integral of the bets over their shares, by the midpoint rule in another program.
+    /// Expected ranks from another program, which integrates the bets over their shares by the midpoint rule.
     #[test]
     fn ranks_are_those_of_the_integral() {
         let expected = [(6, None), (7, None), (8, Some(8)), (10, Some(10)), (12, Some(11)), (16, Some(14))];
@@ -110,7 +115,7 @@ mod tests {
         for (n, rank_of) in expected.into_iter().chain(larger) {
             assert_eq!(rank(n, LEVEL), rank_of, "{n}");
         }
-        // Where 2^-n is no number any more.
+        // Here 2^-n underflows.
         let many = rank(5000, LEVEL).unwrap() as f64;
         assert!((2500.0 + 2.0 * 35.4..2500.0 + 4.0 * 35.4).contains(&many), "{many}");
         assert!(median_sequence(&[1.0; 9], 1.0).is_none() && median_sequence(&[f64::NAN; 9], LEVEL).is_none());
@@ -123,7 +128,8 @@ mod tests {
         ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
     }
 
-    /// Sequences of 120 values with median 0, and in how many of 1000 an interval misses it at any look.
+    /// Returns in how many of 1000 sequences an interval misses the median at any look. A sequence has 120 values with
+    /// median 0.
     fn misses(next: impl Fn(&mut Pcg64Dxsm, f64) -> f64, interval: fn(&[f64], f64) -> Option<Interval>) -> u32 {
         let mut generator = Pcg64Dxsm::new(5, 9);
         let mut missed = 0;
@@ -143,7 +149,8 @@ mod tests {
         libm::log(u / (1.0 - u))
     }
 
-    /// At most 5 % of the sequences ever miss, 50 of 1000; four standard deviations of that count are 28. Not one in 200 is too few to believe.
+    /// At most 5 % of the sequences ever miss, 50 of 1000; four standard deviations of that count are 28. Fewer than
+    /// one in 200 would be implausible.
     #[test]
     fn the_median_is_held_at_every_look() {
         let cauchy = |g: &mut Pcg64Dxsm, _| {
@@ -158,13 +165,13 @@ mod tests {
         ];
         println!("missed by any of 120 looks: {found:?} of 1000");
         assert!(found.iter().all(|count| (5..78).contains(count)), "{found:?}");
-        // An interval for one look misses several times as often when one looks each time.
+        // An interval for one look misses several times as often if it is used at every look.
         let fixed = misses(|g, _| logistic(g), median_interval);
         assert!(fixed > 200, "{fixed}");
     }
 
-    /// Values that follow each other are outside the promise: with half of each value carried over (autocorrelation 1/2), a quarter of the
-    /// sequences miss.
+    /// Dependent values break the assumption: with half of each value carried over (autocorrelation 1/2), a quarter of
+    /// the sequences miss.
     #[test]
     fn values_that_hang_together_are_held_less_often() {
         let found = misses(|g, last| 0.5 * last + logistic(g), median_sequence);

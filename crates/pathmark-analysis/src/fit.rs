@@ -1,7 +1,7 @@
 //! Straight lines through points by ordinary least squares, with t-intervals.
 //!
-//! The formulas are those of every textbook (N. R. Draper and H. Smith, "Applied Regression Analysis", 1998, chapter 1), from
-//! centred sums so that x far from zero costs no digits. Errors are taken to lie in y, independent and of one size.
+//! The formulas are standard (N. R. Draper and H. Smith, "Applied Regression Analysis", 1998, chapter 1). Centred sums
+//! keep their precision for x far from zero. Errors are assumed to be in y, independent and of equal variance.
 
 use serde::Serialize;
 
@@ -58,7 +58,7 @@ pub fn through_origin(points: &[(f64, f64)], level: f64) -> Option<Ray> {
     let slope = points.iter().map(|(x, y)| x * y).sum::<f64>() / xx;
     let residual: f64 = points.iter().map(|(x, y)| y - slope * x).map(|error| error * error).sum();
     let slope_error = (residual / freedom as f64 / xx).sqrt();
-    // 0 / 0 and overflow end as values that are not finite, which `around` refuses.
+    // 0 / 0 and overflow give values that are not finite, which `around` refuses.
     let interval = Interval::around(slope, t_quantile(level, freedom)? * slope_error, level)?;
     Some(Ray { slope: Estimate { value: slope, interval }, slope_error })
 }
@@ -91,7 +91,7 @@ impl Sums {
         let y = points.iter().map(|point| point.1).sum::<f64>() / n;
         let sum = |term: &dyn Fn(f64, f64) -> f64| points.iter().map(|p| term(p.0 - x, p.1 - y)).sum::<f64>();
         let sums = Self { x, y, xx: sum(&|dx, _| dx * dx), xy: sum(&|dx, dy| dx * dy), yy: sum(&|_, dy| dy * dy) };
-        // Equal x can leave rounding in the sum, so they are compared themselves.
+        // Rounding can leave a positive sum for equal x, so the x are compared directly.
         let spread = points.iter().any(|point| Some(point.0) != points.first().map(|first| first.0)) && sums.xx > 0.0;
         (spread && [sums.xx, sums.xy, sums.yy].iter().all(|sum| sum.is_finite())).then_some(sums)
     }

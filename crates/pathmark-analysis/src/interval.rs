@@ -1,15 +1,15 @@
-//! An interval with the confidence it really has, and an estimate that carries one.
+//! Confidence intervals with the level that they reach, and estimates that carry one.
 
 use serde::Serialize;
 
-/// A two-sided confidence interval, in the unit of what it bounds.
+/// A two-sided confidence interval, in the unit of the estimated value.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
     /// Lower end.
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// The confidence reached, in (0, 1). It may be above or below what was asked for where only a few levels exist.
+    /// The confidence reached, in (0, 1). It may be above or below the requested level where only a few levels exist.
     pub level: f64,
 }
 
@@ -30,18 +30,19 @@ impl Interval {
     }
 }
 
-/// An estimate and how far it can be trusted.
+/// An estimate and its confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Estimate {
     /// The estimate.
     pub value: f64,
-    /// Where the true value lies with the interval's confidence.
+    /// The interval that contains the true value with its stated confidence.
     pub interval: Interval,
 }
 
 impl Estimate {
-    /// The product of two independent estimates of positive numbers: the ends of the intervals, taken as distances of logarithms, add up as
-    /// errors do. `None` for a number or an end that is not positive, or two levels.
+    /// Returns the product of two independent estimates of positive values. The distances between values and ends, as
+    /// logarithms, add up in squares, as errors do. `None` for a value or an end that is not positive, or for different
+    /// levels.
     pub fn times(&self, other: &Self) -> Option<Self> {
         let level = Some(self.interval.level).filter(|&level| level == other.interval.level)?;
         let ends = |estimate: &Self| {
@@ -56,7 +57,7 @@ impl Estimate {
         Some(Self { value: libm::exp(centre), interval })
     }
 
-    /// One over it; `None` for a number or an end that is not positive.
+    /// Returns the reciprocal; `None` for a value or an end that is not positive.
     pub fn inverse(&self) -> Option<Self> {
         let interval = Interval::between(1.0 / self.interval.high, 1.0 / self.interval.low, self.interval.level)?;
         (self.value > 0.0 && self.interval.low > 0.0).then(|| Self { value: 1.0 / self.value, interval })
@@ -94,7 +95,7 @@ mod tests {
 
     #[test]
     fn errors_of_factors_add_up_in_squares() {
-        // 30 % and 40 % up make a factor of exp of the root of the sum of squared logarithms.
+        // Logarithmic half widths of 0.3 and 0.4 add up in squares to 0.5.
         let estimate = |value: f64, factor: f64| Estimate {
             value,
             interval: Interval { low: value / factor, high: value * factor, level: 0.95 },

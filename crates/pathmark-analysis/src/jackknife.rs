@@ -1,18 +1,20 @@
-//! Whatever is computed from the error curves of several seeds, and how much it depends on which seeds there were.
+//! The jackknife over seeds: estimates and intervals from the error curves of several seeds.
 //!
-//! The points of one curve are prefixes of one render and so depend on each other; curves of different seeds are independent by construction.
-//! So seeds are what is left out in turn: J. W. Tukey, "Bias and confidence in not quite large samples", Annals of Mathematical Statistics 29
-//! (1958). With n seeds, a number `f` of all of them and `f_i` of all but seed i, the n pseudovalues `n f - (n - 1) f_i` are about independent; their
-//! mean has the bias of f of order 1/n removed, and their t-interval is the number's. That serves means and variances between seeds alike (J. N.
-//! Arvesen, "Jackknifing U-statistics", Annals of Mathematical Statistics 40, 1969).
+//! The points of one curve are prefixes of one render and so depend on each other; curves of different seeds are
+//! independent by construction. The jackknife therefore leaves out one seed at a time: J. W. Tukey, "Bias and
+//! confidence in not quite large samples", Annals of Mathematical Statistics 29 (1958). Let `f` be a statistic of all n
+//! seeds and `f_i` the same without seed i. The n pseudovalues `n f - (n - 1) f_i` are approximately independent. Their
+//! mean is free of the bias of f of order 1/n, and their t-interval is the interval of the statistic. This holds for
+//! means and for variances between seeds (J. N. Arvesen, "Jackknifing U-statistics", Annals of Mathematical Statistics
+//! 40, 1969).
 
 use super::interval::{Estimate, Interval};
 use super::mean::t_interval;
 
-/// Points (samples per pixel, mean squared error), by samples.
+/// Points (samples per pixel, mean squared error), ordered by samples per pixel.
 pub type Curve = Vec<(f64, f64)>;
 
-/// The curve of all seeds together, and the same without each of them.
+/// The error curve of all seeds, and the curve without each one of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeedCurves {
     whole: Curve,
@@ -20,7 +22,8 @@ pub struct SeedCurves {
 }
 
 impl SeedCurves {
-    /// From each seed's own measured errors: the mean over seeds. `None` below two curves, or for curves that differ in their samples.
+    /// Averages the measured error curves of the seeds. `None` below two curves, or for curves that differ in their
+    /// samples per pixel.
     pub fn of_errors(curves: &[Curve]) -> Option<Self> {
         let first = curves.first().filter(|_| curves.len() > 1)?;
         let same_places = |curve: &Curve| {
@@ -38,10 +41,11 @@ impl SeedCurves {
         Some(Self { whole: mean(None), without: (0..curves.len()).map(|seed| mean(Some(seed))).collect() })
     }
 
-    /// From what the images of several seeds say of each other, without any reference: the variance between them, averaged over `values`, which
-    /// are each image's numbers. It is the error of an estimator without bias; of a bias it says nothing.
+    /// Computes errors from the images of several seeds, without a reference: the variance between the seeds, averaged
+    /// over the values of an image. It is the error of an unbiased estimator; it does not show a bias.
     ///
-    /// `images[p]` holds the images of all seeds at `spp[p]`. `None` below three seeds, for images of several sizes or without values.
+    /// `images[p]` holds the images of all seeds at `spp[p]`. `None` below three seeds, for images of different sizes
+    /// or without values.
     pub fn of_images(spp: &[f64], images: &[Vec<&[f64]>]) -> Option<Self> {
         let seeds = images.first()?.len();
         let length = images.first()?.first()?.len();
@@ -61,19 +65,20 @@ impl SeedCurves {
         &self.whole
     }
 
-    /// How many seeds there are.
+    /// Returns the number of seeds.
     pub fn seeds(&self) -> usize {
         self.without.len()
     }
 
-    /// A number that `of` computes from a curve, with its interval; `None` where it does not exist for every curve, or does not vary.
+    /// Estimates a value that `of` computes from a curve, with its interval; `None` if it does not exist for every
+    /// curve, or does not vary.
     pub fn estimate(&self, level: f64, of: impl Fn(&Curve) -> Option<f64>) -> Option<Estimate> {
         let (n, whole) = (self.without.len() as f64, of(&self.whole)?);
         let pseudo = self.without.iter().map(|curve| Some(n * whole - (n - 1.0) * of(curve)?));
         t_interval(&pseudo.collect::<Option<Vec<f64>>>()?, level)
     }
 
-    /// Likewise for a positive number, whose logarithm is what varies evenly.
+    /// Like [`Self::estimate`] for a positive value, by way of its logarithm, which varies more evenly.
     pub fn positive_estimate(&self, level: f64, of: impl Fn(&Curve) -> Option<f64>) -> Option<Estimate> {
         let logarithm = self.estimate(level, |curve| of(curve).filter(|&value| value > 0.0).map(libm::log))?;
         let Interval { low, high, level } = logarithm.interval;
@@ -84,7 +89,7 @@ impl SeedCurves {
     }
 }
 
-/// Sums of squared deviations from the mean over seeds, of all values together and of each seed's part.
+/// Sums of squared deviations from the mean over seeds, in total and of each seed.
 struct Spread {
     /// Sum over values of the squared deviations of all seeds.
     total: f64,

@@ -1,7 +1,7 @@
 //! Statistics: plain numbers in, estimates with intervals out.
 //!
-//! Nothing here knows what a record is, draws a figure or reads a clock. Input for which an answer does not exist (too few values,
-//! a value that is not finite, no spread where a spread is what is divided by) gives `None`, never NaN.
+//! Nothing here depends on records, draws a figure or reads a clock. Input without an answer (too few values, a value
+//! that is not finite, a spread of zero as divisor) gives `None`, never NaN.
 
 pub mod aa_test;
 pub mod balance;

@@ -1,7 +1,7 @@
 //! Means and variances in one pass, and intervals from Student's t.
 //!
-//! The recurrence is B. P. Welford, "Note on a method for calculating corrected sums of squares and products", Technometrics 4
-//! (1962): it keeps its digits where the difference of two sums of squares loses them.
+//! The recurrence is B. P. Welford, "Note on a method for calculating corrected sums of squares and products",
+//! Technometrics 4 (1962). It keeps the precision that the difference of two sums of squares loses.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -25,7 +25,7 @@ impl Moments {
         moments
     }
 
-    /// Takes one more value in.
+    /// Adds a value.
     pub fn push(&mut self, value: f64) {
         self.count += 1;
         let from_old = value - self.mean;
@@ -33,7 +33,7 @@ impl Moments {
         self.deviations += from_old * (value - self.mean);
     }
 
-    /// How many values there were.
+    /// Returns the number of values.
     pub fn count(&self) -> u64 {
         self.count
     }
@@ -43,12 +43,12 @@ impl Moments {
         (self.count > 0 && self.mean.is_finite()).then_some(self.mean)
     }
 
-    /// Sum of squared deviations over n: of values that are all there is.
+    /// Returns the sum of squared deviations over n, for values that are the whole population.
     pub fn population_variance(&self) -> Option<f64> {
         self.variance_over(self.count)
     }
 
-    /// Sum of squared deviations over n - 1: of values that are a sample. `None` below two.
+    /// Returns the sum of squared deviations over n - 1, for values that are a sample. `None` below two values.
     pub fn sample_variance(&self) -> Option<f64> {
         self.variance_over(self.count.saturating_sub(1))
     }
@@ -81,8 +81,9 @@ pub fn t_interval(values: &[f64], level: f64) -> Option<Estimate> {
     Some(Estimate { value, interval: Interval::around(value, half_width, level)? })
 }
 
-/// The geometric mean of positive values with the t-interval of their logarithms, which never reaches below 0: for times that others disturb.
-/// `None` below two values, without spread, or with a value that is not positive and finite.
+/// Returns the geometric mean of positive values with the t-interval of their logarithms, which never reaches below 0:
+/// for times that other programs disturb. `None` below two values, without spread, or with a value that is not positive
+/// and finite.
 pub fn geometric_interval(values: &[f64], level: f64) -> Option<Estimate> {
     if values.iter().any(|&value| value <= 0.0) {
         return None;

@@ -1,10 +1,11 @@
-//! METG(50 %): how small jobs may get before half of the machine is lost to handing them out.
+//! METG(50 %): the smallest job duration at which a scheduler still reaches half of the ideal efficiency.
 //!
-//! E. Slaughter and others, "Task Bench: a parameterized benchmark for evaluating parallel runtime performance", SC 2020: the minimum effective
-//! task granularity is the smallest duration of a job, in seconds, at which a scheduler still reaches a given efficiency. Between two measured
-//! granularities it is interpolated, efficiency over the logarithm of the duration. Efficiency should rise with the granularity; where noise
-//! or imbalance lets it cross the target several times, the largest granularity at which it rises through the target counts, which is the
-//! cautious answer, and the result says how often it crossed.
+//! E. Slaughter and others, "Task Bench: a parameterized benchmark for evaluating parallel runtime performance", SC
+//! 2020: the minimum effective task granularity is the smallest duration of a job, in seconds, at which a scheduler
+//! still reaches a given efficiency. Between two measured granularities, the efficiency is interpolated over the
+//! logarithm of the duration. Efficiency should rise with the granularity. Noise or imbalance can let it cross the
+//! target several times. The largest granularity at which it rises through the target is then used, the cautious
+//! answer, and the result gives the number of crossings.
 
 use serde::Serialize;
 
@@ -12,10 +13,10 @@ use super::bootstrap;
 use super::interval::Interval;
 use super::quantile::median;
 
-/// The efficiency that METG is about unless another is asked for.
+/// The target efficiency of METG unless another one is given.
 pub const HALF: f64 = 0.5;
 
-/// Seconds a job, and the efficiency of each repetition; their median counts.
+/// Seconds per job, and the efficiency of each repetition. The median efficiency is used.
 pub type Grain = (f64, Vec<f64>);
 
 /// The minimum effective granularity.
@@ -24,30 +25,32 @@ pub type Grain = (f64, Vec<f64>);
 pub enum Metg {
     /// The efficiency rises through the target.
     Value {
-        /// Seconds a job at which it does.
+        /// Seconds per job at which it does.
         seconds: f64,
-        /// The bootstrap interval over the repetitions; `None` without repetitions, or if on some resample nothing crosses.
+        /// The bootstrap interval over the repetitions; `None` without repetitions, or if a resample does not rise
+        /// through the target.
         interval: Option<Interval>,
         /// The measured granularities to either side.
         between: (f64, f64),
-        /// How often the efficiency crosses the target, either way. More than 1 needs saying beside the number.
+        /// Number of times that the efficiency crosses the target, in either direction. A report must state a number
+        /// above 1.
         crossings: usize,
     },
     /// Even the smallest jobs measured, of this many seconds, reach the target.
     Below(f64),
     /// Even the largest jobs measured, of this many seconds, do not reach it.
     Above(f64),
-    /// There is no answer.
+    /// METG is undefined.
     Undefined(Undefined),
 }
 
-/// Why there is no answer.
+/// Reason for an undefined METG.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Undefined {
-    /// No granularity with an efficiency, or a number that is not finite or a duration that is not positive.
+    /// No granularity, one without an efficiency, a value that is not finite, or a duration that is not positive.
     NoData,
-    /// Small jobs reach the target and large ones do not, as if there were too few of them to go round.
+    /// Small jobs reach the target and large ones do not. There may be too few large jobs for all workers.
     Falling,
 }
 
@@ -67,7 +70,7 @@ pub fn metg(grains: &[Grain], target: f64, level: f64) -> Metg {
     let Some((seconds, groups)) = prepared(grains) else { return Metg::Undefined(Undefined::NoData) };
     let found = crossing(&seconds, &groups, target);
     if let Some(Metg::Value { seconds: at, between, crossings, .. }) = found {
-        // On a logarithmic scale, as the interpolation is.
+        // On the logarithmic scale of the interpolation.
         let resampled = bootstrap::of_groups(&groups, level, |groups| match crossing(&seconds, groups, target)? {
             Metg::Value { seconds, .. } => Some([libm::log(seconds)]),
             _ => None,
@@ -79,7 +82,7 @@ pub fn metg(grains: &[Grain], target: f64, level: f64) -> Metg {
     found.unwrap_or(Metg::Undefined(Undefined::NoData))
 }
 
-/// Granularities in ascending order, equal ones made one, and their efficiencies.
+/// Granularities in ascending order, with equal ones merged, and their efficiencies; `None` if one is unusable.
 fn prepared(grains: &[Grain]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     let usable = |grain: &Grain| grain.0 > 0.0 && grain.0.is_finite() && median(&grain.1).is_some();
     if grains.is_empty() || !grains.iter().all(usable) {

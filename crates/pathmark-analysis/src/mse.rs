@@ -1,10 +1,12 @@
-//! The expected squared error from one measured squared error a seed.
+//! The expected squared error, from one measured squared error per seed.
 //!
-//! Seeds are independent, so their mean squared errors are a sample, and what is wanted is its mean: `E[MSE]` = bias^2 + variance. The t-interval
-//! is right while that sample is not too skewed. Light that few paths find makes it skewed: then the seeds scatter, and the log-normal
-//! interval covers better. The coefficient of variation of the seeds decides and is reported with the interval.
+//! Seeds are independent, so their mean squared errors (MSE) are a sample, and its mean is wanted: `E[MSE]` = bias^2 +
+//! variance. The t-interval is correct while that sample is not too skewed. Light that few paths find makes it skewed:
+//! the MSE then varies strongly between seeds, and the log-normal interval has better coverage. The coefficient of
+//! variation of the seeds decides and is reported with the interval.
 //!
-//! What intervals of nominal 95 % really cover, in per cent, over 2000 simulated experiments each (seeds' MSE gamma / log-normal):
+//! Coverage of intervals of nominal 95 %, in per cent, over 2000 simulated experiments each (seeds' MSE gamma /
+//! log-normal):
 //!
 //! | true variation | 5 seeds | 10 seeds | 30 seeds |
 //! |--|--|--|--|
@@ -19,39 +21,40 @@ use serde::Serialize;
 use super::interval::{Estimate, Interval};
 use super::mean::{Moments, t_interval, t_quantile};
 
-/// How an interval of the expected squared error was made.
+/// The method of an interval of the expected squared error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// t-interval of the mean of the seeds' squared errors.
     T,
-    /// Interval of the mean of a log-normal squared error, for seeds that scatter widely.
+    /// Interval of the mean of a log-normal squared error, for errors that vary strongly between seeds.
     LogNormal,
 }
 
-/// The error of an image of so many samples, from several seeds.
+/// The error of an image at one number of samples, from several seeds.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SeedError {
     /// Mean of the seeds' squared errors.
     pub mse: Estimate,
-    /// Its square root, and those of its interval's ends.
+    /// The square root of that mean, and of its interval's ends.
     pub rmse: Estimate,
-    /// How the interval was made.
+    /// The method of the interval.
     pub method: Method,
     /// Standard deviation of the seeds' squared errors over their mean.
     pub variation: f64,
 }
 
-/// Above this coefficient of variation the t-interval covers noticeably less than it says.
+/// Coefficient of variation above which the t-interval has noticeably less coverage than its level.
 pub const LOG_ABOVE_VARIATION: f64 = 0.3;
 
-/// The expected squared error from one MSE a seed. `None` below two seeds, for equal MSE, one that is not finite, or a mean that is not
-/// positive.
+/// Estimates the expected squared error from one MSE per seed. `None` below two seeds, for equal MSE, for one that is
+/// not finite, or for a mean that is not positive.
 ///
-/// The t-interval is used while the seeds agree, and also where the cross form gave some seed an MSE that is not positive, which has no
-/// logarithm. When their coefficient of variation exceeds [`LOG_ABOVE_VARIATION`], the MSE is taken to be log-normal, and the interval is U.
-/// Olsson's modified Cox interval of a log-normal mean, "Confidence intervals for the mean of a log-normal distribution", Journal of Statistics
-/// Education 13 (2005): m + s^2/2 +- t sqrt(s^2/n + s^4/(2 (n - 1))), with m and s those of ln MSE.
+/// The t-interval is used up to a coefficient of variation of [`LOG_ABOVE_VARIATION`]. Above it, the MSE is assumed to
+/// be log-normal, and the interval is U. Olsson's modified Cox interval of a log-normal mean, "Confidence intervals for
+/// the mean of a log-normal distribution", Journal of Statistics Education 13 (2005): m + s^2/2 +- t sqrt(s^2/n +
+/// s^4/(2 (n - 1))), with m and s the mean and standard deviation of ln MSE. If the cross form gave a seed an MSE that
+/// is not positive, which has no logarithm, the t-interval remains.
 pub fn over_seeds(mse: &[f64], level: f64) -> Option<SeedError> {
     let plain = t_interval(mse, level).filter(|estimate| estimate.value > 0.0)?;
     let variation = Moments::of(mse).sample_variance()?.sqrt() / plain.value;
@@ -60,7 +63,7 @@ pub fn over_seeds(mse: &[f64], level: f64) -> Option<SeedError> {
         Some(interval) => (Method::LogNormal, interval),
         None => (Method::T, plain.interval),
     };
-    // A few seeds that just agree can have a lower end below zero, where an MSE can't be.
+    // The lower end can fall below zero for a few seeds; an MSE can't be negative.
     let low = interval.low.max(0.0);
     Some(SeedError {
         mse: Estimate { value: plain.value, interval: Interval::between(low, interval.high, level)? },
@@ -93,17 +96,18 @@ mod tests {
     use rand::Rng;
     use rand_pcg::Pcg64Dxsm;
 
-    /// In (0, 1).
+    /// A uniform deviate in (0, 1).
     fn uniform(generator: &mut Pcg64Dxsm) -> f64 {
         ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
     }
 
-    /// Gamma of integer shape and mean 1: variation is the shape to the power -1/2.
+    /// A gamma deviate of integer shape and mean 1; its coefficient of variation is the shape to the power -1/2.
     fn gamma(generator: &mut Pcg64Dxsm, shape: u32) -> f64 {
         -(0..shape).map(|_| libm::log(uniform(generator))).sum::<f64>() / f64::from(shape)
     }
 
-    /// Log-normal of mean 1 and the same variation as [`gamma`], from a normal deviate by G. E. P. Box and M. E. Muller (1958).
+    /// A log-normal deviate of mean 1 and the same variation as [`gamma`], from a normal deviate by G. E. P. Box and M.
+    /// E. Muller (1958).
     fn log_normal(generator: &mut Pcg64Dxsm, shape: u32) -> f64 {
         let variance = libm::log1p(1.0 / f64::from(shape));
         let radius = (-2.0 * libm::log(uniform(generator))).sqrt();
@@ -111,7 +115,7 @@ mod tests {
         libm::exp(variance.sqrt() * normal - 0.5 * variance)
     }
 
-    /// Per cent of 2000 experiments of so many seeds whose interval holds the truth, which is 1.
+    /// Coverage: per cent of 2000 experiments of `seeds` seeds whose interval contains the true mean, 1.
     fn coverage(draw: fn(&mut Pcg64Dxsm, u32) -> f64, shape: u32, seeds: usize) -> f64 {
         let mut generator = Pcg64Dxsm::new(u128::from(shape), seeds as u128);
         let mut experiment = || (0..seeds).map(|_| draw(&mut generator, shape)).collect::<Vec<f64>>();
@@ -119,7 +123,7 @@ mod tests {
         hits as f64 / 20.0
     }
 
-    /// The table of the documentation: shape, seeds, gamma, log-normal.
+    /// The table of the module documentation: shape, seeds, gamma, log-normal.
     const STATED: [(u32, usize, f64, f64); 15] = [
         (100, 5, 95.0, 93.9),
         (100, 10, 95.2, 95.3),
@@ -138,8 +142,8 @@ mod tests {
         (1, 30, 98.8, 95.0),
     ];
 
-    /// Intervals of nominal 95 % hold the truth in 95 +- 1.5 % of 2000 experiments where the variation is at most 0.3 and there are ten seeds or more;
-    /// elsewhere as often as the documentation says. A simulation's standard deviation is 0.5 %.
+    /// Intervals of nominal 95 % have a coverage of 95 +- 1.5 % for a variation of at most 0.3 and at least ten seeds,
+    /// and elsewhere the documented coverage. The standard deviation of a simulation is 0.5 %.
     #[test]
     fn intervals_cover_what_is_stated() {
         for (shape, seeds, of_gamma, of_log_normal) in STATED {
@@ -152,7 +156,7 @@ mod tests {
         }
     }
 
-    /// Without the logarithm, five seeds of log-normal errors of variation 1 are covered too seldom.
+    /// Without the logarithm, the coverage is too low for five seeds of log-normal errors of variation 1.
     #[test]
     fn a_plain_t_interval_of_scattered_seeds_covers_too_little() {
         let mut generator = Pcg64Dxsm::new(3, 7);

@@ -1,12 +1,13 @@
-//! What an accuracy costs: samples per pixel and seconds until the RMSE has fallen to a goal, from the errors of fewer samples and the time of
-//! one.
+//! The price of an accuracy: samples per pixel and seconds until the RMSE falls to a goal, from the errors at fewer
+//! samples and the time per sample.
 //!
-//! Independent samples have a squared error of v / n after n samples, so a goal e takes n = v / e^2 samples and t v / e^2 seconds, and half
-//! of it four times that. Other samplers are better than that as long as what they integrate is smooth (A. B. Owen, "Scrambled
-//! net variance for integrals of smooth functions", 1997); edges and many dimensions bring the exponent back to about 1 (Z. He and X. Wang, "On the
-//! convergence rate of randomized quasi-Monte Carlo for discontinuous functions", 2015). A curve does not tell when. So a price beyond its last point is
-//! computed with the mean of the exponent of the last octaves and that of independent samples, and the interval reaches from a somewhat larger exponent to
-//! that of independent samples.
+//! Independent samples have a squared error of v / n after n samples. A goal e therefore takes n = v / e^2 samples and
+//! t v / e^2 seconds, and half the goal takes four times as much. Other samplers converge faster while their integrand
+//! is smooth (A. B. Owen, "Scrambled net variance for integrals of smooth functions", 1997). Edges and many dimensions
+//! bring the exponent back to about 1 (Z. He and X. Wang, "On the convergence rate of randomized quasi-Monte Carlo for
+//! discontinuous functions", 2015). A curve does not show where this starts. A price beyond its last point therefore
+//! uses the mean of two exponents: the one of the last octaves and the one of independent samples. The interval reaches
+//! from a somewhat larger exponent to the exponent of independent samples.
 
 use serde::Serialize;
 
@@ -14,33 +15,35 @@ use super::fit::{Sums, logarithms};
 use super::interval::{Estimate, Interval};
 use super::jackknife::{Curve, SeedCurves};
 
-/// How the squared error goes on beyond the points that were measured.
+/// How the squared error continues beyond the measured points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
-    /// As 1/n: samples that are independent of each other.
+    /// As 1/n, for independent samples.
     Independent,
-    /// By the mean of the exponent of the last octaves and that of independent samples; inside the curve by the points to either side.
+    /// With the mean of the exponents of the last octaves and of independent samples; inside the curve, by
+    /// interpolation.
     Fitted,
 }
 
-/// What becomes of the exponent of the last octaves beyond them.
+/// The exponent assumed beyond the last octaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Beyond {
-    /// It is larger by [`STEEPER`].
+    /// The exponent of the last octaves times [`STEEPER`].
     Steeper,
-    /// It is the mean with that of independent samples.
+    /// The mean of the exponents of the last octaves and of independent samples.
     Between,
-    /// It is that of independent samples.
+    /// The exponent of independent samples.
     Lost,
 }
 
-/// Some curves fall faster behind the pilot than in it. With this factor intervals of pilots of 8 seeds and 16 samples held the samples that it took at 33
-/// of 35 goals in 14 scenes, up to 20 times as many; without it at 30.
+/// Factor on the exponent, since some curves fall faster beyond the pilot than in it. The pilots of 14 scenes had 8
+/// seeds and 16 samples, and the goals needed up to 20 times as many samples. With this factor the intervals contained
+/// the needed samples for 33 of 35 goals; without it, for 30.
 const STEEPER: f64 = 1.3;
 
 impl Beyond {
-    /// The slope of ln MSE over ln spp, given that of the last octaves.
+    /// Returns the slope of ln MSE over ln spp, from the slope `fitted` to the last octaves.
     fn slope(self, fitted: f64) -> f64 {
         match self {
             Self::Steeper => STEEPER * fitted,
@@ -50,11 +53,11 @@ impl Beyond {
     }
 }
 
-/// Octaves at the end of a curve that say how it goes on.
+/// Ratio of samples per pixel over which the end of a curve is fitted: four octaves.
 const LAST_OCTAVES: f64 = 16.0;
 
 impl Law {
-    /// Samples per pixel at which the curve has that RMSE.
+    /// Returns the samples per pixel at which the curve reaches `rmse`.
     pub fn spp(self, curve: &Curve, rmse: f64) -> Option<f64> {
         self.spp_if(curve, rmse, Beyond::Between)
     }
@@ -65,7 +68,7 @@ impl Law {
         Some(libm::exp(line.x + (goal - line.y) / line.slope)).filter(|spp| spp.is_finite())
     }
 
-    /// The RMSE that the curve has after so many samples per pixel.
+    /// Returns the RMSE of the curve at `spp` samples per pixel.
     pub fn rmse(self, curve: &Curve, spp: f64) -> Option<f64> {
         self.rmse_if(curve, spp, Beyond::Between)
     }
@@ -76,8 +79,8 @@ impl Law {
         Some(libm::exp(0.5 * (line.y + (place - line.x) * line.slope))).filter(|rmse| rmse.is_finite())
     }
 
-    /// The straight line that stands for the curve around the first point that is `behind`, or beyond the last one. `None` for a curve that does not
-    /// fall there: it never gets anywhere.
+    /// The straight line that stands for the curve between the first point that is `behind` and its neighbour, or
+    /// beyond the last point. `None` for a curve that does not fall there, since it never reaches a lower error.
     fn line(self, points: &[(f64, f64)], behind: impl Fn(&(f64, f64)) -> bool, beyond: Beyond) -> Option<Tangent> {
         let &(x, y) = points.last()?;
         if self == Self::Independent {
@@ -97,19 +100,19 @@ impl Law {
     }
 }
 
-/// y + slope (. - x), of ln MSE over ln spp.
+/// The line y + slope (. - x), of ln MSE over ln spp.
 struct Tangent {
     x: f64,
     y: f64,
     slope: f64,
 }
 
-/// What prices are made from: a way to render a scene, how its error falls, and how long a sample per pixel takes.
+/// A renderer of one scene, as far as prices need it: the error over samples, and the time per sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Renderer {
-    /// Errors of several seeds.
+    /// Error curves of several seeds.
     pub curves: SeedCurves,
-    /// How they go on.
+    /// How the curves continue beyond their points.
     pub law: Law,
     /// Seconds for one sample in every pixel.
     pub seconds_per_spp: Estimate,
@@ -127,15 +130,15 @@ pub struct Price {
 }
 
 impl Renderer {
-    /// What an RMSE costs, with intervals of the seconds' level. `None` for a goal or an error that is not positive, for fewer than two points where the law
-    /// is fitted, or for curves that do not fall.
+    /// Returns the price of an RMSE, with intervals of the level of `seconds_per_spp`. `None` for a goal or an error
+    /// that is not positive, for fewer than two points where the law is fitted, or for curves that do not fall.
     pub fn price(&self, rmse: f64) -> Option<Price> {
         let level = self.seconds_per_spp.interval.level;
         let spp = self.widened(level, |curve, beyond| self.law.spp_if(curve, rmse, beyond))?;
         Some(Price { rmse, spp, seconds: spp.times(&self.seconds_per_spp)? })
     }
 
-    /// A number of the curve, and an interval that holds those of every exponent there may be beyond its end.
+    /// A value from the curve, with an interval that contains the intervals of all exponents of [`Beyond`].
     fn widened(&self, level: f64, of: impl Fn(&Curve, Beyond) -> Option<f64>) -> Option<Estimate> {
         let estimate = |beyond| self.curves.positive_estimate(level, |curve| of(curve, beyond));
         let between = estimate(Beyond::Between)?;
@@ -146,21 +149,21 @@ impl Renderer {
         Some(Estimate { value: between.value, interval: Interval::between(low, high, level)? })
     }
 
-    /// The RMSE that so many seconds buy.
+    /// Returns the RMSE after `seconds`.
     pub fn rmse_after(&self, seconds: f64) -> Option<Estimate> {
         let time = &self.seconds_per_spp;
         let at = |per_spp: f64| self.law.rmse(self.curves.whole(), seconds / per_spp);
         let error =
             self.widened(time.interval.level, |curve, beyond| self.law.rmse_if(curve, seconds / time.value, beyond))?;
-        // What the time of a sample is not known by moves the place on the curve.
+        // The uncertainty of the time per sample moves the position on the curve.
         let middle = at(time.value)?;
         let shift =
             Interval::between(at(time.interval.low)? / middle, at(time.interval.high)? / middle, time.interval.level)?;
         error.times(&Estimate { value: 1.0, interval: shift })
     }
 
-    /// Monte Carlo efficiency, 1 / (variance of a sample x its seconds), of one sample in every pixel: the error after 1 s, squared, over
-    /// one.
+    /// Returns the Monte Carlo efficiency, 1 / (variance of a sample x its seconds), of one sample in every pixel. It
+    /// is one over the squared error after 1 s.
     pub fn efficiency(&self) -> Option<Estimate> {
         let &(spp, _) = self.curves.whole().last()?;
         let level = self.seconds_per_spp.interval.level;
@@ -197,7 +200,8 @@ mod tests {
             assert!((law.spp(&independent, 0.8).unwrap() - 6.25).abs() < 1e-9, "{law:?}, inside");
             assert!((law.rmse(&independent, 0.25).unwrap() - 4.0).abs() < 1e-9, "{law:?}, before the first");
         }
-        // Beyond 16 samples, where MSE = 4 n^-1.6 is 4 / 16^1.6: by 1.3 times that exponent, by -1 and by the mean of it and -1.
+        // Beyond 16 samples, from MSE = 4 / 16^1.6: with 1.3 times the exponent -1.6, with the mean of -1.6 and -1, and
+        // with -1.
         let better = power(4.0, -1.6);
         let missing = 400.0 / libm::pow(16.0, 1.6);
         let expected = [(Beyond::Steeper, 2.08), (Beyond::Between, 1.3), (Beyond::Lost, 1.0)];
@@ -206,7 +210,7 @@ mod tests {
             assert!((spp / (16.0 * libm::pow(missing, 1.0 / exponent)) - 1.0).abs() < 1e-9, "{beyond:?}: {spp}");
             assert!((Law::Fitted.rmse_if(&better, spp, beyond).unwrap() - 0.1).abs() < 1e-12, "{beyond:?}");
         }
-        // Only the last octaves count: a first point that lies elsewhere changes nothing.
+        // Only the last octaves count: a first point off the line changes nothing.
         let mut bent = better.clone();
         bent.insert(0, (0.5, 100.0));
         assert!((Law::Fitted.spp(&bent, 0.01).unwrap() / Law::Fitted.spp(&better, 0.01).unwrap() - 1.0).abs() < 1e-9);
@@ -228,8 +232,8 @@ mod tests {
         assert!((renderer.efficiency().unwrap().value - 1.0 / (4.0 * 0.02)).abs() < 0.01);
     }
 
-    /// The error goes on by the exponent of the curve, or by 1/n from its end on: the interval holds both, and inside the curve no more than the seeds ask
-    /// for.
+    /// The error may continue with the curve's exponent or as 1/n: the interval contains both. Inside the curve, only
+    /// the scatter of the seeds widens it.
     #[test]
     fn an_exponent_that_may_end_widens_the_price() {
         let of_scales = |scales: [f64; 3]| SeedCurves::of_errors(&scales.map(|scale| power(scale, -1.6))).unwrap();
@@ -246,14 +250,14 @@ mod tests {
         assert!((after.value - 0.1).abs() < 1e-3 && after.interval.high / after.interval.low > 1.3, "{after:?}");
     }
 
-    /// 2000 pilots of 8 seeds of 64 pixels of normal samples: the intervals hold the samples that it really takes as often as they say, and
-    /// the mean of the predictions is right.
+    /// 2000 pilots of 8 seeds and 64 pixels: the intervals contain the true number of samples as often as stated, and
+    /// the mean of the predictions is correct.
     #[test]
     fn pilots_cover_the_true_price() {
         let mut generator = Pcg64Dxsm::new(31, 7);
         let (mut hits, mut mean) = (0_u32, 0.0);
         for _ in 0..2000 {
-            // Uniform of variance 1/12 a sample, two samples a pixel and seed.
+            // A uniform sample has variance 1/12; each pixel and seed has two samples.
             let mut pixel = || 0.5 * (uniform(&mut generator) + uniform(&mut generator));
             let images: Vec<Vec<f64>> = (0..8).map(|_| (0..64).map(|_| pixel()).collect()).collect();
             let curves = SeedCurves::of_images(&[2.0], &[images.iter().map(Vec::as_slice).collect()]).unwrap();
@@ -261,7 +265,8 @@ mod tests {
             hits += u32::from(spp.interval.contains(1e4 / 12.0));
             mean += spp.value / (1e4 / 12.0) / 2000.0;
         }
-        // The simulation's standard deviation is 0.5 %. A jackknife over 8 seeds is a little generous: 96 to 97 % instead of 95.
+        // The simulation's standard deviation is 0.5 %. A jackknife over 8 seeds is slightly too wide: 96 to 97 %
+        // instead of 95.
         assert!((1895..=1955).contains(&hits), "{hits} of 2000");
         assert!((mean - 1.0).abs() < 0.005, "{mean}");
     }

@@ -1,4 +1,4 @@
-//! Order statistics: the median and what surrounds it.
+//! Order statistics: quantiles, and the median with its interval.
 //!
 //! Quantiles interpolate linearly between neighbours at position (n - 1) q: type 7 of R. J. Hyndman and Y. Fan, "Sample quantiles
 //! in statistical packages", The American Statistician 50 (1996). The interval of the median assumes nothing about the
@@ -33,8 +33,8 @@ pub fn median_absolute_deviation(values: &[f64]) -> Option<f64> {
 
 /// The narrowest symmetric pair of order statistics that encloses the true median with at least `level` confidence.
 ///
-/// With five values and fewer not even the extremes reach 95 %. Then they are returned, and the interval's own `level` says what they
-/// are worth: 93.75 % for five, 50 % for two. `None` below two values.
+/// With five or fewer values, even the extremes do not reach 95 %. They are then returned, and the interval's own
+/// `level` gives the confidence reached: 93.75 % for five, 50 % for two. `None` below two values.
 pub fn median_interval(values: &[f64], level: f64) -> Option<Interval> {
     let ordered = sorted(values)?;
     let (rank, reached) = median_rank(ordered.len(), level)?;
@@ -48,7 +48,7 @@ fn median_rank(n: usize, level: f64) -> Option<(usize, f64)> {
     }
     let below = Binomial::new(0.5, n as u64).ok()?;
     let reached = |rank: usize| 1.0 - 2.0 * below.cdf(rank as u64 - 1);
-    // Narrower pairs are worth less, so the first that falls short ends the search.
+    // Narrower pairs have less confidence, so the first one below `level` ends the search.
     let rank = (2..=n / 2).take_while(|&rank| reached(rank) >= level).last().unwrap_or(1);
     Some((rank, reached(rank)))
 }
@@ -73,7 +73,8 @@ pub(super) fn quantile_of_sorted(ordered: &[f64], q: f64) -> Option<f64> {
     let below = position.floor() as usize;
     let (low, high) = (ordered[below], ordered[(below + 1).min(last)]);
     let fraction = position - below as f64;
-    // Weighted this way, two huge values of opposite sign don't overflow; clamped, equal neighbours give themselves.
+    // With these weights, two huge values of opposite sign don't overflow. The clamp returns equal neighbours
+    // unchanged.
     Some((low * (1.0 - fraction) + high * fraction).clamp(low, high))
 }
 

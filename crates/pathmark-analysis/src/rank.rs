@@ -1,24 +1,24 @@
-//! Whether two properties of the same things rise together, judged by ranks alone.
+//! Rank correlation: whether two properties of the same items rise together, by their ranks only.
 
 use super::interval::all_finite;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Spearman's rank correlation, and how often chance alone gives one as large.
+/// Spearman's rank correlation and its p-value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RankCorrelation {
     /// From -1 (one falls where the other rises) to 1.
     pub rho: f64,
-    /// Share of all orders of one property that give a correlation at least as far from 0: two-sided, exact up to [`EXACT`] values, from
-    /// the normal approximation of variance 1/(n - 1) above.
+    /// Two-sided p-value: the share of all orders of one property whose correlation is at least as far from 0. Exact up
+    /// to [`EXACT`] values; above, from the normal approximation of variance 1/(n - 1).
     pub p: f64,
 }
 
-/// Up to so many values all orders are tried.
+/// The largest number of values for which all orders are tried.
 pub const EXACT: usize = 9;
 
-/// Spearman's rank correlation; equal values share their mean rank. `None` below three pairs, for a value that is not finite, and where
-/// one property is the same everywhere (C. Spearman, "The proof and measurement of association between two things", American Journal of
-/// Psychology 15, 1904).
+/// Returns Spearman's rank correlation; equal values share their mean rank. `None` below three pairs, for a value that
+/// is not finite, and if all values of one property are equal (C. Spearman, "The proof and measurement of association
+/// between two things", American Journal of Psychology 15, 1904).
 ///
 /// ```
 /// use pathmark_analysis::rank::spearman;
@@ -39,7 +39,7 @@ pub fn spearman(pairs: &[(f64, f64)]) -> Option<RankCorrelation> {
     }
     let found = product(&x, &y);
     let p = if pairs.len() <= EXACT {
-        // Ranks are multiples of a half, so their products are exact.
+        // Centred ranks are whole numbers, so their products are exact.
         let (mut orders, mut as_far) = (0u32, 0u32);
         every_order(&mut y, &mut |order| {
             orders += 1;
@@ -53,7 +53,7 @@ pub fn spearman(pairs: &[(f64, f64)]) -> Option<RankCorrelation> {
     Some(RankCorrelation { rho: found / scale, p })
 }
 
-/// Twice the ranks, less their mean: whole numbers.
+/// Returns twice the difference of each rank from the mean rank: whole numbers.
 fn centred_ranks(values: &[f64]) -> Vec<f64> {
     let count = |is: &dyn Fn(f64) -> bool| values.iter().filter(|value| is(**value)).count() as f64;
     values.iter().map(|value| count(&|other| other < *value) - count(&|other| other > *value)).collect()
@@ -86,7 +86,7 @@ mod tests {
     fn it_is_the_formula_of_differences() {
         let found = spearman(&[(1.0, 10.0), (2.0, 30.0), (3.0, 20.0), (4.0, 40.0), (5.0, 50.0)]).unwrap();
         assert!((found.rho - 0.9).abs() < 1e-15);
-        // As far are the two monotone orders and the four swaps of neighbours in each: 10 of 120.
+        // At least as far from 0 are the two monotone orders and the four swaps of neighbours in each: 10 of 120.
         assert!((found.p - 10.0 / 120.0).abs() < 1e-15, "{}", found.p);
     }
 

@@ -1,19 +1,19 @@
 //! The ratio of two samples of times that were not measured in pairs.
 //!
-//! The estimate is the median of all ratios of a value of one sample to a value of the other, and the interval is between two of these ratios
-//! (J. L. Hodges and E. L. Lehmann, "Estimates of location based on rank tests", 1963; L. E. Moses, 1953). It assumes that both samples come from one
-//! distribution but for the factor, and nothing about that distribution. Confidence comes from the exact distribution of Mann and
-//! Whitney's U (1947).
+//! The estimate is the median of all ratios of a value of one sample to a value of the other. The ends of the interval
+//! are two of these ratios (J. L. Hodges and E. L. Lehmann, "Estimates of location based on rank tests", 1963; L. E.
+//! Moses, 1953). Both samples are assumed to follow the same distribution up to a factor; nothing else is assumed about
+//! it. The confidence comes from the exact distribution of Mann and Whitney's U (1947).
 
 use super::interval::{Estimate, Interval, all_finite, is_level};
 use super::quantile::{quantile_of_sorted, sorted};
 
-/// Values of a sample beyond which the distribution of U is not counted exactly; nobody repeats a run so often.
+/// Largest sample for which the distribution of U is computed; runs are never repeated more often.
 const MOST: usize = 200;
 
-/// How many times as large the values of `new` are as those of `old`, with the narrowest interval that has at least `level` confidence. Where so
-/// few values cannot reach it, the interval is of all ratios, and says what it is worth. `None` for fewer than two values in a sample, and for
-/// values that are not positive and finite.
+/// Returns the ratio of the values of `new` to the values of `old`, with the narrowest interval of at least `level`
+/// confidence. If there are too few values for it, the interval spans all ratios, with a level below the requested one.
+/// `None` for fewer than two or more than 200 values in a sample, and for values that are not positive and finite.
 ///
 /// ```
 /// use pathmark_analysis::rank_sum::ratio;
@@ -34,7 +34,8 @@ pub fn ratio(old: &[f64], new: &[f64], level: f64) -> Option<Estimate> {
     Some(Estimate { value: quantile_of_sorted(&ordered, 0.5)?, interval })
 }
 
-/// The rank, counted from 1, of the ratio from either end that makes the interval, and its confidence.
+/// The rank of the interval's ends, counted from 1 from either end of the ordered ratios, and the interval's
+/// confidence.
 fn rank(m: usize, n: usize, level: f64) -> (usize, f64) {
     let share = distribution(m, n);
     let (mut below, mut found) = (0.0, (1, 1.0 - 2.0 * share[0]));
@@ -49,11 +50,11 @@ fn rank(m: usize, n: usize, level: f64) -> (usize, f64) {
     found
 }
 
-/// The probability of each value of U between samples of m and n values from one distribution without ties: the number of ways to draw m of
-/// m + n ranks, by the sum of those ranks.
+/// The probability of each value of U between samples of m and n values from one distribution without ties: the share
+/// of the ways to draw m of m + n ranks that have the rank sum of this U.
 fn distribution(m: usize, n: usize) -> Vec<f64> {
-    // ways[k][u]: k of the ranks looked at so far drawn, with u values of the other sample below them. Shares instead of counts, which would
-    // overflow: each step draws the next rank with the chance that it has.
+    // shares[k][u]: the probability that k of the ranks seen so far are drawn, with u values of the other sample below
+    // them. Counts of ways would overflow. Each step draws the next rank with its conditional probability.
     let mut shares = vec![vec![0.0; m * n + 1]; m + 1];
     shares[0][0] = 1.0;
     for seen in 0..m + n {
@@ -89,7 +90,7 @@ mod tests {
             assert_eq!(rank, critical + 1, "{m} and {n}");
             assert!((0.95..0.98).contains(&reached), "{m} and {n}: {reached}");
         }
-        // Three and three: all ratios, one draw in ten beyond them.
+        // Three and three values: the interval spans all ratios, and one draw in ten lies beyond it.
         let (rank, reached) = rank(3, 3, 0.95);
         assert!(rank == 1 && (reached - 0.9).abs() < 1e-12, "{rank} {reached}");
     }
@@ -111,8 +112,8 @@ mod tests {
         (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Of 4000 pairs of samples whose times scatter heavily to one side, the interval holds the factor in the confidence that it states: within
-    /// four standard errors, so neither too seldom nor too often.
+    /// The times of 4000 pairs of samples scatter strongly to one side. The interval contains the factor with the
+    /// stated confidence, within four standard errors in either direction.
     #[test]
     fn coverage_is_what_is_stated() {
         const TRIALS: u32 = 4000;

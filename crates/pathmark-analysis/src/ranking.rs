@@ -1,9 +1,10 @@
-//! Which of several things is faster than which, where all orders that are told hold together.
+//! Rankings of several candidates by pairwise orders, with one error probability for all orders together.
 //!
-//! Two things are compared by the sign test over the blocks in which both were measured: if neither is faster in more than half of the blocks,
-//! how often one of them is faster is binomial (n, 1/2). The two one-sided hypotheses of every pair are tested together by S. Holm, "A simple
-//! sequentially rejective multiple test procedure", Scandinavian Journal of Statistics 6 (1979). The chance that any order told is wrong is then
-//! at most what was asked for, whatever the distributions are and however the comparisons depend on each other.
+//! Two candidates are compared by the sign test over the blocks in which both were measured. If neither is faster in
+//! more than half of the blocks, the number of blocks in which one of them is faster is binomial (n, 1/2). The two
+//! one-sided hypotheses of every pair are tested together by S. Holm, "A simple sequentially rejective multiple test
+//! procedure", Scandinavian Journal of Statistics 6 (1979). The probability that any reported order is wrong is then at
+//! most the requested one, for all distributions and any dependence between the comparisons.
 
 use super::confidence_sequence::{FEWEST, Stopping, median_sequence};
 use super::interval::is_level;
@@ -11,8 +12,9 @@ use statrs::distribution::{Binomial, DiscreteCDF};
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The pairs (less, more) of things that are told apart by their values in blocks; `miss` is the chance that any of them is wrong, in (0, 1).
-/// Blocks in which a thing has no value, or two things have the same, say nothing of them.
+/// Returns the pairs (less, more) of candidates whose order is established by their values in blocks; `miss`, in (0,
+/// 1), bounds the probability that any of these orders is wrong. For a pair, blocks with a missing value or two equal
+/// values are ignored.
 ///
 /// ```
 /// use pathmark_analysis::ranking::told_apart;
@@ -36,8 +38,9 @@ pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(u
     rejected.map(|(_, (_, pair))| pair).collect()
 }
 
-/// Which of several things may be the least: those that none of the others is less than. Each comparison misses with that probability at most, so
-/// the least thing is among them but for its comparisons with the others.
+/// Returns for each candidate whether it may be the least: none of the others is established to be less. Each
+/// comparison is wrong with probability `miss` at most, so only wrong comparisons with the others can exclude the least
+/// candidate.
 ///
 /// ```
 /// use pathmark_analysis::confidence_sequence::Stopping;
@@ -50,13 +53,14 @@ pub fn told_apart<K: Ord>(things: &[BTreeMap<K, f64>], miss: f64) -> BTreeSet<(u
 pub fn may_be_least<K: Ord>(things: &[&BTreeMap<K, f64>], miss: f64, stopping: Stopping) -> Vec<bool> {
     let is_less = |first, second| match stopping {
         Stopping::Fixed => is_level(miss) && sign_test(first, second) <= miss,
-        // Of the two sides that an interval misses on, one counts.
+        // An interval misses on two sides, of which only one counts here.
         Stopping::Sequential => order_so_far(first, second, 2.0 * miss) == Some(Ordering::Less),
     };
     things.iter().map(|own| !things.iter().any(|other| is_less(*other, *own))).collect()
 }
 
-/// How likely it is that the first is less in so many blocks, or more, if it is less in half of them.
+/// One-sided p-value: the probability that the first is less in at least this many blocks if it is less in half of
+/// them.
 fn sign_test<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>) -> f64 {
     let pairs = || first.iter().filter_map(|(block, value)| Some((*value, *second.get(block)?)));
     let wins = pairs().filter(|(a, b)| a < b).count() as u64;
@@ -64,8 +68,8 @@ fn sign_test<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>) -> f64
     Binomial::new(0.5, wins + losses).map_or(1.0, |chance| chance.cdf(losses))
 }
 
-/// Whether the first of two things is less or greater by the median of their ratios, as far as it is known at this look: all looks together miss
-/// with that probability at most. Too few blocks for an interval of 95 % tell nothing.
+/// Returns the order of two candidates by the median of their ratios, if this look establishes it. All looks together
+/// are wrong with probability `miss` at most. `None` also below the number of blocks that an interval of 95 % needs.
 pub fn order_so_far<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>, miss: f64) -> Option<Ordering> {
     let ratios: Vec<f64> = first.iter().filter_map(|(block, value)| Some(value / second.get(block)?)).collect();
     let interval = median_sequence(&ratios, 1.0 - miss).filter(|_| ratios.len() >= FEWEST)?;
@@ -73,15 +77,16 @@ pub fn order_so_far<K: Ord>(first: &BTreeMap<K, f64>, second: &BTreeMap<K, f64>,
     is_known.then(|| interval.low.total_cmp(&1.0))
 }
 
-/// The fewest blocks in which any two of so many things can be told apart.
+/// Returns the fewest blocks in which the order of any two of `things` candidates can be established.
 pub fn least_blocks(things: usize, miss: f64) -> u32 {
     let tests = (things * things.saturating_sub(1)).max(1) as f64;
     (0..64).find(|blocks| libm::ldexp(1.0, -blocks) <= miss / tests).map_or(64, i32::unsigned_abs)
 }
 
-/// The largest sets of which no two members are told apart; every thing is in one or more, and two things share a set unless they are told
-/// apart. Sets come in the order of their first members (H.-P. Piepho, "An algorithm for a letter-based representation of all-pairwise
-/// comparisons", Journal of Computational and Graphical Statistics 13, 2004).
+/// Returns the largest sets without an established order between two members. Every candidate is in at least one set,
+/// and two candidates share a set unless their order is in `told`. Sets are ordered by their first members (H.-P.
+/// Piepho, "An algorithm for a letter-based representation of all-pairwise comparisons", Journal of Computational and
+/// Graphical Statistics 13, 2004).
 pub fn groups(things: usize, told: &BTreeSet<(usize, usize)>) -> Vec<BTreeSet<usize>> {
     let mut sets: Vec<BTreeSet<usize>> = vec![(0..things).collect()];
     for (a, b) in told {
@@ -112,20 +117,21 @@ mod tests {
         values.iter().map(|own| own.iter().copied().enumerate().collect()).collect()
     }
 
-    /// With two things and n blocks of one order, p = 2^-n is compared with .05 / 2: five blocks do not do, six do.
+    /// With two candidates and n blocks of one order, p = 2^-n is compared with .05 / 2: five blocks are too few, six
+    /// are enough.
     #[test]
     fn it_takes_enough_blocks_to_tell_an_order() {
         assert_eq!(least_blocks(2, 0.05), 6);
         let told = |blocks: usize| told_apart(&things(&[&vec![2.0; blocks], &vec![1.0; blocks]]), 0.05);
         assert_eq!((told(5), told(6)), (BTreeSet::new(), BTreeSet::from([(1, 0)])));
-        // 30 things have 870 hypotheses: 2^14 = 16 384 < 870 / .05 = 17 400 <= 2^15.
+        // 30 candidates have 870 hypotheses: 2^14 = 16 384 < 870 / .05 = 17 400 <= 2^15.
         assert_eq!(least_blocks(30, 0.05), 15);
         assert_eq!((least_blocks(1, 0.05), least_blocks(0, 0.05)), (5, 5));
         assert!(told_apart(&things(&[&[1.0; 9]]), 0.05).is_empty());
         assert!(told_apart(&things(&[&[1.0; 9], &[2.0; 9]]), 0.0).is_empty());
     }
 
-    /// With one comparison the bet alone would do with seven blocks: 2^8 / 8 = 32 >= 20.
+    /// With one comparison, seven blocks would be enough for the bet alone: 2^8 / 8 = 32 >= 20.
     #[test]
     fn fewer_than_eight_blocks_tell_nothing_before_their_number_is_known() {
         for (blocks, expected) in [(7, [true, true]), (8, [false, true])] {
@@ -144,8 +150,9 @@ mod tests {
         assert!(told_apart(&things(&[&a[..5], &b]), 0.05).is_empty());
     }
 
-    /// Three things of 7 blocks, of which the first two differ in one: p = 8/128 for them and 1/128 for the others. Six hypotheses: Holm
-    /// compares the two least with .05 / 6 = .00833 and .05 / 5 = .01, and the third, .0625, with .05 / 4.
+    /// Three candidates in 7 blocks; the first two change their order in one: p = 8/128 for them and 1/128 for the
+    /// others. Six hypotheses: Holm compares the two least with .05 / 6 = .00833 and .05 / 5 = .01, and the third,
+    /// .0625, with .05 / 4.
     #[test]
     fn holms_limits_grow() {
         let (a, b, c) = ([1.0; 7], [2.0, 2.0, 2.0, 0.5, 2.0, 2.0, 2.0], [3.0; 7]);
@@ -160,11 +167,11 @@ mod tests {
         assert_eq!(sets(3, &[]), [vec![0, 1, 2]]);
         assert_eq!(sets(3, &[(0, 1), (0, 2), (1, 2)]), [[0], [1], [2]]);
         assert_eq!(sets(4, &[(0, 2), (0, 3), (1, 3)]), [[0, 1], [1, 2], [2, 3]]);
-        // An order that is not told between neighbours, and is between others.
+        // The four pairs without an established order form a cycle.
         assert_eq!(sets(4, &[(0, 3), (1, 2)]), [[0, 1], [0, 2], [1, 3], [2, 3]]);
     }
 
-    /// Every two things share a group unless they are told apart, and no group is part of another.
+    /// Two candidates share a group unless their order is established, and no group is a subset of another.
     #[test]
     fn groups_say_what_the_pairs_say() {
         let mut generator = Pcg64Dxsm::new(3, 1);
@@ -190,8 +197,9 @@ mod tests {
         }
     }
 
-    /// Tables of six things and 20 blocks, with noise of a heavy tail and a drift that all things of a block share: how many tables tell a
-    /// wrong order, and how many orders they tell. Thing i takes `step`^i times as long.
+    /// Simulates tables of six candidates and 20 blocks, with heavy-tailed noise and a drift that all candidates of a
+    /// block share. Returns how many tables have a wrong order, and how many orders are established. Candidate i takes
+    /// `step`^i times as long.
     fn tables(count: u32, step: f64) -> (u32, usize) {
         let mut generator = Pcg64Dxsm::new(11, 4);
         let mut uniform = || ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0;
@@ -213,8 +221,8 @@ mod tests {
         (wrong, told)
     }
 
-    /// Equal things: at most 5 % of 400 tables tell an order, 20, and three standard deviations are 13. Things that differ by 10 % each are told
-    /// apart, most of them, and never the wrong way round.
+    /// Equal candidates: at most 5 % of 400 tables, 20, establish an order, and three standard deviations are 13. For
+    /// candidates 10 % apart, most orders are established, and few are wrong.
     #[test]
     fn orders_are_seldom_wrong_and_found() {
         let ((wrong, _), (wrong_way, told)) = (tables(400, 1.0), tables(40, 1.1));

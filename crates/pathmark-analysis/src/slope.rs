@@ -1,9 +1,10 @@
 //! The convergence slope: the exponent of RMSE against samples per pixel, -1/2 for independent samples.
 //!
-//! One line through all points of all seeds would have too narrow an interval, because the points of one curve are prefixes of one render. So the
-//! line goes through the logarithms of the *mean* squared errors, and the interval is over seeds ([`super::jackknife`]). A line in each seed
-//! and the mean of their slopes would be simpler, but the logarithm of a scattered error is on average below that of its expectation, by
-//! half its squared variation: more where few samples meet a heavy tail, which tilts every curve alike.
+//! One line through all points of all seeds would have too narrow an interval, because the points of one curve are
+//! prefixes of one render. Therefore the line is fitted to the logarithms of the *mean* squared errors, and the
+//! interval is over seeds ([`super::jackknife`]). The mean slope of one line per seed would be simpler but biased. The
+//! logarithm of a scattered error is on average below the logarithm of its expectation, by half its squared variation.
+//! The difference is larger where few samples meet a heavy tail, and it tilts every curve in the same direction.
 
 use serde::Serialize;
 
@@ -18,10 +19,10 @@ pub struct PowerLaw {
     pub exponent: Estimate,
     /// ln RMSE at x = 1, for drawing the line.
     pub log_scale: f64,
-    /// Change of the exponent for each factor e in x, with an interval over the seeds; 0 for a power law. None for two points a curve, through which
-    /// any line fits.
+    /// Change of the exponent for each factor e in x, with an interval over the seeds; 0 for a power law. `None` for
+    /// curves of two points, which any line fits.
     pub bend: Option<Estimate>,
-    /// How many seeds there were.
+    /// Number of seeds.
     pub seeds: usize,
 }
 
@@ -31,15 +32,16 @@ impl PowerLaw {
         libm::exp(self.log_scale + self.exponent.value * libm::log(x))
     }
 
-    /// Whether the points are not on a line: the interval of the bend excludes 0. The exponent is then a mean over a curve that has none, as with
-    /// a reference that is too noisy, a bias that the error runs into, or samples that are better than independent from some number on.
+    /// Whether the points do not lie on a line: the interval of the bend excludes 0. The curve then has no single
+    /// exponent, and the fitted one is a mean. Causes are a reference that is too noisy, a bias that dominates the
+    /// error, or samples that become better than independent at some number.
     pub fn lacks_fit(&self) -> bool {
         self.bend.is_some_and(|bend| !bend.interval.contains(0.0))
     }
 }
 
-/// The power law through the points of some curves. `None` for curves without two different x, for curves that do not differ, or an x or a mean
-/// squared error that is not positive and finite, be it with one seed left out.
+/// Fits a power law to the points of some curves. `None` for curves without two different x or without differences
+/// between them, and for an x or a mean squared error that is not positive and finite, also with one seed left out.
 pub fn power_law(curves: &SeedCurves, level: f64) -> Option<PowerLaw> {
     let whole = Fit::of(curves.whole())?;
     let bend = match whole.bend {
@@ -50,7 +52,7 @@ pub fn power_law(curves: &SeedCurves, level: f64) -> Option<PowerLaw> {
     Some(PowerLaw { exponent, log_scale: whole.log_scale, bend, seeds: curves.seeds() })
 }
 
-/// A line through (ln x, ln MSE) in terms of RMSE, and how much a parabola would bend it.
+/// A line through (ln x, ln MSE) in terms of RMSE, and the bend of a parabola through the same points.
 struct Fit {
     exponent: f64,
     log_scale: f64,
@@ -65,8 +67,9 @@ impl Fit {
         Some(Self { exponent: 0.5 * slope, log_scale: 0.5 * intercept, bend: Self::bend(&points) })
     }
 
-    /// Twice the coefficient of the square in a least squares parabola, halved for RMSE: the residuals of ln MSE against the residuals of the
-    /// square (R. Frisch and F. V. Waugh, "Partial time regressions as compared with individual trends", Econometrica 1, 1933).
+    /// Returns twice the quadratic coefficient of a least squares parabola, halved for RMSE. It is the slope of the
+    /// residuals of ln MSE over the residuals of the square (R. Frisch and F. V. Waugh, "Partial time regressions as
+    /// compared with individual trends", Econometrica 1, 1933).
     fn bend(points: &[(f64, f64)]) -> Option<f64> {
         let squares: Vec<(f64, f64)> = points.iter().map(|&(x, _)| (x, x * x)).collect();
         let (of_y, of_square) = (Sums::of(points)?, Sums::of(&squares)?);
@@ -74,7 +77,7 @@ impl Fit {
             (square - of_square.intercept() - of_square.slope() * x, y - of_y.intercept() - of_y.slope() * x)
         });
         let (product, square) = residuals.fold((0.0, 0.0), |(p, s), (q, r)| (p + q * r, s + q * q));
-        // Two different x leave no residual but rounding.
+        // With only two different x, the residuals are rounding errors.
         (square > 1e-9 * squares.iter().map(|(_, square)| square * square).sum::<f64>()).then(|| product / square)
     }
 }
@@ -96,8 +99,8 @@ mod tests {
         ((generator.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
     }
 
-    /// Squared errors of the prefixes of one render: `pixels` running means of samples that are 0 but for one in `rarity`, which is `rarity`,
-    /// so that the mean is 1 and the variance of a sample rarity - 1.
+    /// Squared errors of the prefixes of one render. Each of `pixels` values is a running mean of samples that are
+    /// `rarity` with probability 1 / `rarity` and 0 otherwise, so their mean is 1 and their variance `rarity` - 1.
     fn render(generator: &mut Pcg64Dxsm, pixels: usize, rarity: f64) -> Vec<(f64, f64)> {
         let mut sums = vec![0.0; pixels];
         let mut done = 0.0;
@@ -119,7 +122,7 @@ mod tests {
     fn exact_power_laws() {
         let power = |scale: f64| SPP.map(|spp| (spp, scale * libm::pow(spp, -0.8))).to_vec();
         let law = of_curves(&[power(1.0), power(3.0), power(5.0 + 1e-9)], 0.95);
-        // Parallel curves have no spread of slopes but rounding, if any.
+        // The slopes of parallel curves differ by rounding errors at most.
         if let Some(law) = law {
             assert!((law.exponent.value + 0.4).abs() < 1e-12 && (law.at(1.0) - 3.0_f64.sqrt()).abs() < 1e-8);
         }
@@ -145,8 +148,8 @@ mod tests {
         assert!((law.bend.unwrap().value - 0.3).abs() < 1e-3 && law.lacks_fit(), "{law:?}");
     }
 
-    /// 1000 experiments of six seeds: the interval has its level although the points of a curve share samples, and a pooled line through all
-    /// points has not; what flags a lack of fit does so at its own level.
+    /// 1000 experiments of six seeds: the interval has its nominal coverage although the points of a curve share
+    /// samples. A pooled line through all points does not. The flag for a lack of fit is raised at its nominal rate.
     #[test]
     fn the_interval_covers_where_a_pooled_one_does_not() {
         let mut generator = Pcg64Dxsm::new(9, 4);
@@ -158,14 +161,16 @@ mod tests {
             flags += u32::from(law.lacks_fit());
             pooled_hits += u32::from(log_log(&curves.concat(), 0.95).unwrap().slope.interval.contains(-1.0));
         }
-        // Nominal 95 % and 5 %; the simulation's standard deviation is 0.7 %. A jackknife over six is a little generous or short.
+        // Nominal 95 % and 5 %; the simulation's standard deviation is 0.7 %. A jackknife over six seeds is slightly
+        // too wide or too narrow.
         assert!((925..=975).contains(&hits), "{hits} of 1000");
         assert!((25..=75).contains(&flags), "{flags} of 1000 flagged");
         assert!(pooled_hits < hits - 30, "{pooled_hits} against {hits}");
     }
 
-    /// Where one sample in 50 finds the light, seeds scatter at few samples; the mean of the logarithms lies below the logarithm of the mean
-    /// there, and a line in each seed is tilted. The line through the means is not.
+    /// If one sample in 50 finds the light, errors at few samples vary strongly between seeds. The mean of their
+    /// logarithms lies below the logarithm of the mean there, and tilts a line fitted to each seed. The line through
+    /// the means is not tilted.
     #[test]
     fn a_heavy_tail_does_not_tilt_the_line() {
         let mut generator = Pcg64Dxsm::new(2, 8);

@@ -1,4 +1,4 @@
-//! What more workers bring: speedup, efficiency, and the serial fraction that would explain them.
+//! Gain from more workers: speedup, efficiency, and the serial fraction that would explain them.
 //!
 //! Karp-Flatt: A. H. Karp and H. P. Flatt, "Measuring parallel processor performance", Communications of the ACM 33(5), 1990,
 //! e = (1/S - 1/p) / (1 - 1/p), here from times in seconds. Constant e over p means serial work; growing e means overhead.
@@ -31,8 +31,9 @@ pub fn serial_fraction(speedup: f64, workers: usize) -> Option<f64> {
     fraction.is_finite().then_some(fraction)
 }
 
-/// The serial fraction of the median of `speedups`, one for each pair of runs measured side by side. It falls with the speedup, so the
-/// order statistics that enclose the median speedup, put into the formula, enclose the fraction with the same confidence.
+/// Returns the serial fraction of the median of `speedups`, one for each pair of runs measured side by side. The
+/// fraction falls with the speedup. The order statistics that enclose the median speedup therefore give ends that
+/// enclose the fraction with the same confidence.
 ///
 /// `None` for fewer than two workers or two speedups, or one that is not positive and finite.
 pub fn serial_fraction_estimate(speedups: &[f64], workers: usize, level: f64) -> Option<Estimate> {
@@ -54,7 +55,7 @@ pub fn is_superlinear(speedup: f64, workers: usize) -> bool {
     speedup > workers as f64
 }
 
-/// A speedup that needs an explanation beside the number.
+/// An unusual speedup, which needs an explanation beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Oddity {
@@ -64,7 +65,7 @@ pub enum Oddity {
     Slowdown,
 }
 
-/// What is odd about a speedup, judged by its interval so that noise alone seldom raises it.
+/// Returns the oddity of a speedup, if any. It is judged by the whole interval, so noise alone seldom causes one.
 pub fn oddity(speedup: &Interval, workers: usize) -> Option<Oddity> {
     if is_superlinear(speedup.low, workers) {
         Some(Oddity::Superlinear)

@@ -1,8 +1,10 @@
-//! Why a speedup may exceed the number of workers: the likely cause, as far as the evidence beside the number tells.
+//! Superlinear speedup: the likely cause of a speedup above the number of workers, as far as the recorded evidence
+//! tells.
 //!
-//! A work-conserving schedule on p equal cores can't be more than p times as fast as the best serial program (V. Faber, O. M. Lubeck and
-//! A. B. White, "Superlinear speedup of an efficient sequential algorithm is not possible", Parallel Computing 3, 1986), so a speedup above
-//! p says that something else differed between the two runs. The first cause for which there is evidence is named; none is guessed.
+//! A work-conserving schedule on p equal cores can't be more than p times as fast as the best serial program (V. Faber,
+//! O. M. Lubeck and A. B. White, "Superlinear speedup of an efficient sequential algorithm is not possible", Parallel
+//! Computing 3, 1986). A speedup above p therefore shows that something else differed between the two runs. The first
+//! cause with evidence is named; none is guessed.
 
 use std::fmt;
 
@@ -10,12 +12,12 @@ use serde::Serialize;
 
 use super::interval::Interval;
 
-/// What is known beside the speedup.
+/// Evidence recorded beside a speedup.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Evidence {
     /// Time of the serial baseline over the strategy's own time at one worker.
     pub at_one_worker: Option<Interval>,
-    /// Warnings about load of others, changing clocks and the like that the runs carry.
+    /// Number of warnings of the runs: load of other programs, changing clocks and the like.
     pub warnings: usize,
     /// Logical processors of the machine.
     pub processors: Option<usize>,
@@ -27,13 +29,13 @@ pub struct Evidence {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Cause {
-    /// The strategy is faster than the baseline with one worker already.
+    /// The strategy is already faster than the baseline at one worker.
     SlowBaseline,
     /// The runs carry warnings.
     Disturbance,
     /// Logical processors share cores.
     SharedCores,
-    /// Nothing that is known explains it.
+    /// No recorded evidence explains it.
     Unexplained,
 }
 
@@ -50,7 +52,7 @@ impl fmt::Display for Cause {
     }
 }
 
-/// The first cause for which there is evidence, the strongest evidence first.
+/// Returns the first cause with evidence, with the strongest evidence first.
 pub fn cause(evidence: &Evidence) -> Cause {
     let shared = evidence.processors.zip(evidence.physical_cores).is_some_and(|(logical, cores)| logical > cores);
     if evidence.at_one_worker.is_some_and(|speedup| speedup.low > 1.0) {

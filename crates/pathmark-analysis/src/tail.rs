@@ -1,12 +1,14 @@
-//! How far a few samples decide a mean: the estimate of a variance from samples with a heavy tail is not to be believed before they are many.
+//! Heavy tails: how far a few samples decide a mean. With a heavy tail, a variance estimate is unreliable until there
+//! are many samples.
 //!
-//! A path that finds a small light by chance, or through glass, brings a sample thousands of times the mean. Its square decides the variance.
+//! A path that finds a small light by chance, or through glass, gives a sample thousands of times the mean. Its square
+//! decides the variance.
 
 use serde::Serialize;
 
 use super::interval::all_finite;
 
-/// What the tail of some samples looks like.
+/// Measures of the tail of some samples.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Tail {
     /// Fourth moment about the mean over the square of the second: 3 for a normal distribution, 1.8 for a uniform one.
@@ -15,10 +17,12 @@ pub struct Tail {
     pub largest_share: f64,
 }
 
-/// The tail of groups of samples, such as the samples of each pixel: deviations are from the group's own mean, moments over all groups.
+/// Measures the tail of groups of samples, such as the samples of each pixel. Deviations are from the group's own mean,
+/// moments over all groups.
 ///
-/// A group of m samples has m - 1 deviations that are free, which takes a factor (m - 1)/m off its squared deviations; groups of one size keep
-/// kurtosis and share comparable. `None` for a value that is not finite or without any deviation.
+/// A group of m samples has m - 1 free deviations, which reduces its squared deviations by a factor (m - 1)/m. Kurtosis
+/// and share are comparable between groups of one size. `None` for a value that is not finite, or without any
+/// deviation.
 pub fn tail<'a>(groups: impl IntoIterator<Item = &'a [f64]>) -> Option<Tail> {
     let (mut count, mut squares, mut fourths, mut largest) = (0_u64, 0.0, 0.0, 0.0_f64);
     for group in groups {

@@ -1,15 +1,16 @@
-//! Two ways to render the same scene, side by side: seconds to the same error, and errors after the same seconds.
+//! Comparison of two renderers of the same scene: time to equal error, and error after equal time.
 
 use super::interval::Estimate;
 use super::price::Renderer;
 
-/// Seconds of `a` to an RMSE over those of `b`: below 1 where `a` is the better one. The two are taken to be independent, which widens the
-/// interval where they share samples.
+/// Returns the seconds of `a` to reach an RMSE over the seconds of `b`: below 1 if `a` is better. Both are assumed to
+/// be independent, so the interval is wider than necessary if they share samples.
 pub fn equal_error(a: &Renderer, b: &Renderer, rmse: f64) -> Option<Estimate> {
     a.price(rmse)?.seconds.times(&b.price(rmse)?.seconds.inverse()?)
 }
 
-/// The RMSE of `a` after so many seconds over that of `b`. Where samples are independent, it is the root of [`equal_error`].
+/// Returns the RMSE of `a` over the RMSE of `b` after the same `seconds`. For independent samples, it is the square
+/// root of [`equal_error`].
 pub fn equal_time(a: &Renderer, b: &Renderer, seconds: f64) -> Option<Estimate> {
     a.rmse_after(seconds)?.times(&b.rmse_after(seconds)?.inverse()?)
 }

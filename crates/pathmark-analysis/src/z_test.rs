@@ -11,26 +11,26 @@ pub fn normal_quantile(p: f64) -> Option<f64> {
 
 /// The |z| beyond which a two-sided test at significance `alpha` rejects: 1.95996 for 0.05.
 pub fn critical_value(alpha: f64) -> Option<f64> {
-    // From the lower tail, where a tiny alpha keeps its digits.
+    // From the lower tail, which keeps full precision for a tiny alpha.
     normal_quantile(0.5 * alpha).map(|z| -z)
 }
 
 /// The difference of two independent estimates over its standard error, which is the root of the sum of their squared errors.
 ///
-/// `None` if that is not finite, as for two errors of 0.
+/// `None` if the score is not finite, as for two errors of 0.
 pub fn z_score(a: f64, standard_error_a: f64, b: f64, standard_error_b: f64) -> Option<f64> {
     let z = (a - b) / libm::hypot(standard_error_a, standard_error_b);
     (standard_error_a >= 0.0 && standard_error_b >= 0.0 && z.is_finite()).then_some(z)
 }
 
-/// The probability of a |z| at least this large when the two estimates mean the same.
+/// The probability of a |z| at least this large if both estimates have the same expectation.
 pub fn two_sided_p(z: f64) -> Option<f64> {
     z.is_finite().then(|| libm::erfc(z.abs() * std::f64::consts::FRAC_1_SQRT_2))
 }
 
-/// The significance for each of `tests` independent tests that makes a false alarm anywhere as likely as `alpha`:
-/// 1 - (1 - alpha)^(1/tests) (Z. Sidak, "Rectangular confidence regions for the means of multivariate normal distributions",
-/// Journal of the American Statistical Association 62, 1967).
+/// The significance for each of `tests` independent tests at which the probability of any false alarm is `alpha`:
+/// 1 - (1 - alpha)^(1/tests) (Z. Sidak, "Rectangular confidence regions for the means of multivariate normal
+/// distributions", Journal of the American Statistical Association 62, 1967).
 pub fn sidak(alpha: f64, tests: usize) -> Option<f64> {
     (is_level(alpha) && tests > 0).then(|| -libm::expm1(libm::log1p(-alpha) / tests as f64))
 }

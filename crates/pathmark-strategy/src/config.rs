@@ -1,4 +1,4 @@
-//! What a strategy is made from, and where its threads come from.
+//! A strategy's configuration, and the source of its threads.
 
 use std::io;
 use std::num::NonZeroUsize;
@@ -7,48 +7,49 @@ use std::thread::{self, JoinHandle};
 
 use crate::Discipline;
 
-/// What is asked of a strategy.
+/// The configuration of a strategy.
 #[derive(Clone)]
 pub struct Config {
-    /// How many workers, where the strategy asks.
+    /// Number of workers; some strategies ignore it.
     pub threads: NonZeroUsize,
-    /// What follows the colon in `--strategy name:parameter`.
+    /// The text after the colon in `--strategy name:parameter`.
     pub parameter: Option<String>,
-    /// Where threads come from.
+    /// The source of threads.
     pub spawner: Arc<dyn Spawner>,
 }
 
 impl Config {
-    /// `threads` real threads and no parameter.
+    /// Returns a configuration with `threads` threads of the operating system and no parameter.
     pub fn new(threads: NonZeroUsize) -> Self {
         Self { threads, parameter: None, spawner: Arc::new(SystemThreads) }
     }
 }
 
-/// What a strategy is made from: a [`Config`] whose parameter [`Entry::build`](crate::Entry::build) has read.
+/// The input for making a strategy: a [`Config`] whose parameter [`Entry::build`](crate::Entry::build) has parsed.
 #[derive(Clone)]
 pub struct Blueprint {
-    /// The strategy's name, for its errors.
+    /// The strategy's name, for its error messages.
     pub strategy: &'static str,
-    /// How it shall hand out jobs.
+    /// How the strategy hands out jobs.
     pub discipline: Discipline,
-    /// How many workers it shall have, unless it ignores that.
+    /// Number of workers; some strategies ignore it.
     pub threads: NonZeroUsize,
-    /// Where its threads come from.
+    /// The source of its threads.
     pub spawner: Arc<dyn Spawner>,
 }
 
-/// Where threads come from; a test puts one here that runs out of them.
+/// A source of threads; a test can use one that runs out of threads.
 pub trait Spawner: Send + Sync {
     /// Starts a thread called `name` that runs `body`.
     fn spawn(&self, name: String, body: Box<dyn FnOnce() + Send + 'static>) -> io::Result<JoinHandle<()>>;
 }
 
-/// Bytes of stack for a worker of a program that is most likely not optimised: where nothing shares a place on the stack, a SIMD kernel takes
-/// 3 MiB of it and Rust's threads have 2 MiB.
+/// Stack size in bytes for a worker in a build that is most likely not optimised. Without optimisation variables share
+/// no stack slots, so a SIMD kernel needs 3 MiB of stack; Rust's threads have 2 MiB.
 const UNOPTIMISED_STACK: usize = 16 << 20;
 
-/// Threads of the operating system. Their stacks are Rust's own (`RUST_MIN_STACK`, or 2 MiB), and 16 MiB in builds with debug assertions.
+/// Threads of the operating system. Their stack size is Rust's default (`RUST_MIN_STACK`, or 2 MiB), and 16 MiB in
+/// builds with debug assertions.
 #[derive(Debug, Clone, Copy)]
 pub struct SystemThreads;
 

@@ -1,20 +1,20 @@
 //! A counter from which all workers take numbers, each number once.
 //!
-//! Its shape is the whole idea of self-scheduling: one atomic addition hands out the next piece of work, whoever asks.
+//! This is the idea of self-scheduling: one atomic addition hands out the next job or chunk to any worker that asks.
 
 use super::sync::{AtomicUsize, CachePadded, Ordering};
 
-/// Hands out 0, 1, 2 and so on.
+/// A counter that hands out 0, 1, 2 and so on.
 #[derive(Default)]
 pub(super) struct Counter {
-    // Padded, so that taking a number doesn't slow down whoever reads the neighbours, the counts of an `Arc` among them.
+    // Padded: otherwise taking a number would slow down readers of neighbouring data, such as the counts of an `Arc`.
     next: CachePadded<AtomicUsize>,
 }
 
 impl Counter {
-    /// The next number, which nobody else gets.
+    /// Returns the next number; no other caller gets it.
     pub(super) fn take(&self) -> usize {
-        // Relaxed: numbers alone are shared out here; what jobs write is published by joining the threads.
+        // Relaxed suffices: the counter shares only numbers. Joining the threads publishes the data that jobs write.
         self.next.fetch_add(1, Ordering::Relaxed)
     }
 }

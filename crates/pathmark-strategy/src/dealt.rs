@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::panics::Panics;
 use crate::{Blueprint, Deal, Discipline, Job, Strategy, StrategyError, team};
 
-/// A strategy whose discipline is a deal.
+/// Makes a strategy whose discipline is a deal.
 pub(crate) fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
     match blueprint.discipline {
         Discipline::Dealt(deal) => Ok(Box::new(Dealt { blueprint: blueprint.clone(), deal })),

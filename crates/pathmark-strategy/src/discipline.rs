@@ -1,55 +1,57 @@
-//! How a strategy hands out jobs, apart from the threads, queues and locks that it does it with.
+//! Disciplines: how a strategy hands out jobs, without the threads, queues and locks behind it.
 //!
-//! A strategy's [`Discipline`] is pure data and pure functions, so the simulator can replay it on workers that this machine does not
-//! have. The strategy itself is built on the same functions wherever that is possible: both then agree by construction.
+//! A strategy's [`Discipline`] is pure data and pure functions, so the simulator can replay it with more workers than
+//! this machine has. Where possible, the strategy itself calls the same functions; then both agree by construction.
 
 use crate::ledger::LearnedRule;
 use std::iter::StepBy;
 use std::ops::Range;
 
-/// Who gets which job next.
+/// The rule by which workers get their jobs.
 #[derive(Debug, Clone, Copy)]
 pub enum Discipline {
     /// One worker takes the jobs in order.
     InOrder,
-    /// Every job has a thread of its own, started in order; the operating system shares the processors among them.
+    /// Each job has its own thread. Threads start in order, and the operating system shares the processors among them.
     AllAtOnce,
     /// Each worker's jobs are fixed beforehand.
     Dealt(Deal),
-    /// A worker that is free takes the next chunk of jobs from one place that all share.
+    /// A free worker takes the next chunk of jobs from one place that all workers share.
     Chunks(ChunkRule),
-    /// A worker that is free takes the next chunk of jobs, whose size depends on how fast the workers have been.
+    /// A free worker takes the next chunk of jobs, whose size depends on the measured speeds of the workers.
     Learned(LearnedRule),
-    /// A worker that is free takes from its own queue, and when that is empty from another's.
+    /// A free worker takes jobs from its own queue, or from another worker's queue if its own is empty.
     Stealing(Stealing),
-    /// The range of jobs is halved again and again; a worker goes on with the first half, and one that is free takes the largest
-    /// second half that waits anywhere.
+    /// The range of jobs is halved again and again. A worker continues with the first half; a free worker takes the
+    /// largest second half that waits anywhere.
     Halving,
 }
 
 impl Discipline {
-    /// A worker that is free takes the next job.
+    /// A free worker takes the next job.
     pub const ONE_BY_ONE: Self = Self::Chunks(ChunkRule { size: |_| 1, parameter: 1 });
 }
 
-/// The jobs of `worker` out of `workers`; together the workers have each of `0..jobs` once. `workers` is at least 1.
+/// A function that returns the jobs of `worker` out of `workers`. Each job in `0..jobs` belongs to exactly one worker.
+/// `workers` is at least 1.
 pub type Deal = fn(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>>;
 
-/// How large the chunk is that a free worker takes from the shared range of jobs.
+/// The rule for the size of the chunk that a free worker takes from the shared range of jobs.
 #[derive(Debug, Clone, Copy)]
 pub struct ChunkRule {
-    /// Jobs in the next chunk. What is less than one or more than what is left is corrected by [`ChunkRule::next`].
+    /// Number of jobs in the next chunk. [`ChunkRule::next`] clamps it to at least 1 and at most the number of jobs
+    /// left.
     pub size: fn(&Handout) -> usize,
     /// The number that the user may set, for rules that have one.
     pub parameter: usize,
 }
 
-/// How far the jobs have been handed out.
+/// The progress of handing out the jobs of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Handout {
-    /// Jobs in all.
+    /// Total number of jobs.
     pub jobs: usize,
-    /// Workers, at least 1.
+    /// Number of workers, at least 1.
     pub workers: usize,
     /// Jobs that have been handed out.
     pub start: usize,
@@ -60,7 +62,7 @@ pub struct Handout {
 }
 
 impl ChunkRule {
-    /// The next chunk; `None` when all jobs have been handed out.
+    /// Returns the next chunk, or `None` when all jobs have been handed out.
     pub fn next(&self, handout: &mut Handout) -> Option<Range<usize>> {
         let left = handout.jobs - handout.start;
         if left == 0 {
@@ -73,7 +75,7 @@ impl ChunkRule {
         Some(chunk)
     }
 
-    /// All chunks, in the order in which they are taken.
+    /// Returns all chunks in the order in which they are taken.
     pub fn chunks(self, jobs: usize, workers: usize) -> impl Iterator<Item = Range<usize>> {
         let mut handout = Handout { jobs, workers, start: 0, chunks: 0, parameter: self.parameter };
         std::iter::from_fn(move || self.next(&mut handout))
@@ -83,39 +85,39 @@ impl ChunkRule {
 /// The details of a stealing discipline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stealing {
-    /// Where the jobs are at the beginning.
+    /// Where the jobs are at the beginning of a run.
     pub start: Start,
-    /// How much a thief takes.
+    /// Number of jobs that a thief takes.
     pub amount: Amount,
-    /// From whom.
+    /// The worker that a thief takes them from.
     pub victim: Victim,
 }
 
-/// Where the jobs are before anyone has worked.
+/// Where the jobs are at the beginning of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
-    /// Each worker has one contiguous block of them.
+    /// Each worker has one contiguous block of jobs.
     Blocks,
-    /// All are in one shared queue, from which a worker takes half of what is there, up to this many at a time.
+    /// All jobs are in one shared queue. A worker takes half of the queue at a time, up to this many jobs.
     Shared(usize),
 }
 
-/// How much a thief takes from its victim.
+/// Number of jobs that a thief takes from its victim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Amount {
     /// One job.
     One,
-    /// Half of what the victim has left, rounded up.
+    /// Half of the victim's remaining jobs, rounded up.
     Half,
 }
 
-/// Whom a thief asks.
+/// The worker that a thief steals from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Victim {
-    /// The next worker that has something, counted from the thief.
+    /// The next worker that has jobs, counted upwards from the thief.
     Neighbour,
-    /// The first one that has something, from a random start.
+    /// The first worker that has jobs, counted upwards from a random worker.
     Random,
-    /// The one that has most.
+    /// The worker that has the most jobs.
     Richest,
 }

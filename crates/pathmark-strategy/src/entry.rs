@@ -1,13 +1,13 @@
-//! A strategy's line in the table.
+//! Entries of the strategy table.
 
 use crate::{
     Blueprint, ChunkRule, Config, Deal, Discipline, Handout, LearnedRule, Strategy, StrategyError, dealt, learning,
     self_scheduling,
 };
 
-/// A strategy's line in the table: what it is called, what it promises, and how it is made.
+/// A strategy's entry in the table: its name, its promises, and the function that makes it.
 ///
-/// [`Entry::new`] and [`Entry::chunks`] fill in what most strategies have in common; the rest is said by field:
+/// [`Entry::new`] and [`Entry::chunks`] set the fields that most strategies share; set the other fields by name:
 ///
 /// ```
 /// use pathmark_strategy::{Discipline, Entry, Job, Strategy, StrategyError, Workers, contract};
@@ -31,33 +31,34 @@ use crate::{
 pub struct Entry {
     /// Its name on the command line and in records: lower-case words with `-` between them.
     pub name: &'static str,
-    /// What it does, in one line.
+    /// A description in one line.
     pub about: &'static str,
     /// Where its jobs run.
     pub workers: Workers,
     /// Who starts its threads.
     pub threads: Threads,
-    /// When a worker that is free finds out about jobs that wait at another one.
+    /// When a free worker learns of jobs that wait at another worker.
     pub sharing: Sharing,
-    /// How it hands out jobs if nothing is set.
+    /// How it hands out jobs if the user sets no parameter.
     pub discipline: Discipline,
-    /// What may be set, if anything.
+    /// The parameter that a user may set, if there is one.
     pub parameter: Option<Parameter>,
-    /// Makes one that is ready to run; pools start their threads here.
+    /// Makes a strategy that is ready to run; pools start their threads here.
     pub make: fn(&Blueprint) -> Result<Box<dyn Strategy>, StrategyError>,
 }
 
-/// What a user may set of a strategy.
+/// A parameter of a strategy that a user may set.
 #[derive(Debug, Clone, Copy)]
 pub struct Parameter {
-    /// What it can be, for the error that refuses anything else.
+    /// The allowed values, for the error that refuses any other value.
     pub allowed: &'static str,
-    /// How the strategy then hands out jobs; `None` if the text means nothing to it.
+    /// Parses the parameter into a discipline; `None` if the text is not a valid parameter.
     pub read: fn(&str) -> Option<Discipline>,
 }
 
 impl Entry {
-    /// A strategy that runs its jobs on [`Config::threads`] workers from [`Config::spawner`], shares work at once and has nothing to set.
+    /// Returns the entry of a strategy that runs its jobs on [`Config::threads`] workers from [`Config::spawner`],
+    /// shares work at once and has no parameter.
     pub const fn new(
         name: &'static str,
         about: &'static str,
@@ -76,7 +77,8 @@ impl Entry {
         }
     }
 
-    /// A self-scheduling strategy: a worker that is free takes the next chunk of jobs, whose size `size` says. Threads start in each run.
+    /// Returns the entry of a self-scheduling strategy: a free worker takes the next chunk of jobs, and `size` sets its
+    /// size. Threads start in each run.
     ///
     /// ```
     /// use pathmark_strategy::{Entry, contract};
@@ -88,17 +90,19 @@ impl Entry {
         Self::new(name, about, Discipline::Chunks(ChunkRule { size, parameter: 1 }), self_scheduling::make)
     }
 
-    /// A self-scheduling strategy whose workers read the clock and get chunks by how fast they have been. Threads start in each run.
+    /// Returns the entry of a self-scheduling strategy whose workers read the clock. Chunk sizes depend on the measured
+    /// speeds. Threads start in each run.
     pub const fn learned(name: &'static str, about: &'static str, rule: LearnedRule) -> Self {
         Self::new(name, about, Discipline::Learned(rule), learning::make)
     }
 
-    /// A strategy whose workers know their jobs before they start. Threads start in each run.
+    /// Returns the entry of a strategy whose workers know their jobs before they start. Threads start in each run.
     pub const fn dealt(name: &'static str, about: &'static str, deal: Deal) -> Self {
         Self::new(name, about, Discipline::Dealt(deal), dealt::make)
     }
 
-    /// How it hands out jobs, given what follows the colon in `--strategy name:parameter`; refuses what means nothing to it.
+    /// Returns the discipline for the text after the colon in `--strategy name:parameter`. An invalid parameter is an
+    /// error.
     pub fn discipline(&self, parameter: Option<&str>) -> Result<Discipline, StrategyError> {
         let Some(value) = parameter else { return Ok(self.discipline) };
         self.parameter.and_then(|known| (known.read)(value)).ok_or_else(|| StrategyError::Parameter {
@@ -108,7 +112,7 @@ impl Entry {
         })
     }
 
-    /// Makes one that is ready to run.
+    /// Makes a strategy that is ready to run.
     pub fn build(&self, config: Config) -> Result<Box<dyn Strategy>, StrategyError> {
         let discipline = self.discipline(config.parameter.as_deref())?;
         let Config { threads, spawner, .. } = config;
@@ -123,12 +127,12 @@ pub enum Workers {
     Caller,
     /// On a thread for each job; [`Config::threads`] has no meaning.
     PerJob,
-    /// On as many threads as [`Config::threads`] says.
+    /// On [`Config::threads`] threads.
     Threads,
 }
 
 impl Workers {
-    /// How many jobs can run at the same time when `threads` are asked for and there are `jobs`.
+    /// Returns how many of `jobs` jobs can run at the same time when `threads` threads are requested.
     pub fn at_once(self, threads: usize, jobs: usize) -> usize {
         match self {
             Self::Caller => jobs.min(1),
@@ -141,19 +145,20 @@ impl Workers {
 /// Who starts a strategy's threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Threads {
-    /// [`Config::spawner`], all of them.
+    /// [`Config::spawner`] starts all of them.
     Spawner,
-    /// The library behind the strategy starts some of them by its own means, and perhaps more that run no jobs. If the system refuses one of
-    /// these, what happens is the library's affair; [`library::start`](crate::library::start) turns what can be known into an error.
+    /// The library behind the strategy starts some of them itself, and perhaps more that run no jobs. If the system
+    /// refuses one of these, the library decides what happens; [`library::start`](crate::library::start) turns
+    /// detectable failures into an error.
     Library,
 }
 
-/// When a worker that is free finds out about jobs that wait at another one.
+/// When a free worker learns of jobs that wait at another worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sharing {
-    /// At once, so as many jobs as there are workers can wait for each other.
+    /// At once. As many jobs as there are workers can therefore wait for each other.
     AtOnce,
-    /// When the other one comes between two of its jobs and some time has passed. A job that waits for another one may wait for
-    /// ever.
+    /// When some time has passed and the other worker is between two of its jobs. A job that waits for another job may
+    /// wait forever.
     Heartbeat,
 }

@@ -1,48 +1,48 @@
-//! Why a strategy could not be made, or could not run.
+//! Errors of making and running strategies.
 
 use std::io;
 
-/// Why a strategy could not be made, or could not run.
+/// The reason why a strategy could not be made or could not run.
 #[derive(Debug, thiserror::Error)]
 pub enum StrategyError {
-    /// The system gave no thread. The workers that had been started have stopped.
+    /// The system refused a thread. The workers started before it have stopped.
     #[error("starting worker {worker} of {workers}: {source}")]
     Spawn {
-        /// Which one, counted from 1.
+        /// The number of the refused worker, counted from 1.
         worker: usize,
-        /// How many there should have been.
+        /// Number of workers that should have started.
         workers: usize,
-        /// What the system said.
+        /// The system's error.
         source: io::Error,
     },
-    /// The text behind the strategy's name means nothing to it.
+    /// The text after the strategy's name is not a valid parameter.
     #[error("strategy {strategy} = {value}: unusable parameter (allowed: {allowed})")]
     Parameter {
         /// The strategy's name.
         strategy: &'static str,
         /// The parameter as the user wrote it.
         value: String,
-        /// What would be right.
+        /// The allowed values.
         allowed: &'static str,
     },
-    /// The strategy has no numbers for so many.
+    /// The strategy cannot number so many jobs.
     #[error("strategy {strategy}: {jobs} jobs are too many (allowed: 0 to {most})")]
     TooManyJobs {
         /// The strategy's name.
         strategy: &'static str,
-        /// How many there are.
+        /// Number of jobs.
         jobs: usize,
-        /// How many it can have.
+        /// Largest number of jobs that the strategy supports.
         most: usize,
     },
-    /// The library behind the strategy would quietly use fewer.
+    /// The library behind the strategy would silently use fewer threads.
     #[error("strategy {strategy}: {threads} threads are too many (allowed: 1 to {most})")]
     TooManyThreads {
         /// The strategy's name.
         strategy: &'static str,
-        /// How many were asked for.
+        /// Number of threads requested.
         threads: usize,
-        /// How many it can have.
+        /// Largest number of threads that the strategy supports.
         most: usize,
     },
 }

@@ -1,7 +1,9 @@
-//! A thread from the spawner on which a library's parallel loop runs, so that the thread that calls the strategy only waits.
+//! The host: a thread from the spawner that runs a library's parallel loop, while the thread that calls the strategy
+//! only waits.
 //!
-//! Libraries that let the calling thread take part need one: this thread is then the first of the workers, and the library's own threads
-//! are the others. It lives as long as the strategy, since some libraries keep their threads for whoever used them first.
+//! Libraries whose calling thread takes part in the loop need a host. The host is then the first worker, and the
+//! library's own threads are the others. It lives as long as the strategy, because some libraries keep their threads
+//! for the thread that used them first.
 
 use std::sync::Arc;
 
@@ -13,14 +15,15 @@ use crate::{Blueprint, StrategyError};
 
 type Round = Box<dyn FnOnce() + Send>;
 
-/// Fields are dropped in this order: the closed channel is what ends the thread that `_crew` then waits for.
+/// A thread that runs a library's parallel loops. Fields are dropped in this order: closing the channel ends the
+/// thread, which `_crew` then joins.
 pub struct Host {
     rounds: Sender<Round>,
     _crew: Crew,
 }
 
 impl Host {
-    /// Starts the first of so many workers.
+    /// Starts the thread as the first of the blueprint's workers.
     pub fn new(Blueprint { threads, spawner, .. }: &Blueprint) -> Result<Self, StrategyError> {
         let (rounds, calls) = channel::unbounded::<Round>();
         let mut crew = Crew::default();
@@ -28,16 +31,17 @@ impl Host {
         Ok(Self { rounds, _crew: crew })
     }
 
-    /// Runs `body` on the thread, waits for its end, and passes on what it has thrown or caught.
+    /// Runs `body` on the thread, waits for its result and returns it. Re-raises a panic that `body` has thrown or
+    /// caught.
     pub fn run<R: Send + 'static>(&self, body: impl FnOnce(&Panics) -> R + Send + 'static) -> R {
         let panics = Arc::new(Panics::default());
         let theirs = Arc::clone(&panics);
         let (tell, told) = channel::bounded(1);
         let round = Box::new(move || {
             let mut result = None;
-            // The body is gone when this returns, and with it the last clone of the job over there.
+            // `catch` drops the body, and with it this thread's last clone of the job.
             theirs.catch(|| result = Some(body(&theirs)));
-            // It is waited for: the caller is below.
+            // Sending cannot fail: the caller waits for the result below.
             let _ = tell.send(result);
         });
         self.rounds.send(round).expect("the thread stays until this sender is dropped");

@@ -1,5 +1,5 @@
-//! What strategies share that learn how fast their workers are: a free worker tells what it saw of its last chunk and gets the next one, whose
-//! size a [`LearnedRule`] says.
+//! Strategies that learn the speeds of their workers: a free worker reports the times of its last chunk and gets the
+//! next one, whose size follows a [`LearnedRule`].
 
 use std::ops::Range;
 use std::sync::{Arc, PoisonError};
@@ -10,7 +10,7 @@ use crate::panics::Panics;
 use crate::sync::Mutex;
 use crate::{Blueprint, Discipline, Job, Strategy, StrategyError, team};
 
-/// A strategy whose discipline is a learned rule.
+/// Makes a strategy whose discipline is a learned rule.
 pub(crate) fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
     match blueprint.discipline {
         Discipline::Learned(rule) => Ok(Box::new(Learning { blueprint: blueprint.clone(), rule })),
@@ -44,9 +44,9 @@ impl Strategy for Learning {
     }
 }
 
-/// The next chunk. The lock is free again when this returns, so that no job runs under it.
+/// Returns the next chunk. The lock is released on return, so no job runs under it.
 fn next(ledger: &Mutex<Ledger>, rule: LearnedRule, worker: usize, seen: Seen) -> Option<Range<usize>> {
-    // Nothing that can panic happens under the lock.
+    // A rule from another crate may panic here. The ledger stays valid, so the other workers continue.
     let mut ledger = ledger.lock().unwrap_or_else(PoisonError::into_inner);
     ledger.note(worker, seen);
     rule.next(&mut ledger, worker)

@@ -1,22 +1,23 @@
-//! Chunks whose sizes depend on how fast the workers have been: what is known of each worker, and who gets what next.
+//! Learned chunk sizes: a record of each worker's speed so far, and the next chunk that follows from it.
 //!
-//! A [`LearnedRule`] is pure: its chunks follow from what it has been told in which order. So the simulator replays it with times of its own,
-//! and the strategies behind it differ from it only by a lock and a clock.
+//! A [`LearnedRule`] is pure: its chunks depend only on the reported times and their order. So the simulator can replay
+//! it with simulated times, and the strategies add only a lock and a clock.
 
 use std::ops::Range;
 
-/// How large the chunk is that a free worker gets, given what has been seen of all workers.
+/// The rule for the size of a free worker's next chunk, given the measurements of all workers.
 #[derive(Debug, Clone, Copy)]
 pub struct LearnedRule {
-    /// Jobs in the next chunk of a worker. What is less than one or more than what is left is corrected by [`LearnedRule::next`].
+    /// Number of jobs in a worker's next chunk. [`LearnedRule::next`] rounds it up and clamps it to at least 1 and at
+    /// most the number of jobs left.
     pub size: fn(ledger: &Ledger, worker: usize) -> f64,
-    /// When a worker looks at its clock.
+    /// When a worker reads the clock.
     pub clock: Clock,
-    /// How fast the workers are, as far as that is known beforehand.
+    /// The workers' relative speeds, as far as they are known beforehand.
     pub weights: Weights,
 }
 
-/// When a worker looks at its clock.
+/// When a worker reads the clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clock {
     /// Before and after each chunk.
@@ -25,7 +26,7 @@ pub enum Clock {
     Jobs,
 }
 
-/// How fast workers are, relative to each other. Workers take the values in turn.
+/// Relative speeds of workers. Workers take the values in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weights {
     values: [f64; Self::MOST],
@@ -33,13 +34,13 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// So many values may differ.
+    /// Largest number of values.
     pub const MOST: usize = 8;
 
-    /// All workers are alike.
+    /// Equal weights for all workers.
     pub const EQUAL: Self = Self { values: [1.0; Self::MOST], count: 1 };
 
-    /// From text: one to eight numbers above 0 with colons between them, as `1:0.5`.
+    /// Parses one to eight numbers above 0 with colons between them, such as `1:0.5`; `None` for any other text.
     pub fn parse(text: &str) -> Option<Self> {
         let mut weights = Self { count: 0, ..Self::EQUAL };
         for number in text.split(':') {
@@ -55,19 +56,19 @@ impl Weights {
     }
 }
 
-/// What a worker saw of jobs that it has done.
+/// A worker's measurements of jobs that it has run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Seen {
-    /// How many they were.
+    /// Number of jobs.
     pub jobs: usize,
-    /// Seconds that they took together.
+    /// Total seconds of these jobs.
     pub seconds: f64,
-    /// The sum of the squares of each one's seconds; 0 if only chunks were timed ([`Clock::Chunks`]).
+    /// Sum of the squared seconds of each job; 0 if only chunks were timed ([`Clock::Chunks`]).
     pub squares: f64,
 }
 
 impl Seen {
-    /// One job more.
+    /// Adds a job that took `seconds`.
     pub fn add(&mut self, seconds: f64) {
         self.jobs += 1;
         self.seconds += seconds;
@@ -75,7 +76,7 @@ impl Seen {
     }
 }
 
-/// The seconds of jobs, one after the other.
+/// Collects the seconds of jobs, one value for each job.
 impl FromIterator<f64> for Seen {
     fn from_iter<I: IntoIterator<Item = f64>>(seconds: I) -> Self {
         let mut seen = Self::default();
@@ -86,18 +87,19 @@ impl FromIterator<f64> for Seen {
     }
 }
 
-/// What is known of one worker.
+/// The measurements of one worker.
 #[derive(Debug, Clone, Copy, Default)]
 struct History {
     /// Chunks that it has done.
     chunks: u32,
-    /// Sums over its chunks of k times their seconds and k times their jobs, where k counts the chunks from 1: late ones weigh more.
+    /// Sums over its chunks of k times the seconds and of k times the jobs, where k counts the chunks from 1. Late
+    /// chunks therefore count more.
     late_seconds: f64,
     late_jobs: f64,
     all: Seen,
 }
 
-/// How far the jobs of a run have been handed out, and what has been seen of those that are done.
+/// The state of a run: the jobs that have been handed out, and the measurements of finished jobs.
 #[derive(Debug, Clone)]
 pub struct Ledger {
     jobs: usize,
@@ -105,14 +107,14 @@ pub struct Ledger {
     chunks: usize,
     given: Weights,
     workers: Vec<History>,
-    /// Jobs that were left when the batch of the next chunk began; a batch is as many chunks as there are workers.
+    /// Jobs that were left when the batch of the next chunk began. A batch has as many chunks as there are workers.
     batch_left: usize,
-    /// The workers' weights when it began.
+    /// The workers' learned weights when that batch began.
     batch_weights: Vec<f64>,
 }
 
 impl Ledger {
-    /// Nothing has been handed out. `workers` is at least 1 unless there are no jobs.
+    /// Returns a ledger with no jobs handed out. `workers` is at least 1 unless there are no jobs.
     pub fn new(jobs: usize, workers: usize, given: Weights) -> Self {
         let histories = vec![History::default(); workers];
         Self {
@@ -126,7 +128,7 @@ impl Ledger {
         }
     }
 
-    /// Knows what a worker saw of its last chunk.
+    /// Records a worker's measurements of its last chunk.
     pub fn note(&mut self, worker: usize, seen: Seen) {
         let history = &mut self.workers[worker];
         if seen.jobs > 0 {
@@ -139,50 +141,52 @@ impl Ledger {
         }
     }
 
-    /// How many workers share the jobs.
+    /// Returns the number of workers.
     pub fn workers(&self) -> usize {
         self.workers.len()
     }
 
-    /// Jobs in all.
+    /// Returns the total number of jobs.
     pub fn jobs(&self) -> usize {
         self.jobs
     }
 
-    /// Jobs that have not been handed out.
+    /// Returns the number of jobs that have not been handed out.
     pub fn left(&self) -> usize {
         self.jobs - self.start
     }
 
-    /// Jobs that were left when the present batch began.
+    /// Returns the number of jobs that were left when the current batch began.
     pub fn batch_left(&self) -> usize {
         self.batch_left
     }
 
-    /// A worker's weight as it was given beforehand; those of all workers add up to their number.
+    /// Returns a worker's given weight, scaled so that the weights of all workers add up to the number of workers.
     pub fn given_weight(&self, worker: usize) -> f64 {
         let sum: f64 = (0..self.workers()).map(|worker| self.given.of(worker)).sum();
         self.given.of(worker) * self.workers() as f64 / sum
     }
 
-    /// A worker's weight, as its speed so far tells it: jobs a second, late chunks counting more, over the mean of all workers whose speed is
-    /// known. Those of all workers add up to their number; it is 1 where nothing is known yet.
+    /// Returns a worker's learned weight: its speed so far over the mean speed of all workers with a known speed. Speed
+    /// is jobs per second, and late chunks count more. The weights of all workers add up to the number of workers. A
+    /// worker whose speed is unknown has weight 1.
     pub fn learned_weight(&self, worker: usize) -> f64 {
         let known = || self.workers.iter().filter_map(History::speed);
         let count = known().count();
         if count == 0 {
             return 1.0;
         }
-        // Who has done nothing yet is taken for an average worker, so the weights add up with them, too.
+        // A worker with unknown speed counts as average, so the weights still add up to the number of workers.
         self.workers[worker].speed().map_or(1.0, |speed| speed * count as f64 / known().sum::<f64>())
     }
 
-    /// A worker's learned weight at the time when the present batch began.
+    /// Returns a worker's learned weight at the beginning of the current batch.
     pub fn batch_weight(&self, worker: usize) -> f64 {
         self.batch_weights[worker]
     }
 
-    /// Mean and variance of the seconds of a worker's jobs so far; `None` if it has done fewer than two.
+    /// Returns mean and variance of the seconds of a worker's jobs so far; `None` if it has done fewer than two, or if
+    /// they took no measurable time.
     pub fn mean_and_variance(&self, worker: usize) -> Option<(f64, f64)> {
         let all = self.workers[worker].all;
         let (n, mean) = (all.jobs as f64, all.seconds / all.jobs as f64);
@@ -191,14 +195,14 @@ impl Ledger {
 }
 
 impl History {
-    /// Jobs a second, late chunks counting more; `None` if nothing has been seen, or nothing that took time.
+    /// Returns jobs per second, where late chunks count more; `None` without measurements, or if the jobs took no time.
     fn speed(&self) -> Option<f64> {
         Some(self.late_jobs / self.late_seconds).filter(|speed| speed.is_finite())
     }
 }
 
 impl LearnedRule {
-    /// The next chunk of a worker; `None` when all jobs have been handed out.
+    /// Returns a worker's next chunk, or `None` when all jobs have been handed out.
     pub fn next(&self, ledger: &mut Ledger, worker: usize) -> Option<Range<usize>> {
         let left = ledger.left();
         if left == 0 {
@@ -210,7 +214,7 @@ impl LearnedRule {
                 ledger.batch_weights[worker] = ledger.learned_weight(worker);
             }
         }
-        // A size that is no number becomes 0 here, and so 1.
+        // A NaN becomes 0 in the cast, and then 1.
         let size = ((self.size)(ledger, worker).ceil() as usize).clamp(1, left);
         let chunk = ledger.start..ledger.start + size;
         ledger.start = chunk.end;
@@ -235,8 +239,8 @@ mod tests {
         }
     }
 
-    /// Worker 0 needs 1 s a job and then 3 s a job: (1 * 4 + 2 * 6) / (1 * 4 + 2 * 2) = 2 s. Worker 1 needs 1 s. Their speeds are 1/2 and 1, so
-    /// their weights 2/3 and 4/3. Worker 2 has done nothing.
+    /// Worker 0 needs 1 s a job and then 3 s a job: (1 * 4 + 2 * 6) / (1 * 4 + 2 * 2) = 2 s. Worker 1 needs 1 s a job.
+    /// Their speeds are 1/2 and 1, so their weights are 2/3 and 4/3. Worker 2 has done nothing.
     #[test]
     fn late_chunks_count_more() {
         let mut ledger = Ledger::new(100, 3, Weights::EQUAL);
@@ -247,12 +251,12 @@ mod tests {
         let weights: Vec<f64> = (0..3).map(|worker| ledger.learned_weight(worker)).collect();
         assert!((weights[0] - 2.0 / 3.0).abs() < 1e-15 && (weights[1] - 4.0 / 3.0).abs() < 1e-15, "{weights:?}");
         assert_eq!(weights[2], 1.0);
-        // Jobs too short for the clock say nothing of speeds.
+        // Jobs that are too short for the clock give no speed.
         ledger.note(2, Seen { jobs: 5, seconds: 0.0, squares: 0.0 });
         assert_eq!((ledger.learned_weight(2), ledger.mean_and_variance(2)), (1.0, None));
     }
 
-    /// 1, 2, 3 and 6 s: mean 3, squared deviations 4 + 1 + 0 + 9, over three.
+    /// 1, 2, 3 and 6 s: the mean is 3, and the squared deviations 4 + 1 + 0 + 9 are divided by three.
     #[test]
     fn jobs_that_differ_have_a_variance() {
         let mut ledger = Ledger::new(9, 1, Weights::EQUAL);
@@ -263,7 +267,7 @@ mod tests {
         assert!(mean == 3.0 && (variance - 14.0 / 3.0).abs() < 1e-14, "{mean} {variance}");
     }
 
-    /// Whatever a rule says, the chunks join up and cover all jobs.
+    /// For any size that a rule returns, the chunks are contiguous and cover all jobs.
     #[test]
     fn sizes_that_make_no_sense_are_corrected() {
         let sizes: [fn(&Ledger, usize) -> f64; 5] =

@@ -1,7 +1,7 @@
-//! Who runs which job, and when.
+//! Scheduling strategies: which worker runs which job, and when.
 //!
-//! A strategy schedules integers: it is given a number of jobs and a function of the job's index, and never learns what a job
-//! does. So every strategy can be compared on every workload, and tested without one ([`contract`]).
+//! A strategy schedules integers: it receives a number of jobs and a function of the job's index, and knows nothing
+//! else about a job. So every strategy can be compared on every workload, and tested without a workload ([`contract`]).
 //!
 //! ```
 //! use std::num::NonZeroUsize;
@@ -20,20 +20,20 @@
 //!
 //! # What all strategies share
 //!
-//! * **Workers.** Jobs run on exactly the workers that were asked for. The calling thread only waits, so p threads mean p
-//!   workers and p jobs at a time. `serial` alone uses the calling thread, because it is the baseline that pays for nothing.
-//!   A strategy that starts its threads for each run starts no more of them than there are jobs.
-//! * **A worker that can't be started** makes the whole run (or the construction) an error. Going on with fewer workers would
-//!   put a time in the records that belongs to another number of threads.
-//! * **A panic** stops every worker after the job it is in; then the first payload is raised again in the caller. The strategy
-//!   can be used again.
+//! * **Workers.** Jobs run on exactly the requested number of workers. The calling thread only waits, so p threads mean
+//!   p workers and p jobs at a time. Only `serial` uses the calling thread, because it is the baseline without any
+//!   overhead. A strategy that starts its threads in each run starts at most one thread for each job.
+//! * **A worker that can't be started** makes the whole run (or the construction) an error. With fewer workers the
+//!   run's time would be recorded under a wrong number of threads.
+//! * **A panic** stops every worker after its current job; then the first payload is raised again in the caller. The
+//!   strategy can be used again.
 //!
-//! [`contract::verify`] tries all of this on any [`Entry`].
+//! [`contract::verify`] tests all of this on any [`Entry`].
 //!
-//! # Adding one
+//! # Adding a strategy
 //!
-//! A strategy is an [`Entry`]. One of your own stays in your crate; one of ours is a file in `src/strategies` and its line in the table there.
-//! [`Host`] and [`Panics`] are what most strategies on a library's pool need.
+//! A strategy is an [`Entry`]. Your own strategies stay in your crate. A built-in strategy is a file in
+//! `src/strategies` and its line in the table there. Most strategies on a library's pool need [`Host`] and [`Panics`].
 
 pub mod contract;
 pub mod library;
@@ -67,7 +67,7 @@ pub use ledger::{Clock, LearnedRule, Ledger, Seen, Weights};
 pub use panics::Panics;
 pub use strategies::{STRATEGIES, block, find};
 
-/// What there is to run: a function of the job's index. Owned, so that workers may have been there before it.
+/// The work of a run: a function of the job's index. It is owned, so that workers may exist before it.
 pub type Job = Arc<dyn Fn(usize) + Send + Sync>;
 
 /// A way to spread jobs over workers.
@@ -75,6 +75,7 @@ pub trait Strategy: Send {
     /// Calls `job(i)` exactly once for each `i` in `0..jobs` and returns when all have returned.
     /// A panic in a job is re-raised here after the other workers have stopped.
     ///
-    /// After an error or a panic some jobs have not been run; none has been run twice. In every case no clone of `job` is left.
+    /// After an error or a panic, some jobs may not have run, and no job has run twice. No clone of `job` is left in
+    /// any case.
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError>;
 }

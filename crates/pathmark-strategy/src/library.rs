@@ -1,4 +1,4 @@
-//! Libraries that start threads by their own means, and end the program if the system gives none.
+//! Support for libraries that start their own threads, and panic or end the program if the system refuses one.
 
 use std::any::Any;
 use std::io;
@@ -9,13 +9,13 @@ use crossbeam::channel;
 use crate::team::Crew;
 use crate::{Blueprint, StrategyError};
 
-/// Starts so many threads from the spawner, all alive at the same time, and ends them again: a thread that is refused here is an error, where
-/// the library would panic or end the program.
+/// Starts `threads` threads from the spawner, all alive at the same time, and ends them again. A refused thread is an
+/// error here, where the library would panic or end the program.
 ///
-/// This cannot promise that the library then gets its threads: someone else may have taken them meanwhile.
+/// This does not guarantee that the library then gets its threads: another program may take them in between.
 pub fn rehearse(blueprint: &Blueprint, threads: usize) -> Result<(), StrategyError> {
     let mut crew = Crew::default();
-    // Dropped before the crew, which ends the threads that it waits for.
+    // Dropped before the crew: dropping `_end` ends the threads that the crew then joins.
     let (_end, ended) = channel::bounded::<()>(0);
     (0..threads).try_for_each(|_| {
         let ended = ended.clone();
@@ -25,8 +25,8 @@ pub fn rehearse(blueprint: &Blueprint, threads: usize) -> Result<(), StrategyErr
     })
 }
 
-/// Starts a library's pool, which has so many threads, after a rehearsal. If the library panics all the same, that is an error too; threads
-/// that it had started until then stay.
+/// Starts a library's pool of `threads` threads after a rehearsal. A panic of the library is an error, too; the
+/// threads that it had started until then stay.
 pub fn start<T>(blueprint: &Blueprint, threads: usize, start: impl FnOnce() -> T) -> Result<T, StrategyError> {
     rehearse(blueprint, threads)?;
     panic::catch_unwind(AssertUnwindSafe(start)).map_err(|payload| StrategyError::Spawn {
@@ -36,7 +36,7 @@ pub fn start<T>(blueprint: &Blueprint, threads: usize, start: impl FnOnce() -> T
     })
 }
 
-/// What a panic said.
+/// Returns the message of a panic.
 pub(crate) fn message(payload: &(dyn Any + Send)) -> String {
     let text = payload.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a payload without a message").to_owned()
@@ -52,7 +52,7 @@ mod tests {
     use super::*;
     use crate::{Discipline, Spawner, SystemThreads};
 
-    /// Gives so many threads at a time.
+    /// A spawner that allows this many threads at a time.
     struct Few(usize, Arc<AtomicUsize>);
 
     impl Spawner for Few {

@@ -5,16 +5,16 @@ use std::sync::PoisonError;
 
 use super::sync::Mutex;
 
-/// The indices that nobody has taken yet.
+/// The indices that no worker has taken yet.
 pub(super) struct LockedQueue(Mutex<VecDeque<usize>>);
 
 impl LockedQueue {
-    /// All of `0..jobs`, in order.
+    /// Returns a queue of all of `0..jobs`, in order.
     pub(super) fn new(jobs: usize) -> Self {
         Self(Mutex::new((0..jobs).collect()))
     }
 
-    /// The first one. The lock is free again when this returns, so that no job runs under it.
+    /// Takes the first index. The lock is released on return, so no job runs under it.
     pub(super) fn take(&self) -> Option<usize> {
         // Nothing that can panic happens under the lock.
         self.0.lock().unwrap_or_else(PoisonError::into_inner).pop_front()

@@ -1,4 +1,4 @@
-//! What jobs throw: the first payload is kept for the caller, and all workers are asked to stop.
+//! Panics in jobs: the first payload is kept for the caller, and all workers are asked to stop.
 
 use std::any::Any;
 use std::mem;
@@ -7,7 +7,7 @@ use std::sync::PoisonError;
 
 use super::sync::{AtomicBool, Mutex, Ordering};
 
-/// The first panic of one run, and the wish that everyone stop.
+/// The first panic of one run, and the request that all workers stop.
 #[derive(Default)]
 pub struct Panics {
     stop: AtomicBool,
@@ -15,41 +15,41 @@ pub struct Panics {
 }
 
 impl Panics {
-    /// Whether workers should take no further job.
+    /// Returns whether workers must take no further job.
     pub fn stop_asked(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Lets no worker take a further job.
+    /// Asks all workers to take no further job.
     pub fn ask_to_stop(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// Runs `body`; if it panics, asks everyone to stop, and keeps the payload if it is the first.
+    /// Runs `body`. If it panics, asks all workers to stop and keeps the payload if it is the first.
     pub fn catch(&self, body: impl FnOnce()) {
-        // Nobody sees what the job left half done: `raise` passes the panic on to whoever could.
+        // Unwind safe: `raise` passes the panic on to the caller, and nobody else can see the job's unfinished state.
         if let Err(payload) = panic::catch_unwind(AssertUnwindSafe(body)) {
             self.ask_to_stop();
             let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
             if first.is_none() {
                 *first = Some(payload);
             } else {
-                // Its `drop` is the job's code and could panic in turn, which would end a pool's worker for good. So it is leaked:
-                // once a worker at most, in a run that has failed.
+                // The payload's `drop` is the job's code. It could panic, too, and end a pool's worker for good. So the
+                // payload is leaked: at most one for each worker, in a run that has failed.
                 mem::forget(payload);
             }
         }
     }
 
-    /// One job of a worker that some library leads from job to job and that can't be told to stop: catches what the job throws, and
-    /// leaves it out once a stop has been asked for.
+    /// Runs a job for a library whose workers cannot be told to stop: catches a panic of the job, and skips the job
+    /// once a stop has been requested.
     pub fn attempt(&self, job: impl FnOnce()) {
         if !self.stop_asked() {
             self.catch(job);
         }
     }
 
-    /// Goes on with the first panic, if there was one. All workers must have stopped.
+    /// Raises the first panic again, if there was one. All workers must have stopped.
     pub fn raise(&self) {
         let first = self.first.lock().unwrap_or_else(PoisonError::into_inner).take();
         if let Some(payload) = first {

@@ -1,7 +1,7 @@
-//! What self-scheduling strategies share: a free worker takes the next chunk from one list, whose sizes a [`ChunkRule`] says.
+//! Self-scheduling: a free worker takes the next chunk from one list, whose sizes follow a [`ChunkRule`].
 //!
-//! The sizes depend on the numbers of jobs and workers alone, not on who asks when. So the list is made before the workers start, and
-//! taking a chunk is one atomic addition under every rule.
+//! The sizes depend only on the numbers of jobs and workers, not on the order of requests. So the list is made before
+//! the workers start, and taking a chunk is one atomic addition under every rule.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::counter::Counter;
 use crate::panics::Panics;
 use crate::{Blueprint, ChunkRule, Discipline, Job, Strategy, StrategyError, team};
 
-/// A strategy whose discipline is a chunk rule.
+/// Makes a strategy whose discipline is a chunk rule.
 pub(crate) fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
     match blueprint.discipline {
         Discipline::Chunks(rule) => Ok(Box::new(SelfScheduling { blueprint: blueprint.clone(), rule })),
@@ -48,7 +48,7 @@ impl Strategy for SelfScheduling {
 mod tests {
     use crate::{Discipline, STRATEGIES};
 
-    /// Every chunk rule hands out each job once, whatever the numbers.
+    /// Every chunk rule hands out each job once, for any numbers of jobs and workers.
     #[test]
     fn chunks_join_up_and_cover_all_jobs() {
         let rules = STRATEGIES.iter().filter_map(|entry| match entry.discipline {

@@ -1,26 +1,26 @@
-//! When a worker that finds no job may leave: how many jobs have been taken to run, by all workers together.
+//! The end of a run: workers without a job may leave only when all jobs have been taken.
 //!
-//! That every queue looks empty doesn't say that nothing is left to find: a batch on its way from one queue to another is in neither, and
-//! a worker that left then would be missing when the thief is held up in its first job. So workers stay until all jobs have been taken.
-//! Who has to wait here waits for a batch to arrive, never for a job to end.
+//! Empty queues do not mean that no job is left: a batch on its way from one queue to another is in neither. A worker
+//! that left then would be missing while the thief is busy with the batch's first job. So workers stay until all jobs
+//! have been taken. A waiting worker waits for a batch to arrive, never for a job to end.
 
 use super::panics::Panics;
 use super::sync::{AtomicUsize, Backoff, CachePadded, Ordering};
 
-/// How many jobs each worker of a run has taken.
+/// The number of jobs that each worker of a run has taken.
 pub(super) struct Taken {
     jobs: usize,
-    /// One counter each, since one for all would be the shared counter again.
+    /// One counter for each worker: a single counter would be as contended as the shared counter.
     by_worker: Box<[CachePadded<AtomicUsize>]>,
 }
 
 impl Taken {
-    /// None of `jobs` has been taken by any of `workers`.
+    /// Returns the state in which none of `jobs` has been taken by any of `workers`.
     pub(super) fn new(jobs: usize, workers: usize) -> Self {
         Self { jobs, by_worker: (0..workers).map(|_| CachePadded::default()).collect() }
     }
 
-    /// What `worker` does in a run: runs what `next` finds, until all jobs have been taken or a stop is asked for.
+    /// Runs the jobs that `next` finds for `worker`, until all jobs have been taken or a stop is requested.
     pub(super) fn work(
         &self,
         worker: usize,
@@ -33,7 +33,7 @@ impl Taken {
         while !panics.stop_asked() {
             if let Some(index) = next() {
                 taken += 1;
-                // Nobody else writes here.
+                // No other worker writes this counter.
                 self.by_worker[worker].store(taken, Ordering::Relaxed);
                 job(index);
                 backoff = Backoff::new();
@@ -45,7 +45,7 @@ impl Taken {
         }
     }
 
-    /// Whether there is nothing left to find.
+    /// Returns whether all jobs have been taken.
     fn all(&self) -> bool {
         self.by_worker.iter().map(|taken| taken.load(Ordering::Relaxed)).sum::<usize>() == self.jobs
     }

@@ -1,4 +1,4 @@
-//! What strategies with threads share: starting workers and waiting for all of them.
+//! A team of threads: starting workers and waiting for all of them.
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -6,9 +6,9 @@ use std::thread::JoinHandle;
 use crate::panics::Panics;
 use crate::{Spawner, StrategyError};
 
-/// Runs each of `bodies` on a thread of its own and returns when all threads have ended.
+/// Runs each of `bodies` on its own thread and returns when all threads have ended.
 ///
-/// A body must look at [`Panics::stop_asked`] between two jobs.
+/// A body must check [`Panics::stop_asked`] between two jobs.
 pub(super) fn run<B>(spawner: &dyn Spawner, bodies: impl ExactSizeIterator<Item = B>) -> Result<(), StrategyError>
 where
     B: FnOnce(&Panics) + Send + 'static,
@@ -32,7 +32,7 @@ where
     started
 }
 
-/// Threads that are joined when this is dropped. Whatever makes them end must happen, or be dropped, before.
+/// Threads that are joined when this is dropped. The event that ends them must happen before.
 #[derive(Default)]
 pub(super) struct Crew(Vec<JoinHandle<()>>);
 
@@ -52,7 +52,7 @@ impl Crew {
         Ok(())
     }
 
-    /// How many have been started.
+    /// Returns the number of started threads.
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }
@@ -61,7 +61,7 @@ impl Crew {
 impl Drop for Crew {
     fn drop(&mut self) {
         for handle in self.0.drain(..) {
-            // Workers catch what their jobs throw, so that the payload is not tied to the thread's end: nothing is lost here.
+            // Workers catch the panics of their jobs, so the thread's result holds no payload that could be lost here.
             let _ = handle.join();
         }
     }

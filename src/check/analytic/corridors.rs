@@ -1,4 +1,4 @@
-//! Mirrors that face each other.
+//! Corridors of mirrors that face each other.
 
 use crate::check::exact::{Bench, every_estimator, full_estimators};
 use crate::check::stage::{camera, diffuse, mirror, object, plane, scene, sphere};
@@ -7,7 +7,8 @@ use crate::scene::Scene;
 
 pub(super) const CASES: &[Case] = &[Case { id: "A13", tries: "chains of mirrors: rho^k", run: chains }];
 
-/// Two mirrors at distance 1 and a lamp across the way at distance `bounces`: a ray that runs at 45 degrees is reflected so many times.
+/// Two mirrors at distance 1 and a lamp across the corridor at distance `bounces`: a ray at 45 degrees is reflected
+/// `bounces` times.
 pub(in crate::check) fn corridor(bounces: u32, albedo: f64) -> Scene {
     let up = [0.0, 1.0, 0.0];
     scene(&[
@@ -21,7 +22,7 @@ pub(in crate::check) fn corridor(bounces: u32, albedo: f64) -> Scene {
 
 fn chains(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
-    // Nothing is left to chance but, in one of them, roulette.
+    // Nothing is random except roulette, in the corridor of 8 mirrors.
     (bench.size, bench.fewest) = ([4, 4], 64.0);
     bench.roulette = Some("never".to_string());
     for (bounces, albedo, exact) in
@@ -33,7 +34,7 @@ fn chains(trials: &mut Trials) {
     bench.roulette = None;
     bench.widest = [5e-2, 2e-3];
     bench.each("8 mirrors of 0.5, by chance", &corridor(8, 0.5), full_estimators(), &[1.0 / 256.0]);
-    // What a cut leaves of a closed mirror: the first terms of 1 + rho + rho^2 ..
+    // A depth limit in a closed mirror keeps the first terms of 1 + rho + rho^2 ..
     let polished = "{ polished = { albedo = [0.0, 0.0, 0.0], reflectivity = 0.8 } }";
     let ball = object(&sphere([0.0; 3], 1.0), polished, [1.0; 3]);
     let hollow = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), ball]);
@@ -43,7 +44,7 @@ fn chains(trials: &mut Trials) {
         let whitted = every_estimator().filter(|name| *name == "whitted");
         bench.each(&format!("a closed mirror, {depth} bounces"), &hollow, whitted, &[exact]);
     }
-    // Between parallel mirrors, one of which glows: the sum over the ways there and back, 0.4 each.
+    // Two parallel mirrors, one of which glows: a sum over round trips, each with the factor 0.4.
     let glowing = scene(&[
         camera([0.0, 0.5, 0.0], [0.3, 0.0, 0.0]),
         object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &mirror(0.5), [1.0; 3]),

@@ -1,4 +1,4 @@
-//! Fog that absorbs, glows and scatters.
+//! Fog that absorbs, emits and scatters.
 
 use crate::check::exact::{Bench, arriving_estimators, every_estimator, mean};
 use crate::check::stage::{camera, diffuse, fog, object, plane, scene, sphere};
@@ -20,7 +20,8 @@ fn above(height: f64) -> String {
     camera([0.0, height, 0.0], [0.0; 3])
 }
 
-/// By Beer and Lambert, down to where f32 and f64 end. Nothing is left to chance; the width of the spot is what remains.
+/// Beer-Lambert law, down to the smallest values of f32 and f64. Nothing is random; only the width of the spot adds an
+/// error.
 fn absorption(trials: &mut Trials) {
     for (tau, exact) in [
         (1.0, 0.367_879_441_171_442_33),
@@ -41,7 +42,7 @@ fn absorption(trials: &mut Trials) {
     }
 }
 
-/// (j/sigma) (1 - exp(-tau)), also where tau is so small that 1 - exp would lose half of its digits.
+/// (j/sigma) (1 - exp(-tau)), also for tau so small that evaluating 1 - exp would lose half of the digits.
 fn emission(trials: &mut Trials) {
     for (tau, exact) in [(1e-9, 9.999_999_995e-10), (0.01, 0.009_950_166_250_831_947), (1.0, 0.632_120_558_828_557_7)] {
         let scene = scene(&[above(1.0), fog(tau, 0.0, 1.0), lamp(0.0)]);
@@ -49,7 +50,7 @@ fn emission(trials: &mut Trials) {
             trials.close(format!("tau {tau}, {way}"), exact, mean(&film, 0).0, 1e-11 * exact);
         }
     }
-    // Without an end, and without anything in it.
+    // Endless fog, with no object on the camera's rays.
     let ball = object(&sphere([0.0, 9.0, 0.0], 1.0), &diffuse(0.0), [0.0; 3]);
     let endless = scene(&["background = [0.0, 0.0, 0.0]\n".to_string(), above(1.0), fog(0.3, 0.0, 2.5), ball]);
     for (way, film) in Bench::new(trials).films(&endless, every_estimator(), 1024.0) {
@@ -57,9 +58,9 @@ fn emission(trials: &mut Trials) {
     }
 }
 
-/// What a parallel beam across a ball keeps is what the light of one point of its wall keeps on the way to all others, by the cosine law: T =
-/// 0.296997 for sigma R = 1. So the wall of a hollow ball full of fog has the radiance Le/(1 - rho T), of which the camera sees what
-/// the fog leaves.
+/// A ball transmits the share T of a parallel beam. By the cosine law, T is also the transmitted share of the light
+/// from one point of the wall to all others: T = 0.296997 for sigma R = 1. So the wall of a hollow ball full of fog
+/// has the radiance Le/(1 - rho T). The fog attenuates it on the way to the camera.
 fn ball(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     let rho = 0.75;
@@ -72,7 +73,7 @@ fn ball(trials: &mut Trials) {
     bench.each("one bounce", &scene, arriving_estimators(), &[exact]);
 }
 
-/// The radiance is 1, however much the fog scatters, absorbs and gives off.
+/// The radiance is 1, however much the fog scatters, absorbs and emits.
 fn furnace(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (absorption, scattering) in [(0.0, 1.0), (0.0, 4.0), (0.5, 0.5), (2.0, 1.0)] {

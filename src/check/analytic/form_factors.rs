@@ -1,4 +1,5 @@
-//! Form factors: the share of one surface's light that arrives at another, as the mean over all of a surface that a camera sees evenly.
+//! Form factors: the share of one surface's light that arrives at another, measured as the mean over a surface that
+//! the camera samples evenly.
 
 use crate::check::exact::{Bench, aiming_estimators, unsplit_estimators};
 use crate::check::stage::{diffuse, object, quad, scene, view};
@@ -10,10 +11,11 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "A10", tries: "faces of a cube", run: faces_of_a_cube },
 ];
 
-/// Corners of a polygon that stands for a disk.
+/// Corners of the polygon that approximates a disk.
 const CORNERS: u32 = 64;
 
-/// A disk at a height, as triangles of the same area: what is wrong with its shape is of the order 1/`CORNERS`^2 and evens out.
+/// A disk at a height, as triangles of the same area. The error of the shape is of order 1/`CORNERS`^2 and averages
+/// out.
 fn disk(height: f64, radius: f64, material: &str, emission: f64) -> String {
     let step = TAU / f64::from(CORNERS);
     let rim = radius * (PI / (f64::from(CORNERS) * 0.5 * libm::sin(step))).sqrt();
@@ -28,8 +30,9 @@ fn disk(height: f64, radius: f64, material: &str, emission: f64) -> String {
     (0..CORNERS).map(triangle).collect()
 }
 
-/// (S - sqrt(S^2 - 4 (r2/r1)^2))/2 with S = 1 + (1 + (r2/h)^2)/(r1/h)^2: the share of the light of a disk that arrives at another. The camera
-/// looks straight down at a square around the lower one, white and of radius 1, which is pi/4 of it.
+/// (S - sqrt(S^2 - 4 (r2/r1)^2))/2 with S = 1 + (1 + (r2/h)^2)/(r1/h)^2: the share of one disk's light that arrives at
+/// another. The lower disk is white and has radius 1. The camera looks straight down at the square around it, of which
+/// the disk covers pi/4.
 fn coaxial_disks(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     bench.by_pixel = false;
@@ -54,7 +57,8 @@ fn coaxial_disks(trials: &mut Trials) {
     }
 }
 
-/// A camera in the middle sees one face evenly, and no more; the face opposite glows red, one beside it green, all of them blue.
+/// A camera in the centre sees exactly one face, evenly. The face opposite glows red, one beside it green, all of them
+/// blue.
 fn faces_of_a_cube(trials: &mut Trials) {
     let face = |axis: usize, side: f64, material: &str, emission: [f64; 3]| {
         let corners = [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]].map(|[u, v]| {
@@ -77,7 +81,8 @@ fn faces_of_a_cube(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     bench.by_pixel = false;
     bench.widest = [2e-2, 1e-3];
-    // Corners of the cube are so near to the light that aiming alone has no bound there.
+    // The corners of the cube are so near to the light that the variance of next-event estimation alone has no bound
+    // there.
     let bounded = unsplit_estimators().filter(|name| *name != "nee");
     bench.each("cube", &scene, bounded, &[0.199_824_895_698_387_38, 0.200_043_776_075_403_15, 1.0]);
     bench.trials.skip("nee: next to an edge the samples of what aims alone have no variance");

@@ -1,4 +1,4 @@
-//! Closed scenes that glow all over, and smallpt's box.
+//! Furnaces: closed scenes in which every surface glows, and smallpt's box.
 
 use crate::check::exact::{Bench, arriving_estimators, critical, full_estimators, mean};
 use crate::check::stage::{camera, diffuse, object, scene, sphere};
@@ -12,7 +12,7 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "A22", tries: "smallpt's box has smallpt's mean", run: smallpt_mean },
 ];
 
-/// Paths that lose a thousandth at each vertex have a thousand of them, so that few samples are what there is time for.
+/// At the highest albedo, 0.999, a path has about a thousand vertices, so there is time for few samples only.
 fn glowing_wall(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (rho, exact, widest) in [
@@ -33,7 +33,8 @@ fn glowing_wall(trials: &mut Trials) {
     }
 }
 
-/// Also seen from inside the glass, where a path starts on no surface: radiance is not scaled by the index squared.
+/// Rendered also from inside the glass, where a path starts on no surface: radiance is not scaled by the index
+/// squared.
 fn equilibrium(trials: &mut Trials) {
     let room = load("cornell").expect("a shipped scene").in_equilibrium();
     let mut inside = room.clone();
@@ -46,8 +47,8 @@ fn equilibrium(trials: &mut Trials) {
     bench.each_sampler("room", &room, &[1.0; 3]);
 }
 
-/// 0.3285 in linear radiance at 4:3, over pixels and channels. Another order of evaluation of the camera ray sees over the ceiling and finds
-/// 0.388, twice as far away as the noise may be.
+/// 0.3285 in linear radiance at 4:3, over pixels and channels. Evaluating the camera ray in another order makes the
+/// camera see beyond the ceiling and gives 0.388: off by twice the permitted noise.
 fn smallpt_mean(trials: &mut Trials) {
     let scene = load("cornell").expect("a shipped scene");
     let samples = trials.times(200_000, 12_000_000) as f64;
@@ -56,7 +57,7 @@ fn smallpt_mean(trials: &mut Trials) {
     for (way, film) in bench.films(&scene, full_estimators(), samples) {
         let channels = [0, 1, 2].map(|channel| mean(&film, channel));
         let found = channels.iter().map(|(mean, _)| mean / 3.0).sum::<f64>();
-        // As if the channels had the same noise, which is more than they have.
+        // The largest error of a channel is an upper bound for the error of their mean.
         let width = critical() * channels.iter().map(|(_, error)| *error).fold(0.0, f64::max);
         trials.holds(
             way,

@@ -11,7 +11,8 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "A16", tries: "a lossless slab, at a slant", run: slanted },
 ];
 
-/// A slab of index 1.5 with a red lamp behind it and a green one before it, both blue, seen at an angle to its normal.
+/// A slab of index 1.5 with a red lamp behind it and a green one in front, both also blue, seen at an angle to its
+/// normal.
 fn slab(degrees: f64, tint: f64, fresnel: &str) -> Scene {
     let glass = format!("{{ dielectric = {{ eta = 1.5, tint = {:?}, fresnel = \"{fresnel}\" }} }}", [tint; 3]);
     let up = [0.0, 1.0, 0.0];
@@ -25,10 +26,11 @@ fn slab(degrees: f64, tint: f64, fresnel: &str) -> Scene {
     ])
 }
 
-/// T = 2n/(n^2 + 1) = 12/13 of the light behind it and R = 1/13 of that before it, whichever way the reflected share is worked out.
+/// T = 2n/(n^2 + 1) = 12/13 of the light behind it and R = 1/13 of the light in front, whichever formula gives the
+/// reflected share.
 fn lossless(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
-    // The rarest of the three decides.
+    // The rarest of the three events decides.
     bench.widest = [3e-2, 1e-3];
     for fresnel in ["schlick", "exact"] {
         let exact = [0.923_076_923_076_923_1, 0.076_923_076_923_076_92, 1.0];
@@ -36,9 +38,9 @@ fn lossless(trials: &mut Trials) {
     }
 }
 
-/// T = (1 - R)^2 A/(1 - R^2 A^2) and R(A) likewise, for a way through of A = exp(-tau). Here it is the surfaces that absorb, each as much as
-/// one way through: a path that is reflected k times on the inside goes through k + 1 times and meets k + 2 surfaces, so that both shares
-/// have one factor A more.
+/// T = (1 - R)^2 A/(1 - R^2 A^2), and R(A) likewise, if each crossing transmits A = exp(-tau). Here the surfaces
+/// absorb instead, each as much as one crossing. A path that is reflected k times inside crosses k + 1 times and meets
+/// k + 2 surfaces, so both shares have one more factor A.
 fn absorbing(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (tau, transmitted, reflected, widest) in [
@@ -49,7 +51,7 @@ fn absorbing(trials: &mut Trials) {
         bench.widest = widest;
         bench.each(&format!("tau {tau}"), &slab(0.0, a, "exact"), every_estimator(), &[a * transmitted, a * reflected]);
     }
-    // So little is left that roulette would leave it to luck.
+    // So little light is left that roulette would end almost all paths.
     let a = libm::exp(-10.0);
     let exact = [a * 4.184_057_526_924_402_3e-5];
     bench.each("tau 10", &slab(0.0, a, "exact"), every_estimator().filter(|name| *name == "whitted"), &exact);
@@ -57,8 +59,8 @@ fn absorbing(trials: &mut Trials) {
     bench.each("tau 10", &slab(0.0, a, "exact"), full_estimators(), &exact);
 }
 
-/// With the mean of both polarisations at each surface, as renderers have it. Light that stays polarised on the way from one to the other would
-/// give 0.9073, 0.8481 and 0.4585.
+/// Each surface uses the mean of both polarisations, as renderers do. Light that stayed polarised between the surfaces
+/// would give 0.9073, 0.8481 and 0.4585.
 fn slanted(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (degrees, exact) in

@@ -1,4 +1,4 @@
-//! Rough metal under an even sky.
+//! Rough metal under a uniform sky.
 
 use crate::check::exact::{Bench, unsplit_estimators};
 use crate::check::stage::{camera, object, plane, scene};
@@ -6,11 +6,11 @@ use crate::check::{Case, Trials};
 
 pub(super) const CASES: &[Case] = &[Case { id: "A21", tries: "rough metal under an even sky", run: metal_under_a_sky }];
 
-/// Cosines of the view.
+/// Cosines of the viewing angle.
 const COSINES: [f64; 6] = [1.0, 0.75, 0.5, 0.25, 0.1, 0.05];
 
-/// What a rough surface of F = 1 leaves of an even radiance of 1, by roughness: single scattering by GGX with height-correlated shadowing,
-/// computed to 1e-6 by quadrature; 1 - ln 2 in the last row at normal incidence.
+/// Albedo of a rough surface with F = 1, by roughness: single scattering by GGX with height-correlated shadowing,
+/// computed to 1e-6 by quadrature; the last row at normal incidence is 1 - ln 2.
 const ALBEDO: [(f64, [f64; 6]); 7] = [
     (0.01, [0.999_899, 0.999_858, 0.999_742, 0.999_092, 0.994_124, 0.976_208]),
     (0.05, [0.997_296, 0.996_138, 0.992_716, 0.974_512, 0.911_347, 0.889_894]),
@@ -21,13 +21,13 @@ const ALBEDO: [(f64, [f64; 6]); 7] = [
     (1.0, [0.306_852_819_440_054_7, 0.364_527, 0.450_694, 0.597_641, 0.760_211, 0.847_774]),
 ];
 
-/// A plane of metal seen under an angle.
+/// A metal plane, seen at several angles.
 fn metal_under_a_sky(trials: &mut Trials) {
     let fewest = trials.times(8192, 10_000_000) as f64;
     let mut bench = Bench::new(trials);
     bench.fewest = fewest;
     for (alpha, row) in ALBEDO {
-        // What smooth metal loses are a few reflections that leave below the horizon.
+        // Smooth metal loses only the few reflections that leave below the horizon.
         bench.rare = alpha < 0.1;
         let metal = format!("{{ conductor = {{ alpha = {alpha:?}, f0 = [1.0, 1.0, 1.0] }} }}");
         for (cos, exact) in COSINES.into_iter().zip(row) {

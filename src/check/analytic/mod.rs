@@ -1,7 +1,9 @@
-//! Scenes with exact answers, each through every estimator that reaches it and the strategies in turn.
+//! Scenes with exact answers: each is rendered by every estimator that reaches its light, and by the strategies in
+//! turn.
 //!
-//! No single one sees everything: furnaces are blind to geometry and visibility, a point light to how directions are chosen, lights over a
-//! plane to what surfaces send on. A light off the middle of a sphere sees both.
+//! No single scene checks everything. Furnaces are blind to geometry and visibility, a point light is blind to
+//! direction sampling, and lights over a plane are blind to light that surfaces pass on. A light off the centre of a
+//! sphere checks both direct and indirect light.
 
 pub(super) mod corridors;
 mod fog;

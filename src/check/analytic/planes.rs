@@ -1,4 +1,4 @@
-//! Lights with a size over planes, plates, and half a sky.
+//! Area lights over planes, parallel plates, and half a sky.
 
 use crate::check::exact::{Bench, aiming_estimators, arriving_estimators, unsplit_estimators};
 use crate::check::stage::{camera, diffuse, object, plane, quad, scene, sphere};
@@ -16,8 +16,8 @@ fn floor(albedo: f64) -> String {
     object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(albedo), [0.0; 3])
 }
 
-/// rho Le (a/d)^2 cos, exact at any distance while all of the light is above the horizon. Where one path in fifty or fewer meets the light,
-/// only what aims at it is held to it.
+/// rho Le (a/d)^2 cos, exact at any distance while the whole light is above the horizon. Where at most one path in
+/// fifty hits the light, only the estimators that aim at it are checked.
 fn sphere_over_a_plane(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (radius, height, x, exact) in [
@@ -81,7 +81,7 @@ fn parallel_plates(trials: &mut Trials) {
     }
 }
 
-/// rho (1 + cos beta)/2, where beta is the angle between the ball's normal and upwards.
+/// rho (1 + cos beta)/2, where beta is the angle between the ball's normal and the upward direction.
 fn ball_under_half_a_sky(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     let earth = object(&plane([0.0, -5.0, 0.0], [0.0, 1.0, 0.0]), &diffuse(0.0), [0.0; 3]);

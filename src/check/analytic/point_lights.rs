@@ -1,4 +1,4 @@
-//! Point lights over a plane, where nothing is left to chance, by every estimator.
+//! Point lights over a plane, where nothing is random, by every estimator.
 
 use crate::check::exact::{Bench, every_estimator};
 use crate::check::stage::{camera, diffuse, object, plane, point_light, scene, sphere};
@@ -16,14 +16,14 @@ fn light_over_a_plane(trials: &mut Trials) {
         let scene = scene(&[at, point_light([0.0, 1.0, 0.0], 1.0), floor.clone()]);
         bench.each(&format!("x {x}"), &scene, every_estimator(), &[exact]);
     }
-    // Twice as far is a quarter of the light, from near to far.
+    // Doubling the distance leaves a quarter of the light, from near to far.
     for height in [0.25, 0.5, 8.0, 512.0] {
         let at = camera([0.0, 0.1, 0.1], [0.0; 3]);
         let scene = scene(&[at, point_light([0.0, height, 0.0], 1.0), floor.clone()]);
         let exact = 0.5 * FRAC_1_PI / (height * height);
         bench.each(&format!("height {height}"), &scene, every_estimator(), &[exact]);
     }
-    // Lights add up, each is hidden on its own, and what is below the floor does not light it from above.
+    // Lights add up, each is occluded separately, and a light below the floor does not light its upper side.
     let parts = [
         camera([0.0, 0.5, 0.5], [0.0; 3]),
         point_light([0.0, 1.0, 0.0], 1.0),

@@ -1,4 +1,5 @@
-//! Inside closed spheres, where every point sees every other by the same form factor, so that indirect light is the same everywhere.
+//! Interiors of closed spheres: all pairs of points have the same form factor, so indirect light is the same
+//! everywhere.
 
 use crate::check::exact::{Bench, aiming_estimators, full_estimators, unsplit_estimators};
 use crate::check::stage::{camera, diffuse, object, point_light, scene, sphere};
@@ -15,7 +16,7 @@ fn hollow(radius: f64, albedo: f64) -> String {
     object(&sphere([0.0; 3], radius), &diffuse(albedo), [0.0; 3])
 }
 
-/// rho I/(pi R^2 (1 - rho)). The intensity pi in a unit sphere of albedo 1/2 makes exactly 1.
+/// rho I/(pi R^2 (1 - rho)). The intensity pi in a unit sphere of albedo 1/2 gives exactly 1.
 fn light_in_the_middle(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (radius, rho) in [(1.0, 0.5), (2.0, 0.8)] {
@@ -25,8 +26,8 @@ fn light_in_the_middle(trials: &mut Trials) {
     }
 }
 
-/// rho k Le/(1 - rho (1 - k)) with k = (a/R)^2: the source takes up wall. Nothing meets the smallest one by chance
-/// in a time that a test has.
+/// rho k Le/(1 - rho (1 - k)) with k = (a/R)^2: the source blocks a share k of the wall's light. Paths hit the
+/// smallest source too rarely for the time that a test has.
 fn integrating_sphere(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     for (a, rho, emission, exact) in
@@ -46,7 +47,7 @@ fn integrating_sphere(trials: &mut Trials) {
     }
 }
 
-/// (rho/pi) [cos/d^2 + rho/(1 - rho)]: indirect light is the same everywhere, direct light is not.
+/// (rho/pi) [cos/d^2 + rho/(1 - rho)]: indirect light is the same everywhere, direct light varies.
 fn light_off_the_middle(trials: &mut Trials) {
     let mut bench = Bench::new(trials);
     let (near, far, equator) = ([0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]);
@@ -60,7 +61,7 @@ fn light_off_the_middle(trials: &mut Trials) {
     ] {
         let at = camera([0.1, 0.3, 0.2], spot);
         let scene = scene(&[at, point_light([0.0, 0.0, z], 1.0), hollow(1.0, rho)]);
-        // Next to the light the wall is so bright that light from there is rare and strong.
+        // Near the light the wall is so bright that light from there is rare and strong.
         bench.widest = if z > 0.5 && exact < 2.0 { [3e-2, 3e-3] } else { [1e-2, 1e-3] };
         bench.each(&format!("z {z}, {spot:?}"), &scene, unsplit_estimators(), &[exact]);
     }

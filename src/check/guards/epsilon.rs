@@ -1,4 +1,4 @@
-//! No epsilon: a ray remembers what it leaves, so that nothing is too small or too near to be seen.
+//! No epsilon: a ray remembers the surface that it leaves, so no object is too small or too near to be seen.
 
 use super::{Guard, Measured, Variant};
 use crate::check::random::Random;
@@ -14,7 +14,7 @@ pub(super) const GUARD: Guard = Guard {
     without: Variant { name: "smallpt's epsilon, 1e-4", error: || error(skip), work: |count| work(count, skip) },
 };
 
-/// smallpt's glass ball has 16.5; this one is the size of a grain of flour in a box of a metre.
+/// smallpt's glass ball has radius 16.5. This one is the size of a grain of flour in a box of one metre.
 const RADIUS: f64 = 4e-5;
 
 fn leave(ball: &Sphere, ray: &Ray) -> f64 {
@@ -25,7 +25,7 @@ fn skip(ball: &Sphere, ray: &Ray) -> f64 {
     smallpt_first_root(ray.origin - ball.center, ray.direction, ball.radius, SMALLPT_EPSILON)
 }
 
-/// Inwards from a point of the ball.
+/// A ray from a point of the ball into it.
 fn inwards(ball: &Sphere, random: &mut Random) -> Ray {
     let (normal, any) = (random.direction(), random.direction());
     let direction = if dot(any, normal) > 0.0 { -any } else { any };

@@ -1,4 +1,4 @@
-//! Sums of one shape: whoever is done first may not be added first.
+//! Sums in a fixed order: samples are added along a tree, whichever block is finished first.
 
 use super::{Guard, Measured, Variant};
 use crate::check::random::Random;
@@ -28,7 +28,7 @@ struct Part {
     sum: PixelSum,
 }
 
-/// Blocks of samples whose sizes differ as light does.
+/// Blocks of samples whose magnitudes vary as those of light do.
 fn parts(random: &mut Random) -> Vec<Part> {
     let mut part = |block: u32| {
         let mut samples = SampleSum::default();

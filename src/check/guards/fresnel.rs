@@ -1,4 +1,4 @@
-//! Fresnel's equations: Schlick's polynomial is off by up to 0.036.
+//! Exact Fresnel equations: Schlick's polynomial is off by up to 0.036.
 
 use super::{Guard, Measured, Variant};
 use crate::check::shading::fresnel::oracle;

@@ -1,4 +1,4 @@
-//! Mixed keys: generators whose states are the pixels' numbers do not fill an image evenly, or fill it too evenly.
+//! Mixed keys: generators seeded with the pixel indices do not fill an image evenly, or fill it too evenly.
 
 use super::{Guard, Measured, Variant};
 use crate::check::random_numbers::unguarded::{draw, sequential_state};
@@ -15,7 +15,7 @@ pub(super) const GUARD: Guard = Guard {
 const PIXELS: u32 = 1024 * 768;
 const CELLS: usize = 256;
 
-/// The numbers of a pixel at a bounce.
+/// The random numbers of a pixel at a bounce.
 fn mixed(pixel: u32, bounce: u16) -> [f64; 2] {
     let key = SampleKey { seed: 1, pixel, sample: 0 };
     Independent.pair(Address { key, bounce, branch: 0, purpose: Purpose::Bsdf })
@@ -29,7 +29,7 @@ fn sequential(pixel: u32, bounce: u16) -> [f64; 2] {
     [draw(&mut pcg), draw(&mut pcg)]
 }
 
-/// How far chi-square is from its mean, in standard deviations: too even is as wrong as uneven.
+/// Distance of chi-square from its mean, in standard deviations: too even is as wrong as uneven.
 fn error(numbers: fn(u32, u16) -> [f64; 2]) -> Measured {
     let mut scores = Vec::new();
     for bounce in 0..4 {

@@ -1,10 +1,10 @@
-//! An error with its interval.
+//! An error with its confidence interval.
 
 use super::LEVEL;
 use crate::analysis::mean::t_interval;
 use serde::{Deserialize, Serialize};
 
-/// A number and the interval of 95 % around it.
+/// A number with its 95 % confidence interval.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The number.
@@ -19,7 +19,7 @@ pub struct Measured {
 const Z: f64 = 1.959_963_984_540_054;
 
 impl Measured {
-    /// The mean of some numbers. Equal ones have an interval without width.
+    /// The mean of some numbers. Equal numbers give an interval of width zero.
     pub(super) fn mean(values: &[f64]) -> Self {
         let exactly = |value| Self { value, low: value, high: value };
         t_interval(values, LEVEL).map_or_else(
@@ -28,8 +28,9 @@ impl Measured {
         )
     }
 
-    /// The share of `count` in `all`, with the interval of E. B. Wilson, "Probable inference, the law of succession, and statistical inference",
-    /// Journal of the American Statistical Association 22 (1927), which knows that none of many does not mean never.
+    /// The share of `count` in `all`, with the interval of E. B. Wilson, "Probable inference, the law of succession,
+    /// and statistical inference", Journal of the American Statistical Association 22 (1927). A count of zero has a
+    /// positive upper end there.
     pub(super) fn share(count: u64, all: u64) -> Self {
         let (n, value) = (all as f64, count as f64 / all as f64);
         let scale = 1.0 + Z * Z / n;
@@ -46,7 +47,7 @@ mod tests {
 
     #[test]
     fn shares() {
-        // Wilson's interval of 10 in 100, as tables have it: 0.0552 to 0.1744; of none in 100: 0 to 0.0370.
+        // Wilson's interval from tables: 0.0552 to 0.1744 for 10 in 100, 0 to 0.0370 for none in 100.
         let ten = Measured::share(10, 100);
         assert!((ten.low - 0.0552).abs() < 1e-4 && (ten.high - 0.1744).abs() < 1e-4, "{ten:?}");
         let none = Measured::share(0, 100);

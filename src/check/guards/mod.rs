@@ -1,10 +1,10 @@
-//! The price list of the guards: what each costs in time, and what goes wrong without it.
+//! The price list of the guards: the time that each costs, and the error without it.
 //!
-//! A guard is extra work that keeps hard inputs correct; on easy inputs a simpler method would do. Both are tried on the same hard inputs against the exact
-//! answer, and both are timed by turns on the same work. The simpler variants stand beside the cases (`unguarded.rs` of a section), and no
-//! option leads to them.
+//! A guard is extra work that keeps hard inputs correct; on easy inputs a simpler method would do. Both methods are
+//! compared with the exact answer on the same hard inputs, and timed in turns on the same work. The simpler variants
+//! stand beside the cases (`unguarded.rs` of a section). No option of the program selects them.
 //!
-//! To add one: its file with a `GUARD`, and its line in [`GUARDS`].
+//! To add one, write its file with a `GUARD`, and add its line to [`GUARDS`].
 
 mod epsilon;
 mod fixed_order;
@@ -26,7 +26,7 @@ pub use price_file::{FILE, FOLDER, PriceRow, read_prices, write_prices};
 use crate::measure::in_turns;
 use std::hint::black_box;
 
-/// All guards, in the order of a path's life.
+/// All guards, in the order in which a path meets them.
 pub static GUARDS: &[Guard] = &[
     precision::GUARD,
     sphere_formula::GUARD,
@@ -43,30 +43,30 @@ pub static GUARDS: &[Guard] = &[
 
 /// Rounds in which both variants are timed.
 const ROUNDS: usize = 31;
-/// Confidence of all intervals.
+/// Confidence level of all intervals.
 pub const LEVEL: f64 = 0.95;
 
-/// What the program does, and what it could do instead.
+/// A method of the program and a simpler alternative.
 pub struct Guard {
-    /// What is guarded, in a few words.
+    /// Short name of the guarded property.
     pub name: &'static str,
-    /// What the error is and what it is measured on, with its unit.
+    /// Definition of the error, its inputs and its unit.
     pub error: &'static str,
-    /// What is timed.
+    /// The operation that is timed.
     pub operation: &'static str,
-    /// The program's way.
+    /// The program's method.
     pub with: Variant,
-    /// The other.
+    /// The simpler alternative.
     pub without: Variant,
 }
 
-/// One way to do something.
+/// One of the two methods.
 pub struct Variant {
     /// Its name.
     pub name: &'static str,
     /// Its error against the exact answer.
     pub error: fn() -> Measured,
-    /// Does so many operations, and returns a number that depends on all of them, so that none can be left out.
+    /// Runs so many operations. Returns a number that depends on all of them, so that the compiler cannot omit any.
     pub work: fn(u64) -> f64,
 }
 
@@ -84,7 +84,7 @@ impl Guard {
 mod tests {
     use super::*;
 
-    /// Every guard keeps the error well below what it is without: the intervals do not meet.
+    /// Every guard keeps the error well below the error without it: the intervals do not overlap.
     #[test]
     fn guards_guard() {
         for guard in GUARDS {
@@ -94,7 +94,7 @@ mod tests {
         }
     }
 
-    /// Work is work: the number it returns is finite and differs with the amount.
+    /// No operation is optimised away: the returned number is finite and depends on their count.
     #[test]
     fn work_is_not_left_out() {
         for guard in GUARDS {

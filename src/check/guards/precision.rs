@@ -1,4 +1,4 @@
-//! Double precision: without it no formula saves the walls of smallpt's box, spheres of radius 1e5.
+//! Double precision: in single precision no formula is accurate for the walls of smallpt's box, spheres of radius 1e5.
 
 use super::{Guard, Measured, Variant};
 use crate::check::random::Random;
@@ -25,7 +25,7 @@ const WALLS: [[f64; 3]; 6] = [
     [50.0, 81.6 - RADIUS, 81.6],
 ];
 
-/// A ray from inside the box, in numbers that single precision has too.
+/// A ray from inside the box, with coordinates that single precision represents exactly.
 fn ray(random: &mut Random) -> (Vec3, Vec3) {
     let single = |x: f64| f64::from(x as f32);
     let origin = Vec3::new(2.0 + 96.0 * random.unit(), 1.0 + 79.0 * random.unit(), 1.0 + 168.0 * random.unit());
@@ -33,7 +33,7 @@ fn ray(random: &mut Random) -> (Vec3, Vec3) {
     (o, d)
 }
 
-/// A number type that can be told from `f64` and back.
+/// A number type that can be converted from `f64` and back.
 trait Number: Real {
     fn back(self) -> f64;
 }
@@ -61,7 +61,7 @@ fn error<T: Number>() -> Measured {
     let mut errors = Vec::with_capacity(RAYS);
     for k in 0..RAYS {
         let ((origin, d), center) = (ray(&mut random), WALLS[k % 6]);
-        // From inside the first root ahead is the far one.
+        // Seen from inside, the first root ahead is the far one.
         let exact = Exact::of(origin - Vec3::from(center), d, RADIUS).roots.map_or(f64::NAN, |[_, far]| far);
         errors.push((first::<T>(origin, d, center) - exact).abs());
     }

@@ -1,4 +1,4 @@
-//! `guards.csv`: the price list as it was measured.
+//! `guards.csv`: the measured price list.
 
 use super::{Guard, Measured};
 use crate::atomic_file;
@@ -7,42 +7,42 @@ use crate::measure::InTurns;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// The folder of results that has the list.
+/// The folder of results that contains the list.
 pub const FOLDER: &str = "guards";
-/// The list's file in it.
+/// The list's file in this folder.
 pub const FILE: &str = "guards.csv";
 
-/// What one guard costs and saves.
+/// Cost and benefit of one guard.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PriceRow {
-    /// What is guarded.
+    /// Name of the guarded property.
     pub guard: String,
-    /// What the errors are, with their unit.
+    /// Definition of the errors, with their unit.
     pub error: String,
-    /// The program's way.
+    /// The program's method.
     pub with: String,
-    /// The other.
+    /// The simpler alternative.
     pub without: String,
-    /// Error of the program's way, and its interval of 95 %.
+    /// Error of the program's method, with its 95 % interval.
     pub error_with: f64,
     /// Lower end.
     pub error_with_low: f64,
     /// Upper end.
     pub error_with_high: f64,
-    /// Error of the other.
+    /// Error of the alternative.
     pub error_without: f64,
     /// Lower end.
     pub error_without_low: f64,
     /// Upper end.
     pub error_without_high: f64,
-    /// What is timed.
+    /// The operation that is timed.
     pub operation: String,
-    /// Median nanoseconds of one, the program's way; empty if it could not be timed.
+    /// Median nanoseconds per operation of the program's method; empty if it could not be timed.
     pub ns_with: Option<f64>,
-    /// The other way.
+    /// Median nanoseconds per operation of the alternative.
     pub ns_without: Option<f64>,
-    /// Time with the guard over time without: median over paired rounds, and its interval of 95 %.
+    /// Time with the guard divided by time without: median over paired rounds, with its 95 % interval.
     pub time_ratio: Option<f64>,
     /// Lower end.
     pub time_ratio_low: Option<f64>,

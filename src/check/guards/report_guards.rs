@@ -1,4 +1,5 @@
-//! Divisions that are left alone: the second report replaces what it divides below 0.001, and its smooth metals turn black.
+//! Divisions without thresholds: the second report replaces each quotient whose divisor is below 0.001, which turns
+//! its smooth metals black.
 
 use super::{Guard, Measured, Variant};
 use crate::check::shading::unguarded::reflection_of_report_b;
@@ -31,7 +32,7 @@ fn at(theta: f64) -> Vec3 {
     Vec3::new(libm::sin(theta), 0.0, libm::cos(theta))
 }
 
-/// The midpoint rule over the angle from the normal, with most points in the lobe: θ = π/2 s³.
+/// The midpoint rule over the angle from the normal. The substitution θ = π/2 s³ puts most points into the lobe.
 fn error(brdf: fn(Vec3, Vec3) -> f64) -> Measured {
     const STEPS: u32 = 20_000;
     let slice = |k: u32| {

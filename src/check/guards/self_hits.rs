@@ -1,4 +1,4 @@
-//! A smaller epsilon is no way out: huge walls are then met where their rays start.
+//! No smaller epsilon: with one, rays hit huge walls again where they start.
 
 use super::{Guard, Measured, Variant};
 use crate::check::random::Random;
@@ -31,7 +31,7 @@ fn wall() -> Sphere {
     Sphere { center: Vec3::new(RADIUS + 1.0, 40.8, 81.6), radius: RADIUS }
 }
 
-/// A bounce: where a ray from within the box arrives, and a direction by the cosine from there.
+/// A bounce: starts where a ray from within the box hits the wall, with a cosine-distributed direction.
 fn bounce(wall: &Sphere, random: &mut Random) -> Ray {
     let origin = Vec3::new(50.0, 1.0 + 80.0 * random.unit(), 1.0 + 168.0 * random.unit());
     let target = Vec3::new(1.0, 1.0 + 80.0 * random.unit(), 1.0 + 168.0 * random.unit());

@@ -1,4 +1,4 @@
-//! The formula for spheres: smallpt's own loses what is left of a small sphere far away and of a huge one nearby.
+//! The sphere formula: smallpt's formula loses its accuracy for small spheres far away and for huge ones nearby.
 
 use super::{Guard, Measured, Variant};
 use crate::check::random::Random;
@@ -30,7 +30,7 @@ fn error(roots: impl Fn(Vec3, Vec3, f64) -> (f64, f64)) -> Measured {
         let (f, d, r) = aimed(&mut random);
         let exact = Exact::of(f, d, r);
         let Some(expected) = exact.roots else { continue };
-        // So near to the silhouette a hit and a miss may be taken for each other.
+        // So near to the silhouette rounding may turn a hit into a miss, and the reverse.
         if (r - exact.line).abs() <= Exact::band(f, r) {
             continue;
         }

@@ -25,7 +25,7 @@ fn tree(count: u64) -> f64 {
     sum.total().sum[0]
 }
 
-/// Sums and sums of squares of three channels, as a film keeps them.
+/// Sums and sums of squares of three channels, as in a film.
 fn running(count: u64) -> f64 {
     let (mut sums, mut squares) = ([0.0_f32; 3], [0.0_f32; 3]);
     for _ in 0..count {

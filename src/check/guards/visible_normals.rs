@@ -1,4 +1,4 @@
-//! Choosing a microfacet by what is seen: directions by the cosine seldom find the lobe.
+//! Sampling of visible microfacet normals: cosine-distributed directions seldom find the lobe.
 
 use super::{Guard, Measured, Variant};
 use crate::check::shading::unguarded::{Moments, albedo_by_cosines, albedo_by_visible_normals};

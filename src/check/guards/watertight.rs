@@ -1,4 +1,4 @@
-//! The watertight test of triangles: neighbours agree about a ray through the edge that they share.
+//! The watertight triangle test: neighbours agree about a ray through their shared edge.
 
 use super::{Guard, Measured, Variant};
 use crate::check::meshes::icosphere;
@@ -35,7 +35,7 @@ fn plain(mesh: &[Triangle], ray: &Ray) -> f64 {
     ahead.fold(f64::INFINITY, f64::min)
 }
 
-/// From near the middle towards a point of an edge.
+/// A ray from near the centre towards a point of an edge.
 fn at_an_edge(mesh: &[Triangle], random: &mut Random) -> Ray {
     let [a, b, _] = mesh[random.below(mesh.len())].corners;
     let origin: Vec3 = random.direction() * (0.45 * random.unit());

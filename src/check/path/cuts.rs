@@ -1,4 +1,4 @@
-//! What a cut or a clamp takes from the light, and that it is said.
+//! Bias of depth limits and clamps, and the warnings about it.
 
 use crate::check::exact::{Bench, arriving_estimators, critical, full_estimators, mean, run};
 use crate::check::stage::{camera, diffuse, object, scene, sphere};
@@ -19,7 +19,8 @@ fn hollow(albedo: f64, emission: f64) -> Scene {
     scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), wall])
 }
 
-/// Of the light 59.0 % is missing after 5 vertices of albedo 0.9 and 0.515 % after 50, and 60.6 % after 500 of 0.999.
+/// The cut removes 59.0 % of the light after 5 vertices of albedo 0.9, 0.515 % after 50, and 60.6 % after 500 of
+/// albedo 0.999.
 fn depth(trials: &mut Trials) {
     for (rho, vertices, missing) in
         [(0.9, 1, 0.9), (0.9, 5, 0.590_49), (0.9, 50, 0.005_153_775_207), (0.999, 500, 0.606_378_944_861)]
@@ -29,7 +30,7 @@ fn depth(trials: &mut Trials) {
         let mut bench = Bench::new(trials);
         bench.max_depth = Some(vertices - 1);
         bench.roulette = Some("never".to_string());
-        // Without roulette nothing is left to chance.
+        // Without roulette nothing is random.
         for (way, film) in bench.films(&scene, arriving_estimators(), 4096.0) {
             let missed = 1.0 - mean(&film, 0).0 * (1.0 - rho);
             bench.trials.close(format!("{what}: missing, {way}"), missing, missed, 1e-11);
@@ -41,7 +42,7 @@ fn depth(trials: &mut Trials) {
     on_record(trials);
 }
 
-/// A record names the cut and calls the image biased; nothing is said of one that was not cut.
+/// A record names the cut and calls the image biased. It reports neither for an image without a cut.
 fn on_record(trials: &mut Trials) {
     let scene = Arc::new(load("cornell").expect("a shipped scene"));
     for entry in ESTIMATORS {
@@ -63,9 +64,9 @@ fn on_record(trials: &mut Trials) {
     }
 }
 
-/// With roulette from the first vertex on a sample is a tenth of the number of vertices, G/10, so that one that is cut at 1 has the mean
-/// (1 - 0.9^10)/(1 - 0.9)/10 = 0.6513215599 instead of 1, and (1 - 0.9^20) = 0.8784233454 if it is cut at 2. With one sample in each subpixel
-/// both clamps cut the same.
+/// With roulette from the first vertex on, a sample is a tenth of the number of vertices, G/10. Clamped at 1 its mean
+/// is (1 - 0.9^10)/(1 - 0.9)/10 = 0.6513215599 instead of 1; clamped at 2, it is (1 - 0.9^20) = 0.8784233454. With one
+/// sample in each subpixel, both clamps cut the same.
 fn clamp(trials: &mut Trials) {
     let scene = hollow(0.9, 0.1);
     let side = trials.times(128, 2048) as u32;
@@ -89,7 +90,8 @@ fn clamp(trials: &mut Trials) {
             let exact =
                 clamp.map_or(1.0, |clamp| if clamp.ends_with(":2") { 0.878_423_345_4 } else { 0.651_321_559_9 });
             let what = format!("{}, {estimator}, {kernel}", clamp.unwrap_or("none"));
-            // A film's squares are those of the samples before the clamp, so the spread is that among the pixels.
+            // A film sums the squares of the unclamped samples, so the standard error comes from the scatter of the
+            // pixels.
             let pixels = outcome.film.pixels().iter().map(|pixel| pixel.mean()[0]);
             let moments = crate::analysis::mean::Moments::of(&pixels.collect::<Vec<f64>>());
             let (found, error) = (moments.mean().unwrap_or(f64::NAN), moments.standard_error().unwrap_or(f64::NAN));

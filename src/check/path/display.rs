@@ -1,4 +1,4 @@
-//! From radiance to what a display shows.
+//! Conversion of radiance to displayed values.
 
 use crate::check::{Case, Trials};
 use crate::error::Error;
@@ -9,7 +9,7 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "P19", tries: "gamma and rounding at the edges", run: rounding },
 ];
 
-/// A picture of values in [0, 1].
+/// An image of values in [0, 1].
 fn ramp() -> Image {
     let mut image = Image::new(16, 9);
     for (index, pixel) in image.pixels.iter_mut().enumerate() {
@@ -18,7 +18,8 @@ fn ramp() -> Image {
     image
 }
 
-/// Report C divides by the largest value of the picture, so that one sample darkens all of it. Here that is asked for, and done to a copy.
+/// Report C divides by the largest value of the image, so one sample darkens all pixels. Here the user must ask for
+/// this, and it changes a copy only.
 fn firefly(trials: &mut Trials) {
     const AT: usize = 77;
     let plain = ramp();
@@ -42,7 +43,8 @@ fn firefly(trials: &mut Trials) {
     trials.holds("automatic exposure", "more than 100 of 144 pixels darkened", darkened, darkened > 100);
 }
 
-/// The bytes change where (k + 1/2)/255 is shown; what lies outside is cut; what is no number is refused and leaves no file.
+/// The byte changes at the linear value that displays as (k + 1/2)/255. Values outside the range are clamped. NaN is
+/// refused and leaves no file.
 fn rounding(trials: &mut Trials) {
     let up = f64::from_bits(1.0_f64.to_bits() + 1);
     for (linear, expected) in [

@@ -1,4 +1,4 @@
-//! Radiance that is none: NaN, infinite, negative.
+//! Invalid radiance: NaN, infinite, negative.
 
 use crate::check::{Case, Trials};
 use crate::effect::EffectSet;
@@ -23,20 +23,20 @@ const HEIGHT: u32 = 12;
 const SPP: u32 = 32;
 const TOLD: usize = 10;
 
-/// An estimator some of whose samples are spoilt.
+/// An estimator that replaces some samples by an invalid value.
 struct Spoilt {
     estimator: Box<dyn AnyEstimator>,
     instead: f64,
 }
 
-/// One sample in 31 or so, here and there.
+/// About one sample in 31, scattered over the image.
 fn is_spoilt(pixel: u32, sample: u32) -> bool {
     ((pixel * SPP + sample).wrapping_mul(2_654_435_761) >> 16).is_multiple_of(31)
 }
 
 impl Estimator for Spoilt {
     const SPP_MULTIPLE: u32 = SPP;
-    // What does not aim at lights does not mind that they are there.
+    // Estimators that do not aim at lights may have them in the scene.
     const AIMS: bool = true;
 
     fn sample<S: Sampler, X: EffectSet, P: Probe>(
@@ -52,7 +52,7 @@ impl Estimator for Spoilt {
     }
 }
 
-/// Renders with an estimator whose spoilt samples have this instead of their green.
+/// Renders with an estimator whose spoilt samples have `instead` as their green channel.
 fn render(settings: Settings, instead: f64) -> Outcome {
     let estimator = any_estimator(&settings.spec.estimator, Options::default()).expect("an estimator of the table");
     let setup = Setup::prepare(settings).expect("settings that fit");
@@ -91,7 +91,7 @@ fn injected(trials: &mut Trials) {
             broken.count() as u64,
             u64::from(WIDTH * HEIGHT),
         );
-        // Left out of the sum and not of the number of samples: as if they were black.
+        // They are left out of the sum but not of the sample count: as if they were black.
         let samples: u64 = outcome.film.pixels().iter().map(|pixel| u64::from(pixel.count)).sum();
         trials.same(format!("{name}: samples"), &u64::from(WIDTH * HEIGHT * SPP), &samples);
         outcome.checksum
@@ -120,7 +120,7 @@ fn injected(trials: &mut Trials) {
     }
 }
 
-/// A lamp that shines NaN, which the reader of scenes would refuse: every kernel leaves out the samples that meet it.
+/// A lamp that emits NaN, which the scene reader would refuse. Every kernel leaves out the samples that hit it.
 fn spoilt_lamp(kernel: &str, trials: &mut Trials) {
     let mut scene = load("cornell").expect("a shipped scene");
     let lamp = scene.objects.iter_mut().find(|object| object.emission != Rgb::BLACK).expect("a lamp");

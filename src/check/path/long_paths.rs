@@ -1,4 +1,4 @@
-//! Paths that never end, or only after thousands of bounces.
+//! Paths that never end, or end only after thousands of bounces.
 
 use crate::check::analytic::corridors::corridor;
 use crate::check::exact::{arriving_estimators, full_estimators, run};
@@ -22,7 +22,7 @@ fn hollow(material: &str, emission: [f64; 3]) -> Scene {
     scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), object(&sphere([0.0; 3], 1.0), material, emission)])
 }
 
-/// One pixel's samples, rendered in a thread with a small stack, where Rust's own threads have 2 MiB.
+/// One pixel's samples, rendered in a thread with a small stack; the default in Rust is 2 MiB.
 fn pixel(scene: &Scene, spec: Spec, spp: u32) -> (PixelSum, Counts) {
     let kernel = kernel::build(&Arc::new(scene.clone()), &Spec { width: 1, height: 1, ..spec }).expect("a kernel");
     let render = move || {
@@ -35,7 +35,7 @@ fn pixel(scene: &Scene, spec: Spec, spp: u32) -> (PixelSum, Counts) {
     thread.join().expect("no overflow of the stack")
 }
 
-/// The loop ends after 65 536 vertices, which is counted and said; each has added what it gave off.
+/// The loop ends after 65 536 vertices, and the cut is counted and reported. Each vertex has added its emission.
 fn endless(trials: &mut Trials) {
     for (material, name) in [(mirror(1.0), "mirror"), (diffuse(1.0), "matte")] {
         for emission in [0.0, 1.0] {
@@ -61,7 +61,7 @@ fn endless(trials: &mut Trials) {
     }
 }
 
-/// 0.999^10000, to 1e-11 of it.
+/// 0.999^10000, with a relative tolerance of 1e-11.
 fn ten_thousand(trials: &mut Trials) {
     let scene = corridor(10_000, 0.999);
     for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
@@ -73,7 +73,7 @@ fn ten_thousand(trials: &mut Trials) {
         trials.close(&what, exact, sum.mean()[0], 1e-11 * exact);
         trials.same(format!("{what}: rays"), 8 * 10_001, counts.rays);
     }
-    // And where roulette ends the paths, among them very long ones.
+    // Roulette ends these paths; some of them are very long.
     let furnace = hollow(&diffuse(0.999), [1.0; 3]);
     for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
         let spec = Spec { estimator: estimator.into(), kernel: kernel.into(), ..Spec::default() };
@@ -83,9 +83,10 @@ fn ten_thousand(trials: &mut Trials) {
     }
 }
 
-/// A throughput that is halved at each bounce is 2^-1022, the smallest normal number, after 1022 bounces, and the next one ends the path: 1023
-/// rays. Of nine tenths it takes 6724, and without that end the path would have none: 0.9 times 4 units of the smallest number is 4 units again.
-/// The sum of a series is right to its last term, also where another channel loses nothing, so that the path goes on beyond all of it.
+/// A throughput that is halved at each bounce is 2^-1022, the smallest normal number, after 1022 bounces. The next
+/// bounce ends the path: 1023 rays. An albedo of 0.9 takes 6724 rays. Without this rule the path would never end: 0.9
+/// times 4 units of the smallest number rounds to 4 units. The sum of the series is right to its last term, also where
+/// another channel loses nothing and keeps the path alive.
 fn underflow(trials: &mut Trials) {
     for (estimator, kernel) in arriving_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
         let what = format!("{estimator}, {kernel}");

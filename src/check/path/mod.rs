@@ -1,4 +1,4 @@
-//! Paths without an end, chance that ends them, what cuts and clamps take away, and how samples become sums, pieces and pictures.
+//! Endless paths, Russian roulette, depth limits and clamps, and the way from samples to sums, pieces and images.
 
 mod cuts;
 mod display;

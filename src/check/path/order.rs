@@ -1,4 +1,4 @@
-//! The order in which samples and pieces come.
+//! Independence of the order of samples and pieces.
 
 use super::unguarded::f64_sum;
 use crate::check::{Case, Trials};
@@ -20,7 +20,7 @@ fn uniform(random: &mut Pcg64Mcg) -> f64 {
     ((random.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
 }
 
-/// Normal with deviation 3 by G. E. P. Box and M. E. Muller (1958), to the power of e.
+/// Exponential of a normal variate with standard deviation 3, by G. E. P. Box and M. E. Muller (1958).
 fn log_normal(random: &mut Pcg64Mcg) -> f64 {
     let radius = (-2.0 * libm::log(uniform(random))).sqrt();
     libm::exp(3.0 * radius * libm::cos(TAU * uniform(random)))
@@ -32,7 +32,7 @@ fn shuffle<T>(values: &mut [T], random: &mut Pcg64Mcg) {
     }
 }
 
-/// 4096 log-normal samples in 1000 orders: added as they come they have dozens of sums, put together as pieces of a film they have one.
+/// 4096 log-normal samples in 1000 orders: running sums give dozens of results, pieces of a film give one.
 fn orders(trials: &mut Trials) {
     const BOUNDS: Bounds = Bounds { x0: 0, y0: 0, x1: 1, y1: 1 };
     let mut random = Pcg64Mcg::new(14);
@@ -69,10 +69,10 @@ fn orders(trials: &mut Trials) {
     images(trials);
 }
 
-/// Whoever renders an image, in which pieces, with how many threads.
+/// The image is the same for every strategy, decomposition and number of threads.
 fn images(trials: &mut Trials) {
     let scene = Arc::new(load("cornell").expect("a shipped scene"));
-    // Three subtrees of 32, 16 and 4 samples, so that the order in which they are added shows.
+    // Three subtrees of 32, 16 and 4 samples, so that a wrong order of addition shows.
     let small = |kernel: &str| {
         let spec = Spec { width: 9, height: 7, seed: 7, kernel: kernel.to_string(), ..Spec::default() };
         Settings { spp: 52, spec, decomposition: "rows".into(), strategy: "serial".into(), ..Settings::default() }
@@ -84,7 +84,7 @@ fn images(trials: &mut Trials) {
         };
         let expected = checksum(small(kernel.name));
         for strategy in STRATEGIES {
-            // Where the number of threads has no meaning, one is enough.
+            // One thread is enough for strategies that ignore the number of threads.
             let threads: &[usize] = if strategy.workers == Workers::Threads { &[1, 2, 8] } else { &[1] };
             let mut others = Vec::new();
             for &threads in threads {

@@ -1,4 +1,4 @@
-//! Films that are cut into pieces: nothing is left over and nothing is rendered twice.
+//! Films divided into pieces: every pixel is rendered exactly once.
 
 use crate::check::{Case, Trials};
 use crate::film::{DECOMPOSITIONS, Decomposition, Plan};
@@ -12,7 +12,7 @@ pub(super) const CASES: &[Case] = &[
 const SIDES: [u32; 9] = [1, 2, 3, 7, 17, 63, 64, 65, 1023];
 /// Numbers of parts.
 const PARTS: [u32; 11] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 20, 64];
-/// More pieces than this are tried on small films only.
+/// Decompositions into more pieces than this are tried on small films only.
 const MANY: u32 = 5000;
 
 fn plan(text: &str, width: u32, height: u32) -> Plan {
@@ -33,7 +33,8 @@ fn wrong(plan: &Plan, width: u32, height: u32) -> u64 {
     covered.iter().filter(|times| **times != 1).count() as u64
 }
 
-/// Every decomposition of the table, and each number of parts. Report B's 784 rows on 20 threads left the last four out.
+/// Tries every decomposition of the table, and each number of parts. Report B's 784 rows on 20 threads omitted the
+/// last four.
 fn cover(trials: &mut Trials) {
     let examples = DECOMPOSITIONS.iter().map(|entry| entry.example.to_string());
     let parts = PARTS.iter().flat_map(|parts| [format!("bands:{parts}"), format!("grid:{parts}")]);
@@ -57,7 +58,7 @@ fn cover(trials: &mut Trials) {
     trials.never("784 rows in 20 bands", "pixels not in exactly one piece", wrong(&bands, 784, 784), 784 * 784);
 }
 
-/// 815 pixels are cut at 204, 408 and 612; and a number of cells need not be a square.
+/// 815 pixels are cut at 204, 408 and 612. The number of cells need not be a square.
 fn grids(trials: &mut Trials) {
     let starts = |plan: &Plan| -> [BTreeSet<u32>; 2] {
         let of = |start: fn(&crate::film::Piece) -> u32| plan.pieces().iter().map(start).collect();

@@ -1,4 +1,4 @@
-//! Russian roulette: when it ends paths, that it keeps the mean, and what spread it brings.
+//! Russian roulette: when it ends paths, that it keeps the mean, and the variance that it adds.
 
 use crate::check::exact::{Bench, arriving_estimators, critical, full_estimators, run};
 use crate::check::stage::{camera, object, scene, sphere};
@@ -23,7 +23,7 @@ fn hollow(albedo: [f64; 3], emission: [f64; 3]) -> Scene {
     scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), object(&sphere([0.0; 3], 1.0), &material, emission)])
 }
 
-/// Gives one number always.
+/// A sampler that always returns one number.
 struct Always(f64);
 
 impl Sampler for Always {
@@ -32,7 +32,7 @@ impl Sampler for Always {
     }
 }
 
-/// A sample of a scene by that number.
+/// A sample of a scene, with `u` as every random number.
 fn sample(estimator: &str, options: Options, scene: &Scene, u: f64) -> f64 {
     let ray = Ray { origin: Vec3::new(0.1, 0.2, 0.3), direction: Vec3::new(1.0, 0.0, 0.0) };
     let key = SampleKey { seed: 1, pixel: 0, sample: 0 };
@@ -40,8 +40,9 @@ fn sample(estimator: &str, options: Options, scene: &Scene, u: f64) -> f64 {
     found.unwrap_or(f64::NAN)
 }
 
-/// A path survives where the number is below the chance, not where it is equal, so that nothing survives black. From roulette at the first
-/// vertex on and with a cut after 3 bounces, what survives everywhere finds 4 vertices of weight 1.
+/// A path survives if the random number is below the survival probability, but not if both are equal, so no path
+/// survives black. With roulette from the first vertex on and a cut after 3 bounces, a path that always survives finds
+/// 4 vertices of weight 1.
 fn at_the_chance(trials: &mut Trials) {
     let largest = 1.0 - f64::EPSILON / 2.0;
     let below_half = 0.5 - f64::EPSILON / 4.0;
@@ -65,7 +66,7 @@ fn at_the_chance(trials: &mut Trials) {
     }
 }
 
-/// One ray a path, and exactly what the surface gives off.
+/// One ray per path, and exactly the emission of the surface.
 fn black(trials: &mut Trials) {
     let scene = hollow([0.0; 3], [3.0, 0.0, 0.5]);
     for (estimator, kernel) in full_estimators().flat_map(|name| KERNELS.iter().map(move |k| (name, k.name))) {
@@ -85,7 +86,7 @@ fn black(trials: &mut Trials) {
     }
 }
 
-/// Channels of different albedo under one roulette: each keeps its own mean, Le/(1 - rho).
+/// Channels of different albedo share one roulette: each keeps its own mean, Le/(1 - rho).
 fn fair(trials: &mut Trials) {
     let scene = hollow([0.5, 0.9, 0.2], [1.0, 2.0, 3.0]);
     let mut bench = Bench::new(trials);
@@ -94,13 +95,13 @@ fn fair(trials: &mut Trials) {
         ["never", "albedo:0", "albedo:1", "albedo:3", "albedo:5", "throughput:0", "throughput:5", "constant:0.95"]
     {
         bench.roulette = Some(rule.to_string());
-        // Without roulette a path of this albedo ends at the cut alone; what it misses there is 1e-18.
+        // Without roulette a path of this albedo ends only at the cut, which removes 1e-18 of the light.
         bench.max_depth = (rule == "never").then_some(400);
         bench.each(rule, &scene, arriving_estimators(), &[2.0, 20.0, 3.75]);
     }
 }
 
-/// Of one channel of all samples: mean, variance within the pixels, and number.
+/// Moments of one channel over all samples: mean, variance within the pixels, and number of samples.
 fn moments(film: &Film) -> (f64, f64, f64) {
     let (mut n, mut sum, mut spread) = (0.0, 0.0, 0.0);
     for pixel in film.pixels() {
@@ -111,8 +112,9 @@ fn moments(film: &Film) -> (f64, f64, f64) {
     (sum / n, spread / (n - film.pixels().len() as f64), n)
 }
 
-/// With roulette from the first vertex on, the number of vertices is geometric: deviation sqrt(rho)/(1 - rho). With smallpt's, five vertices are
-/// certain and the rest has the weight rho^5. The spread of the found variance follows from the kurtosis of a geometric number, 9 + (1 - rho)^2/rho.
+/// With roulette from the first vertex on, the number of vertices is geometric: deviation sqrt(rho)/(1 - rho). With
+/// smallpt's rule, five vertices are certain and the rest has the weight rho^5. The kurtosis of a geometric variate, 9
+/// + (1 - rho)^2/rho, gives the standard error of the variance.
 fn spread(trials: &mut Trials) {
     for (rho, deviation, quick) in [
         (0.1, 0.351_364_184_463_153_4, 256),

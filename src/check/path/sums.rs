@@ -15,15 +15,15 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "P13", tries: "sums of which almost all cancels", run: cancellation },
 ];
 
-/// What a film makes of a pixel's samples.
+/// A pixel's sum, as a film computes it.
 fn film_sum(values: impl Iterator<Item = f64>) -> PixelSum {
     let mut sum = SampleSum::default();
     values.for_each(|value| sum.add(Rgb::WHITE * value));
     sum.total()
 }
 
-/// The sum in two numbers, the second of which holds what the first has no digits for (T. J. Dekker, "A floating-point technique for extending the
-/// available precision", Numerische Mathematik 18, 1971; two-sum by D. E. Knuth).
+/// The sum as two f64, of which the second holds the digits lost by the first (T. J. Dekker, "A floating-point
+/// technique for extending the available precision", Numerische Mathematik 18, 1971; two-sum by D. E. Knuth).
 fn double_double_sum(values: impl Iterator<Item = f64>) -> f64 {
     let two_sum = |a: f64, b: f64| {
         let sum = a + b;
@@ -38,7 +38,8 @@ fn double_double_sum(values: impl Iterator<Item = f64>) -> f64 {
     high + low
 }
 
-/// Equal samples. In f32 a running sum is off by a per cent after a million, by a tenth after ten million, and ones do not get beyond 2^24.
+/// Equal samples. A running sum in f32 is off by 1 % after a million samples and by 10 % after ten million; a sum of
+/// ones stops at 2^24.
 fn long_sums(trials: &mut Trials) {
     for n in [1_000_000, trials.times(3_000_000, 100_000_000) as u32] {
         let exact = 0.7 * f64::from(n);
@@ -55,8 +56,9 @@ fn long_sums(trials: &mut Trials) {
     trials.holds("unguarded, f64, 1e6 samples: off by", "1e-14 to 1e-9", plain, (1e-14..1e-9).contains(&plain));
 }
 
-/// 4, 7, 13 and 16 have the variance 22.5, or 30 as a sample, wherever 0 is. A film keeps sums of squares, which are good for samples that differ
-/// by a millionth of their size and more, and never negative.
+/// 4, 7, 13 and 16 have the variance 22.5, or 30 as a sample, whatever offset is added. A film keeps sums of squares.
+/// They are accurate for samples that differ by at least a millionth of their size, and never give a negative
+/// variance.
 fn variance(trials: &mut Trials) {
     for offset in [0.0, 1e8, 1e9] {
         let values = [4.0, 7.0, 13.0, 16.0].map(|value| value + offset);
@@ -84,8 +86,8 @@ fn variance(trials: &mut Trials) {
     trials.never("a film's, of equal samples", "variances below 0 or above rounding", negative, tries);
 }
 
-/// Films do not claim compensated sums but a bound: with sums of m samples added up as a tree of depth d, an error of (m - 1 + d) 2^-53
-/// times the sum of the absolute values.
+/// Films do not use compensated sums, but their error has a bound: for sums of m samples that are added along a tree
+/// of depth d, (m - 1 + d) 2^-53 times the sum of the absolute values.
 fn cancellation(trials: &mut Trials) {
     let four = [1.0, 1e100, 1.0, -1e100];
     trials.same("unguarded, Kahan's sum", 0.0, kahan_sum(four.into_iter()));
@@ -102,7 +104,7 @@ fn cancellation(trials: &mut Trials) {
     let tries = trials.times(200, 20_000);
     let (mut outside, mut worst) = (0, 0.0_f64);
     for size in 0..tries {
-        // Magnitudes over sixteen decades, and each value once more with the other sign among those that follow.
+        // Magnitudes over sixteen decades; each value appears again later, negated and scaled by 0.999.
         let n = 1 + (size as usize * 37) % 3000;
         let mut values: Vec<f64> = Vec::with_capacity(2 * n);
         for _ in 0..n {

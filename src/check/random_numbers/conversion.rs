@@ -1,4 +1,4 @@
-//! From bits to numbers below 1: R10.
+//! Conversion of bits to numbers below 1: R10.
 
 use super::first;
 use super::unguarded::{unit_in_f32, unit_of_all_bits};
@@ -9,7 +9,8 @@ use crate::sampling::{Purpose, unit};
 pub(super) const CASES: &[Case] =
     &[Case { id: "R10", tries: "the topmost and the lowest 2^20 integers as numbers: never 1", run: below_one }];
 
-/// Multiplying all 64 bits, or 32 bits in single precision, rounds up to 1 at the top. The top 53 bits as a multiple of 2^-53 cannot.
+/// Multiplying all 64 bits, or 32 bits in single precision, rounds the largest integers up to 1. The top 53 bits as a
+/// multiple of 2^-53 stay below.
 fn below_one(trials: &mut Trials) {
     let n = trials.times(1 << 20, 1 << 26);
     let outside =

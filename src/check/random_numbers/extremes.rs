@@ -1,4 +1,4 @@
-//! The ends of [0, 1) through everything that asks for numbers: R09, R11.
+//! The ends of [0, 1) through every consumer of random numbers: R09, R11.
 
 use super::first;
 use crate::check::samplers::keyed;
@@ -19,13 +19,13 @@ const LAST: f64 = 1.0 - U;
 const PAIRS: [[f64; 2]; 9] =
     [[0.0, 0.0], [0.0, LAST], [LAST, 0.0], [LAST, LAST], [0.0, 0.5], [0.5, 0.0], [0.5, LAST], [LAST, 0.5], [U, U]];
 
-/// Where the extremes come.
+/// A sampler that returns extreme pairs.
 enum Stub {
     /// The same pair for every use.
     Always([f64; 2]),
-    /// All of them in turn.
+    /// A pair by pixel, bounce and purpose, out of all.
     Turns,
-    /// A pair at one bounce, and numbers as they usually are at the others.
+    /// The pair at one bounce, and ordinary random numbers at the others.
     Once([f64; 2], u16),
 }
 
@@ -59,12 +59,13 @@ fn scenes() -> impl Iterator<Item = Scene> {
     SCENES.iter().map(move |(scene, _)| fast(load(name(scene)).expect("a shipped scene")))
 }
 
-/// A ball that glows, around everything that the camera sees.
+/// A glowing sphere around everything that the camera sees.
 fn room(camera: &str) -> Scene {
     scene(&[camera.to_string(), named("room", &sphere([50.0, 40.0, 60.0], 1e3), DIFFUSE, 1.0)])
 }
 
-/// Rays of length 1 from somewhere; aims with a density, or none.
+/// Checks that rays have length 1 and a finite origin, and that each aim has a direction of length 1 and a positive
+/// density, or is none.
 fn cameras_and_lights(trials: &mut Trials) {
     let (mut rays, mut bad_rays, mut aims, mut bad_aims) = (0, 0, 0, 0);
     for scene in scenes().chain(CAMERA_EXAMPLES.iter().map(|camera| room(camera))) {
@@ -92,7 +93,7 @@ fn cameras_and_lights(trials: &mut Trials) {
     trials.at_most("place on the lens: square of the radius", 1.0 + 8.0 * U, on_disk);
 }
 
-/// How many aims, and how many of them are wrong, from where a ray arrives and from half way.
+/// The number of aims and of wrong aims, from the point that a ray hits and from half way.
 fn aimed(scene: &Scene, ray: &Ray, u: [f64; 2]) -> (u64, u64) {
     let Some(lights) = &scene.lights else { return (0, 0) };
     let Some(hit) = scene.first_of_any(ray, None) else { return (0, 0) };
@@ -110,7 +111,7 @@ fn aimed(scene: &Scene, ray: &Ray, u: [f64; 2]) -> (u64, u64) {
     (tried, wrong)
 }
 
-/// Every material of every scene, from above to along the surface, from both sides.
+/// Tries every material of every scene, for directions from the normal down to grazing, from both sides.
 fn materials(trials: &mut Trials) {
     let (mut tried, mut wrong) = (0, 0);
     for object in scenes().flat_map(|scene| scene.objects.into_iter().take(100)) {
@@ -128,7 +129,7 @@ fn materials(trials: &mut Trials) {
     trials.never("materials of every scene", "directions not of length 1 or weights that are not finite", wrong, tried);
 }
 
-/// Rays that met nothing.
+/// Number of rays that hit nothing.
 #[derive(Default)]
 struct Escapes(u64);
 
@@ -138,7 +139,7 @@ impl Probe for Escapes {
     }
 }
 
-/// A sample of a pixel by an estimator.
+/// A sample of a pixel, to be taken by an estimator.
 struct Sample<'a> {
     scene: &'a Scene,
     pixel: u32,
@@ -159,12 +160,12 @@ impl Sample<'_> {
 
 const SIZE: [u32; 2] = [8, 6];
 
-/// Radiance that can be added up, and an end. A path that is at an extreme once does not leave what is closed; one that is at every
-/// vertex creeps into an edge, where a point is not on one side or the other, and may.
+/// Every path ends and returns valid radiance. A path with an extreme at one bounce does not leave a closed scene. A
+/// path with extremes at every vertex may: it creeps into an edge, where the side of a point is undecided.
 fn estimators(trials: &mut Trials) {
     let step = trials.times(5, 1) as usize;
     for entry in ESTIMATORS {
-        // Numbers of 0 survive every roulette, so paths end at the depth that is asked for.
+        // Numbers of 0 survive every roulette, so paths end at this maximum depth.
         let depth = entry.max_depth.unwrap_or(trials.times(20, 1000) as u16);
         let options = Options { max_depth: Some(depth), ..Options::default() };
         let (mut tried, mut wrong, mut closed, mut leaks) = (0, 0, 0, 0);
@@ -201,7 +202,8 @@ fn estimators(trials: &mut Trials) {
     }
 }
 
-/// -ln(u) has no end at 0, -ln(1 - u) at 1; with u < 1 the second is at most 53 ln 2, and exact where u is small.
+/// -ln(u) is unbounded at 0, -ln(1 - u) at 1. With u < 1 the latter is at most 53 ln 2, and it is exact where u is
+/// small.
 fn free_paths(trials: &mut Trials) {
     trials.same("-ln(u) at 0", &f64::INFINITY, &(-libm::log(0.0)));
     let fog = |scattering: f64| Fog { absorption: Rgb::BLACK, scattering, emission: Rgb::BLACK };
@@ -222,7 +224,7 @@ fn free_paths(trials: &mut Trials) {
             wrong += u64::from(!(path >= 0.0 && path.is_finite()));
         }
         trials.never(name, "free paths that are negative or endless", wrong, n.into());
-        // Mean 1/2 and, being exponential, standard deviation 1/2.
+        // An exponential distribution with mean 1/2 has standard deviation 1/2.
         let z = (sum / f64::from(n) - 0.5) / (0.5 / f64::from(n).sqrt());
         trials.deviates_below(format!("{name}: mean free path"), crate::check::level::critical(3), z);
     }

@@ -1,4 +1,4 @@
-//! Keys: none is zero, none is shared: R05, R06.
+//! Keys: no key is zero, no two addresses share one: R05, R06.
 
 use super::first;
 use super::unguarded::{fmix64, key_of_32_bits, wang_hash, xorshift32};
@@ -13,11 +13,11 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "R06", tries: "no two addresses share their numbers; the mix is a bijection", run: collisions },
 ];
 
-/// The seeds at the ends of ranges.
+/// Seeds at the ends of integer ranges.
 const SEEDS: [u64; 6] = [0, 1, 1 << 31, (1 << 32) - 1, 1 << 63, u64::MAX];
 
-/// Wang's hash of pixel 61 is 0, and of 0 xorshift makes zeros for ever; the finaliser of Murmur's hash keeps 0. In ours no pixel under
-/// no seed starts with four zeros.
+/// Wang's hash of pixel 61 is 0, and xorshift with state 0 returns zeros for ever. The finaliser of Murmur's hash maps
+/// 0 to 0. With the program's samplers no pixel starts with four zeros, whatever the seed.
 fn zeros(trials: &mut Trials) {
     trials.same("Wang's hash of 61", &0, &wang_hash(61));
     let mut state = wang_hash(61);
@@ -33,7 +33,7 @@ fn zeros(trials: &mut Trials) {
         let mut zeros = 0;
         for seed in SEEDS {
             for pixel in 0..pixels {
-                // The second pair is asked for only where the first is all zeros.
+                // The second pair is drawn only if the first is all zeros.
                 let is_zero = |bounce| first(&*sampler, seed, pixel, 0, (bounce, Purpose::Bsdf)) == [0.0, 0.0];
                 zeros += u64::from(is_zero(1) && is_zero(2));
             }
@@ -42,16 +42,17 @@ fn zeros(trials: &mut Trials) {
     }
 }
 
-/// The number of which `mix` makes `x`: each of its steps, undone. That there is one for every number shows that no two share one.
+/// The inverse of `mix`: undoes each of its steps. An inverse for every number shows that no two numbers share an
+/// image.
 fn unmix(x: u64) -> u64 {
-    // A shift is undone by repeating it on what is known so far.
+    // A shift is undone by repeating it on the bits known so far.
     let unshift = |x: u64, by: u32| (0..64 / by).fold(x, |known, _| x ^ (known >> by));
     let z = unshift(x, 31).wrapping_mul(inverse(0x94D0_49BB_1331_11EB));
     let z = unshift(z, 27).wrapping_mul(inverse(0xBF58_476D_1CE4_E5B9));
     unshift(z, 30).wrapping_sub(0x9E37_79B9_7F4A_7C15)
 }
 
-/// The inverse of an odd number modulo 2^64, by Newton's iteration: each step doubles the digits that are right.
+/// The inverse of an odd number modulo 2^64, by Newton's iteration: each step doubles the number of correct bits.
 fn inverse(odd: u64) -> u64 {
     (0..6).fold(odd, |x, _| x.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(x))))
 }
@@ -74,12 +75,13 @@ fn bits([u, v]: [f64; 2]) -> u128 {
     u128::from(u.to_bits()) << 64 | u128::from(v.to_bits())
 }
 
-/// Exhaustively: every pixel and sample of an image, every use along a path with its branches, and two images of a seed and of a
-/// reference. By chance one in 1e16 sets of such pairs has one twice. Keys of 32 bits are shared by 72 pairs of the pixels of such an image.
+/// Exhaustive: every pixel and sample of an image, every use along a path with its branches, and two images of a seed
+/// and of a reference seed. By chance, one in 1e16 such sets contains a pair twice. With 32-bit keys, 72 pairs of
+/// pixels of such an image share a key.
 fn collisions(trials: &mut Trials) {
     bijection(trials);
     let pairs = repeated_words((0..786_432).map(key_of_32_bits).collect());
-    // 786432²/2/2^32, give or take five roots of it.
+    // 786432²/2/2^32, with a tolerance of five times its square root.
     trials.close("keys of 32 bits: pairs that share one", 72.0, pairs as f64, 5.0 * 72.0_f64.sqrt());
     trials.same("every seed is an image's or a reference's", &REFERENCE_SEEDS, &(LARGEST_SEED + 1));
     let spp = trials.times(4, 8) as u32;
@@ -112,7 +114,7 @@ fn along_a_path(sampler: &dyn Sampler, bounces: u64) -> Vec<u128> {
     for bounce in 0..=(bounces - 1) as u16 {
         for branch in [0, 1, 2, 3, 255, u16::MAX] {
             for purpose in Purpose::ALL {
-                // The extremes of the key at once.
+                // All parts of the key at their largest values.
                 let key = SampleKey { seed: u64::MAX, pixel: u32::MAX, sample: u32::MAX };
                 all.push(bits(sampler.pair(Address { key, bounce, branch, purpose })));
             }

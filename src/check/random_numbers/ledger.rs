@@ -1,4 +1,4 @@
-//! Which number is used where: R13.
+//! Use of random numbers: each address at most once in a sample: R13.
 
 use crate::check::samplers::keyed;
 use crate::check::{Case, Trials};
@@ -14,7 +14,7 @@ pub(super) const CASES: &[Case] = &[Case {
     run: once,
 }];
 
-/// Passes numbers on and writes down what they were for.
+/// A sampler that records the addresses of the random numbers that it returns.
 struct Ledger {
     sampler: Box<dyn Sampler>,
     used: Mutex<Vec<Address>>,
@@ -27,8 +27,8 @@ impl Sampler for Ledger {
     }
 }
 
-/// Samples of some pixels by an estimator: how many numbers were used, how many twice, for another sample or by what does not branch as a
-/// branch.
+/// Samples of some pixels, to be taken by an estimator. Counts the random numbers used, those used twice, those of
+/// another sample, and those of a branch where the estimator does not branch.
 struct Samples<'a> {
     scene: &'a Scene,
     pixels: u32,
@@ -68,7 +68,7 @@ impl Samples<'_> {
             found.used += used.len() as u64;
             found.twice += (used.len() - used.iter().collect::<HashSet<_>>().len()) as u64;
             found.foreign += used.iter().filter(|at| at.key != key).count() as u64;
-            // At the camera they are other rays.
+            // At the camera, branches are other rays.
             let branches = used.iter().filter(|at| at.bounce > 0 && at.branch > 0).count() as u64;
             found.branches += branches;
             found.foreign += if is_one_path { branches } else { 0 };
@@ -90,7 +90,7 @@ fn once(trials: &mut Trials) {
         let scene = fitting.unwrap_or(scene);
         let lit = scene.lit(&scene.camera.view(16, 12));
         for (entry, all) in ESTIMATORS.iter().zip(&mut all) {
-            // A mirror room without an end would go on to the cap.
+            // An endless mirror room would reach the maximum number of bounces.
             let options = Options { max_depth: entry.max_depth.or(Some(100)), ..Options::default() };
             for ((_, ledger), all) in ledgers.iter().zip(all) {
                 let scene = if entry.aims { &lit } else { &scene };

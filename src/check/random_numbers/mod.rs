@@ -1,4 +1,4 @@
-//! Random numbers.
+//! Cases about random numbers.
 
 mod conversion;
 mod extremes;
@@ -31,7 +31,7 @@ pub(super) const SECTION: Section = Section {
     ],
 };
 
-/// The pair of one use of numbers on the main path.
+/// The pair of one use of random numbers on the main path.
 fn first(sampler: &dyn Sampler, seed: u64, pixel: u32, sample: u32, (bounce, purpose): (u16, Purpose)) -> [f64; 2] {
     sampler.pair(Address { key: SampleKey { seed, pixel, sample }, bounce, branch: 0, purpose })
 }

@@ -1,4 +1,4 @@
-//! Numbers across the pixels of an image: R04.
+//! Random numbers across the pixels of an image: R04.
 
 use super::first;
 use super::unguarded::{draw, sequential_state, sequential_stream};
@@ -17,10 +17,10 @@ const WIDTH: usize = 1024;
 const PIXELS: usize = WIDTH * 768;
 const SEEDS: [u64; 4] = [1, 2, 0x0123_4567_89AB_CDEF, 1 << 63];
 const USES: [(u16, Purpose); 4] = [(0, Purpose::Film), (1, Purpose::Bsdf), (3, Purpose::Bsdf), (6, Purpose::Roulette)];
-/// Neighbours to the right and below and on both diagonals, and what lies two and a power of two away.
+/// The neighbours to the right, below and on both diagonals, and pixels two and a power of two away.
 const LAGS: [usize; 8] = [1, 2, 64, WIDTH - 1, WIDTH, WIDTH + 1, 2 * WIDTH, 256 * WIDTH];
 
-/// Numbers less 1/2, draw by draw.
+/// Random numbers minus 1/2, by draw.
 type Draws = Vec<Vec<f64>>;
 
 fn chi_square(numbers: &[f64]) -> f64 {
@@ -31,7 +31,7 @@ fn chi_square(numbers: &[f64]) -> f64 {
     even(&cells)
 }
 
-/// Scores of each draw's cells, of each draw's lags, and of each pair of draws of a pixel.
+/// Scores of the cells of each draw, of the lags of each draw, and of each pair of draws of a pixel.
 fn scores(draws: &Draws) -> [Vec<f64>; 3] {
     let cells = draws.iter().map(|numbers| chi_square(numbers)).collect();
     let lags = draws.iter().flat_map(|numbers| LAGS.map(|lag| correlation(numbers, &numbers[lag..]))).collect();
@@ -50,7 +50,7 @@ fn across(trials: &mut Trials) {
     let whole = critical(3 * keyed().count());
     for (name, sampler) in keyed() {
         let mut all = [const { Vec::new() }; 3];
-        // What spreads samples is that much slower, and its first sample is as independent as any.
+        // Samplers that spread a pixel's samples are slower, and their first samples are as independent as any.
         let seeds = if is_spread(name) { trials.times(1, 4) } else { 4 };
         for seed in SEEDS.into_iter().take(seeds as usize) {
             for sample in 0..samples {
@@ -68,7 +68,7 @@ fn across(trials: &mut Trials) {
         }
         for (what, scores) in ["256 cells", "lags", "pairs of draws"].iter().zip(&all) {
             trials.deviates_below(format!("{name}, {what}: worst of {}", scores.len()), limit, worst(scores));
-            // Together they must be as scattered as they are by chance: neither more nor less.
+            // Together the scores must scatter exactly as much as chance predicts.
             let squares = scores.iter().map(|z| z * z).sum();
             trials.deviates_below(format!("{name}, {what}: squares"), whole, score(squares, scores.len() as f64));
         }
@@ -76,8 +76,8 @@ fn across(trials: &mut Trials) {
     sequential(trials);
 }
 
-/// What programs do that number states or streams of PCG32 by the pixel: too even and too uneven by 3.8 to 9.2 deviations, neighbours
-/// correlated by 23.6 and 11.9.
+/// Programs that use the pixel index as state or stream of PCG32 fill cells too evenly or too unevenly by 3.8 to 9.2
+/// deviations, and correlate neighbours by 23.6 and 11.9 deviations.
 fn sequential(trials: &mut Trials) {
     let generators = [
         ("PCG32, state = pixel", sequential_state as fn(u32) -> Pcg32, 20.0),

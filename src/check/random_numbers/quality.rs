@@ -1,7 +1,7 @@
-//! Numbers of neighbouring pixels taken together, as a battery of tests of generators sees them: R14.
+//! Random numbers of neighbouring pixels together, through a battery of tests for generators: R14.
 //!
-//! Two orders, both of which an image uses: all draws of a pixel and then the next pixel's, and one draw of all pixels and then the next
-//! draw.
+//! An image uses two orders, and both are tested: all draws of a pixel and then those of the next pixel, and one draw
+//! of all pixels and then the next draw.
 
 use super::first;
 use crate::analysis::randomness::battery::{birthdays, bytes, pairs, ranks, single_bits};
@@ -16,7 +16,7 @@ pub(super) const CASES: &[Case] = &[Case {
     run: battery,
 }];
 
-/// Draws of a pixel.
+/// The draws of a pixel.
 const USES: [(u16, Purpose); 4] = [(1, Purpose::Bsdf), (2, Purpose::Bsdf), (3, Purpose::Light), (6, Purpose::Roulette)];
 const DRAWS: u32 = 2 * USES.len() as u32;
 

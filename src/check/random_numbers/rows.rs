@@ -22,7 +22,7 @@ pub(super) const CASES: &[Case] = &[
 
 const PIXELS: u32 = 786_432;
 
-/// How many different values there are, how many rows share one, and how large the largest group is.
+/// The number of different values, the number of rows that share one, and the size of the largest group.
 fn groups<T: Ord>(values: impl Iterator<Item = T>) -> (usize, usize, usize) {
     let mut counts = BTreeMap::new();
     for value in values {
@@ -32,7 +32,8 @@ fn groups<T: Ord>(values: impl Iterator<Item = T>) -> (usize, usize, usize) {
     (counts.len(), sharing, counts.values().copied().max().unwrap_or(0))
 }
 
-/// The cube of the row wraps at 2^16: of 768 rows 48 share a stream, 12 of them one, and of 2160 rows 270, 34 of them one.
+/// smallpt's seed is the cube of the row, which wraps at 2^16. Of 768 rows, 48 share a stream, up to 12 of them the
+/// same one; of 2160 rows, 270 share one, up to 34 the same one.
 fn rows(trials: &mut Trials) {
     for (rows, expected) in [(768, (730, 48, 12)), (2160, (1964, 270, 34))] {
         trials.same(
@@ -46,7 +47,7 @@ fn rows(trials: &mut Trials) {
         }
     }
     trials.close("smallpt, first draw of row 0", 3.9e-14, erand48(&mut smallpt_row(0)), 1e-15);
-    // The place in the pixel in rows that are 64 apart, which smallpt gives the same numbers.
+    // The position in the pixel, in rows 64 apart, which get the same random numbers in smallpt.
     let limit = critical(keyed().count() * 12);
     for (name, sampler) in keyed() {
         let row = |y: u32| {
@@ -62,12 +63,13 @@ fn largest(worst: f64, z: f64) -> f64 {
     if z.abs() > worst.abs() { z } else { worst }
 }
 
-/// The difference modulo 1 in one of 64 cells.
+/// The cell, out of 64, of the difference modulo 1.
 fn cell(a: f64, b: f64) -> usize {
     (((a - b).rem_euclid(1.0) * 64.0) as usize).min(63)
 }
 
-/// Rows 32 and 0 of smallpt differ by exactly 1/2 at every draw. Ours: differences of the draws of two rows are evenly spread.
+/// Rows 32 and 0 of smallpt differ by exactly 1/2 at every draw. With the program's samplers, the differences of two
+/// rows are uniform.
 fn differences(trials: &mut Trials) {
     let draws = 1000;
     let (mut zero, mut other) = (smallpt_row(0), smallpt_row(32));
@@ -91,7 +93,7 @@ fn differences(trials: &mut Trials) {
     }
 }
 
-/// The first draws of neighbours of such a generator differ by 1664525/2^32 = 0.000387552427.
+/// The first draws of neighbours differ by 1664525/2^32 = 0.000387552427 with a generator seeded by the pixel.
 fn neighbours(trials: &mut Trials) {
     let step = lcg_of_pixel(1001) - lcg_of_pixel(1000);
     trials.close("seeded by the pixel: difference of neighbours", 0.000_387_552_427, step, 1e-12);
@@ -103,7 +105,7 @@ fn neighbours(trials: &mut Trials) {
             (0..PIXELS).map(|pixel| first(&*sampler, 1, pixel, 0, (0, Purpose::Film))[0] - 0.5).collect();
         trials.deviates_below(format!("{name}: correlation"), limit, correlation(&noise, &noise[1..]));
         let mut cells = [0; 64];
-        // Every second one, so that no number counts twice.
+        // Disjoint pairs, so that no number counts twice.
         noise.chunks_exact(2).for_each(|two| cells[cell(two[1], two[0])] += 1);
         trials.deviates_below(format!("{name}: differences, chi-square"), limit, even(&cells));
     }

@@ -1,4 +1,4 @@
-//! Images of different seeds have nothing in common: R07.
+//! Independence of the images of different seeds: R07.
 
 use super::first;
 use super::unguarded::seed_plus_pixel;
@@ -16,7 +16,7 @@ pub(super) const CASES: &[Case] =
 
 const SEED: u64 = 5;
 
-/// The largest score over all lags, whichever its sign.
+/// The score with the largest absolute value over all lags.
 fn worst(scores: &[f64]) -> f64 {
     scores.iter().copied().fold(0.0, |worst: f64, z| if z.abs() > worst.abs() { z } else { worst })
 }
@@ -26,8 +26,8 @@ fn seeds(trials: &mut Trials) {
     images(trials);
 }
 
-/// The first number of each pixel of a square, less 1/2, against that of another seed moved by every lag. On a torus, so every lag has
-/// all the pixels.
+/// Correlates the first random number of each pixel of a square, minus 1/2, with that of another seed, shifted by
+/// every lag. The square is a torus, so every lag uses all pixels.
 fn draws(trials: &mut Trials) {
     let side = trials.times(128, 1024) as usize;
     let limit = critical(keyed().count() * 64 * side * side);
@@ -42,17 +42,17 @@ fn draws(trials: &mut Trials) {
             trials.deviates_below(format!("{name}, seeds s and s + 2^{k}, {} lags", side * side), limit, z);
         }
     }
-    // A key that is the sum of seed and pixel: the same noise, one pixel to the side, and one row below.
+    // A key that is the sum of seed and pixel gives the same noise, shifted by pixels or by a row.
     let shifted = |seed: u64| noise(&|pixel| seed_plus_pixel(seed, pixel)).transformed();
     for k in [0, 4, side.trailing_zeros()] {
         let scores = correlations(&shifted(SEED), &shifted(SEED + (1 << k)));
-        // All of its pixels but those at the edge, in deviations.
+        // All pixels agree except those at the edge. The limit is in standard deviations.
         trials.at_least(format!("seed plus pixel, seeds s and s + 2^{k}"), 0.8 * side as f64, worst(&scores) * scale);
     }
 }
 
-/// Rendered images, each less one of a reference's seeds, so that what they show goes away and noise remains. It is of another size in
-/// every pixel, so the scores are by what chance makes of each lag.
+/// Correlates rendered images. An image of a reference seed is subtracted from each, so that only noise remains. The
+/// noise varies by pixel, so the score of each lag is scaled by its standard deviation.
 fn images(trials: &mut Trials) {
     let side = trials.times(32, 64) as usize;
     let scene = load("cornell").expect("a shipped scene");
@@ -69,7 +69,7 @@ fn images(trials: &mut Trials) {
                     sampler: name.into(),
                     ..Spec::default()
                 };
-                // As it is shown: no more than 1, so that no single pixel is all of the noise.
+                // Clamped to 1 as on a display, so that no single pixel dominates the noise.
                 run(&scene, spec, 4).film.image().pixels.iter().map(|pixel| pixel[1].min(1.0)).collect()
             };
             let noise = |seed: u64, reference: u64| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Samplers that spread a pixel's samples: R15, tried for every keyed sampler.
+//! Samplers that spread a pixel's samples: R15, run for every keyed sampler.
 
 use super::first;
 use crate::analysis::chi_square::even;
@@ -13,17 +13,17 @@ pub(super) const CASES: &[Case] = &[Case {
     run: spread,
 }];
 
-/// The numbers of the place in the pixel and of the first two directions.
+/// Random numbers for the position in the pixel and for the first two directions.
 const USES: [(u16, Purpose); 3] = [(0, Purpose::Film), (1, Purpose::Bsdf), (2, Purpose::Bsdf)];
 
-/// A function of a sample's subpixel and numbers, and its mean.
+/// A function of a sample's subpixel and random numbers, with its mean.
 struct Integrand {
     name: &'static str,
     value: fn(u32, [[f64; 2]; 3]) -> f64,
     mean: f64,
 }
 
-/// Smooth ones, an edge, one of all six numbers, and ones that see a different function in each subpixel.
+/// Smooth integrands, an edge, one of all six numbers, and integrands that differ by subpixel.
 const INTEGRANDS: [Integrand; 6] = [
     Integrand { name: "product", value: |_, [[u, v], ..]| u * v, mean: 0.25 },
     Integrand { name: "edge", value: |_, [[u, v], ..]| f64::from(u8::from(u + v < 0.7)), mean: 0.245 },
@@ -56,7 +56,8 @@ fn spread(trials: &mut Trials) {
     projections(trials);
 }
 
-/// A full set of strata or not, a square or not, of a seed that is even or odd: the mean over scramblings is right.
+/// The mean over scramblings is right: for complete and incomplete sets of strata, for square and other counts, and
+/// for even and odd seeds.
 fn means(trials: &mut Trials) {
     let scramblings = trials.times(1000, 10_000) as u32;
     let counts = [4, 12, 16, 20, 64, 100];
@@ -81,11 +82,11 @@ fn means(trials: &mut Trials) {
     }
 }
 
-/// One scrambling, many samples: each pixel goes to the mean, also where each subpixel sees another function. Sobol's own order would
-/// leave an error of the size of the integrand for ever.
+/// One scrambling, many samples: each pixel converges to the mean, also if the function differs by subpixel. Sobol's
+/// original order would leave an error of the size of the integrand for ever.
 fn convergence(trials: &mut Trials) {
     let samples = trials.times(1 << 13, 1 << 18) as u32;
-    // Six deviations of independent samples of the most scattered integrand, whose variance is 4.6.
+    // Six standard deviations of independent samples of the integrand with the largest variance, 4.6.
     let allowed = 6.0 * (4.6 / f64::from(samples)).sqrt();
     for (name, sampler) in keyed() {
         for integrand in &INTEGRANDS {
@@ -98,7 +99,8 @@ fn convergence(trials: &mut Trials) {
 
 const PURPOSES: [Purpose; 4] = [Purpose::Film, Purpose::Bsdf, Purpose::Roulette, Purpose::Medium];
 
-/// Chi-square on 4 x 4 cells of every two of the first 32 numbers, one sample from each of many pixels, so that counts are multinomial.
+/// Chi-square on 4 x 4 cells of every pair of the first 32 numbers. Each pixel gives one sample, so that counts are
+/// multinomial.
 fn projections(trials: &mut Trials) {
     let pixels = trials.times(1 << 13, 1 << 18) as u32;
     let uses: Vec<_> = (0..4).flat_map(|bounce| PURPOSES.map(|purpose| (bounce, purpose))).collect();

@@ -1,4 +1,4 @@
-//! Who draws must not matter, or must be told: R08, R12.
+//! Independence of the threads that draw random numbers; samplers that lack it are flagged: R08, R12.
 
 use crate::check::level::critical;
 use crate::check::run::on_threads;
@@ -54,8 +54,8 @@ fn one_checksum(trials: &mut Trials) {
     }
 }
 
-/// The table says so, images of theirs have no checksum, and what eight threads draw at once is from 0 to 1, of mean 1/2, and no two
-/// threads draw the same sequence.
+/// The table flags these samplers, and their images have no checksum. Eight threads that draw at once get numbers in
+/// [0, 1) with mean 1/2, and no two threads draw the same sequence.
 fn shared(trials: &mut Trials) {
     let scene = Arc::new(load("cornell").expect("a shipped scene"));
     let stateful = || SAMPLERS.iter().filter(|entry| !entry.deterministic);
@@ -94,7 +94,7 @@ fn shared(trials: &mut Trials) {
         let n = (2 * threads * draws) as f64;
         let z = (numbers().sum::<f64>() - 0.5 * n) * (12.0 / n).sqrt();
         trials.deviates_below(format!("{}: mean", entry.name), limit, z);
-        // Six numbers of 31 bits in a row, twice by chance: never.
+        // Two equal starts of six numbers with 31 bits each: chance never gives them.
         let starts: BTreeSet<Vec<u64>> =
             all.iter().map(|numbers| numbers.iter().take(3).flatten().map(|u| u.to_bits()).collect()).collect();
         trials.same(format!("{}: different starts of 8 threads", entry.name), &(threads as usize), &starts.len());

@@ -1,4 +1,4 @@
-//! Ways of finding light agree, with each other and with closed forms: H35, H36.
+//! Agreement of the estimators with each other and with closed forms: H35, H36.
 
 use crate::check::image_mean::{Moments, difference, exact, render};
 use crate::check::level::critical;
@@ -21,7 +21,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A scene of a spot, and its radiance if there is a closed form.
+/// A scene of a spot, with its radiance if there is a closed form.
 struct Spot {
     name: &'static str,
     scene: Scene,
@@ -31,7 +31,8 @@ struct Spot {
 const GLASS: &str = "{ dielectric = { eta = 1.5, tint = [1.0, 1.0, 1.0], fresnel = 'exact' } }";
 const SIDE: u32 = 16;
 
-/// Every estimator that follows all light, with every kernel: against the closed form, and each pair against each other.
+/// Compares every estimator that follows all light, with every kernel, with the closed form and with each of the
+/// others.
 fn agree(trials: &mut Trials, spots: &[Spot], spp: (u64, u64), widest: f64) {
     let estimators: Vec<&str> = ESTIMATORS.iter().map(|entry| entry.name).filter(|name| *name != "whitted").collect();
     let ways: Vec<(&str, &str)> =
@@ -58,7 +59,8 @@ fn agree(trials: &mut Trials, spots: &[Spot], spp: (u64, u64), widest: f64) {
     }
 }
 
-/// Right above a point of a floor a lamp of radius R at height h leaves albedo L (R/h)². Its area is 1e-6, so it is 0.0006 above.
+/// A lamp of radius R at height h above a point of a floor gives the radiance albedo L (R/h)². Its area is 1e-6; its
+/// centre is 0.0006 above.
 fn lights(trials: &mut Trials) {
     let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
     let (radius, height) = (0.000_282_094_791_773_878_16, 6e-4);
@@ -93,8 +95,9 @@ fn lights(trials: &mut Trials) {
     agree(trials, &spots, (256, 8192), 0.08);
 }
 
-/// Everything in the enclosure gives off what it does not reflect, so the radiance is 1 wherever one looks; were an emitter counted twice
-/// or not at all, it would not be. Through glass light cannot be aimed at: there what chance finds must count in full.
+/// Every object in the enclosure emits the share that it does not reflect, so the radiance is 1 in every direction.
+/// Counting an emitter twice or not at all would change it. Light cannot be aimed at through glass: there, light found
+/// by BSDF sampling must count in full.
 fn counted_once(trials: &mut Trials) {
     let enclosure = || object(&sphere([0.0; 3], 10.0), &diffuse(0.0), [1.0; 3]);
     let seen = |things: &[String]| scene(&[camera([0.0, 0.3, 5.0], [0.0; 3]), enclosure(), things.concat()]);

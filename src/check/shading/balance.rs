@@ -1,4 +1,4 @@
-//! Light that goes back the way it came, and light that comes back at all: H26.
+//! Reciprocity and albedo of materials: H26.
 
 use super::unguarded::{albedo_by_cosines, albedo_by_normals, albedo_by_visible_normals};
 use crate::check::level::critical;
@@ -25,7 +25,7 @@ fn balance(trials: &mut Trials) {
     ways_agree(trials);
 }
 
-/// f(a, b) = f(b, a) where the model says so. `kd-ks` does not: f(a, b) differs from f(b, a) just as F(a) differs from F(b).
+/// Checks f(a, b) = f(b, a) where the model is reciprocal. `kd-ks` is not: f(a, b)/f(b, a) equals F(a)/F(b).
 fn reciprocity(trials: &mut Trials) {
     let n = trials.times(20_000, 1_000_000);
     let off =
@@ -56,7 +56,7 @@ fn reciprocity(trials: &mut Trials) {
 
 const COSINES: [f64; 6] = [1.0, 0.75, 0.5, 0.25, 0.1, 0.05];
 
-/// Roughness, and the albedo of facets that reflect everything at each cosine: quadrature with mpmath to 1e-6.
+/// Roughness, and the albedo of facets with F = 1 at each cosine: quadrature with mpmath to 1e-6.
 const TABLE: [(f64, [f64; 6]); 6] = [
     (0.05, [0.997_296, 0.996_138, 0.992_716, 0.974_512, 0.911_347, 0.889_894]),
     (0.1, [0.988_304, 0.983_144, 0.969_205, 0.921_623, 0.883_455, 0.911_763]),
@@ -66,14 +66,16 @@ const TABLE: [(f64, [f64; 6]); 6] = [
     (1.0, [0.306_853, 0.364_527, 0.450_694, 0.597_641, 0.760_211, 0.847_774]),
 ];
 
-/// Multiples of these, less their whole parts, fill the square evenly: the powers of the root of x³ = x + 1 (Roberts, 2018).
+/// The fractional parts of multiples of these fill the square evenly: powers of the reciprocal root of x³ = x + 1
+/// (Roberts, 2018).
 const STEPS: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 
 fn white(alpha: f64) -> Material {
     material(&format!("{{ conductor = {{ alpha = {alpha:?}, f0 = [1.0, 1.0, 1.0] }} }}"))
 }
 
-/// By sampling and by the quadrature that scenes in equilibrium are built on. At α = 1 and normal incidence it is 1 - ln 2.
+/// Compares sampling, and the quadrature behind scenes in equilibrium, with the table. At α = 1 and normal incidence
+/// the albedo is 1 - ln 2.
 fn albedos_of_the_table(trials: &mut Trials) {
     let n = trials.times(100_000, 1_000_000);
     let quadrature = |alpha: f64, cos: f64| white(alpha).albedo_at(cos).map_or(f64::NAN, |albedo| albedo.r);
@@ -96,7 +98,7 @@ fn albedos_of_the_table(trials: &mut Trials) {
     }
 }
 
-/// Whatever the material and its way of choosing directions: the mean weight is the share of light that it scatters, and that is at most 1.
+/// For every material and its sampling method, the mean weight is the share of light that it scatters: at most 1.
 fn mean_weights(trials: &mut Trials) {
     let materials = every_material();
     let cosines = [1.0, 0.6, 0.2];
@@ -117,13 +119,13 @@ fn mean_weights(trials: &mut Trials) {
             let albedo = material.albedo_at(cos).unwrap_or(material.albedo::<AllEffects>());
             let is_share = (0.0..=1.0 + 1e-4).contains(&albedo.max_channel());
             trials.holds(format!("{name}, cos {cos}: albedo"), "0 to 1", format!("{albedo:?}"), is_share);
-            // The quadrature has an error too.
+            // The quadrature has an error, too.
             trials.close(format!("{name}, cos {cos}: mean weight"), albedo.r, mean, limit * error + 1e-4);
         }
     }
 }
 
-/// Three ways of choosing directions for the same albedo: the visible normals are the quietest where there is a gloss.
+/// Three sampling methods agree on the albedo. On glossy surfaces, visible normals have the smallest variance.
 fn ways_agree(trials: &mut Trials) {
     let n = trials.times(50_000, 10_000_000);
     let limit = critical(6);

@@ -1,4 +1,4 @@
-//! The cone under which a sphere is seen: H30, H31, H32.
+//! The cone that a sphere subtends: H30, H31, H32.
 
 use super::unguarded::{naive_one_minus_cos, naive_one_minus_cos_f32};
 use crate::analysis::chi_square::against;
@@ -19,7 +19,7 @@ pub(super) const CASES: &[Case] = &[
 
 const U: f64 = 0.5 * f64::EPSILON;
 
-/// Distance in radii, 1 - cos, and how far the naive form is off in double and in single precision.
+/// Distance in radii, 1 - cos, and the error of the naive form in double and in single precision.
 const TABLE: [(f64, f64, f64, f64); 7] = [
     (2.0, 0.133_974_596_215_561_35, 4e-16, 1.2e-7),
     (100.0, 5.000_125_006_250_391e-5, 2.3e-13, 1.4e-4),
@@ -30,7 +30,7 @@ const TABLE: [(f64, f64, f64, f64); 7] = [
     (1e8, 5.000_000_000_000_000_5e-17, 1.2, 1.0),
 ];
 
-/// r²/(d² + d sqrt(d² - r²)), which is 1 - cos with nothing that cancels but d² - r², in twice the digits.
+/// r²/(d² + d sqrt(d² - r²)), a form of 1 - cos in which only d² - r² cancels, in double-double arithmetic.
 fn exact(radius: f64, distance: f64) -> f64 {
     let (square, r2) = (two_product(distance, distance), two_product(radius, radius));
     r2.over(square + two_product(distance, 1.0) * (square - r2).sqrt())
@@ -51,11 +51,11 @@ fn digits(trials: &mut Trials) {
         let off = (f64::from(naive_one_minus_cos_f32(1.0, distance as f32)) / right - 1.0).abs();
         trials.at_least(format!("{distance} radii, naive in f32: relative error"), 0.5 * naive_f32, off);
     }
-    // The series 1/(2 d²): what comes next is 1e-24 of it.
+    // The series 1/(2 d²): the relative size of the next term is 1e-24.
     trials.at_most("1e12 radii: roundings", 8.0, (one_minus_cos(1.0_f64, 1e12) / 5e-25 - 1.0).abs() / U);
     let mut worst: f64 = 0.0;
     for k in 0..trials.times(100_000, 10_000_000) {
-        // From 2^-40 to 2^40 radii above the sphere, evenly in the logarithm.
+        // From 2^-40 to 2^40 radii above the sphere, uniform in the logarithm.
         let height = libm::exp2(80.0 * unit(mix(2 * k)) - 40.0);
         let radius = libm::exp2(40.0 * unit(mix(2 * k + 1)) - 20.0);
         let distance = radius * (1.0 + height);
@@ -64,7 +64,7 @@ fn digits(trials: &mut Trials) {
     trials.at_most("against twice the digits: roundings", 8.0, worst);
 }
 
-/// A lamp of radius 1 alone, with its lights to aim at.
+/// A single lamp of radius 1, with its lights to aim at.
 fn lamp() -> Scene {
     let scene = scene(&[
         "background = [0.0, 0.0, 0.0]\n".to_string(),
@@ -74,7 +74,8 @@ fn lamp() -> Scene {
     scene.lit(&scene.camera.view(8, 8))
 }
 
-/// The explicit formula has sqrt of a negative number there; evenly over all directions is right wherever inside the point is.
+/// Inside the sphere the explicit formula takes the square root of a negative number. Uniform directions are right at
+/// every point inside.
 fn inside(trials: &mut Trials) {
     let naive = naive_one_minus_cos(1.0, 0.5);
     trials.holds("naive, half a radius from the centre", "NaN", naive, naive.is_nan());
@@ -96,7 +97,7 @@ fn inside(trials: &mut Trials) {
             wrong += u64::from(
                 aim.density != UNIFORM_SPHERE_DENSITY || (dot(aim.direction, aim.direction) - 1.0).abs() > 4e-15,
             );
-            // Heights on any axis are even.
+            // Heights on any axis are uniform.
             for (axis, height) in [aim.direction.x, aim.direction.y, aim.direction.z].into_iter().enumerate() {
                 cells[16 * axis + (((0.5 + 0.5 * height) * 16.0) as usize).min(15)] += 1.0;
             }
@@ -109,7 +110,7 @@ fn inside(trials: &mut Trials) {
     }
 }
 
-/// d = r (1 + 2^-52): nearly half of the sphere of directions, with a density that says so.
+/// d = r (1 + 2^-52): the cone fills nearly half of the sphere of directions, and the density matches it.
 fn touching(trials: &mut Trials) {
     let distance = 1.0 + f64::EPSILON;
     // cos = sqrt((d - r)(d + r))/d, about sqrt(2^-51).

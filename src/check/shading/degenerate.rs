@@ -1,4 +1,4 @@
-//! Directions that are too long, opposite, along the surface or below it: H25, H27.
+//! Directions that are too long, opposite, grazing or below the surface: H25, H27.
 
 use super::unguarded::squared_tangent_of_angle;
 use crate::check::materials::{every_material, towards};
@@ -13,8 +13,8 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "H27", tries: "opposite directions and grazing ones: half vectors of length 0", run: opposite },
 ];
 
-/// By way of the angle the tangent of a normalised vector is NaN where z rounds to more than 1, saturates along the surface, and loses
-/// the sign below it. From components none of this is so.
+/// Computed from the angle, the tangent of a normalised vector is NaN where z rounds above 1, saturates at grazing
+/// directions, and loses its sign below the surface. Computed from components it has none of these errors.
 fn beyond(trials: &mut Trials) {
     let above = 1.0 + f64::EPSILON;
     let by_angle = squared_tangent_of_angle(above);
@@ -31,7 +31,7 @@ fn beyond(trials: &mut Trials) {
         trials.close(format!("alpha {alpha}: D below"), 0.0, ggx.density(Vec3::new(0.6, 0.0, -0.8)), 0.0);
     }
     longer_than_one(trials);
-    // Nothing goes through an opaque surface, nor comes from below it.
+    // No light passes through an opaque surface or comes from below it.
     let below =
         [Vec3::new(0.6, 0.0, -0.8), Vec3::new(0.0, 0.0, -1.0), towards(1e-8, 0.2).cross(Vec3::new(0.0, 0.0, 1.0))];
     for (name, material) in every_material() {
@@ -48,7 +48,7 @@ fn beyond(trials: &mut Trials) {
     }
 }
 
-/// A third of normalised vectors are longer than 1 by their own square: as directions they must be as good as others.
+/// A third of normalised vectors are longer than 1 in rounded arithmetic. They must work as well as other directions.
 fn longer_than_one(trials: &mut Trials) {
     let n = trials.times(20_000, 1_000_000);
     let (mut longer, mut wrong) = (0_u32, 0);
@@ -72,7 +72,7 @@ fn longer_than_one(trials: &mut Trials) {
     trials.never("every material", "samples that are not finite or not of length 1", wrong, longer.into());
 }
 
-/// f = 0, or finite, and never NaN.
+/// The BSDF is finite or 0, and never NaN.
 fn opposite(trials: &mut Trials) {
     let above = Vec3::new(0.0, 0.0, 1.0);
     let (flat, steep, tiny) = (Vec3::new(1.0, 0.0, 0.0), towards(1e-8, 0.0), towards(1e-300, 0.7));

@@ -1,4 +1,4 @@
-//! Directions go where their density says: G7, for every material, roughness and angle.
+//! Sampled directions follow their density: G7, for every material, roughness and angle.
 
 use crate::analysis::chi_square::against;
 use crate::check::level::critical;
@@ -17,7 +17,7 @@ pub(super) const CASES: &[Case] = &[Case {
     run: every_sampler,
 }];
 
-/// A grid over the hemisphere, rings of equal height.
+/// A grid over the hemisphere, with rings of equal height.
 #[derive(Clone, Copy)]
 struct Grid {
     rings: usize,
@@ -42,12 +42,12 @@ impl Grid {
     }
 }
 
-/// What samples did.
+/// Results of the samples of a material.
 struct Found {
     cells: Vec<f64>,
-    /// Absorbed, or of a delta lobe.
+    /// Number of samples that were absorbed or came from a delta lobe.
     without_density: f64,
-    /// Below the surface, or of a density or a weight that `pdf` and `eval` do not confirm.
+    /// Number of samples that lie below the surface, or whose density or weight contradicts `pdf` or `eval`.
     contradicted: u64,
 }
 
@@ -76,8 +76,8 @@ fn sampled(grid: Grid, material: &Material, wo: Vec3, seed: u64, samples: u64) -
     found
 }
 
-/// Samples without a density are a cell of their own, expected as often as the integral falls short of 1. 40 000 samples in 512 cells see a
-/// density that is off by a tenth in half of them; thorough counts see a hundredth.
+/// Samples without a density form a separate cell, whose expected share is 1 minus the integral. 40 000 samples in 512
+/// cells detect a density that is off by a tenth in half of the cells; thorough counts detect a hundredth.
 fn every_sampler(trials: &mut Trials) {
     let is_thorough = trials.times(0, 1) == 1;
     let cosines: &[f64] = if is_thorough {
@@ -111,6 +111,6 @@ fn every_sampler(trials: &mut Trials) {
             trials.deviates_below(format!("{variant}: chi-square"), limit, against(&found.cells, &right));
         }
     }
-    // Diffuse, polished, five rough conductors, and six kd-ks of two kinds have a density.
+    // These have a density: diffuse, polished, five rough conductors, and six kd-ks of two kinds.
     trials.at_least("materials and angles with a density", 20.0 * cosines.len() as f64, judged.into());
 }

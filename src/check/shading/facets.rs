@@ -1,4 +1,4 @@
-//! GGX: H20, H21, H22.
+//! GGX distribution, masking and weights: H20, H21, H22.
 
 use super::unguarded::{cancelling_density, cancelling_density_f32, density_f32, weight_by_normals};
 use crate::check::double_double::two_product;
@@ -28,14 +28,15 @@ fn ggx(alpha: f64) -> Ggx {
     Ggx::new(alpha).expect("a roughness that is allowed")
 }
 
-/// Facets that reflect everything and cast no shadow lose nothing (Heitz 2014): 1 for every roughness and angle, if D and G belong to the
-/// same distribution.
+/// The weak white furnace (Heitz 2014): facets that reflect everything and cast no shadow lose no light. The integral
+/// is 1 for every roughness and angle if D and G belong to the same distribution.
 fn weak_furnace(trials: &mut Trials) {
     for alpha in ALPHAS {
         let ggx = ggx(alpha);
         for cos in [1.0, 0.75, 0.5, 0.25, 0.1, 0.05] {
             let wo = towards(cos, 0.0);
-            // Over normals instead of directions, in coordinates in which every roughness looks alike: tan = alpha x/(1 - x).
+            // The integral runs over normals instead of directions. The coordinate x makes all roughnesses look alike:
+            // tan = alpha x/(1 - x).
             let over_normals = |x: f64, turns: f64| {
                 let tan = alpha * x / (1.0 - x);
                 let z = 1.0 / (1.0 + tan * tan).sqrt();
@@ -49,7 +50,7 @@ fn weak_furnace(trials: &mut Trials) {
                 let wi = h * (2.0 * turned) - wo;
                 ggx.pdf(wo, wi) * 4.0 * turned * solid_angle
             };
-            // In parts, so that no narrow peak is overlooked; both halves of the circle are alike.
+            // The domain is split so that no narrow peak is missed. Both halves of the circle are equal.
             let part = |k: u32, of: f64| [f64::from(k) / 16.0 * of, f64::from(k + 1) / 16.0 * of];
             let tolerance = if trials.times(0, 1) == 0 { 1e-7 } else { 1e-9 };
             let half: f64 =
@@ -59,7 +60,8 @@ fn weak_furnace(trials: &mut Trials) {
     }
 }
 
-/// F G2/G1 is from 0 to 1. By all normals instead of the visible ones the weight has no bound along the surface.
+/// F G2/G1 lies in [0, 1]. Sampling all normals instead of the visible ones gives unbounded weights at grazing
+/// directions.
 fn weights(trials: &mut Trials) {
     let last = 1.0 - U;
     let extremes = [[0.0, 0.0], [0.0, last], [last, 0.0], [last, last], [0.5, last], [0.25, 0.0]];
@@ -88,7 +90,7 @@ fn weights(trials: &mut Trials) {
     }
 }
 
-/// α²/(π (x² + y² + α² z²)²), which is D with its fraction cleared.
+/// D in the form α²/(π (x² + y² + α² z²)²), without an inner fraction.
 fn exact(alpha: f64, h: Vec3) -> f64 {
     let alpha2 = two_product(alpha, alpha);
     let sum = two_product(h.x, h.x) + two_product(h.y, h.y) + alpha2 * two_product(h.z, h.z);
@@ -102,15 +104,15 @@ fn exact_masking(alpha: f64, w: Vec3) -> f64 {
     (z + z).over(z + (z * z + two_product(alpha, alpha) * flat).sqrt())
 }
 
-/// Right within 20 roundings. The usual form, with 1 + cos² (α² - 1), shows that the inputs are hard; at h = n in single precision it is
-/// 43 % off for α = 3e-4 and divides by 0 for 1e-4.
+/// The results are right within 20 roundings. The usual form, with 1 + cos² (α² - 1), shows that the inputs are hard.
+/// At h = n in single precision it is off by 43 % for α = 3e-4 and divides by 0 for 1e-4.
 fn densities(trials: &mut Trials) {
     let n = trials.times(20_000, 1_000_000);
     let mut cancelling: f64 = 0.0;
     for alpha in ALPHAS {
         let (mut density, mut masking): (f64, f64) = (0.0, 0.0);
         for k in 0..n {
-            // From the middle of the lobe, evenly in its logarithm, to beyond its edge; the last ones along the surface.
+            // From the centre of the lobe to beyond its edge, uniform in the logarithm; the last ones are grazing.
             let tan = if k == 0 { 0.0 } else { alpha * libm::exp2(40.0 * k as f64 / n as f64 - 20.0) };
             let (sin, cos) = sin_cos_turns((k % 97) as f64 / 97.0);
             let h = Vec3::new(tan * cos, tan * sin, 1.0).normalized();

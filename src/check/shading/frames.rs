@@ -14,25 +14,26 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "H02", tries: "frames next to where a construction changes sides", run: seams },
 ];
 
-/// The largest of how far the tangents are from right angles with each other and the normal, from length 1, and from a right hand.
+/// The largest deviation of the tangents from right angles to each other and to the normal, from length 1, and from
+/// right-handedness.
 fn deviation(frame: &Frame) -> f64 {
     let Frame { s, t, n } = *frame;
     let handed = s.cross(t) - n;
     let lengths = [dot(s, s), dot(t, t)].map(|square| square.sqrt() - 1.0);
     let [a, b] = lengths;
-    // The last is the length of a vector of errors and not one of them, so that half of it counts.
+    // The last is the length of an error vector rather than a single error, so half of it counts.
     let all = [dot(s, t), dot(s, n), dot(t, n), a, b, 0.5 * dot(handed, handed).sqrt()];
-    // `max` would pass over NaN.
+    // `max` would ignore NaN.
     all.into_iter().map(f64::abs).fold(0.0, |worst, this| if this <= worst { worst } else { this })
 }
 
-/// The worst deviation over some normals, in roundings of f64.
+/// The largest deviation over some normals, in roundings of f64.
 fn worst(normals: &[Vec3], frame: impl Fn(Vec3) -> Frame) -> f64 {
     let deviations = normals.iter().map(|n| deviation(&frame(*n)));
     deviations.fold(0.0, |worst, this| if this <= worst { worst } else { this }) / (0.5 * f64::EPSILON)
 }
 
-/// Normals at which constructions fail.
+/// Normals at which frame constructions fail.
 fn hard_normals() -> Vec<Vec3> {
     let mut normals: Vec<Vec3> = [1.0, -1.0].map(|z| Vec3::new(0.0, 0.0, z)).to_vec();
     for one in [1.0, -1.0] {
@@ -44,19 +45,19 @@ fn hard_normals() -> Vec<Vec3> {
         let z = -1.0 + f64::from(k) * 0.5 * f64::EPSILON;
         normals.push(Vec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z));
         normals.push(Vec3::new(0.1 * f64::from(k) - 50.0, 13.0, -f64::from(k)).normalized());
-        // From 1e-9 to 1 off the pole: in single precision, too, some are next to it.
+        // From 1e-9 to 1 away from the pole, so that some are next to it in single precision, too.
         let off = libm::exp2(f64::from(k) * 0.03 - 30.0);
         normals.push(Vec3::new(0.6 * off, -0.8 * off, -1.0).normalized());
     }
     normals
 }
 
-/// Tolerance of the catalogue for all of u.v, u.n, v.n, |u| - 1, |v| - 1: 6 roundings. What Frisvad's frame makes of these inputs shows
-/// that they are hard: his is off by 0.919 in single precision and by 3.9e-4 in double.
+/// Tolerance of the catalogue for each of u.v, u.n, v.n, |u| - 1, |v| - 1: 6 roundings. Frisvad's frame shows that the
+/// inputs are hard: it is off by 0.919 in single precision and by 3.9e-4 in double.
 fn poles(trials: &mut Trials) {
     let normals = hard_normals();
     trials.at_most("Duff et al., roundings", 6.0, worst(&normals, Frame::around));
-    // smallpt's cross product rounds a little more, and nothing worse.
+    // smallpt's cross product has a slightly larger rounding error, and no other.
     trials.at_most("smallpt, roundings", 12.0, worst(&normals, smallpt_frame));
     trials.at_least("Frisvad, without a guard: roundings", 1e9, worst(&normals, frisvad_frame));
     let in_single = normals.iter().map(|n| deviation(&frisvad_f32([n.x as f32, n.y as f32, n.z as f32])));
@@ -67,8 +68,8 @@ fn poles(trials: &mut Trials) {
     trials.at_most("Duff et al., random normals, roundings", 6.0, worst(&random, Frame::around));
 }
 
-/// smallpt changes its axis at |n.x| = 0.1, where the cross product is still 0.995 long; Duff's frame changes sides at z = 0, with its
-/// sign.
+/// smallpt changes its axis at |n.x| = 0.1, where the cross product still has length 0.995. Duff's frame changes sides
+/// at z = 0, by the sign of z.
 fn seams(trials: &mut Trials) {
     let (mut at_x, mut at_z) = (Vec::new(), Vec::new());
     for k in -1000..=1000_i32 {

@@ -1,4 +1,4 @@
-//! Fresnel's formula, and Schlick's approximation of it: H10, H11, H12.
+//! Fresnel's equations and Schlick's approximation: H10, H11, H12.
 
 use super::unguarded::schlick;
 use crate::check::refusals::refused;
@@ -15,7 +15,7 @@ pub(super) const CASES: &[Case] = &[
 const N: f64 = 1.5;
 const U: f64 = 0.5 * f64::EPSILON;
 
-/// Formula, cosine, from outside, from inside; with mpmath.
+/// Cosine, reflectance from outside, reflectance from inside; computed with mpmath.
 const TABLE: [(f64, f64, f64); 5] = [
     (1.0, 0.04, 0.04),
     (0.9, 0.040_791_887_937_218_35, 0.046_332_647_954_037_666),
@@ -24,7 +24,7 @@ const TABLE: [(f64, f64, f64); 5] = [
     (0.5, 0.089_186_712_802_212_78, 1.0),
 ];
 
-/// Schlick's polynomial, worked out by hand in decimals.
+/// The same by Schlick's polynomial, computed by hand in decimals.
 const SCHLICK: [(f64, f64, f64); 7] = [
     (1.0, 0.04, 0.04),
     (0.9, 0.040_009_6, 0.040_819_485_607_2),
@@ -35,7 +35,7 @@ const SCHLICK: [(f64, f64, f64); 7] = [
     (0.1, 0.606_870_4, 1.0),
 ];
 
-/// Index there over index here, cosine, reflectance: 202 rows of decimal numbers.
+/// Index of the far side over index of the near side, cosine, reflectance: 202 rows of decimal numbers.
 pub(in crate::check) fn oracle() -> Vec<(f64, f64, f64)> {
     let text = include_str!("../../../tests/data/fresnel-oracle.json");
     let rows: Vec<[String; 3]> = serde_json::from_str(text).expect("the file of the oracle is well formed");
@@ -49,7 +49,8 @@ pub(in crate::check) fn oracle() -> Vec<(f64, f64, f64)> {
 fn values(trials: &mut Trials) {
     let rows = oracle();
     trials.same("rows of the oracle", &202, &rows.len());
-    // From inside the value turns with the root of the distance to the critical cosine, 0.7454: 0.75 is 20 times that steep.
+    // From inside, the value varies with the root of the distance to the critical cosine, 0.7454, so it is very steep
+    // at 0.75.
     let errors = rows.iter().map(|(eta, cos, expected)| (fresnel_dielectric(*cos, *eta) - expected).abs());
     trials.at_most("oracle: largest error", 2e-15, errors.fold(0.0, f64::max));
     for (cos, outside, inside) in TABLE {
@@ -65,7 +66,7 @@ fn values(trials: &mut Trials) {
     how_far_off_schlick_is(trials);
 }
 
-/// R is continuous at cosine sqrt(5)/3, with a slope that has no end: k roundings away 1 - R is right within 4e-7 sqrt(k).
+/// R is continuous at cosine sqrt(5)/3, with an infinite slope: k roundings away, 1 - R is right within 4e-7 sqrt(k).
 fn next_to_the_critical_angle(trials: &mut Trials) {
     let critical = 0.745_355_992_499_929_9;
     for (k, expected) in [(1.0, 1.12e-7), (2.0, 1.59e-7), (10.0, 3.55e-7), (1000.0, 3.55e-6)] {
@@ -94,8 +95,8 @@ fn diffuse(eta: f64, reflectance: fn(f64, f64) -> f64) -> f64 {
     (0..n).map(|k| 2.0 * at(k) * reflectance(at(k), eta)).sum::<f64>() / f64::from(n)
 }
 
-/// They are known from either side, and 1 - r(inside) = (1 - r(outside))/n² ties them together. The slope at the critical angle costs the
-/// rule some digits.
+/// Both diffuse reflectances are known, and 1 - r(inside) = (1 - r(outside))/n² relates them. The slope at the
+/// critical angle costs the midpoint rule some digits.
 fn diffuse_reflectances(trials: &mut Trials) {
     let (outside, inside) = (diffuse(N, fresnel_dielectric), diffuse(1.0 / N, fresnel_dielectric));
     trials.close("diffuse, from outside", 0.091_777_959_342_351_21, outside, 1e-9);
@@ -104,7 +105,8 @@ fn diffuse_reflectances(trials: &mut Trials) {
     trials.close("Schlick, diffuse, from outside", 6.0 / 70.0, diffuse(N, schlick), 1e-9);
 }
 
-/// At most 0.0356922 at cosine 0.088 from outside, and 0.0355694 at 0.748 among thousandths from inside.
+/// Schlick's largest error among thousandths: 0.0356922 at cosine 0.088 from outside, and 0.0355694 at 0.748 from
+/// inside.
 fn how_far_off_schlick_is(trials: &mut Trials) {
     for (side, eta, expected, where_) in [("outside", N, 0.035_692_2, 0.088), ("inside", 1.0 / N, 0.035_569_4, 0.748)] {
         let errors = (0..=1000).map(|k| f64::from(k) / 1000.0);
@@ -121,7 +123,7 @@ fn indices(trials: &mut Trials) {
         trials.close(format!("equal indices, cos {cos:?}"), 0.0, fresnel_dielectric(cos, 1.0), 0.0);
     }
     for cos in [0.1, 0.3, 0.9, 1.0] {
-        // A step of one rounding reflects (step/(4 cos²))² and less.
+        // A step of one rounding reflects at most (step/(4 cos²))².
         for eta in [above, 1.0 - U] {
             trials.at_most(format!("index {eta:?}, cos {cos}"), 1.3e-28, fresnel_dielectric(cos, eta));
         }
@@ -159,7 +161,7 @@ fn cosines(trials: &mut Trials) {
         let wo = Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos);
         let (into, cos2) = refract(wo, 1.0 / eta);
         let (back, _) = refract(-into, eta);
-        // What was refracted comes back, within what steep angles make of a rounding.
+        // A refracted direction refracts back to itself, within the rounding error that steep angles amplify.
         worst = worst.max((back.x + wo.x).abs() * cos2.sqrt() / U);
         let share = (fresnel_dielectric(cos, eta) - fresnel_dielectric(-into.z, 1.0 / eta)).abs();
         uneven = uneven.max(share / (1e-14 + 1e-14 / cos));

@@ -1,4 +1,4 @@
-//! Glass and other choices between lobes: H13, H14.
+//! Glass and other random choices between lobes: H13, H14.
 
 use super::unguarded::schlick;
 use crate::check::image_mean::{Moments, render};
@@ -16,8 +16,9 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "H14", tries: "a furnace seen from inside the glass", run: inside_the_glass },
 ];
 
-/// smallpt's chance 1/4 + R/2 is within 1/4 and 3/4, so no weight is above 4/3 and none is 0/0 where everything is reflected; the mean
-/// weight is 1. Whatever else has delta lobes chooses them by the share of light in them, too.
+/// smallpt's probability of reflection, 1/4 + R/2, lies between 1/4 and 3/4. So no weight exceeds 4/3, none is 0/0
+/// under total reflection, and the mean weight is 1. Every other material with delta lobes also chooses them by their
+/// share of light.
 fn weights(trials: &mut Trials) {
     let last = 1.0 - 0.5 * f64::EPSILON;
     for (fresnel, inside) in
@@ -49,7 +50,7 @@ fn weights(trials: &mut Trials) {
                         Fresnel::Schlick => schlick(wo.z, eta),
                         Fresnel::Exact => fresnel_dielectric(wo.z, eta),
                     };
-                    // Next to the critical angle a rounding of the cosine is more than one of the share.
+                    // Near the critical angle a rounding of the cosine changes the share by more than a rounding.
                     off_share = off_share.max((share - right).abs());
                 }
                 lobes => {
@@ -68,15 +69,15 @@ fn weights(trials: &mut Trials) {
             wrong.into(),
             n.into(),
         );
-        // The critical cosine is 0.745: as many angles are beyond it.
+        // The critical cosine is 0.745, and cosines are uniform: this share of them is beyond it.
         let expected = if inside { 0.745_356 } else { 0.0 };
         trials.close(format!("{name}: share of total reflection"), expected, f64::from(total) / f64::from(n), 2e-3);
     }
     shares(trials);
 }
 
-/// The first number, evenly over [0, 1): the mean weight of what was chosen is what the lobes have together, for every material of the
-/// table.
+/// Steps the first random number uniformly over [0, 1). The mean weight of the chosen lobes equals the sum of the
+/// lobes' weights, for every material of the table.
 fn shares(trials: &mut Trials) {
     let n = trials.times(4096, 1 << 20);
     for (name, material) in every_material() {
@@ -96,8 +97,8 @@ fn shares(trials: &mut Trials) {
     }
 }
 
-/// Radiance is not scaled by the index squared, as documented: a camera inside smallpt's glass ball, everything in equilibrium, sees 1
-/// and not 2.25. For every estimator that follows all light and every kernel.
+/// Radiance is not scaled by the index squared, as documented: in equilibrium a camera inside smallpt's glass ball
+/// sees 1, not 2.25. This holds for every estimator that follows all light and for every kernel.
 fn inside_the_glass(trials: &mut Trials) {
     let mut scene = load("cornell").expect("a shipped scene").in_equilibrium();
     (scene.camera.position, scene.camera.advance) = (Vec3::new(73.0, 16.5, 78.0), 0.0);

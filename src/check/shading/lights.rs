@@ -1,4 +1,4 @@
-//! Lights that are hardly there, and very many of them: H37.
+//! Lights that contribute little or nothing, and very many lights: H37.
 
 use crate::check::image_mean::{Moments, render};
 use crate::check::stage::{camera, diffuse, object, plane, scene, sphere};
@@ -13,11 +13,11 @@ pub(super) const CASES: &[Case] = &[Case {
     run: hardly_there,
 }];
 
-/// What none of them lights is black, and no sample is NaN on the way to that.
+/// Points that none of these lights reaches are black, and no sample is NaN.
 fn hardly_there(trials: &mut Trials) {
     let floor = || object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
     let lamp = |y: f64| object(&sphere([0.7, y, 0.0], 0.5), &diffuse(0.0), [3.0; 3]);
-    // A square that stands on the floor: the point that is seen lies in its plane.
+    // A square that stands on the floor: the visible point lies in its plane.
     let edge_on = "{ quad = { corners = [[0.5, 0.0, 0.0], [1.5, 0.0, 0.0], [1.5, 1.0, 0.0], [0.5, 1.0, 0.0]] } }";
     let hood = |y: f64| object(&sphere([0.7, y, 0.0], 0.8), &diffuse(0.5), [0.0; 3]);
     let spots = [
@@ -37,7 +37,8 @@ fn hardly_there(trials: &mut Trials) {
                 let variant = format!("{name}, {}, {}", kernel.name, entry.name);
                 trials.same(format!("{variant}: invalid samples"), &0, &outcome.counts.invalid);
                 let brightest = (0..3).map(|channel| Moments::of(&outcome.film, channel).mean).fold(0.0, f64::max);
-                // Edge on the spot is a spot: its points are up to 3e-8 off the plane.
+                // The camera sees a spot rather than a point: edge on, its points are up to 3e-8 off the plane of the
+                // light.
                 trials.at_most(format!("{variant}: radiance"), if name == "edge on" { 1e-6 } else { 0.0 }, brightest);
             }
         }
@@ -45,14 +46,15 @@ fn hardly_there(trials: &mut Trials) {
     chances(trials);
 }
 
-/// Every one of very many lights is chosen, and the chances make 1; a light that gives off nothing is none.
+/// Every one of very many lights can be chosen, and the probabilities sum to 1. A surface that emits nothing is no
+/// light.
 fn chances(trials: &mut Trials) {
     let scene = load("spheres:100000").expect("a shipped scene").in_equilibrium();
     let scene = scene.lit(&scene.camera.view(8, 6));
     let chances: Vec<f64> = scene.lights.as_ref().map(|lights| lights.chances().collect()).unwrap_or_default();
     trials.same("lights", &100_000, &chances.len());
     trials.close("sum of the chances", 1.0, chances.iter().sum(), 1e-11);
-    // Half of the choices are even.
+    // Half of the choices are uniform over the lights.
     trials.at_least("smallest chance", 0.499_999_999e-5, chances.iter().copied().fold(f64::INFINITY, f64::min));
     let dark = load("spheres:100").expect("a shipped scene");
     let lit = dark.lit(&dark.camera.view(8, 6));

@@ -1,4 +1,4 @@
-//! Frames, Fresnel, microfacets, lights.
+//! Cases about frames, Fresnel, microfacets and lights.
 
 mod agreement;
 mod balance;

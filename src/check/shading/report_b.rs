@@ -1,4 +1,4 @@
-//! What the second report's guards do to its material, and that ours makes no light: H24, H28.
+//! The second report's guards and their effect on its material; the program's material creates no light: H24, H28.
 
 use super::unguarded::reflection_of_report_b;
 use crate::check::materials::towards;
@@ -17,10 +17,10 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// The share of light that comes back at normal incidence.
+/// Albedo at normal incidence.
 fn albedo(bsdf: &impl Fn(Vec3, Vec3) -> f64) -> f64 {
     let wo = Vec3::new(0.0, 0.0, 1.0);
-    // Rings are narrow about the normal: cos = 1 - x^4. Everything is the same all around.
+    // Rings are narrow near the normal: cos = 1 - x^4. The integrand is the same all around.
     let around = |x: f64, turns: f64| {
         let x2 = x * x;
         let cos = 1.0 - x2 * x2;
@@ -29,7 +29,7 @@ fn albedo(bsdf: &impl Fn(Vec3, Vec3) -> f64) -> f64 {
     (0..64).map(|k| integral([f64::from(k) / 64.0, f64::from(k + 1) / 64.0], [0.0, 1.0], 1e-7, &around)).sum()
 }
 
-/// Roughness, what the guards leave, what should come back.
+/// Roughness, albedo with the guards, albedo without.
 const TABLE: [(f64, f64, f64); 7] = [
     (0.0, 0.0561, 1.0),
     (0.01, 0.0612, 0.9999),
@@ -40,8 +40,8 @@ const TABLE: [(f64, f64, f64); 7] = [
     (0.25, 0.9158, 0.9158),
 ];
 
-/// The guard on D acts below α = 0.13357 and makes a smooth surface nearly black. A furnace that sees a thousandth less than 1 - emission
-/// rejects every such roughness, and no other.
+/// The guard on D acts below α = 0.13357 and makes a smooth surface nearly black. A furnace that detects a loss of a
+/// thousandth rejects every such roughness, and no other.
 fn guards(trials: &mut Trials) {
     for (roughness, with_guards, without) in TABLE {
         let found = albedo(&|wo, wi| reflection_of_report_b(roughness, wo, wi));
@@ -52,7 +52,7 @@ fn guards(trials: &mut Trials) {
         let is_rejected = (found - ours).abs() > 1e-3;
         trials.same(format!("roughness {roughness}: rejected"), &(roughness < 0.133_57), &is_rejected);
     }
-    // Where no guard acts the report's formulas are ours: the same material, written twice.
+    // Where no guard acts, the report's formulas equal the program's: the same material, written twice.
     for roughness in [0.25, 0.5, 1.0] {
         let kd = Rgb { r: 0.3, g: 0.3, b: 0.25 };
         let ours = KdKs { kd, eta: 12.85, facets: Facets::of(roughness), sampling: Sampling::Cosine };
@@ -68,7 +68,8 @@ fn guards(trials: &mut Trials) {
     }
 }
 
-/// The report's numbers at every roughness and angle, by the quadrature of the material and by a plain one of its value.
+/// The report's material at every roughness and angle. Its albedo comes from the material's quadrature and from a
+/// plain quadrature of its BSDF.
 fn no_light_is_made(trials: &mut Trials) {
     let kd = Rgb { r: 0.3, g: 0.3, b: 0.25 };
     for roughness in [0.0, 0.05, 0.25, 0.5, 1.0] {

@@ -1,4 +1,4 @@
-//! Densities and the shares that are made of them: H33, H34.
+//! Densities and the weights of the power heuristic that are computed from them: H33, H34.
 
 use super::unguarded::power_heuristic_by_squares;
 use crate::check::materials::{every_material, towards};
@@ -13,15 +13,15 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "H34", tries: "shares of two ways of finding light: they sum to 1", run: shares },
 ];
 
-/// Where a material has a value it has a density; samples have one that is finite, or are deltas that have nothing to evaluate. What is
-/// aimed at has one that is finite in every scene of the program.
+/// Where a material has a nonzero value, it has a density. Samples have a finite density, or are deltas, which cannot
+/// be evaluated. Aims at lights have a finite density in every scene of the program.
 fn densities(trials: &mut Trials) {
     let n = trials.times(20_000, 1_000_000);
     for (number, (name, material)) in (0..).zip(every_material()) {
         let (mut without, mut endless, mut with_value) = (0, 0, 0);
         for k in 0..n {
             let u: [f64; 6] = std::array::from_fn(|i| unit(mix((number << 48) + 6 * k + i as u64)));
-            // Every third along the surface.
+            // Every third pair is grazing.
             let near = |cos: f64| if k % 3 == 0 { cos * 1e-9 } else { cos };
             let (wo, wi) = (towards(near(u[0]), u[1]), towards(near(u[2]), u[3]));
             if !material.eval::<AllEffects>(wo, wi).is_black() {
@@ -44,7 +44,7 @@ fn densities(trials: &mut Trials) {
     aims(trials);
 }
 
-/// From points that the camera sees, and from half way to them.
+/// Aims from points that the camera sees, and from half way to them.
 fn aims(trials: &mut Trials) {
     let (mut wrong, mut n) = (0, 0);
     let rays = trials.times(100, 10_000) as u32;
@@ -68,7 +68,7 @@ fn aims(trials: &mut Trials) {
     trials.never("aims in every scene", "densities of 0 or without an end", wrong, n);
 }
 
-/// Squares of 1e300 overflow and those of 1e-300 vanish: by squares the shares are NaN.
+/// Squares of 1e300 overflow and squares of 1e-300 underflow, so computing with squares gives NaN weights.
 fn shares(trials: &mut Trials) {
     let magnitudes = [0.0, 5e-324, 1e-300, 1e-160, 1e-8, 0.3, 1.0, 7.0, 1e8, 1e160, 1e300, f64::MAX];
     let (mut worst, mut by_squares): (f64, u64) = (0.0, 0);

@@ -1,4 +1,4 @@
-//! Smooth surfaces are mirrors by type: H23, H29.
+//! Smooth surfaces as delta mirrors: H23, H29.
 
 use super::unguarded::mirror_of_report_b;
 use crate::check::image_mean::{Moments, difference, render};
@@ -22,7 +22,8 @@ fn conductor(alpha: &str) -> String {
     format!("{{ conductor = {{ alpha = {alpha}, f0 = [1.0, 0.75, 0.25] }} }}")
 }
 
-/// A delta by type with nothing to evaluate; what lies between 0 and 1e-4 is refused; and the image of 1e-4 is that of 0.
+/// Roughness 0 gives a delta lobe and nothing to evaluate. Roughnesses between 0 and 1e-4 are refused. The images of
+/// 1e-4 and of 0 agree.
 fn roughness_zero(trials: &mut Trials) {
     let gold = material(&conductor("0.0"));
     let wo = Vec3::new(0.6, 0.0, 0.8);
@@ -52,8 +53,8 @@ fn roughness_zero(trials: &mut Trials) {
     continuity(trials);
 }
 
-/// A ball that mirrors a lamp: a lobe that is too wide or weighs too much would show. What only aims at lamps all but never finds the
-/// lobe of 1e-4, so only those take part that also arrive.
+/// A ball that mirrors a lamp: a lobe that is too wide or has too large a weight would show. Next-event estimation
+/// alone almost never finds the lobe of 1e-4, so only estimators that also follow sampled directions take part.
 fn continuity(trials: &mut Trials) {
     let image = |alpha: &str| {
         scene(&[
@@ -78,7 +79,7 @@ fn continuity(trials: &mut Trials) {
     }
 }
 
-/// The weight is F, also where the second report's guard makes it nothing; and no material of the table divides by a cosine.
+/// The weight is F, also where the second report's guard makes it 0. No material of the table divides by a cosine.
 fn grazing(trials: &mut Trials) {
     let mirror = material("{ fresnel-mirror = { eta = 12.85 } }");
     for cos in [1.0, 0.5, 0.001, 9.9e-4, 5e-4, 1e-8, 1e-300, 0.0] {

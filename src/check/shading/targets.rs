@@ -1,4 +1,4 @@
-//! Where aims at lights go, as cells of equal probability.
+//! Aims at lights, mapped to cells of equal probability.
 
 use super::unguarded::crowded_triangle;
 use crate::analysis::chi_square::against;
@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 
 const CELLS: usize = 32;
 
-/// A light alone, to aim at.
+/// A scene with a single light to aim at.
 fn lit(shape: &str) -> Scene {
     let scene = scene(&[
         "background = [0.0, 0.0, 0.0]\n".to_string(),
@@ -22,7 +22,7 @@ fn lit(shape: &str) -> Scene {
     scene.lit(&scene.camera.view(8, 8))
 }
 
-/// Whether places, each from 0 to 1 in two coordinates, fill the square evenly.
+/// Chi-square score of positions, with two coordinates from 0 to 1, against a uniform distribution over the square.
 fn score(samples: u64, place: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
     let mut cells = vec![0.0; CELLS * CELLS];
     for k in 0..samples {
@@ -33,7 +33,7 @@ fn score(samples: u64, place: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
     against(&cells, &vec![samples as f64 / cells.len() as f64; cells.len()])
 }
 
-/// In the cone under which a sphere is seen heights are even, as on the whole sphere.
+/// Within the cone that a sphere subtends, heights are uniform, as on the whole sphere.
 pub(super) fn cones(trials: &mut Trials) {
     let scene = lit(&sphere([0.0; 3], 1.0));
     let samples = trials.times(200_000, 20_000_000);
@@ -45,7 +45,7 @@ pub(super) fn cones(trials: &mut Trials) {
         let place = |u: [f64; 2]| {
             let aim = lights.aim(axis * distance, None, || 0.5, u);
             let d = aim.map_or(Vec3::new(0.0, 0.0, -1.0), |aim| frame.to_local(aim.direction));
-            // 1 - z without its cancellation.
+            // 1 - z without cancellation.
             let height = (d.x * d.x + d.y * d.y) / (1.0 + d.z) / one_minus_cos(1.0, distance);
             [height, (libm::atan2(d.y, d.x) / TAU).rem_euclid(1.0)]
         };
@@ -57,7 +57,8 @@ pub(super) fn cones(trials: &mut Trials) {
     }
 }
 
-/// Over the area of a triangle: the square of how far from a corner, and which way, are even. Without the root points crowd at that corner.
+/// Over the area of a triangle, the squared distance from a corner and the direction are uniform. Without the square
+/// root, points crowd at that corner.
 pub(super) fn triangles(trials: &mut Trials) {
     let corners = [[0.2, -0.3, 0.1], [1.5, 0.4, -0.2], [-0.1, 1.1, 0.6]];
     let scene = lit(&format!("{{ triangle = {{ corners = {corners:?} }} }}"));
@@ -67,7 +68,7 @@ pub(super) fn triangles(trials: &mut Trials) {
     let place = |u: [f64; 2]| {
         let direction = lights.aim(point, None, || 0.5, u).map_or(normal, |aim| aim.direction);
         let at = point + direction * (dot(a - point, normal) / dot(direction, normal)) - a;
-        // The shares of the two other corners.
+        // The barycentric coordinates of the two other corners.
         let [p, q] = [at.cross(c - a), (b - a).cross(at)].map(|part| dot(part, normal) / dot(normal, normal));
         [(p + q) * (p + q), q / (p + q)]
     };

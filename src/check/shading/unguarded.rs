@@ -1,14 +1,15 @@
-//! What shading comes to without its guards: Schlick's polynomial, frames with a pole, choosing by the cosine, GGX as it is usually
-//! written, the second report's guards, cones by 1 - cos. They are here to be priced and to show that the inputs of the cases are hard;
-//! nothing that renders calls them.
+//! Shading without guards: Schlick's polynomial, frames with a pole, sampling by the cosine, GGX in its usual form,
+//! the second report's guards, cones by 1 - cos. It serves for timing and to show that the inputs of the cases are
+//! hard. No renderer uses it.
 
 use crate::material::Ggx;
 use crate::math::{Frame, Vec3, dot, fresnel_schlick, sin_cos_turns};
 use crate::sampling::{cosine_hemisphere, mix, unit};
 use std::f64::consts::PI;
 
-/// The reflectance of a dielectric by Schlick's polynomial, as [`crate::math::fresnel_dielectric`] is asked: the cosine on the side of
-/// the light and the index there over the index here. As smallpt does it takes the cosine in the thinner medium.
+/// The reflectance of a dielectric by Schlick's polynomial, with the arguments of [`crate::math::fresnel_dielectric`]:
+/// the cosine on the side of the light, and the far index over the near index. Like smallpt, it uses the cosine in the
+/// thinner medium.
 pub(in crate::check) fn schlick(cos: f64, eta: f64) -> f64 {
     let root = (eta - 1.0) / (eta + 1.0);
     if eta >= 1.0 {
@@ -29,7 +30,7 @@ pub(in crate::check) fn frisvad_frame(n: Vec3) -> Frame {
     Frame { s: Vec3::new(1.0 - n.x * n.x * a, b, -n.x), t: Vec3::new(b, 1.0 - n.y * n.y * a, -n.y), n }
 }
 
-/// The same in single precision.
+/// The same frame in single precision.
 pub(in crate::check) fn frisvad_f32([x, y, z]: [f32; 3]) -> Frame {
     let wide = |v: [f32; 3]| Vec3::from(v.map(f64::from));
     if z < -0.999_999_9 {
@@ -40,7 +41,7 @@ pub(in crate::check) fn frisvad_f32([x, y, z]: [f32; 3]) -> Frame {
     Frame { s: wide([1.0 - x * x * a, b, -x]), t: wide([b, 1.0 - y * y * a, -y]), n: wide([x, y, z]) }
 }
 
-/// smallpt's: the cross product with the axis that is far enough from the normal, and two square roots.
+/// smallpt's frame: the cross product with an axis that is far enough from the normal, normalised.
 pub(in crate::check) fn smallpt_frame(n: Vec3) -> Frame {
     let axis = if n.x.abs() > 0.1 { Vec3::new(0.0, 1.0, 0.0) } else { Vec3::new(1.0, 0.0, 0.0) };
     let s = axis.cross(n).normalized();
@@ -54,27 +55,27 @@ pub(in crate::check) fn cancelling_density(alpha: f64, h: Vec3) -> f64 {
     alpha2 / (PI * base * base)
 }
 
-/// The same in single precision: a division by 0 at the middle of the lobe for α = 1e-4.
+/// The same in single precision: divides by 0 at the centre of the lobe for α = 1e-4.
 pub(in crate::check) fn cancelling_density_f32(alpha: f32, cos: f32) -> f32 {
     let alpha2 = alpha * alpha;
     let base = 1.0 + cos * cos * (alpha2 - 1.0);
     alpha2 / (std::f32::consts::PI * base * base)
 }
 
-/// Our form in single precision, from the components of the normal.
+/// The program's form in single precision, from the components of the normal.
 pub(in crate::check) fn density_f32(alpha: f32, [x, y, z]: [f32; 3]) -> f32 {
     let alpha2 = alpha * alpha;
     let a = (x * x + y * y) / alpha2 + z * z;
     1.0 / (std::f32::consts::PI * alpha2 * a * a)
 }
 
-/// tan² of the angle with that cosine, by way of the angle.
+/// tan² of the angle with this cosine, computed from the angle.
 pub(in crate::check) fn squared_tangent_of_angle(cos: f64) -> f64 {
     let tan = libm::tan(libm::acos(cos));
     tan * tan
 }
 
-/// Mean and variance of what was estimated, sample by sample.
+/// Mean and variance of the samples of an estimate.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::check) struct Moments {
     pub(in crate::check) mean: f64,
@@ -95,7 +96,7 @@ impl Moments {
         Self { mean, variance: squares / (samples - 1) as f64 }
     }
 
-    /// Of the mean.
+    /// Standard error of the mean.
     pub(in crate::check) fn standard_error(self, samples: u64) -> f64 {
         (self.variance / samples as f64).sqrt()
     }
@@ -105,14 +106,14 @@ fn towards(cos: f64) -> Vec3 {
     Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos)
 }
 
-/// The directional albedo of GGX facets that reflect everything, by directions that follow the cosine.
+/// The directional albedo of GGX facets with F = 1, by cosine-distributed directions.
 pub(in crate::check) fn albedo_by_cosines(ggx: Ggx, cos: f64, samples: u64) -> Moments {
     let wo = towards(cos);
     // bsdf cos over cos/π.
     Moments::of(samples, |u| ggx.reflection(wo, cosine_hemisphere(u)) * PI)
 }
 
-/// The same by the normals that are seen.
+/// The same albedo by visible normals.
 pub(in crate::check) fn albedo_by_visible_normals(ggx: Ggx, cos: f64, samples: u64) -> Moments {
     let wo = towards(cos);
     Moments::of(samples, |u| {
@@ -122,13 +123,13 @@ pub(in crate::check) fn albedo_by_visible_normals(ggx: Ggx, cos: f64, samples: u
     })
 }
 
-/// The same by normals that follow D cos, seen or not: the weight has no bound along the surface.
+/// The same albedo by normals that follow D cos, visible or not: the weight is unbounded at grazing directions.
 pub(in crate::check) fn albedo_by_normals(ggx: Ggx, cos: f64, samples: u64) -> Moments {
     let wo = towards(cos);
     Moments::of(samples, |[u, v]| weight_by_normals(ggx, wo, [u, v]))
 }
 
-/// One weight of it: G2 (wo.h)/(cos h.z).
+/// One weight of this estimate: G2 (wo.h)/(cos h.z).
 pub(in crate::check) fn weight_by_normals(ggx: Ggx, wo: Vec3, [u, v]: [f64; 2]) -> f64 {
     // tan² = α² v/(1 - v).
     let tan2 = ggx.alpha() * ggx.alpha() * v / (1.0 - v);
@@ -141,10 +142,10 @@ pub(in crate::check) fn weight_by_normals(ggx: Ggx, wo: Vec3, [u, v]: [f64; 2]) 
     if turned > 0.0 && wi.z > 0.0 { ggx.masking(wo) * ggx.unshadowed(wo, wi) * turned / (wo.z * z) } else { 0.0 }
 }
 
-/// Below this the second report puts what it divides to 1.
+/// The second report replaces a quotient by 1 if its divisor is below this.
 const REPORT_GUARD: f64 = 0.001;
 
-/// The second report's D G/(4 cos cos) for facets that reflect everything, with its two guards.
+/// The second report's D G/(4 cos cos) for facets with F = 1, with its two guards.
 pub(in crate::check) fn reflection_of_report_b(roughness: f64, wo: Vec3, wi: Vec3) -> f64 {
     let roughness2 = roughness * roughness;
     let lambda = |w: Vec3| 0.5 * (1.0 + roughness2 * (1.0 - w.z * w.z) / (w.z * w.z)).sqrt() - 0.5;
@@ -157,30 +158,30 @@ pub(in crate::check) fn reflection_of_report_b(roughness: f64, wo: Vec3, wi: Vec
     if divisor < REPORT_GUARD { 1.0 } else { g * d / divisor }
 }
 
-/// The second report's mirror: F/cos, and nothing where the cosine is below 0.001.
+/// The second report's mirror: F/cos, and 0 where the cosine is below 0.001.
 pub(in crate::check) fn mirror_of_report_b(fresnel: f64, cos: f64) -> f64 {
     if cos < REPORT_GUARD { 0.0 } else { fresnel / cos * cos }
 }
 
-/// 1 - cos of the half angle under which a sphere is seen, as smallpt's explicit version has it: no digit is left at 1e8 radii, and NaN
-/// comes from within.
+/// 1 - cos of the half angle that a sphere subtends, as in smallpt's explicit version: no digit is right at 1e8 radii,
+/// and the result is NaN inside.
 pub(in crate::check) fn naive_one_minus_cos(radius: f64, distance: f64) -> f64 {
     let sin = radius / distance;
     1.0 - (1.0 - sin * sin).sqrt()
 }
 
-/// The same in single precision: 0, and so an infinite density, from some 5800 radii on.
+/// The same in single precision: 0, and so an infinite density, from about 5800 radii on.
 pub(in crate::check) fn naive_one_minus_cos_f32(radius: f32, distance: f32) -> f32 {
     let sin = radius / distance;
     1.0 - (1.0 - sin * sin).sqrt()
 }
 
-/// The power heuristic by squares, which overflow.
+/// The power heuristic computed with squares, which overflow.
 pub(in crate::check) fn power_heuristic_by_squares(a: f64, b: f64) -> f64 {
     a * a / (a * a + b * b)
 }
 
-/// A triangle's warp that forgets the root: points crowd at one corner.
+/// A triangle warp without the square root: points crowd at one corner.
 pub(in crate::check) fn crowded_triangle([u, v]: [f64; 2]) -> [f64; 2] {
     [u * (1.0 - v), u * v]
 }

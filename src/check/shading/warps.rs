@@ -1,4 +1,4 @@
-//! From the unit square to directions and points: H03, H04, H05.
+//! Warps from the unit square to directions and points: H03, H04, H05.
 
 use super::targets::{cones, triangles};
 use crate::analysis::chi_square::against;
@@ -25,14 +25,14 @@ fn corners() -> impl Iterator<Item = [f64; 2]> {
     CORNERS.into_iter().flat_map(|u| CORNERS.map(|v| [u, v]))
 }
 
-/// How far a length is from 1; NaN counts as endless.
+/// Distance of a length from 1; NaN counts as infinite.
 fn off(square: f64) -> f64 {
     let off = (square.sqrt() - 1.0).abs();
     if off.is_nan() { f64::INFINITY } else { off }
 }
 
-/// Length 1 within 4 roundings and never below the horizon, also at 1, which no sampler gives. Where samplers can arrive the direction has
-/// a density above zero.
+/// The length is 1 within 4 roundings, and the direction is never below the horizon, also at 1, which no sampler
+/// returns. For values below 1 the density is above zero.
 fn cosine(trials: &mut Trials) {
     let worst = corners().map(cosine_hemisphere).map(|d| off(dot(d, d))).fold(0.0, f64::max);
     trials.at_most("length - 1, in roundings", 4.0, worst / U);
@@ -42,7 +42,7 @@ fn cosine(trials: &mut Trials) {
     trials.at_least("density below 1", 1e-9, reachable.fold(f64::INFINITY, f64::min));
 }
 
-/// sqrt(2 - r) has no argument below zero, and the tent is symmetric: its variance is 1/6.
+/// The argument of sqrt(2 - r) is never negative, and the tent is symmetric: its variance is 1/6.
 fn tents(trials: &mut Trials) {
     for (u, expected) in [(0.0, -1.0), (0.125, -0.5), (0.5, 0.0), (0.875, 0.5), (1.0, 1.0)] {
         trials.close(format!("at {u}"), expected, tent(u), 0.0);
@@ -57,7 +57,8 @@ fn tents(trials: &mut Trials) {
     trials.close("variance", 1.0 / 6.0, squares / n as f64, 1e-6);
 }
 
-/// A warp, as cells of equal probability: where a pair of numbers falls, from 0 to 1 in two coordinates that the warp should fill evenly.
+/// A warp with its cells of equal probability: `place` gives two coordinates from 0 to 1, which should be uniform over
+/// the unit square.
 struct Warp {
     name: &'static str,
     place: fn([f64; 2]) -> [f64; 2],
@@ -73,7 +74,8 @@ fn below(x: f64) -> f64 {
     if x < 0.0 { 0.5 * rest * rest } else { 1.0 - 0.5 * rest * rest }
 }
 
-/// Heights on a sphere are even (Archimedes); squares of radii on a disk are, and so are those of the disk under a cosine hemisphere.
+/// Heights on a sphere are uniform (Archimedes). So are squared radii on a disk and on the disk under a cosine
+/// hemisphere.
 const WARPS: [Warp; 4] = [
     Warp {
         name: "uniform sphere",
@@ -101,7 +103,7 @@ const WARPS: [Warp; 4] = [
 
 const CELLS: usize = 64;
 
-/// Corners, moments that a missing root would change, and chi-square on 64 x 64 cells of equal probability.
+/// Tests the corners, moments that a missing root would change, and chi-square on 64 x 64 cells of equal probability.
 fn all(trials: &mut Trials) {
     let sphere = |u: [f64; 2]| off(dot(uniform_sphere(u), uniform_sphere(u)));
     trials.at_most("sphere: length - 1, in roundings", 8.0, corners().map(sphere).fold(0.0, f64::max) / U);
@@ -128,7 +130,8 @@ fn all(trials: &mut Trials) {
     }
 }
 
-/// Means over the midpoints of a grid: of z² on the sphere 1/3 and of z⁴ 1/5; of r⁴ on the disk 1/3 and of x² y² 1/24.
+/// Means over the midpoints of a grid: on the sphere 1/3 for z² and 1/5 for z⁴, on the disk 1/3 for r⁴ and 1/24 for x²
+/// y².
 fn moments(trials: &mut Trials) {
     let n = 512;
     let at = |k: i32| (f64::from(k) + 0.5) / f64::from(n);

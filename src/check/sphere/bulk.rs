@@ -1,4 +1,4 @@
-//! Very many rays against the exact answer, and rays across the silhouette ulp by ulp.
+//! Very many rays compared with the exact answer, and rays across the silhouette in steps of one ulp.
 
 use super::exact::{Exact, U, is_first};
 use super::formulas::{FORMULAS, Formula};
@@ -13,8 +13,8 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "S30", tries: "rays one ulp apart across the silhouette: after the first miss no hit", run: silhouette },
 ];
 
-/// Origin from the centre, unit direction and radius, aimed so that hits, misses and near tangents of every degree all occur. Every other
-/// ray has a radius and a distance from the catalogue's grid of powers of ten.
+/// Origin relative to the centre, unit direction and radius, aimed so that hits, misses and near tangents of every
+/// degree all occur. Half of the rays take radius and distance from the catalogue's grid of powers of ten.
 pub(in crate::check) fn aimed(random: &mut Random) -> (Vec3, Vec3, f64) {
     let on_grid = random.below(2) == 0;
     let r =
@@ -37,19 +37,19 @@ pub(in crate::check) fn aimed(random: &mut Random) -> (Vec3, Vec3, f64) {
     (f, if random.below(8) == 0 { -towards } else { towards }, r)
 }
 
-/// What came of many rays.
+/// Counts of the outcomes of many rays.
 #[derive(Default)]
 struct Tally {
     hits: u64,
     misses: u64,
-    /// Roots farther from the exact ones than the bound, or another root first.
+    /// Rays with a root beyond its error bound, or with a wrong first hit.
     outside: u64,
-    /// Hits and misses taken for each other within the band, and beyond it.
+    /// Hits mistaken for misses, or the reverse, within the band and beyond it.
     in_band: u64,
     beyond_band: u64,
     /// The largest error, as a fraction of its bound.
     worst: f64,
-    /// The primitive in a scene says something else than its formula.
+    /// Rays on which the primitive in a scene and its formula differ.
     differs: u64,
 }
 
@@ -61,7 +61,7 @@ impl Tally {
                 let fraction = ((near - expected[0]).abs() / bounds[0]).max((far - expected[1]).abs() / bounds[1]);
                 self.hits += 1;
                 self.worst = self.worst.max(fraction);
-                // A fraction that is no number is no hit within the bound either.
+                // A NaN fraction is not within the bound either.
                 self.outside += u64::from(!(fraction <= 1.0 && is_first(first, expected, bounds)));
             }
             None if near.is_nan() => {
@@ -83,7 +83,7 @@ fn any_rays(trials: &mut Trials) {
         trials.holds(format!("{}, roots", formula.name), told, found, tally.outside == 0);
         trials.never(format!("{}, hit or miss", formula.name), "mistaken beyond the band", tally.beyond_band, rays);
         trials.never(format!("{}, primitive", formula.name), "unlike its formula", tally.differs, rays);
-        // The generator must keep hits and misses common, and the excuse rare enough to mean something.
+        // The rays must include many hits and misses, and few excused mistakes; otherwise the test proves little.
         let (hits, misses, excused) = (tally.hits * 2, tally.misses * 20, tally.in_band * 100);
         let kinds = format!("{} hits, {} misses, {} mistaken in the band", tally.hits, tally.misses, tally.in_band);
         let told = "at least half are hits, 5 % misses; at most 1 % in the band";
@@ -97,7 +97,7 @@ fn any_rays(trials: &mut Trials) {
     }
 }
 
-/// So many rays: what came of the formula and, for those of length 1, of smallpt's.
+/// Tallies of so many rays: of the formula and, for directions of length 1, of smallpt's formula.
 fn compare(formula: &Formula, rays: u64) -> (Tally, Tally) {
     let mut random = Random::new(0x5EED);
     let (mut tally, mut smallpt) = (Tally::default(), Tally::default());
@@ -120,7 +120,7 @@ fn compare(formula: &Formula, rays: u64) -> (Tally, Tally) {
     (tally, smallpt)
 }
 
-/// Parallel to an axis the answer is exact at every ulp, tilted outside of the band.
+/// Rays parallel to an axis must be right at every ulp, tilted rays outside of the band.
 fn silhouette(trials: &mut Trials) {
     let ulps = trials.times(1 << 20, 1 << 24) as i64;
     for formula in FORMULAS {

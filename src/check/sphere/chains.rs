@@ -1,4 +1,4 @@
-//! Paths that end at once, and paths that never do.
+//! Paths that end at the first vertex, and paths that never end.
 
 use super::walk::scatter;
 use crate::check::bare_scene::{intersect, searches};
@@ -19,7 +19,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A black room that glows: its radiance is 1, exactly, and one ray a path is enough to know it.
+/// A black room that glows: its radiance is exactly 1, and each path needs one ray only.
 fn black_walls(trials: &mut Trials) {
     let room = named(
         "room",
@@ -46,7 +46,8 @@ fn black_walls(trials: &mut Trials) {
     }
 }
 
-/// Without renormalising |d| must stay 1 within 1e-12. With it, as paths do, every chord is as long as the first: 2 r cos.
+/// Without renormalising, |d| must stay 1 within 1e-12. With it, as in paths, every chord is as long as the first: 2 r
+/// cos.
 fn mirror_chain(trials: &mut Trials) {
     let parts = [ANY_CAMERA.to_string(), ball("room", [50.0, 40.8, 81.6], 1e5, MIRROR)];
     let room = try_scene(&parts).expect("a right scene");

@@ -1,7 +1,9 @@
-//! The exact answer for a line and a sphere: a quadratic in double-double numbers, which takes its discriminant from the cross product,
-//! |d|² r² - |f x d|², and so shares no formula with the code that it judges. Exact integers confirm it in `exact_tests.rs`.
+//! The exact answer for a line and a sphere: a quadratic in double-double arithmetic. Its discriminant comes from the
+//! cross product, |d|² r² - |f x d|², so it shares no formula with the code under test. Exact integers confirm it in
+//! `exact_tests.rs`.
 //!
-//! As in [`crate::math::roots`], `f` is the ray's origin seen from the centre, `d` its direction of any length, `r` the radius.
+//! As in [`crate::math::roots`], `f` is the ray's origin relative to the centre, `d` its direction of any length, `r`
+//! the radius.
 
 use crate::check::double_double::{Dd, two_product};
 use crate::math::{Vec3, dot};
@@ -9,7 +11,7 @@ use crate::math::{Vec3, dot};
 /// The rounding unit.
 pub(in crate::check) const U: f64 = f64::EPSILON / 2.0;
 
-/// Where a line meets a sphere.
+/// The intersection of a line with a sphere.
 pub(in crate::check) struct Exact {
     /// Distance of the line from the centre.
     pub(in crate::check) line: f64,
@@ -34,13 +36,14 @@ impl Exact {
         Self { line, roots: Some(if by_q < by_c { [by_q, by_c] } else { [by_c, by_q] }) }
     }
 
-    /// How far from the radius the line may pass and hit and miss be taken for each other: `8u(|f| + r)`.
+    /// Half-width of the band around the radius in which hit and miss may be mistaken for each other: `8u(|f| + r)`.
     pub(in crate::check) fn band(f: Vec3, r: f64) -> f64 {
         8.0 * U * (dot(f, f).sqrt() + r)
     }
 
-    /// The bound `T_s` on the error of root `t`, in lengths of `d`: `8u(|t| + |f| + (r² + 2l|f|)/2s + (|f|² + r²)/(|b| + s))`. Infinite at
-    /// tangency, where the roots' slope is.
+    /// The bound `T_s` on the error of root `t`, in lengths of `d`:
+    /// `8u(|t| + |f| + (r² + 2l|f|)/2s + (|f|² + r²)/(|b| + s))`. Infinite at tangency, where the slope of the roots
+    /// is infinite.
     pub(in crate::check) fn bound(&self, f: Vec3, d: Vec3, r: f64, t: f64) -> f64 {
         let (length, distance, line) = (dot(d, d).sqrt(), dot(f, f).sqrt(), self.line);
         let s = ((r - line) * (r + line)).max(0.0).sqrt();
@@ -51,7 +54,7 @@ impl Exact {
     }
 }
 
-/// Whether `found` is the first root ahead. A root within its bound of zero may be seen as ahead or as behind.
+/// Whether `found` is the first root ahead. A root within its bound of zero may count as ahead or as behind.
 pub(in crate::check) fn is_first(found: Option<f64>, exact: [f64; 2], bounds: [f64; 2]) -> bool {
     let near = |k: usize, t: f64| (t - exact[k]).abs() <= bounds[k];
     let behind = |k: usize| exact[k] <= bounds[k];

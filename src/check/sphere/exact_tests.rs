@@ -1,4 +1,4 @@
-//! The double-double oracle against exact integers, on 1e4 of the very rays that it judges.
+//! The double-double oracle compared with exact integers, on 1e4 of the rays that it judges.
 
 use super::bulk::aimed;
 use super::exact::{Exact, U};
@@ -6,8 +6,9 @@ use crate::check::fixed_point::{UNIT, cross, dot, fixed, fixed_vector};
 use crate::check::random::Random;
 use num_bigint::{BigInt, Sign};
 
-/// Hit or miss by the exact sign of a r² - |f x d|². Each root t to a rounding: |a t² - 2 b t + c| = a |t - t0| |t - t1| is small enough for one
-/// of the exact roots to be that near, and the two are different ones.
+/// Checks hit or miss by the exact sign of a r² - |f x d|². Checks each root t to within a rounding: |a t² - 2 b t +
+/// c| = a |t - t0| |t - t1| is so small that one of the exact roots is that near, and the two roots are near different
+/// ones.
 #[test]
 fn ten_thousand_answers_are_right() {
     let mut random = Random::new(0x5EED);

@@ -1,19 +1,19 @@
-//! The ways in which the program meets a ray with a sphere. Each case tries them all.
+//! The program's implementations of ray-sphere intersection. Each case tests them all.
 
 use crate::check::bare_scene::{intersect, scene_of_spheres, searches};
 use crate::math::{Ray, Vec3, dot, first_root, roots};
 use crate::scene::{Primitive, Sphere};
 
-/// A form of the formulas in `math`.
+/// One instance of the formulas in `math`.
 pub(super) struct Formula {
     pub(super) name: &'static str,
     /// Both roots of f, d, |d|², r; NaN for a miss.
     pub(super) roots: fn(Vec3, Vec3, f64, f64) -> (f64, f64),
-    /// The first root ahead; not above zero, or NaN, if there is none.
+    /// The first root ahead; at most 0, or NaN, if there is none.
     pub(super) first: fn(Vec3, Vec3, f64, f64) -> f64,
 }
 
-/// Numbers that the formulas are written over; lanes get a line each.
+/// Number types for which the formulas are instantiated. Lanes get a line each.
 pub(super) const FORMULAS: &[Formula] = &[Formula { name: "f64", roots: roots::<f64>, first: first_root::<f64> }];
 
 impl Formula {
@@ -23,8 +23,8 @@ impl Formula {
     }
 }
 
-/// The first hit of a ray as each way has it: every formula and, if the ray has length 1 as all rays of paths, the primitive and a scene of
-/// it with every accelerator.
+/// The first hit of a ray by each implementation: every formula and, if the ray has length 1 like all rays of paths,
+/// the primitive and a scene of it with every accelerator.
 pub(super) fn first_hits(origin: Vec3, d: Vec3, center: Vec3, r: f64) -> Vec<(String, Option<f64>)> {
     let (f, a) = (origin - center, dot(d, d));
     let mut hits: Vec<(String, Option<f64>)> =

@@ -56,8 +56,8 @@ pub(super) const CASES: &[Case] = &[
 
 const ORACLE: &str = include_str!("../../../tests/data/sphere-oracle.json");
 
-/// The ray of that name, in every way that there is, within the bound. `smallpt_is_off` is by how much smallpt's own formula is at least
-/// wrong there, where it is: the case could not tell the two apart otherwise.
+/// Checks that every implementation finds the roots of this ray within the bound. `smallpt_is_off` is a lower bound on
+/// the error of smallpt's formula, if it is wrong there: otherwise the case could not tell the two apart.
 fn known(trials: &mut Trials, name: &str, smallpt_is_off: Option<f64>) {
     let rows: Vec<Value> = serde_json::from_str(ORACLE).expect("the oracle's file");
     let row = rows.iter().find(|row| row["name"] == name).expect("a row of that name");

@@ -1,4 +1,4 @@
-//! Closed scenes lose no ray, and lights hide nothing of themselves.
+//! Closed scenes that lose no ray, and lights that do not block themselves.
 
 use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
 use crate::check::bare_scene::{intersect, searches};
@@ -40,7 +40,7 @@ fn closed_box(trials: &mut Trials) {
     edges(trials);
 }
 
-/// Renders with other seeds until so many rays have been traced.
+/// Renders with successive seeds until so many rays have been traced.
 fn rays_that_escape(trials: &mut Trials, scene: &Arc<Scene>, what: &str, spec: &Spec, most: u64) {
     let (mut rays, mut lost, mut seed) = (0, 0, 0);
     while rays < most {
@@ -54,8 +54,9 @@ fn rays_that_escape(trials: &mut Trials, scene: &Arc<Scene>, what: &str, spec: &
     trials.never(variant, "rays that met nothing or samples that are no radiance", lost, rays);
 }
 
-/// A ray that leaves the ceiling 1e-1 to 1e-8 from the left wall, towards it. An epsilon of 1e-4 skips the wall, and the path goes on
-/// behind it, mostly without ever counting as escaped, because the other walls' spheres go on there too.
+/// Rays that leave the ceiling towards the left wall, 1e-1 to 1e-8 away from it. An epsilon of 1e-4 skips the wall,
+/// and the path continues behind it. It mostly never counts as escaped, because the spheres of the other walls
+/// continue there, too.
 fn edges(trials: &mut Trials) {
     let rays = trials.times(20_000, 2_000_000);
     let cornell = load("cornell").expect("a shipped scene");
@@ -65,7 +66,8 @@ fn edges(trials: &mut Trials) {
         let (mut wrong, mut skipped) = (0, 0);
         for _ in 0..rays {
             let (gap, z) = (random.scale(-8.0, -1.0), 10.0 + 140.0 * random.unit());
-            // Where the spheres of left wall and ceiling meet: each bulges by (square of the distance from its middle) / 2r.
+            // The edge where the spheres of left wall and ceiling meet: each bulges by (square of the distance from
+            // its middle) / 2r.
             let sag = |a: f64, b: f64| (a * a + b * b) / (1e5 + (1e10 - a * a - b * b).sqrt());
             let mut edge = 1.0;
             for _ in 0..4 {
@@ -79,7 +81,7 @@ fn edges(trials: &mut Trials) {
             };
             let ray = Ray { origin: ceiling.point, direction: Vec3::new(-1.0, -0.3, 0.1).normalized() };
             let from = Standpoint { primitive: ceiling.primitive, inside: true };
-            // The wall slopes by up to 1e-3 and its sphere's numbers are rounded at 1e-11.
+            // The wall's slope is up to 1e-3, and the coordinates of its sphere are rounded at 1e-11.
             let expected = gap / -ray.direction.x;
             let wall = intersect(&scene, &ray, Some(from)).filter(|hit| name(hit.primitive) == "left wall");
             wrong += u64::from(!wall.is_some_and(|hit| (hit.t - expected).abs() <= 1e-10 + 2e-3 * expected));
@@ -92,7 +94,7 @@ fn edges(trials: &mut Trials) {
     }
 }
 
-/// What aims at a light must arrive at it with nothing between, whatever its size, and nothing short of it may block the way.
+/// A ray that is aimed at a light must hit it, whatever the size of the light, and nothing nearer may block it.
 fn lights(trials: &mut Trials) {
     let rays = trials.times(20_000, 2_000_000);
     for (radius, height, across) in [(600.0, 681.33, 100.0), (0.005, 0.0051, 0.1), (0.005, 50.0, 100.0)] {
@@ -112,7 +114,7 @@ fn lights(trials: &mut Trials) {
             for _ in 0..rays {
                 let mut place = || (2.0 * random.unit() - 1.0) * across;
                 let point = Vec3::new(place(), 0.0, place());
-                // Not the very rim of the cone, where a tangent may miss.
+                // Excludes the very rim of the cone, where a tangent may miss.
                 let u = [random.unit(), (1.0 - 1e-9) * random.unit()];
                 let from = Some(Standpoint { primitive: 1, inside: false });
                 let Some(aim) = lights.aim(point, from, || 0.0, u) else { continue };
@@ -123,7 +125,7 @@ fn lights(trials: &mut Trials) {
                     continue;
                 };
                 let is_blocked = |limit: f64| scene.is_blocked_by_any(&ray, from, limit);
-                // Up to the light itself the way is free; just beyond, the light is in the way.
+                // The way is free up to the light; just beyond, the light blocks it.
                 blocked += u64::from(is_blocked(hit.t) || !is_blocked(hit.t.next_up()));
             }
             let variant = format!("radius {radius}, {height} above the floor, accelerator {name}");

@@ -1,4 +1,4 @@
-//! Ray against sphere, and where rays start.
+//! Cases about ray-sphere intersection and the starts of rays.
 
 pub(super) mod bulk;
 mod chains;

@@ -21,7 +21,7 @@ fn radii(trials: &mut Trials, radii: &[&str]) {
     }
 }
 
-/// A sphere that must be read, and met from `away` radii before it.
+/// Checks that a sphere is read, and that a ray from `away` radii before its centre hits it.
 fn is_read_and_met(trials: &mut Trials, center: [f64; 3], radius: f64, away: f64) {
     let scene = try_scene(&[ANY_CAMERA.to_string(), ball("ball", center, radius, DIFFUSE)]);
     let told = scene.as_ref().map_or_else(ToString::to_string, |_| "it is read".to_string());

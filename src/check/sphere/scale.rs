@@ -1,4 +1,5 @@
-//! The unit of length: a scene in which every length is multiplied by a power of two is the same scene, to the bit.
+//! Independence of the unit of length: a scene with all lengths multiplied by a power of two gives the same image, to
+//! the bit.
 
 use crate::check::rendering::{by_kernel, render};
 use crate::check::{Case, Trials};
@@ -18,7 +19,7 @@ pub(super) const CASES: &[Case] = &[Case {
 const SIZE: (u32, u32) = (16, 12);
 const SPP: u32 = 4;
 
-/// So many exponents, evenly from -40 to 40.
+/// `count` exponents, evenly from -40 to 40.
 fn exponents(count: i32) -> Vec<i32> {
     (0..count).map(|k| -40 + 80 * k / (count - 1)).collect()
 }
@@ -30,7 +31,7 @@ fn powers_of_two(trials: &mut Trials) {
         let scene = Arc::new(load(name).expect("a shipped scene"));
         for estimator in ESTIMATORS {
             let count = match *name {
-                // The scene that everybody renders.
+                // The most used scene.
                 "cornell" => 81,
                 _ if is_large(&scene) => 3,
                 _ => whole,
@@ -39,7 +40,8 @@ fn powers_of_two(trials: &mut Trials) {
             same_bits(trials, &scene, &spec, &exponents(count));
         }
     }
-    // Triangles through every hierarchy, out of the equilibrium in which every pixel is 1: boxes have a padding in proportion.
+    // Triangles through every hierarchy, whose boxes have a proportional padding. Not in equilibrium, where every
+    // pixel would be 1.
     let mut furnace = load("furnace:0.6").expect("a shipped scene");
     for (index, object) in furnace.objects.iter_mut().enumerate() {
         object.emission = if index % 3 == 0 { Rgb::WHITE } else { Rgb::BLACK };
@@ -52,12 +54,12 @@ fn powers_of_two(trials: &mut Trials) {
     }
 }
 
-/// Whether it takes long to build what accelerates it.
+/// Whether building its accelerator takes long.
 fn is_large(scene: &Scene) -> bool {
     scene.owners.len() > 1000
 }
 
-/// Renders the scene at each scale: checksum and what happened must be those of scale 1.
+/// Renders the scene at each scale. Checksum and counts must equal those at scale 1.
 fn same_bits(trials: &mut Trials, scene: &Arc<Scene>, spec: &Spec, exponents: &[i32]) {
     for spec in by_kernel(spec) {
         let image = |trials: &mut Trials, factor: f64| {

@@ -1,4 +1,4 @@
-//! Ways shorter than any usual epsilon: inside tiny balls, and along the surfaces of large ones.
+//! Distances shorter than any usual epsilon: inside tiny balls, and along the surfaces of large ones.
 
 use super::exact::U;
 use super::unguarded::{SMALLPT_EPSILON, smallpt_first_root};
@@ -21,15 +21,15 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "S44", tries: "chords of smallpt's walls that are shorter than its epsilon", run: chords_of_walls },
 ];
 
-/// A glass ball in the middle of a dark one.
+/// A glass ball in the centre of a dark one.
 fn glass(center: [f64; 3], radius: f64, around: f64) -> Scene {
     let parts = [ANY_CAMERA.into(), ball("glass", center, radius, GLASS), ball("around", center, around, DIFFUSE)];
     try_scene(&parts).expect("a right scene")
 }
 
-/// The lengths of a path in radii: into the glass, once around inside by reflection, out, on to the sphere around it.
+/// The segment lengths of a path in radii: into the glass, one reflection inside, out, and on to the sphere around it.
 fn walk(scene: &Scene, radius: f64, [turn, place]: [f64; 2]) -> Option<[f64; 4]> {
-    // Up to 0.99 of the radius from the middle: closer to the limb the condition number of the lengths passes 1e3.
+    // Up to 0.99 of the radius from the axis: closer to the limb, the condition number of the lengths exceeds 1e3.
     let impact = 0.99 * place.sqrt() * radius;
     let origin = Vec3::new(impact * libm::cos(TAU * turn), impact * libm::sin(TAU * turn), 5.0 * radius);
     let mut ray = Ray { origin, direction: Vec3::new(0.0, 0.0, -1.0) };
@@ -69,8 +69,9 @@ fn tiny_glass(trials: &mut Trials) {
     }
 }
 
-/// Chords of `2 r cos`, from random points of a ball inwards at cosines that `cosine` draws: all must end on the ball, where geometry says.
-/// The starting point is rounded, which turns the chord by the rounding of its coordinates over the radius.
+/// Checks chords of `2 r cos`, from random points of a ball inwards, with cosines drawn by `cosine`. Each must end on
+/// the ball, at the distance that geometry gives. The starting point is rounded, which turns the chord by the rounding
+/// of its coordinates over the radius.
 fn chords(
     trials: &mut Trials,
     scene: &Scene,
@@ -110,11 +111,12 @@ fn chords_in_glass(trials: &mut Trials) {
     }
 }
 
-/// A cosine law finds chords so short once in 4e18 bounces: here smallpt's epsilon does no harm, which says nothing of smaller spheres.
+/// A cosine law gives such short chords once in 4e18 bounces, so smallpt's epsilon does no harm here. This says
+/// nothing about smaller spheres.
 fn chords_of_walls(trials: &mut Trials) {
     let parts = [ANY_CAMERA.into(), ball("left wall", [100_001.0, 40.8, 81.6], 1e5, DIFFUSE)];
     let scene = try_scene(&parts).expect("a right scene");
     let wall = (Vec3::new(100_001.0, 40.8, 81.6), 1e5);
-    // A coordinate of 2e5 is rounded at 2^-36, and the chord sees it twice.
+    // A coordinate of 2e5 is rounded at 2^-36, and enters the chord twice.
     chords(trials, &scene, wall, 8.0 * U * 2e5, |random| random.scale(-9.3, -6.0));
 }

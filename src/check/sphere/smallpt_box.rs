@@ -1,5 +1,5 @@
-//! Where the spheres of smallpt's box cut each other, and where its camera rays start. Two surfaces cross at 1.7 degrees, so an error e in a
-//! distance moves the edge between them by 33 e.
+//! The edges between the spheres of smallpt's box, and the starts of its camera rays. Two surfaces cross at 1.7
+//! degrees, so an error e in a distance moves the edge between them by 33 e.
 
 use crate::check::bare_scene::{intersect, searches};
 use crate::check::random::Random;
@@ -18,14 +18,14 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "S62", tries: "camera rays start inside the box, at the rims of the filter too", run: camera_rays },
 ];
 
-/// How far from the exact circle surfaces may be taken for each other.
+/// Distance from the exact circle within which surfaces may be mistaken for each other.
 const BAND: f64 = 1e-8;
 
 fn name<'a>(scene: &'a Scene, hit: &Hit) -> &'a str {
     &scene.objects[hit.object as usize].name
 }
 
-/// A distance from an axis: anywhere up to twice the circle's radius, or within 1 down to 1e-8 of the circle on either side.
+/// A random distance from an axis: up to twice the circle's radius, or 1e-8 to 1 away from the circle on either side.
 fn distance(random: &mut Random, circle: f64) -> f64 {
     match random.below(3) {
         0 => 2.0 * circle * random.unit().sqrt(),
@@ -44,7 +44,7 @@ fn light_cap(trials: &mut Trials) {
         for _ in 0..rays {
             let (rho, turn) = (distance(&mut random, CIRCLE), TAU * random.unit());
             let (x, z) = (50.0 + rho * libm::cos(turn), 81.6 + rho * libm::sin(turn));
-            // As far from the axis as the rounded point really is.
+            // The true distance of the rounded point from the axis.
             let rho = libm::hypot(x - 50.0, z - 81.6);
             let ray = Ray { origin: Vec3::new(x, 40.0, z), direction: Vec3::new(0.0, 1.0, 0.0) };
             let expected = if rho < CIRCLE { "light" } else { "ceiling" };
@@ -56,13 +56,13 @@ fn light_cap(trials: &mut Trials) {
         let told = format_args!("{light} of {rays} inside");
         trials.holds("the rays", "a third at least on either side", told, (rays / 3..=2 * rays / 3).contains(&light));
     }
-    // The height of the cap below the ceiling's apex, seen in the middle.
+    // The height of the light's lowest point, seen in the middle.
     let up = Ray { origin: Vec3::new(50.0, 40.0, 81.6), direction: Vec3::new(0.0, 1.0, 0.0) };
     let height = intersect(&cornell, &up, None).map_or(f64::NAN, |hit| hit.point.y);
     trials.close("the light's lowest point", 81.33, height, 1e-11);
 }
 
-/// A ball, the circle in which it cuts the floor and how far it reaches below.
+/// A ball, the radius of the circle in which it cuts the floor, and its depth below the floor.
 const BALLS: [(&str, [f64; 3], f64, f64); 2] = [
     ("mirror ball", [27.0, 16.5, 47.0], 0.533_700_148_21, 0.008_632_223_944_37),
     ("glass ball", [73.0, 16.5, 78.0], 0.299_074_517_033, 0.002_710_247_154_05),
@@ -89,7 +89,7 @@ fn sunken_balls(trials: &mut Trials) {
                 let hit = intersect(&scene, &Ray { origin: center + offset, direction: down }, None);
                 let is_right = hit.is_some_and(|hit| name(&scene, &hit) == expected);
                 wrong += u64::from(!is_right && (rho - circle).abs() > BAND);
-                // From the floor inside the ball the way leads up through the ball, from within it.
+                // A ray up from the floor inside the ball must hit the ball from within.
                 let Some(hit) = hit.filter(|hit| name(&scene, hit) == "floor" && rho < circle - BAND) else { continue };
                 let from = Some(Standpoint { primitive: hit.primitive, inside: true });
                 let up = intersect(&scene, &Ray { origin: hit.point, direction: -down }, from);
@@ -114,7 +114,8 @@ fn camera_rays(trials: &mut Trials) {
                 let Ray { origin, direction } = view.ray::<AllEffects>(x, y, sample, numbers, || [0.0; 2]);
                 long += u64::from((dot(direction, direction).sqrt() - 1.0).abs() > 4.0 * f64::EPSILON);
                 let inside = (1.0..99.0).contains(&origin.x) && (0.0..81.6).contains(&origin.y) && origin.z < 169.0;
-                // An image that is much wider or higher than smallpt's sees over the walls, from behind the front one too.
+                // In images that are much wider or higher than smallpt's, rays also start outside the walls, even
+                // behind the front one.
                 outside += u64::from(!inside && width > height);
                 nearest = nearest.max(origin.z);
                 tried += 1;

@@ -18,7 +18,7 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "S47", tries: "points at which an offset of the origin would change sign or size", run: awkward_points },
 ];
 
-/// What leaves a sphere outwards does not meet it again; what leaves it inwards meets it after a chord.
+/// A ray that leaves a sphere outwards must not hit it again. A ray that leaves it inwards must hit it after a chord.
 fn leaving(trials: &mut Trials) {
     let spheres = trials.times(60, 10_000);
     let rays = spheres * 1000;
@@ -39,7 +39,7 @@ fn leaving(trials: &mut Trials) {
                     intersect(&scene, &Ray { origin, direction }, Some(standpoint)).map(|hit| hit.t)
                 };
                 *again += u64::from(leave(outwards, false).is_some());
-                // The origin is a rounded point, so the chord is known to the rounding of its coordinates.
+                // The origin is a rounded point, so the exact chord is known only to the rounding of its coordinates.
                 let chord = 2.0 * radius * dot(normal, outwards);
                 let error = (leave(-outwards, true).unwrap_or(0.0) - chord).abs();
                 *off += u64::from(error.is_nan() || error > 32.0 * U * (away + radius));
@@ -53,7 +53,7 @@ fn leaving(trials: &mut Trials) {
     leaving_a_mesh(trials);
 }
 
-/// Neither the triangle that a ray leaves nor a neighbour is met.
+/// A ray that leaves a mesh hits neither its starting triangle nor a neighbour.
 fn leaving_a_mesh(trials: &mut Trials) {
     let rays = trials.times(100_000, 10_000_000);
     let mesh = scene_of(Primitives { triangles: star(8, 12, || 1.0), ..Primitives::default() });
@@ -76,7 +76,7 @@ fn leaving_a_mesh(trials: &mut Trials) {
     }
 }
 
-/// One surface of each kind through `x`, facing along the x axis, and a second of that kind `gap` farther.
+/// For each kind of surface, a scene of one through `x`, facing along the x axis, and a second one `gap` farther.
 fn pairs(x: f64, gap: f64) -> [(&'static str, Scene); 3] {
     let towards = Vec3::new(1.0, 0.0, 0.0);
     let sphere = |x: f64| Sphere { center: Vec3::new(x - 1.0, 0.0, 0.0), radius: 1.0 };
@@ -91,9 +91,9 @@ fn pairs(x: f64, gap: f64) -> [(&'static str, Scene); 3] {
     ]
 }
 
-/// The offset of Wächter and Binder (Ray Tracing Gems, 2019, ch. 6) changes its rule at 1/32 and adds integers to the bits of coordinates:
-/// at 0 the sign flips. Here a ray starts where the last one ended, so such points are like others, and a surface that is nearer than any
-/// offset is met.
+/// The offset of Wächter and Binder (Ray Tracing Gems, 2019, ch. 6) changes its rule at 1/32 and adds integers to the
+/// bits of coordinates: at 0 the sign flips. Here a ray starts where the last one ended, so these points are not
+/// special, and a surface nearer than any offset is hit.
 fn awkward_points(trials: &mut Trials) {
     let limit = 1.0_f64 / 32.0;
     let points = [0.0, limit, limit.next_down(), limit.next_up(), 5e-324, 1.0, 3.0];
@@ -107,7 +107,7 @@ fn awkward_points(trials: &mut Trials) {
                     intersect(&scene, &ray, Some(from))
                 });
                 let error = ahead.filter(|hit| hit.primitive == 1).map_or(f64::NAN, |hit| hit.t - ((x + gap) - x));
-                // The far sides of both spheres lie behind, and nothing of what is flat.
+                // The far sides of both spheres lie behind the origin; the flat surfaces have nothing there.
                 let is_right_behind = back.map_or(kind != "spheres", |hit| kind == "spheres" && hit.t > 1.9);
                 let (wrong, tried) = tallies.entry(format!("{kind}, accelerator {name}")).or_default();
                 *wrong += u64::from(!(is_right_behind && error.abs() <= 4.0 * U * (2.0 + x.abs())));

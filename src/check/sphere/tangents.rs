@@ -1,4 +1,4 @@
-//! Rays whose answer is exact: along the silhouette, from the surface, from the centre, with directions that are none.
+//! Rays with exact answers: along the silhouette, from the surface, from the centre, and with invalid directions.
 
 use super::exact::U;
 use super::formulas::first_hits;
@@ -50,7 +50,7 @@ const FORWARD: [f64; 3] = [1.0, 0.0, 0.0];
 const BESIDE: [f64; 3] = [-5.0, 0.25, 0.0];
 const ORIGIN: Vec3 = Vec3::new(0.0, 0.0, 0.0);
 
-/// A ray at the unit sphere around the origin, whose answer is known to the bit.
+/// Checks a ray at the unit sphere around the origin, whose answer is known to the bit.
 fn same(trials: &mut Trials, origin: [f64; 3], direction: [f64; 3], expected: Option<f64>) {
     for (way, found) in first_hits(Vec3::from(origin), Vec3::from(direction), ORIGIN, 1.0) {
         trials.same(format!("{way}, from {origin:?} along {direction:?}"), &expected, &found);

@@ -1,4 +1,4 @@
-//! Spheres in one place.
+//! Coincident and nearly coincident spheres.
 
 use crate::check::bare_scene::{intersect, scene_of_spheres, searches};
 use crate::check::random::Random;

@@ -1,11 +1,12 @@
-//! What the formulas of `math` replace: for comparison, in cases and in the price list, never in a kernel.
+//! The formulas that `math` replaces, for comparison in cases and in the price list, never in a kernel.
 
 use crate::math::{Vec3, dot};
 
-/// smallpt's epsilon: nearer roots are taken for the point where the ray starts.
+/// smallpt's epsilon: a nearer root counts as the starting point of the ray.
 pub(in crate::check) const SMALLPT_EPSILON: f64 = 1e-4;
 
-/// The roots as smallpt (Beason, 2008) writes them, `b -+ sqrt(b² - f·f + r²)` with `b = -f·d`, for `d` of length 1. NaN for a miss.
+/// The roots in smallpt's form (Beason, 2008), `b -+ sqrt(b² - f·f + r²)` with `b = -f·d`, for `d` of length 1. NaN
+/// for a miss.
 #[inline(always)]
 pub(in crate::check) fn smallpt_roots(f: Vec3, d: Vec3, r: f64) -> (f64, f64) {
     let b = -dot(f, d);
@@ -13,7 +14,7 @@ pub(in crate::check) fn smallpt_roots(f: Vec3, d: Vec3, r: f64) -> (f64, f64) {
     (b - root, b + root)
 }
 
-/// The first of them beyond `epsilon`; 0 if there is none, as smallpt says it. smallpt's own epsilon is [`SMALLPT_EPSILON`].
+/// The first root beyond `epsilon`; 0 if there is none, as in smallpt. smallpt's epsilon is [`SMALLPT_EPSILON`].
 #[inline(always)]
 pub(in crate::check) fn smallpt_first_root(f: Vec3, d: Vec3, r: f64, epsilon: f64) -> f64 {
     let (near, far) = smallpt_roots(f, d, r);

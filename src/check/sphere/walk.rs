@@ -1,10 +1,11 @@
-//! A walk from surface to surface by hand, without an estimator.
+//! A walk from surface to surface, step by step, without an estimator.
 
 use crate::material::Material;
 use crate::math::{Ray, Vec3};
 use crate::scene::{AllEffects, Hit, Scene, Standpoint};
 
-/// Where a ray that arrives along `direction` goes on when the surface takes `u` for what it chooses; the new direction is not normalised.
+/// The next ray segment and its standpoint, for a ray that arrives along `direction`. `u` chooses the lobe. The new
+/// direction is not normalised.
 pub(super) fn scatter(scene: &Scene, hit: &Hit, direction: Vec3, u: f64) -> (Ray, Standpoint) {
     let frame = hit.frame();
     let material: &Material = &scene.objects[hit.object as usize].material;

@@ -1,11 +1,11 @@
-//! Random numbers of known distributions, and pictures with known noise.
+//! Random numbers of known distributions, and images with known noise.
 
 use crate::image_io::Image;
 use rand::Rng;
 use rand_pcg::Pcg64Dxsm;
 use std::f64::consts::TAU;
 
-/// A generator with a seed of its own for each use.
+/// A random number generator. Each use has a different seed.
 pub(super) struct Draw(Pcg64Dxsm);
 
 impl Draw {
@@ -13,7 +13,7 @@ impl Draw {
         Self(Pcg64Dxsm::new(seed, 6))
     }
 
-    /// Inside (0, 1).
+    /// Uniform in (0, 1).
     pub(super) fn uniform(&mut self) -> f64 {
         ((self.0.next_u64() >> 11) as f64 + 0.5) / 9_007_199_254_740_992.0
     }
@@ -23,13 +23,13 @@ impl Draw {
         (-2.0 * libm::log(self.uniform())).sqrt() * libm::cos(TAU * self.uniform())
     }
 
-    /// Log-normal of mean 1 and this standard deviation.
+    /// Log-normal with mean 1 and this standard deviation.
     pub(super) fn log_normal(&mut self, deviation: f64) -> f64 {
         let variance = libm::log1p(deviation * deviation);
         libm::exp(variance.sqrt() * self.normal() - 0.5 * variance)
     }
 
-    /// A picture of one value in all pixels, with independent normal noise of this standard deviation.
+    /// An image of one value in all pixels, with independent normal noise of this standard deviation.
     pub(super) fn picture(&mut self, side: u32, value: f64, deviation: f64) -> Image {
         let mut image = Image::new(side, side);
         for value_of_pixel in image.pixels.as_flattened_mut() {

@@ -1,4 +1,4 @@
-//! How often intervals hold the truth.
+//! Coverage of confidence intervals.
 
 use super::draw::Draw;
 use crate::analysis::aa_test::{Comparison, Verdict, calibration};
@@ -17,15 +17,15 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "M10", tries: "the median's interval from order statistics", run: of_the_median },
 ];
 
-/// The catalogue's numbers are simulations, too.
+/// Compares a share of hits with the catalogue's value. That is a simulation result, too, which `slack` allows for.
 fn agrees(trials: &mut Trials, what: String, stated: f64, hits: u64, runs: u64, slack: f64) {
     let found = hits as f64 / runs as f64;
     let width = critical() * (stated * (1.0 - stated) / runs as f64).sqrt() + slack;
     trials.close(what, stated, found, width);
 }
 
-/// Log-normal squared errors of mean 1: the plain t-interval covers what the catalogue says, which is too little where seeds scatter; the one
-/// that is used covers 95 +- 1.5 % also there.
+/// Log-normal squared errors of mean 1: the plain t-interval has the catalogue's coverage, which is too low where
+/// seeds scatter. The interval in use covers 95 +- 1.5 % there, too.
 fn over_few_seeds(trials: &mut Trials) {
     let runs = trials.times(6_000, 100_000);
     let mut draw = Draw::new(6);
@@ -52,14 +52,14 @@ fn over_few_seeds(trials: &mut Trials) {
         let found = t_quantile(0.95, seeds - 1).unwrap_or(f64::NAN) * 0.2 / (2.0 * (seeds as f64).sqrt());
         trials.close(format!("half-width of the RMSE, variation 0.2, {seeds} seeds"), half_width, found, 6e-4);
     }
-    // The root of an interval's ends is an interval of the root.
+    // The roots of an interval's ends form an interval of the root.
     let found = over_seeds(&[0.9, 1.0, 1.1, 1.05, 0.95], 0.95).expect("an interval");
     trials.close("the RMSE's upper end", found.mse.interval.high.sqrt(), found.rmse.interval.high, 1e-15);
     trials.close("the seeds' variation", 0.079_056_941_504_209_48, found.variation, 1e-15);
 }
 
-/// Twenty strategies that are all alike: at 5 % each, one of them seems better in 64 of 100 studies; at Sidak's level in 5. And what is
-/// compared does the same work.
+/// Twenty equal strategies: at 5 % each, one of them seems better in 64 of 100 studies; at Sidak's level in 5. The
+/// compared strategies do the same work.
 fn many_comparisons(trials: &mut Trials) {
     let runs = trials.times(4_000, 100_000);
     let mut draw = Draw::new(9);
@@ -98,7 +98,7 @@ fn many_comparisons(trials: &mut Trials) {
     trials.holds("image and counts of all strategies", "equal", found, different.is_empty());
 }
 
-/// Ranks and confidence by the binomial distribution, and how often such an interval holds the median of skewed values.
+/// Checks ranks and level against the binomial distribution, and the coverage of the median of skewed values.
 fn of_the_median(trials: &mut Trials) {
     for (n, rank, level) in [
         (5, 1, 0.9375),
@@ -127,7 +127,7 @@ fn of_the_median(trials: &mut Trials) {
             .map(|_| {
                 let values: Vec<f64> = (0..n).map(|_| draw.log_normal(1.0)).collect();
                 let interval = median_interval(&values, 0.95).expect("an interval");
-                // Of mean 1 and variance 1: the median is exp(-ln(2)/2).
+                // Log-normal with mean 1 and variance 1: the median is exp(-ln(2)/2).
                 Comparison { level: interval.level, contains_truth: interval.contains(std::f64::consts::FRAC_1_SQRT_2) }
             })
             .collect();
@@ -139,7 +139,7 @@ fn of_the_median(trials: &mut Trials) {
             format_args!("{} (p = {:.2})", found.found, found.p_value),
             is_calibrated,
         );
-        // The judge sees intervals that are too narrow and too wide.
+        // The calibration test detects intervals that are too narrow and too wide.
         let claimed = |level| -> Vec<Comparison> { comparisons.iter().map(|c| Comparison { level, ..*c }).collect() };
         let verdicts = [0.995, 0.85].map(|level| calibration(&claimed(level), 1e-6).map(|found| found.verdict));
         trials.same(

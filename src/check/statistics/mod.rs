@@ -1,5 +1,5 @@
-//! Statistics of measurements, tried on numbers whose truth is known. Seeds are fixed, and what is a count of chances is two-sided: too few
-//! misses are as wrong as too many.
+//! Statistics of measurements, tested on data with known truth. Seeds are fixed. Counts of random events are tested on
+//! both sides: too few misses are as wrong as too many.
 
 mod draw;
 mod intervals;

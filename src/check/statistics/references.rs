@@ -1,4 +1,4 @@
-//! Errors against references that are noisy themselves. N samples a pixel of deviation 1 in the test, M in the reference.
+//! Errors against noisy references. The test has N samples a pixel with deviation 1, the reference M.
 
 use super::draw::Draw;
 use crate::analysis::fit::log_log;
@@ -22,13 +22,13 @@ fn numbers(image: &Image) -> f64 {
     image.pixels.as_flattened().len() as f64
 }
 
-/// The slope of RMSE over N = 1, 2, .. 1024 on logarithmic axes when the squared error is what `mse` says.
+/// The slope of RMSE over N = 1, 2, .. 1024 on logarithmic axes, for the squared error `mse`.
 pub(super) fn slope(mse: impl Fn(f64) -> f64) -> f64 {
     let points: Vec<(f64, f64)> = (0..=10).map(|k| f64::from(1 << k)).map(|n| (n, mse(n))).collect();
     0.5 * log_log(&points, 0.95).expect("a line").slope.value
 }
 
-/// E[MSE] = bias^2 + 1/N + 1/M, which bends the slope of convergence.
+/// E[MSE] = bias^2 + 1/N + 1/M: the reference's noise bends the slope of convergence.
 fn independent(trials: &mut Trials) {
     let side = trials.times(128, 1024) as u32;
     let mut draw = Draw::new(1);
@@ -51,8 +51,9 @@ fn independent(trials: &mut Trials) {
     trials.close("slope without a reference's noise", -0.5, slope(|n| 1.0 / n), 1e-12);
 }
 
-/// The RMSE is too large by the share d when M = N/((1 + d)^2 - 1). The noise of the test is in both errors that are compared, so that little but
-/// the reference's is left: the ratio of the squares has the variance 4 (N/M)/P and 2 (N/M)^2/P over P numbers.
+/// The RMSE is too large by the share d if M = N/((1 + d)^2 - 1). Both compared errors contain the noise of the test,
+/// so that mainly the reference's noise is left. The ratio of the squares has the variance 4 (N/M)/P + 2 (N/M)^2/P
+/// over P values.
 fn enough(trials: &mut Trials) {
     let side = trials.times(192, 1024) as u32;
     let mut draw = Draw::new(2);
@@ -68,13 +69,15 @@ fn enough(trials: &mut Trials) {
         // The catalogue's multiples have three digits.
         trials.close(format!("M = {times} N: too large by"), inflation, found, critical() * error + 2e-3 * inflation);
         let crossed = cross_mse(&test, &halves[0], &halves[1]).expect("pictures of one size") / (exact * exact) - 1.0;
-        // Two references: their noise comes in twice with the test's, and once with each other's.
+        // With two references, their noise enters twice in products with the test's noise, and once in the product
+        // with each other.
         let error = ((2.0 * share + share * share) / numbers(&test)).sqrt();
         trials.close(format!("M = {times} N: cross form, too large by"), 0.0, crossed, critical() * error);
     }
 }
 
-/// N = 16, M = 64 and a bias of 0.01: the truth is 0.0626, one reference finds 0.0782, two find the truth, and two tests find the bias alone.
+/// N = 16, M = 64, bias 0.01: the truth is 0.0626. One reference gives 0.0782, two give the truth, and two tests with
+/// them give the bias alone.
 fn cross(trials: &mut Trials) {
     let side = trials.times(192, 2048) as u32;
     let mut draw = Draw::new(3);
@@ -100,8 +103,8 @@ fn cross(trials: &mut Trials) {
     }
 }
 
-/// Linear values keep what a display cuts off: white against a sun of 50 is an error of 49, or of none. Above white the linear squared error falls
-/// as 1/N, and what a display shows of it is gone long before.
+/// Linear values keep the light that a display clips: white against a sun of 50 has the error 49 in linear values and
+/// 0 on a display. Above white the linear squared error falls as 1/N, and the displayed error vanishes long before.
 fn linear(trials: &mut Trials) {
     let mut draw = Draw::new(8);
     let (white, sun) = (draw.picture(16, 1.0, 0.0), draw.picture(16, 50.0, 0.0));

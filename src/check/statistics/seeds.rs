@@ -1,4 +1,4 @@
-//! Whether an image, its reference and their estimators are independent of each other.
+//! Independence of an image, its reference and their estimators.
 
 use super::draw::Draw;
 use super::references::slope;
@@ -26,11 +26,12 @@ fn film(seed: u64, estimator: &str, max_depth: Option<u16>, spp: u32) -> Film {
     run(&scene, Settings { spp, spec, ..Settings::default() }).film
 }
 
-/// Correlation of two images' noise, as the score of a correlation of 0: images less the mean of both, block of pixels by block.
+/// Score of the correlation of two images' noise, against a correlation of 0. The noise of each pixel is its mean
+/// minus the mean in `truth`.
 fn correlation(a: &Film, b: &Film, truth: &Film) -> f64 {
     let (mut product, mut of_a, mut of_b) = (0.0, 0.0, 0.0);
     for ((a, b), truth) in a.pixels().iter().zip(b.pixels()).zip(truth.pixels()) {
-        // In units of the pixel's own noise, so that no pixel decides alone; ranks would not do better.
+        // In units of the pixel's own noise, so that no single pixel dominates. Ranks would not do better.
         let scale = truth.variance().sqrt().max(1e-9);
         let clip = |value: f64| (value / scale).clamp(-30.0, 30.0);
         let (x, y) = (clip(a.mean()[0] - truth.mean()[0]), clip(b.mean()[0] - truth.mean()[0]));
@@ -41,8 +42,8 @@ fn correlation(a: &Film, b: &Film, truth: &Film) -> f64 {
     product / (of_a * of_b).sqrt() * (a.pixels().len() as f64).sqrt()
 }
 
-/// The first N of M samples differ from all of them by sqrt(1/N - 1/M): too little, and nothing at N = M. So references have seeds that no
-/// image can have, and images of different seeds have nothing in common.
+/// The first N of M samples differ from all of them by sqrt(1/N - 1/M): too little, and by nothing at N = M. So
+/// references have seeds that no image can have, and the noise of images with different seeds is independent.
 fn shared_samples(trials: &mut Trials) {
     let (side, m) = (trials.times(96, 512) as u32, 64.0);
     let mut draw = Draw::new(4);
@@ -77,8 +78,8 @@ fn shared_samples(trials: &mut Trials) {
     trials.holds("noise of one seed twice", "p below 1e-9", format_args!("{p:.0e}"), p < 1e-9);
 }
 
-/// What an image and its reference both leave out is in no error. So some of the shipped experiments measure against an estimator that finds
-/// light in another way.
+/// Light that both an image and its reference miss is in no error. So some of the shipped experiments measure against
+/// an estimator that finds light in another way.
 fn shared_bias(trials: &mut Trials) {
     let spp = trials.times(64, 1024) as u32;
     let image = |seed, estimator, depth| film(seed, estimator, depth, spp).image();

@@ -1,4 +1,4 @@
-//! What accuracy costs in time, and speedups that are too good.
+//! The price of an accuracy in time, and speedups that are too good.
 
 use crate::analysis::jackknife::{Curve, SeedCurves};
 use crate::analysis::price::{Law, Renderer};
@@ -18,7 +18,7 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "M12", tries: "speedups above the number of workers and below 1", run: odd_speedups },
 ];
 
-/// A matte ball under half a sky, seen where it is level: 1/4 in every pixel, without a tail.
+/// A diffuse ball under half a sky, seen where its normal is horizontal: 1/4 in every pixel, without a heavy tail.
 fn half_lit() -> Scene {
     scene(&[
         "background = [1.0, 1.0, 1.0]\n".to_string(),
@@ -33,8 +33,8 @@ fn squared_error(film: &Film) -> f64 {
     errors.map(|error| error * error).sum::<f64>() / film.pixels().len() as f64
 }
 
-/// Samples v/e^2, seconds t v/e^2 and efficiency 1/(v t); and a render of as many samples as were predicted has the error that was asked for,
-/// within 5 %.
+/// An error e takes v/e^2 samples and t v/e^2 seconds, and the efficiency is 1/(v t). A render with the predicted
+/// number of samples has the requested error within 5 %.
 fn price(trials: &mut Trials) {
     let (variance, seconds) = (9.0, 0.02);
     let seed = |factor: f64| -> Curve { [4.0, 16.0, 64.0].map(|spp| (spp, factor * variance / spp)).to_vec() };
@@ -65,15 +65,15 @@ fn price(trials: &mut Trials) {
         (1..=5).map(|seed| [4, 8, 16].map(|spp| (f64::from(spp), render(seed, spp))).to_vec()).collect();
     for goal in [0.03, 0.015] {
         let wanted = renderer(&curves).price(goal).expect("a price").spp.value;
-        // A whole number of samples has a goal of its own.
+        // The rounded number of samples has a slightly different goal.
         let spp = libm::round(wanted).max(1.0);
         let found = render(77, spp as u32).sqrt() / (goal * (wanted / spp).sqrt());
         trials.close(format!("paid for {goal}: found over asked"), 1.0, found, 0.05);
     }
 }
 
-/// Report C's 1 to 2 processes are 2.2 times as fast: Karp and Flatt's serial fraction is negative, which is said with a cause for which there is
-/// evidence, and never guessed.
+/// From 1 to 2 processes, report C is 2.2 times as fast: Karp and Flatt's serial fraction is negative. The program
+/// reports this with a cause for which there is evidence, and never guesses one.
 fn odd_speedups(trials: &mut Trials) {
     let interval = |low, high| Interval::between(low, high, 0.95).expect("an interval");
     trials.same("12 s to 3 s on 8", (Some(4.0), Some(0.5)), (speedup(12.0, 3.0), efficiency(4.0, 8)));

@@ -1,4 +1,4 @@
-//! Samples of which a few decide everything.
+//! Heavy tails: a few samples dominate the estimate.
 
 use super::draw::Draw;
 use crate::analysis::tail::tail;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub(super) const CASES: &[Case] =
     &[Case { id: "M07", tries: "kurtosis and the largest sample's share", run: heavy_tails }];
 
-/// Samples of the pixels of a small image, pixel by pixel.
+/// Samples of a small image, grouped by pixel.
 fn samples(scene: Scene, spp: u32, roulette: Option<String>) -> Vec<Vec<f64>> {
     let spec = Spec { width: 8, height: 6, estimator: "bsdf".to_string(), roulette, ..Spec::default() };
     let inspector = inspect(&Arc::new(scene), &spec).expect("what looks into samples");
@@ -24,8 +24,9 @@ fn kurtosis(groups: &[Vec<f64>]) -> f64 {
     tail(groups.iter().map(Vec::as_slice)).map_or(f64::NAN, |tail| tail.kurtosis)
 }
 
-/// A light that one sample in a hundred finds has the kurtosis (q^3 + p^3)/(p q), a coin 1, a uniform number 1.8, a normal one 3, a number of
-/// vertices that roulette at rho = 1/2 leaves 9.5; smallpt's box, where paths find a small lamp through glass, far more.
+/// The kurtosis is (q^3 + p^3)/(p q) for a light that one sample in a hundred finds, 1 for a coin, 1.8 for a uniform
+/// number, 3 for a normal one, and 9.5 for the number of vertices under roulette at rho = 1/2. It is far larger in
+/// smallpt's box, where paths find a small lamp through glass.
 fn heavy_tails(trials: &mut Trials) {
     let coin: Vec<f64> = (0..100).map(|k| f64::from(k % 2)).collect();
     trials.close("a coin", 1.0, kurtosis(&[coin]), 1e-12);
@@ -40,7 +41,7 @@ fn heavy_tails(trials: &mut Trials) {
     let normal: Vec<f64> = (0..n).map(|_| draw.normal()).collect();
     trials.deviates_below("normal", critical(), (kurtosis(&[normal]) - 3.0) / (24.0 / n as f64).sqrt());
     let uniform: Vec<f64> = (0..n).map(|_| draw.uniform()).collect();
-    // From the moments of a uniform number up to the eighth.
+    // The standard error follows from the moments of a uniform number up to the eighth.
     trials.deviates_below("uniform", critical(), (kurtosis(&[uniform]) - 1.8) / (0.2 / n as f64).sqrt());
 
     let spp = trials.times(1000, 50_000) as u32;

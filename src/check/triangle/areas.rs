@@ -1,4 +1,4 @@
-//! Triangles without an area, very small and large ones, and the two sides of any.
+//! Triangles without area, very small and very large ones, and the two sides of a triangle.
 
 use super::single::{U, meet, scene, towards, triangle};
 use crate::check::bare_scene::{intersect, searches};
@@ -28,7 +28,7 @@ fn bad_case(trials: &mut Trials) {
         [-1_113.454_59, -79.209_014_9, -56.243_190_8],
     ]);
     let origin = Vec3::new(-1_081.479_25, 99.999_954_2, 87.770_111_1);
-    // As long as the segment, and of length 1 as rays of paths are.
+    // A direction as long as the segment, and one of length 1, as for the rays of paths.
     let segment = Vec3::new(-32.107_299_8, -183.355_865, -144.607_635);
     trials.same("taken for degenerate", &true, &bad.is_degenerate());
     for direction in [segment, segment.normalized()] {
@@ -49,7 +49,8 @@ fn areas(trials: &mut Trials) {
         for _ in 0..1000 {
             hits += u64::from(meet(&line, &towards(random.direction() * 10.0, random.direction())).is_some());
         }
-        // Where all three lie apart on a line, rounding decides at its corners; the reader lets none of them in.
+        // If all three corners are distinct points of a line, rounding decides at its corners. The reader refuses all
+        // of these triangles.
         let twice = (0..3).any(|k| corners[k] == corners[(k + 1) % 3]);
         for at in corners.iter().filter(|_| twice) {
             hits += u64::from(meet(&line, &towards(Vec3::new(-3.0, 4.0, 5.0), Vec3::from(*at))).is_some());
@@ -72,7 +73,7 @@ fn areas(trials: &mut Trials) {
     counted(trials);
 }
 
-/// Of a mesh, triangles without an area are left out and counted.
+/// Triangles of a mesh that have no area are left out and counted.
 fn counted(trials: &mut Trials) {
     let mut mesh = tempfile::Builder::new().suffix(".obj").tempfile().expect("a temporary file");
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\nf 1 1 2\nf 2 2 2\n";

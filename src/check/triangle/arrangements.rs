@@ -1,4 +1,4 @@
-//! Numbers and arrangements of primitives that lead builders of hierarchies astray.
+//! Values and arrangements of primitives that mislead builders of hierarchies.
 
 use super::hierarchies::{any_ray, in_cube};
 use crate::check::bare_scene::{intersect, scene_of, scene_of_spheres, searches};
@@ -22,14 +22,15 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// The traversal's stack has room for so many levels: 32 by the rule, then halves of up to 2^32.
+/// Levels that fit on the traversal's stack: 32 by the rule, then halvings of up to 2^32 primitives.
 const DEEPEST: usize = 64;
 
 fn same_spheres(count: usize, center: impl Fn(usize) -> [f64; 3], radius: impl Fn(usize) -> f64) -> Scene {
     scene_of_spheres((0..count).map(|k| Sphere { center: Vec3::from(center(k)), radius: radius(k) }).collect())
 }
 
-/// None makes the tree deeper than the stack, and each is found again from a ray at its last primitive.
+/// No arrangement makes the tree deeper than the stack, and a ray at the last primitive has the same hit with every
+/// hierarchy.
 fn hard_to_build(trials: &mut Trials) {
     let line = |k: usize| [k as f64, 0.0, 0.0];
     let shrinking = |k: usize| libm::exp2(-(k as f64) / 8.0);
@@ -45,7 +46,7 @@ fn hard_to_build(trials: &mut Trials) {
             "on a line, each twice as far",
             same_spheres(300, |k| [libm::exp2(k as f64), 0.0, 0.0], |k| 0.4 * libm::exp2(k as f64)),
         ),
-        // A surface area heuristic that peels off one at a time would be as deep as there are primitives.
+        // A surface area heuristic that splits off one primitive at a time would give one level per primitive.
         ("a tower that shrinks", same_spheres(2000, |k| [shrinking(k), 0.0, 0.0], |k| shrinking(k) * libm::exp2(-5.0))),
         ("one huge among tiny", same_spheres(1000, line, |k| if k == 500 { 1e30 } else { 1e-3 })),
         ("powers of ten", same_spheres(180, |k| [libm::exp10(k as f64 - 90.0); 3], |_| 1e-95)),
@@ -69,7 +70,7 @@ fn hard_to_build(trials: &mut Trials) {
     not_a_number(trials);
 }
 
-/// Nothing with a box: nothing to build, and the plane is found.
+/// Without bounded primitives there is nothing to build, and the plane is still found.
 fn nothing_to_build(trials: &mut Trials) {
     let plane = Plane { point: Vec3::new(0.0, 0.0, 0.0), normal: Vec3::new(0.0, 1.0, 0.0) };
     let ray = Ray { origin: Vec3::new(0.0, 2.0, 0.0), direction: Vec3::new(0.0, -1.0, 0.0) };
@@ -81,7 +82,7 @@ fn nothing_to_build(trials: &mut Trials) {
     }
 }
 
-/// The reader lets none in; built by hand, it does not panic, and what is beside it is found.
+/// The reader refuses NaN. A scene that is built with it does not panic, and its other spheres are found.
 fn not_a_number(trials: &mut Trials) {
     refuses_shape(trials, "{ sphere = { center = [nan, 0.0, 0.0], radius = 1.0 } }", "center", "nan");
     let places = |k: usize| if k == 50 { [f64::NAN; 3] } else { [k as f64, 0.0, 0.0] };

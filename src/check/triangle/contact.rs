@@ -1,4 +1,4 @@
-//! Where a ball touches the floor: what is nearer than any guard against noise counts.
+//! The contact point of a ball and the floor: hits that are nearer than any noise threshold count.
 
 use super::single::U;
 use crate::analysis::z_test::{critical_value, sidak};
@@ -21,14 +21,14 @@ pub(super) const CASES: &[Case] = &[Case {
     run: contact,
 }];
 
-/// Distance of the point from where the unit ball touches.
+/// Distance of the point from the contact of the unit ball.
 const AWAY: f64 = 0.1;
 
-/// The chance of a false alarm over all estimators and kernels.
+/// Probability of a false alarm over all estimators and kernels.
 const LEVEL: f64 = 1e-3;
 
-/// A ball that touches the floor, seen at the point 0.1 from the contact, under the ball: the way to it rises by 6 of the 11 degrees
-/// that are free.
+/// A ball that touches the floor, seen at the point 0.1 from the contact, under the ball: the camera's direction rises
+/// by 6 of the 11 degrees that are free.
 fn scene(before: &str, glow: f64, after: &str) -> Arc<Scene> {
     let parts = [
         before.to_string(),
@@ -51,15 +51,17 @@ fn scene(before: &str, glow: f64, after: &str) -> Arc<Scene> {
 }
 
 fn contact(trials: &mut Trials) {
-    // The ball touches the horizon and is wholly above it: its share of the light from a white sky is (r/d)² cos = 1/d³.
+    // The ball touches the horizon and lies wholly above it: its share of the light from a white sky is (r/d)² cos =
+    // 1/d³.
     let share = 1.0 / ((1.0 + AWAY * AWAY) * (1.0 + AWAY * AWAY).sqrt());
     let glowing = scene("background = [0.0, 0.0, 0.0]\n", 1.0, "");
     directions(trials, &glowing);
     let sky = scene("background = [1.0, 1.0, 1.0]\n", 0.0, "");
-    // A light behind the ball: the way to it enters the ball after 0.01. And one on this side, as low as the camera.
+    // One light behind the ball: the way to it enters the ball after 0.01. Another light on the near side, as low as
+    // the camera.
     let light = |x: f64, y: f64| {
         let text = format!("[[point-lights]]\nposition = [{x:?}, {y:?}, 0.0]\nintensity = [1.0, 1.0, 1.0]\n");
-        // What is behind the light does not hide it.
+        // A ball behind the light does not hide it.
         let black = "{ diffuse = { albedo = [0.0, 0.0, 0.0] } }";
         let behind = ball("behind", [1.6 * x, 1.6 * y, 0.0], 0.2 * x.abs(), black);
         scene("background = [0.0, 0.0, 0.0]\n", 0.0, &(text + &behind))
@@ -99,7 +101,8 @@ fn contact(trials: &mut Trials) {
     }
 }
 
-/// Every direction from the point that is within the cone of the ball meets the ball, and no other does; a third of them nearer than 0.5.
+/// A direction from the point hits the ball exactly if it lies within the cone of the ball. A third of the hits are
+/// nearer than 0.5.
 fn directions(trials: &mut Trials, scene: &Arc<Scene>) {
     let rays = trials.times(100_000, 10_000_000);
     let point = Vec3::new(AWAY, 0.0, 0.0);

@@ -45,7 +45,7 @@ fn diagonal(trials: &mut Trials) {
     }
 }
 
-/// Meshes by name, with how far from the middle rays may start.
+/// Meshes by name, with the largest distance of ray origins from the centre.
 fn meshes() -> [(&'static str, Vec<Triangle>, f64); 4] {
     let scaled = |mesh: Vec<Triangle>, factor: f64| mesh.iter().map(|triangle| triangle.scaled(factor)).collect();
     let mut random = Random::new(0x51A2);
@@ -59,7 +59,7 @@ fn meshes() -> [(&'static str, Vec<Triangle>, f64); 4] {
 
 fn closed_meshes(trials: &mut Trials) {
     let all = trials.times(200_000, 1_000_000_000);
-    // Testing every triangle is as slow as there are triangles.
+    // Testing every triangle takes time in proportion to their number.
     let (every, mut leaks, mut compared) = (256, 0, 0);
     for (mesh, triangles, away) in meshes() {
         let plain = scene(triangles.clone());

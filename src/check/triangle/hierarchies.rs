@@ -1,4 +1,4 @@
-//! Hierarchies against testing every primitive: the same primitive and the same bits of distance.
+//! Hierarchies compared with testing every primitive: the same primitive and the same bits of distance.
 
 use crate::check::bare_scene::{intersect, scene_of, searches};
 use crate::check::meshes::{grid_cube, star};
@@ -13,14 +13,14 @@ pub(super) const CASES: &[Case] = &[Case {
     run: every_kind,
 }];
 
-/// How a scene's rays are made.
+/// A generator of rays for a scene.
 type MakeRay = fn(&mut Random, &Primitives) -> Ray;
 
 pub(super) fn in_cube(random: &mut Random) -> Vec3 {
     Vec3::new(2.0 * random.unit() - 1.0, 2.0 * random.unit() - 1.0, 2.0 * random.unit() - 1.0)
 }
 
-/// A random ray, every other one at something that is there.
+/// A random ray; about every other one aims at a primitive.
 pub(super) fn any_ray(random: &mut Random, primitives: &Primitives) -> Ray {
     let origin = in_cube(random) * random.scale(-2.0, 1.0);
     let target = match random.below(4) {
@@ -29,7 +29,7 @@ pub(super) fn any_ray(random: &mut Random, primitives: &Primitives) -> Ray {
         }
         1 if !primitives.spheres.is_empty() => {
             let sphere = &primitives.spheres[random.below(primitives.spheres.len())];
-            // Around its silhouette.
+            // Near its silhouette.
             sphere.center + random.direction() * sphere.radius
         }
         _ => origin + random.direction(),
@@ -74,8 +74,8 @@ struct Tally {
     blocked_otherwise: u64,
 }
 
-/// So many rays and what becomes of each after up to two scatterings: the same primitive and the same bits of distance, and the same answer
-/// to what blocks a ray short of that distance, at it, and just beyond.
+/// Follows so many rays, each through up to two scatterings. Both scenes must give the same primitive, the same bits
+/// of distance, and the same answer to whether a ray is blocked before that distance, at it, and just beyond.
 fn compare(all: &Scene, accelerated: &Scene, rays: u64, make_ray: MakeRay) -> Tally {
     let mut random = Random::new(0xB0);
     let mut tally = Tally::default();
@@ -107,14 +107,14 @@ fn compare(all: &Scene, accelerated: &Scene, rays: u64, make_ray: MakeRay) -> Ta
     tally
 }
 
-/// Six kinds of scenes and how rays are made for each.
+/// Six kinds of scenes, each with its generator of rays.
 fn arrangements() -> Vec<(&'static str, Primitives, MakeRay)> {
     let none = Primitives::default;
     let mut random = Random::new(13);
     let mesh = star(7, 9, || 0.4 + 0.6 * random.unit());
     let small: Vec<Sphere> =
         (0..60).map(|_| Sphere { center: in_cube(&mut random), radius: random.scale(-3.0, -0.5) }).collect();
-    // Walls like smallpt's, planes, and triangles between.
+    // Walls like smallpt's, planes, and triangles between them.
     let walls = [[1e5 + 3.0, 0.0, 0.0], [0.0, 1e5 + 3.0, 0.0], [0.0, 0.0, 1e5 + 3.0]];
     let walls = walls.map(|center| Sphere { center: Vec3::from(center), radius: 1e5 });
     let mixed = Primitives {
@@ -123,7 +123,7 @@ fn arrangements() -> Vec<(&'static str, Primitives, MakeRay)> {
         triangles: star(4, 5, || 1.5),
         ..none()
     };
-    // All in one plane, which has no volume.
+    // Triangles in one plane, so that their bounding box has no volume.
     let flat = (0..80).map(|_| {
         let a = Vec3::new(2.0 * random.unit() - 1.0, 0.25, 2.0 * random.unit() - 1.0);
         let near = |v: Vec3| a + (v - a) * 0.25;
@@ -134,14 +134,14 @@ fn arrangements() -> Vec<(&'static str, Primitives, MakeRay)> {
         let radius = if k % 5 == 0 { f64::from(k - 1) + libm::exp2(-40.0) } else { f64::from(k) } / 60.0;
         Sphere { center: Vec3::new(0.1, -0.2, 0.05), radius }
     });
-    // Each several times, far apart in number: the first of them must win.
+    // Each primitive several times, with distant indices: the first one must win.
     let mut repeated = none();
     let balls: Vec<Sphere> = (0..9).map(|_| Sphere { center: in_cube(&mut random), radius: 0.3 }).collect();
     for _ in 0..3 {
         repeated.spheres.extend(&balls);
         repeated.triangles.extend(star(3, 4, || 0.8).iter().rev());
     }
-    // Boxes on the integers: rays run along faces, through edges and corners, from points of faces.
+    // Boxes with integer corners: rays run along faces, through edges and corners, and from points of faces.
     let corners = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [4.0, 4.0, 4.0], [1.0, 5.0, 6.0]].map(Vec3::from);
     let moved = |by: Vec3| grid_cube(2).into_iter().map(move |t| Triangle { corners: t.corners.map(|p| p + by) });
     let boxes = corners.into_iter().flat_map(moved).collect();

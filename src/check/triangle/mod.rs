@@ -1,4 +1,4 @@
-//! Triangles, boxes and hierarchies.
+//! Cases about triangles, boxes and hierarchies.
 
 mod areas;
 mod arrangements;

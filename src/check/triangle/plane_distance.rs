@@ -1,5 +1,5 @@
-//! The exact distance to a triangle's plane, in double-double numbers from the exact corners: n·(a - o) / n·d with n = (b - a) x (c - a), all
-//! of whose differences are split into what is exact. Exact integers confirm it in
+//! The exact distance to a triangle's plane, in double-double arithmetic from the exact corners: n·(a - o) / n·d with
+//! n = (b - a) x (c - a). All differences are computed exactly. Exact integers confirm the result in
 //! `plane_distance_tests.rs`.
 
 use super::single::{U, meet, towards};
@@ -28,8 +28,9 @@ pub(super) fn exact_distance(triangle: &Triangle, ray: &Ray) -> (f64, f64) {
     (across.over(along), along.0.abs() / product(n, n).sqrt().0)
 }
 
-/// What the distance may be off by: seven roundings of the largest coordinate, and as many more as the triangle is longer than high, because
-/// the weights of a sliver's corners are that much less exact; over the cosine at which the plane is met.
+/// The bound on the error of the distance: (7 + length/height of the triangle) roundings of the largest coordinate,
+/// divided by the cosine between ray and normal. A sliver has a larger bound because the weights of its corners are
+/// less exact.
 pub(super) fn bound(triangle: &Triangle, ray: &Ray, cosine: f64) -> f64 {
     let coordinates = triangle.corners.iter().chain([&ray.origin]).flat_map(|p| [p.x.abs(), p.y.abs(), p.z.abs()]);
     let [a, b, c] = triangle.corners;
@@ -39,7 +40,7 @@ pub(super) fn bound(triangle: &Triangle, ray: &Ray, cosine: f64) -> f64 {
     (7.0 + length_over_height) * U * coordinates.fold(0.0, f64::max) / cosine
 }
 
-/// A triangle of some size somewhere, and a ray at a point of it.
+/// A random triangle, and a ray at a point of it.
 pub(super) fn aimed(random: &mut Random) -> (Triangle, Ray) {
     let (size, away) = match random.below(4) {
         0 => (1e-6, 1e6),
@@ -66,7 +67,7 @@ fn seven_roundings(trials: &mut Trials) {
         if triangle.is_degenerate() || cosine < 0.01 {
             continue;
         }
-        // Rounding of the target may lead a ray past a triangle of few ulp.
+        // Rounding of the target may make a ray miss a triangle of a few ulp.
         let Some(t) = meet(&triangle, &ray) else { continue };
         hits += 1;
         let fraction = (t - expected).abs() / bound(&triangle, &ray, cosine);

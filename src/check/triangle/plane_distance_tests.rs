@@ -1,4 +1,4 @@
-//! The double-double oracle against exact integers, on 1e4 of the very rays that it judges.
+//! The double-double oracle compared with exact integers, on 1e4 of the rays that it judges.
 
 use super::plane_distance::{aimed, exact_distance};
 use super::single::U;
@@ -6,7 +6,7 @@ use crate::check::fixed_point::{UNIT, cross, dot, fixed, fixed_vector, minus};
 use crate::check::random::Random;
 use num_bigint::BigInt;
 
-/// t n·d is n·(a - o) to a rounding of t.
+/// Checks that t n·d equals n·(a - o) to a rounding of t.
 #[test]
 fn ten_thousand_distances_are_right() {
     let mut random = Random::new(0x7707);

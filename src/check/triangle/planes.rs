@@ -1,4 +1,4 @@
-//! Ray against plane.
+//! Ray-plane intersection.
 
 use super::single::U;
 use crate::check::bare_scene::{intersect, scene_of, searches};
@@ -29,7 +29,7 @@ fn scene(plane: Plane) -> Scene {
 }
 
 fn flat_angles(trials: &mut Trials) {
-    // 1e-5 is what a limit of 1e-4 on the product loses.
+    // A limit of 1e-4 on the scalar product would lose the cosine 1e-5.
     for cosine in [1.0_f64, 1e-2, 1e-4, 1e-5, 1e-9, 1e-15, 1e-90] {
         for (name, scene) in searches(&scene(floor(UP))) {
             for side in [1.0, -1.0] {
@@ -46,7 +46,7 @@ fn flat_angles(trials: &mut Trials) {
     tilted(trials);
 }
 
-/// Planes that lie anyhow: height over cosine, within the rounding of both scalar products.
+/// Planes of any orientation: the distance is height over cosine, within the rounding of both scalar products.
 fn tilted(trials: &mut Trials) {
     let rays = trials.times(100_000, 10_000_000);
     let mut random = Random::new(0x16);
@@ -58,7 +58,7 @@ fn tilted(trials: &mut Trials) {
         let direction = frame.to_world(Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, -cosine));
         let (side, point) = (if random.below(2) == 0 { 1.0 } else { -1.0 }, random.direction() * 10.0);
         let ray = Ray { origin: point + normal * (side * height), direction: direction * side };
-        // Points are rounded at 10, the directions' products at 1.
+        // Points are rounded at 10, scalar products of the directions at 1.
         let bound = (16.0 * U * (10.0 + height) + 8.0 * U * height / cosine) / cosine;
         let fraction = (Plane { point, normal }.meet(&ray, &()) - height / cosine).abs() / bound;
         worst = worst.max(fraction);
@@ -97,7 +97,7 @@ fn in_the_plane(trials: &mut Trials) {
     starting_on_it(trials);
 }
 
-/// What starts on a plane by its name never sees it, wherever rounding has put the origin.
+/// A ray whose standpoint is the plane never hits it, wherever rounding has put the origin.
 fn starting_on_it(trials: &mut Trials) {
     let rays = trials.times(30_000, 1_000_000);
     let mut random = Random::new(0x17);

@@ -1,4 +1,5 @@
-//! Where triangles of one surface join: a ray that starts within rounding of the seam must not meet the neighbour there.
+//! Seams between triangles of one surface: a ray that starts within rounding of the seam must not hit the neighbour
+//! there.
 
 use super::single::{scene, towards};
 use crate::check::bare_scene::{intersect, searches};
@@ -30,14 +31,14 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A surface that no ray from its outside meets twice, and segments along which its triangles join.
+/// A surface that a ray from its outside hits at most once, and the segments along which its triangles join.
 struct Surface {
     name: &'static str,
     triangles: Vec<Triangle>,
     seams: Vec<[Vec3; 2]>,
 }
 
-/// Flat surfaces, in a plane that no axis is along and in one that is, and a round one.
+/// Flat surfaces, in a plane that is parallel to no axis and in one that is, and a round surface.
 fn surfaces() -> Vec<Surface> {
     let tilted = Frame::around(Vec3::new(0.36, 0.48, 0.8));
     let level = Frame::around(Vec3::new(0.0, 0.0, 1.0));
@@ -47,7 +48,7 @@ fn surfaces() -> Vec<Surface> {
         (level, ["quad", "mesh", "fan", "bricks"]),
     ] {
         let at = |x: f64, y: f64| Vec3::new(0.3, -0.7, 1.1) + frame.to_world(Vec3::new(x, y, 0.0));
-        // Two triangles a rectangle.
+        // Two triangles per rectangle.
         let rectangle = |[x, y]: [f64; 2], [wide, high]: [f64; 2]| {
             let [a, b, c, d] = [at(x, y), at(x + wide, y), at(x + wide, y + high), at(x, y + high)];
             ([[a, b, c], [a, c, d]].map(|corners| Triangle { corners }), [[a, c], [a, b], [b, c]])
@@ -60,7 +61,7 @@ fn surfaces() -> Vec<Surface> {
                 let (halves, [diagonal, below, right]) = rectangle([x, f64::from(l) * size[1] - 1.0], size);
                 triangles.extend(halves);
                 seams.push(diagonal);
-                // Not along the edges of the whole.
+                // Leaves out the outer edges.
                 seams.extend((l > 0 && (shift == 0.0 || k > 0)).then_some(below));
                 seams.extend((k + 1 < columns).then_some(right));
             }
@@ -72,7 +73,7 @@ fn surfaces() -> Vec<Surface> {
             .collect();
         let middle = at(0.11, 0.07);
         let fan = (0..12).map(|k| Triangle { corners: [middle, rim[k], rim[(k + 1) % 12]] }).collect();
-        // As far as points that cannot be told from the middle, and farther.
+        // Down to points that rounding cannot tell from the middle.
         let spokes =
             rim.iter().flat_map(|tip| [1.0, 1e-7, 1e-16].map(|near| [middle, middle + (*tip - middle) * near]));
         let parts = [tiles(1, 1, 0.0), tiles(7, 5, 0.0), (fan, spokes.collect()), tiles(4, 6, 0.5)];
@@ -84,10 +85,10 @@ fn surfaces() -> Vec<Surface> {
     all
 }
 
-/// A point of a seam.
+/// A random point of a seam.
 fn point_of(seams: &[[Vec3; 2]], random: &mut Random) -> Vec3 {
     let [a, b] = seams[random.below(seams.len())];
-    // In the inner half, away from what ends there.
+    // In the inner half, away from the other seams at its ends.
     a + (b - a) * (0.25 + 0.5 * random.unit())
 }
 
@@ -105,7 +106,7 @@ fn rays_from_seams(trials: &mut Trials) {
                     missed += 1;
                     continue;
                 };
-                // From steep to so flat that the surface is hardly left.
+                // From steep to so flat that the ray hardly leaves the surface.
                 let local = random.direction();
                 let flat = random.scale(-6.0, 0.0);
                 let outwards = Frame::around(hit.normal).to_world(Vec3::new(local.x, local.y, local.z.abs() * flat));
@@ -120,7 +121,7 @@ fn rays_from_seams(trials: &mut Trials) {
                 }
             }
             let variant = format!("{name}, accelerator {accelerator}");
-            // Where a mesh has cracks a rounding wide, or is seen along the edge.
+            // Rays miss at cracks of one rounding in a mesh, or if they run along its rim.
             let told = format_args!("{missed} of {rays}");
             trials.holds(&variant, "a tenth of the rays miss at most", told, missed * 10 < rays);
             trials.never(&variant, "rays that meet the triangle that they leave", own, 2 * rays);
@@ -130,7 +131,7 @@ fn rays_from_seams(trials: &mut Trials) {
     }
 }
 
-/// The triangles as one matte object under a white sky, seen at a point.
+/// The triangles as one diffuse object under a white sky, seen at a point.
 fn under_a_sky(triangles: &[Triangle], target: Vec3, from: Vec3) -> Scene {
     let anything = quad([[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]);
     let mut scene = stage::scene(&[
@@ -143,7 +144,7 @@ fn under_a_sky(triangles: &[Triangle], target: Vec3, from: Vec3) -> Scene {
     scene
 }
 
-/// Specs of both precisions and every accelerator.
+/// Specs for both precisions and every accelerator.
 fn specs(estimator: &str) -> Vec<Spec> {
     let accelerators = crate::scene::ACCELERATORS.iter().map(|entry| entry.name.to_string());
     let spec = Spec { width: 16, height: 16, seed: 19, estimator: estimator.into(), ..Spec::default() };
@@ -162,7 +163,7 @@ fn told(spec: &Spec) -> String {
     format!("{}, {}, {}", spec.estimator, spec.precision, spec.accelerator.as_deref().unwrap_or_default())
 }
 
-/// The ray from the camera, and one to the sky.
+/// Each path has the camera ray and one ray to the sky.
 fn two_rays_a_path(trials: &mut Trials) {
     let spp = trials.times(16, 4096) as u32;
     for Surface { name, triangles, seams } in surfaces() {
@@ -185,7 +186,7 @@ fn two_rays_a_path(trials: &mut Trials) {
     }
 }
 
-/// T = 12/13 of the light behind it and R = 1/13 of that before it.
+/// T = 12/13 of the light behind the slab and R = 1/13 of the light before it.
 fn slab_through_diagonals(trials: &mut Trials) {
     let up = [0.0, 1.0, 0.0];
     let [near, far] = [-100.3, 99.7];

@@ -11,7 +11,7 @@ pub(super) fn triangle(corners: [[f64; 3]; 3]) -> Triangle {
     Triangle { corners: corners.map(Vec3::from) }
 }
 
-/// The distance, if it is hit.
+/// The distance, if the ray hits.
 pub(super) fn meet(triangle: &Triangle, ray: &Ray) -> Option<f64> {
     Some(triangle.meet(ray, &Triangle::prepare(ray))).filter(|t| *t > 0.0)
 }
@@ -20,7 +20,7 @@ pub(super) fn scene(triangles: Vec<Triangle>) -> Scene {
     scene_of(Primitives { triangles, ..Primitives::default() })
 }
 
-/// A ray of length 1 towards a point.
+/// A ray towards a point, with a direction of length 1.
 pub(super) fn towards(origin: Vec3, target: Vec3) -> Ray {
     Ray { origin, direction: (target - origin).normalized() }
 }

@@ -1,4 +1,4 @@
-//! Ray against box.
+//! Ray-box intersection.
 
 use crate::check::{Case, Trials};
 use crate::math::{Ray, Vec3};
@@ -14,7 +14,8 @@ pub(super) const CASES: &[Case] = &[
     Case { id: "T12", tries: "rays along a face, exactly on it and just outside", run: along_a_face },
 ];
 
-/// Whether the ray meets the closed box, in exact arithmetic: everything is a small multiple of one half, and directions are -1, 0 or 1.
+/// Whether the ray hits the closed box, in exact arithmetic: coordinates are small multiples of one half, and
+/// directions are -1, 0 or 1.
 fn meets_exactly(origin: [f64; 3], direction: [f64; 3], bounds: &Bounds) -> bool {
     let halves = |x: f64| (2.0 * x) as i32;
     let (mut enter, mut leave) = (0, i32::MAX);
@@ -33,8 +34,8 @@ fn meets_exactly(origin: [f64; 3], direction: [f64; 3], bounds: &Bounds) -> bool
     enter <= leave
 }
 
-/// Directions along axes, faces and diagonals from points in, on and around boxes. Nothing that misses passes closer than one half, far
-/// beyond the padding, so no wrong answer is excused in either direction.
+/// Directions along axes, faces and diagonals, from points in, on and around boxes. A miss passes at a distance of at
+/// least one half, far more than the padding, so every false hit or false miss counts.
 fn exhaustive(trials: &mut Trials) {
     const STEPS: [f64; 4] = [-1.0, -0.0, 0.0, 1.0];
     const PLACES: [f64; 5] = [-1.0, 0.0, 0.5, 1.0, 2.0];
@@ -66,7 +67,7 @@ fn exhaustive(trials: &mut Trials) {
     trials.holds("the rays", "neither answer is rare", told, hits > 3000 && hits < combinations / 2);
 }
 
-/// Beside the ray's way, on it, and behind; and the box that has no size at all.
+/// A box beside the ray, on it, and behind it; and a box of size zero at the origin.
 fn subnormal(trials: &mut Trials) {
     let tiny = 5.693_442e-39;
     let bounds = Bounds { low: [tiny, -5000.0, 5000.0], high: [tiny, -5000.0, 5000.0] };
@@ -75,7 +76,7 @@ fn subnormal(trials: &mut Trials) {
     trials.same("at x = 0 the ray is at y = 0", &false, &meets(-5000.0, -5000.0));
     trials.same("at x = 0 the ray is at y = -5000", &true, &meets(-5000.0, -10_000.0));
     trials.same("the box is behind", &false, &meets(5000.0, 0.0));
-    // A point at zero, from there: nothing has a padding, and every distance along the other axes is 0 times infinity.
+    // A point at zero, from there: the padding is zero, and every distance along the other axes is 0 times infinity.
     let (zero, origin) = (Bounds { low: [0.0; 3], high: [0.0; 3] }, Vec3::new(0.0, 0.0, 0.0));
     for direction in [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, -0.0, 1.0]].map(Vec3::from) {
         let meets = zero.meets(&Ray { origin, direction });
@@ -83,10 +84,10 @@ fn subnormal(trials: &mut Trials) {
     }
 }
 
-/// Exactly on the face and as far outside as the padding reaches the ray is let in, at twice that it is outside.
+/// A ray exactly on the face, or within the padding outside, enters the box. At twice the padding it does not.
 fn along_a_face(trials: &mut Trials) {
     let bounds = Bounds { low: [0.3, 0.1, 7.0], high: [0.7, 0.9, 9.0] };
-    // Of a box that reaches to 9 and an origin at 0.5 at least.
+    // The padding of a box that reaches to 9, for an origin at 0.5 at least.
     let padding = libm::exp2(-47.0) * 9.5;
     for (outside, expected) in [(0.0, true), (0.99, true), (2.0, false)] {
         let (mut wrong, mut tried) = (0, 0);

@@ -1,4 +1,5 @@
-//! Triangles so thin, or so far away for their size, that rounding decides whether and where a ray meets them: every search decides alike.
+//! Triangles so thin, or so far away for their size, that rounding decides whether and where a ray hits them: every
+//! search agrees.
 
 use super::hierarchies::in_cube;
 use super::single::towards;
@@ -25,7 +26,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// A triangle with an area, of a relative height of about 10^`height`, not farther from the origin than 5.
+/// A triangle with an area and a relative height of about 10^`height`, at most 5 from the origin.
 fn sliver(random: &mut Random, height: f64) -> Triangle {
     loop {
         let (a, along) = (in_cube(random) * 2.5, random.direction() * random.scale(-1.0, 0.4));
@@ -43,7 +44,7 @@ fn sliver(random: &mut Random, height: f64) -> Triangle {
     }
 }
 
-/// Slivers, and what is before and behind them.
+/// Slivers, with other primitives before and behind them.
 fn among_others(random: &mut Random, height: f64) -> Primitives {
     let sliver = |_| sliver(random, height);
     let mut triangles: Vec<Triangle> = (0..24).map(sliver).collect();
@@ -51,13 +52,13 @@ fn among_others(random: &mut Random, height: f64) -> Primitives {
         let a = in_cube(random) * 2.0;
         Triangle { corners: [a, a + random.direction(), a + random.direction()] }
     }));
-    // At the ends of slivers, where a distance that is off by their length is before what is really nearer.
+    // Spheres at the ends of slivers: a distance that is off by the sliver's length would come before a nearer hit.
     let ends = triangles[..24].iter().flat_map(|triangle| triangle.corners);
     let spheres = ends.map(|center| Sphere { center, radius: random.scale(-5.0, -2.0) }).collect();
     Primitives { spheres, triangles, ..Primitives::default() }
 }
 
-/// Triangles of size 1 that are so far away that they are a few units in the last place.
+/// Triangles of size 1, so far away that they measure a few units in the last place.
 fn far_away(random: &mut Random, away: f64) -> Primitives {
     let middle = random.direction() * away;
     let near = |random: &mut Random| middle + in_cube(random);
@@ -81,7 +82,8 @@ fn same_hits(trials: &mut Trials) {
     }
 }
 
-/// Rays at points of triangles, and on from where they arrive, in scenes of these primitives.
+/// Compares all searches for rays at points of triangles, and for rays that continue from the hits, in scenes of these
+/// primitives.
 fn compare(trials: &mut Trials, what: &str, scenes: u64, mut primitives: impl FnMut(&mut Random) -> Primitives) {
     let mut random = Random::new(22);
     let [mut hits, mut rays] = [0, 0];
@@ -119,7 +121,7 @@ fn compare(trials: &mut Trials, what: &str, scenes: u64, mut primitives: impl Fn
     trials.holds(what, "a hundredth of the rays hit, or they prove nothing", told, hits * 100 > rays);
 }
 
-/// A ray at a point of a triangle.
+/// A ray at a random point of a triangle.
 fn at_a_point(random: &mut Random, triangles: &[Triangle], origin: Vec3) -> Ray {
     let [a, b, c] = triangles[random.below(triangles.len())].corners;
     let (u, v) = (random.unit(), random.unit());
@@ -146,7 +148,7 @@ fn same_images(trials: &mut Trials) {
         for precision in Precision::ALL {
             let mut checksums = Vec::new();
             for accelerator in ACCELERATORS {
-                // Single precision is for lanes alone.
+                // Only the lanes kernel has single precision.
                 for kernel in KERNELS.iter().take(if precision == Precision::F64 { KERNELS.len() } else { 1 }) {
                     let (accelerator, kernel) = (Some(accelerator.name.to_string()), kernel.name.to_string());
                     let precision = precision.name().to_string();

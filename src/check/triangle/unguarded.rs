@@ -1,9 +1,10 @@
-//! What the watertight test replaces: for comparison, in cases and in the price list, never in a kernel.
+//! The test that the watertight one replaces, for comparison in cases and in the price list, never in a kernel.
 
 use crate::math::{Ray, Vec3, dot};
 
-/// Distance to a triangle after Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997, from both sides; NaN for a
-/// miss. Each triangle has its own first corner and edges, so that neighbours may disagree about a ray through the edge that they share.
+/// Distance to a triangle after Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997, from
+/// both sides; NaN for a miss. Each triangle uses its own first corner and edges, so neighbours may disagree about a
+/// ray through their shared edge.
 #[inline(always)]
 pub(in crate::check) fn moller_trumbore([a, b, c]: [Vec3; 3], ray: &Ray) -> f64 {
     let (e, f) = (b - a, c - a);

@@ -24,7 +24,7 @@ const IMAGE: [&str; 16] = [
     "adaptive",
 ];
 
-/// Columns that say how the same image is made.
+/// Columns that describe how the same image is rendered.
 const SCHEDULE: [&str; 11] = [
     "strategy",
     "decomposition",
@@ -39,7 +39,7 @@ const SCHEDULE: [&str; 11] = [
     "accelerator",
 ];
 
-/// Columns that say which row it is, what follows from the others, and what was measured.
+/// Columns that identify the row, follow from the others, or hold measurements.
 const OTHER: [&str; 58] = [
     "mpi",
     "object_mse",
@@ -143,7 +143,7 @@ fn words_differ_where_keys_do() {
     for column in SCHEDULE {
         assert_ne!(varied(&row, column).schedule_key().to_string(), row.schedule_key().to_string(), "{column}");
     }
-    // The same value on two axes is two words.
+    // The same value on two axes gives two different words.
     let of = |roulette: &str, clamp: &str| {
         Record { roulette: roulette.to_string(), clamp: clamp.to_string(), ..Record::default() }.image_key().to_string()
     };
@@ -157,7 +157,7 @@ fn setup(change: impl Fn(&mut Settings)) -> Setup {
     Setup::prepare(settings).unwrap()
 }
 
-/// Another value on each axis than the setups above have.
+/// For each axis, a value that differs from the setups above.
 const OTHER_VALUES: [(&str, &str); 23] = [
     ("scene", "sky"),
     ("size", "9x6"),
@@ -188,7 +188,7 @@ const OTHER_VALUES: [(&str, &str); 23] = [
 fn each_axis_gives_another_image_or_another_schedule_as_the_table_says() {
     let base = setup(|_| ());
     let (mut images, mut schedules) = (BTreeSet::from([base.image_key()]), BTreeSet::from([base.schedule_key()]));
-    // Which instruction sets there are depends on the machine.
+    // The available instruction sets depend on the machine.
     for axis in AXES.iter().filter(|axis| axis.name != "simd") {
         let (_, value) = OTHER_VALUES.iter().find(|(name, _)| *name == axis.name).expect("a value for each axis");
         let other = setup(|settings| axis.set(settings, value).unwrap());

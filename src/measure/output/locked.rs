@@ -1,4 +1,5 @@
-//! `--output locked`: one framebuffer behind one lock; each job renders for itself and then waits for its turn to copy.
+//! `--output locked`: one framebuffer behind one lock; each job renders into its own buffer and then waits for its turn
+//! to copy.
 //!
 //! Cost: a buffer allocated in each job, and a lock that is held while a piece is copied. Large pieces hold it longer, small ones ask
 //! for it more often.
@@ -24,7 +25,7 @@ impl Output for Locked {
         let piece = &self.plan.pieces()[index];
         let mut tile = TileBuffer::new(piece.bounds);
         let counts = kernel.render(piece, &mut tile);
-        // Nothing can panic while the lock is held but a failed allocation, which ends the process.
+        // Only a failed allocation could panic while the lock is held, and that ends the process.
         self.films.lock().unwrap_or_else(PoisonError::into_inner).add(&piece.samples, tile);
         counts
     }

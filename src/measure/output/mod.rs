@@ -1,9 +1,9 @@
 //! How pieces get from the workers into the film: `--output slots | channel-piece | channel-pixel | locked | row-progress`.
 //!
-//! The schedule is the same under each; what differs is what a worker has to wait for when it delivers. The image is the same to the
+//! Outputs differ only in how a worker waits when it delivers; the schedule is the same. The image is the same to the
 //! last bit: the film is put together by place, never by arrival.
 //!
-//! To add one: a file with its `ENTRY` and a type that is an [`Output`], and its line in `outputs!` below.
+//! To add one: a file with its `ENTRY` and a type that implements [`Output`], and its line in `outputs!` below.
 
 mod channel_piece;
 mod channel_pixel;
@@ -16,7 +16,7 @@ use crate::film::{Film, Plan, Sections};
 use crate::kernel::{Counts, Kernel};
 use std::sync::Arc;
 
-/// What the workers of one run deliver to.
+/// The place to which the workers of one run deliver.
 pub(super) trait Output: Send + Sync {
     /// Renders the piece of job `index` and delivers it. No two calls have the same index.
     fn render(&self, index: usize, kernel: &dyn Kernel) -> Counts;
@@ -25,21 +25,21 @@ pub(super) trait Output: Send + Sync {
     fn films(self: Box<Self>) -> Vec<Film>;
 }
 
-/// What an output is made for.
+/// The data from which an output is made.
 pub(super) struct Delivery {
     /// The pieces.
     pub(super) plan: Arc<Plan>,
-    /// Empty films for them: made before the run, so that the system's refusal comes before the work.
+    /// Empty films for them, made before the run, so that a refused allocation shows before the work.
     pub(super) films: Sections,
-    /// Threads that may put them together.
+    /// Threads that may merge them.
     pub(super) threads: usize,
 }
 
-/// One line of the table of outputs.
+/// An entry of the table of outputs.
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// Its description, in one line.
     pub about: &'static str,
     pub(super) new: fn(Delivery) -> Result<Box<dyn Output>>,
 }

@@ -1,4 +1,4 @@
-//! `--output slots`: each job has a buffer of its own, made before the run, and nobody waits for anybody.
+//! `--output slots`: each job has its own buffer, made before the run, and no worker waits for another.
 
 use super::{Delivery, Entry, Output};
 use crate::error::Result;
@@ -19,7 +19,7 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    /// Empty buffers for every piece: allocated and touched here, so that no job does.
+    /// Empty buffers for all pieces: allocated and touched here, so that jobs need not do it.
     pub(super) fn new(delivery: Delivery) -> Result<Self> {
         let buffer = |piece: &Piece| Ok(AtomicCell::new(Some(Box::new(TileBuffer::try_new(piece.bounds)?))));
         let cells = delivery.plan.pieces().iter().map(buffer).collect::<Result<_>>()?;

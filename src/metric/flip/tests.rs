@@ -6,7 +6,7 @@ fn of(width: u32, height: u32, pixel: impl Fn(i64, i64) -> [i64; 3]) -> Image {
     Image { width, height, pixels: places.map(|(x, y)| pixel(x, y).map(linear)).collect() }
 }
 
-/// One that is shifted by some noise: a linear congruential generator, three numbers a pixel in rows.
+/// An image with added noise from a linear congruential generator, three random numbers per pixel, row by row.
 fn noisy(width: u32, height: u32, pixel: impl Fn(i64, i64) -> [i64; 3]) -> Image {
     let mut state: i64 = 1;
     let mut step = || {
@@ -28,8 +28,9 @@ fn edge(at: i64) -> Image {
     of(40, 30, |x, _| [if x < at { 30 } else { 220 }; 3])
 }
 
-/// Reference, test, the mean, and the pixels at the first place, in the middle and in the last column of the upper third, as `flip-evaluator` 1.7
-/// (the authors' own code, from `PyPI`, in single precision) gives them for the same 8-bit values.
+/// Name, reference, test, the mean, and the pixels at the first place, in the middle and in the last column of the
+/// upper third. `flip-evaluator` 1.7 (the authors' own code, from `PyPI`, in single precision) gives these values for
+/// the same 8-bit input.
 fn cases() -> Vec<(&'static str, Image, Image, f64, [f64; 3])> {
     let grey = |v: i64| of(16, 12, move |_, _| [v; 3]);
     let point = |v: i64| of(33, 33, move |x, y| [if (x, y) == (16, 16) { v } else { 128 }; 3]);
@@ -46,7 +47,7 @@ fn cases() -> Vec<(&'static str, Image, Image, f64, [f64; 3])> {
     ]
 }
 
-/// What single precision leaves: a root of a small difference of features magnifies it.
+/// The error of single precision, which a root of a small difference of features magnifies.
 const TOLERANCE: f64 = 2e-4;
 
 #[test]

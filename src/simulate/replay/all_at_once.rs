@@ -1,12 +1,13 @@
-//! A thread for each job: all that have been started share the processors equally.
+//! A thread for each job: all started threads share the processors equally.
 //!
-//! The operating system's scheduler as a fluid: with k threads on P processors each has the share min(1, P/k) of a processor at every
-//! moment. That is generalized processor sharing (Parekh and Gallager, IEEE/ACM Transactions on Networking 1(3), 1993), which Linux's
-//! fair schedulers approximate by time slices. Of unequal processors the fastest are used, and everyone gets the same share of each.
+//! The operating system's scheduler as a fluid: with k threads on P processors, each thread always has the share min(1,
+//! P/k) of a processor. That is generalized processor sharing (Parekh and Gallager, IEEE/ACM Transactions on Networking
+//! 1(3), 1993), which Linux's fair schedulers approximate by time slices. Of unequal processors the fastest are used,
+//! and every thread gets the same share of each.
 //!
-//! Virtual time makes it fast: it advances by what one thread gets, so a thread that starts at virtual time v and needs c seconds is
-//! done at v + c whoever comes or goes meanwhile, and one heap gives all events in order. The caller, while it starts threads, is one
-//! more thread.
+//! Virtual time makes the replay fast: it advances by the processor time that one thread gets. A thread that starts at
+//! virtual time v and needs c seconds therefore ends at v + c, whichever threads start or end meanwhile. One heap
+//! yields all events in order. The caller counts as one more thread while it starts threads.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -46,7 +47,7 @@ pub(super) fn replay(costs: &[f64], processors: usize, overhead: &Overhead, hard
     Replay { makespan_s: now_s, trace: Trace { jobs: spans } }
 }
 
-/// What the k fastest processors do together, for k from 0.
+/// The total speed of the k fastest processors, for k from 0.
 fn capacity(speeds: &[f64]) -> Vec<f64> {
     let sums = speeds.iter().scan(0.0, |sum, speed| {
         *sum += speed;

@@ -1,4 +1,4 @@
-//! Self-scheduling: whoever is free takes the next chunk from the place that all share.
+//! Self-scheduling: a free worker takes the next chunk from the shared place.
 
 use super::crew::Crew;
 use crate::strategy::{ChunkRule, Handout};

@@ -39,7 +39,7 @@ fn jobs_div(jobs: usize, workers: usize) -> f64 {
     jobs.div_ceil(workers) as f64
 }
 
-/// The giant comes first, so everybody else does the rest meanwhile.
+/// The giant comes first, so the other workers finish the rest meanwhile.
 #[test]
 fn one_giant_job_is_the_makespan() {
     let costs: Vec<f64> = std::iter::once(100.0).chain([1.0; 200]).collect();
@@ -86,7 +86,7 @@ fn graham_worst_case_of_the_longest_first() {
     }
 }
 
-/// Costs 1 to n: the last block has the n/p dearest, every cyclic share n/p jobs that are p apart.
+/// Costs 1 to n: the last block has the n/p most expensive jobs, every cyclic share has n/p jobs that are p apart.
 #[test]
 fn a_ramp_in_blocks_and_dealt_like_cards() {
     let (jobs, workers) = (120_usize, 4_usize);
@@ -96,7 +96,8 @@ fn a_ramp_in_blocks_and_dealt_like_cards() {
     assert_eq!(makespan(&costs, CYCLIC, workers), n / p * (p + n) / 2.0);
 }
 
-/// Shrinking chunks end a dynamic schedule of equal jobs within one last chunk of a fair share, whatever the rule.
+/// With equal jobs, every chunk rule ends at most one last chunk after the fair share, or after the longest chunk if
+/// that is larger.
 #[test]
 fn chunk_rules_on_equal_jobs_end_within_the_longest_chunk() {
     for entry in STRATEGIES {
@@ -115,7 +116,8 @@ fn chunk_rules_on_equal_jobs_end_within_the_longest_chunk() {
 fn a_shared_place_is_the_bottleneck_of_small_jobs() {
     let overhead = Overhead { take_s: 1e-3, shared_s: 5e-4, ..FREE };
     let on = |workers| replay(&[1e-6; 1000], SINGLE, workers, &overhead, &Hardware::default()).makespan_s;
-    // One at a time: one worker is busy with its hand-outs, many wait for the place, which a last job leaves after `take`.
+    // Each job is a chunk: one worker is busy with its hand-outs; many wait for the place, and the last one needs
+    // `take` and its job after that.
     assert!((on(1) - 1000.0 * (1e-3 + 1e-6)).abs() < 1e-9);
     let bottleneck = 999.0 * 5e-4 + 1e-3 + 1e-6;
     assert!((on(64) - bottleneck).abs() < 1e-9, "{} instead of {bottleneck}", on(64));
@@ -138,10 +140,10 @@ fn threads_share_the_processors() {
     assert_eq!(all(&[1.0; 12], 4), 3.0);
     assert_eq!(all(&[1.0; 13], 4), 3.25);
     assert_eq!(all(&[1.0; 3], 4), 1.0);
-    // Ten threads on two processors until each has had 1 s, which takes 5 s; then the long one goes on alone.
+    // Ten threads share two processors until each has had 1 s, which takes 5 s; then the long one runs alone.
     let costs: Vec<f64> = [1.0; 9].into_iter().chain([7.0]).collect();
     assert!((all(&costs, 2) - (5.0 + 6.0)).abs() < 1e-12);
-    // On one processor the caller and the threads have it in turns, and it never idles.
+    // On one processor the caller and the threads take turns, and the processor never idles.
     let overhead = Overhead { start_s: 0.5, ..FREE };
     let one = replay(&[1.0; 5], Discipline::AllAtOnce, 1, &overhead, &Hardware::default());
     assert!((one.makespan_s - 7.5).abs() < 1e-12);
@@ -156,7 +158,7 @@ fn unequal_processors() {
         let hardware = Hardware { speeds, ..Hardware::default() };
         replay(&[1.0; 12], discipline, workers, &FREE, &hardware).makespan_s
     };
-    // Dealt jobs wait for the slow one; whoever is free takes what it can't.
+    // Dealt jobs wait for the slow processor; with single jobs, free workers take the jobs that it cannot run in time.
     assert_eq!(on(Speeds::OneSlow(0.5), BLOCKS, 4), 6.0);
     assert_eq!(on(Speeds::OneSlow(0.5), SINGLE, 4), 4.0);
     assert_eq!(on(Speeds::Mixed { performance: 2, efficient: 0.5 }, CYCLIC, 4), 6.0);
@@ -164,8 +166,8 @@ fn unequal_processors() {
     assert_eq!(on(Speeds::Mixed { performance: 2, efficient: 0.5 }, Discipline::AllAtOnce, 4), 4.0);
 }
 
-/// 20 000 equal jobs, and workers of which the first is half as fast: nobody needs less than 20 000 / 3.5 on four. Rules that learn the speeds, or
-/// are told, come to within 1 % of that; blocks take 40 % longer.
+/// 20 000 equal jobs on four workers, the first half as fast: the minimum is 20 000 / 3.5. Rules that learn the speeds,
+/// or are given them, come within 1 % of that; blocks take 75 % longer.
 #[test]
 fn rules_that_know_speeds_share_by_them() {
     let hardware = Hardware { speeds: Speeds::OneSlow(0.5), ..Hardware::default() };
@@ -177,7 +179,7 @@ fn rules_that_know_speeds_share_by_them() {
         let share = on(find(name).unwrap().discipline(parameter).unwrap());
         assert!((1.0..1.01).contains(&share), "{name}: {share}");
     }
-    // Weights that are wrong are worse than none.
+    // Wrong weights are worse than none.
     let of = |weights| on(find("weighted-factoring").unwrap().discipline(Some(weights)).unwrap());
     assert!(of("4:1:1:1") > 1.2 && of("1") < 1.01, "{} {}", of("4:1:1:1"), of("1"));
 }

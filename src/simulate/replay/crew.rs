@@ -1,4 +1,4 @@
-//! The workers of a replay: when each becomes free, and what it has done.
+//! The workers of a replay: when each becomes free, and the jobs that it has done.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
@@ -10,7 +10,7 @@ use crate::simulate::hardware::{Hardware, Processor};
 use crate::simulate::overhead::Overhead;
 use crate::strategy::Seen;
 
-/// A point in time, in seconds, that can be compared with every other.
+/// A point in time, in seconds, with a total order.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Time(pub(super) f64);
 
@@ -34,7 +34,7 @@ impl Ord for Time {
     }
 }
 
-/// Workers that are free or will be, each on its processor.
+/// The workers that are free now or later, each on its processor.
 pub(super) struct Crew<'a> {
     costs: &'a [f64],
     overhead: &'a Overhead,
@@ -42,7 +42,7 @@ pub(super) struct Crew<'a> {
     free: BinaryHeap<Reverse<(Time, usize)>>,
     spans: Vec<JobSpan>,
     last_s: f64,
-    /// When the place that all share is free again.
+    /// When the shared place is free again.
     place_s: f64,
 }
 
@@ -70,24 +70,25 @@ impl<'a> Crew<'a> {
         self.processors.len()
     }
 
-    /// The worker that is free first, and when. It asks no more unless [`Crew::ask_again`] says so.
+    /// Removes and returns the worker that is free first, with the time. [`Crew::ask_again`] puts it back.
     pub(super) fn next_free(&mut self) -> Option<(usize, f64)> {
         self.free.pop().map(|Reverse((time, worker))| (worker, time.0))
     }
 
-    /// `worker` will be free at `time_s`.
+    /// Registers that `worker` is free at `time_s`.
     pub(super) fn ask_again(&mut self, worker: usize, time_s: f64) {
         self.free.push(Reverse((Time(time_s), worker)));
     }
 
-    /// When `worker`, which asks at `now_s`, has got `jobs` jobs through the place that all share: that serves one after the other.
+    /// Returns when `worker`, which asks at `now_s`, has got `jobs` jobs from the shared place. The place serves one
+    /// request after the other.
     pub(super) fn through_shared_place(&mut self, worker: usize, jobs: usize, now_s: f64) -> f64 {
         let begin_s = now_s.max(self.place_s);
         self.place_s = begin_s + jobs as f64 * self.overhead.shared_s;
         self.place_s.max(begin_s + self.processors[worker].elapsed_s(self.overhead.take_s))
     }
 
-    /// Lets `worker` run `jobs` one after the other from `now_s` on; when it has done so.
+    /// Lets `worker` run `jobs` one after the other from `now_s` on, and returns when it has finished.
     pub(super) fn work(&mut self, worker: usize, jobs: impl IntoIterator<Item = usize>, mut now_s: f64) -> f64 {
         let processor = &mut self.processors[worker];
         for job in jobs {
@@ -95,12 +96,12 @@ impl<'a> Crew<'a> {
             now_s = start_s + processor.elapsed_s(self.costs[job]);
             self.spans[job] = JobSpan { worker: worker as u32, start_s, stop_s: now_s };
         }
-        // A worker that finds no job has been started all the same, and the caller waits for it.
+        // A worker that finds no job was started too, and the caller waits for it.
         self.last_s = self.last_s.max(now_s);
         now_s
     }
 
-    /// How long jobs took that are done.
+    /// The durations of jobs that are done.
     pub(super) fn seen(&self, jobs: Range<usize>) -> Seen {
         self.spans[jobs].iter().map(JobSpan::duration_s).collect()
     }

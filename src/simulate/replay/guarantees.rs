@@ -1,4 +1,4 @@
-//! What holds for every discipline on any costs.
+//! Properties of every discipline, for any costs.
 
 use super::*;
 use crate::simulate::bounds;
@@ -27,12 +27,13 @@ fn greedy(discipline: Discipline, jobs: usize, workers: usize) -> bool {
     match discipline {
         Discipline::Chunks(rule) => rule.chunks(jobs, workers).all(|chunk| chunk.len() == 1),
         Discipline::InOrder | Discipline::Dealt(_) | Discipline::Learned(_) => workers == 1,
-        // Sharing is no list schedule, but Graham's argument holds: who has less than a processor knows that all of them are busy.
+        // `AllAtOnce` is no list schedule, but Graham's argument holds: if a thread has less than a processor, all
+        // processors are busy.
         Discipline::Stealing(_) | Discipline::Halving | Discipline::AllAtOnce => true,
     }
 }
 
-/// Costs between 1 and 2^-16 whose logarithm is uniform: a few dear jobs among many cheap ones.
+/// Costs between 1 and 2^-16 whose logarithm is uniform: a few expensive jobs among many cheap ones.
 fn costs(jobs: usize, seed: u64) -> Vec<f64> {
     let mut random = Pcg32::new(seed, 0);
     (0..jobs).map(|_| libm::exp2(-16.0 * f64::from(random.next_u32()) / 4_294_967_296.0)).collect()
@@ -53,7 +54,7 @@ fn no_discipline_beats_the_bounds_and_greedy_ones_keep_grahams() {
     }
 }
 
-/// How many chunks one worker takes of jobs of these costs.
+/// The number of chunks that one worker takes of jobs of these costs.
 fn chunks_of_one(rule: LearnedRule, costs: &[f64]) -> usize {
     let mut ledger = Ledger::new(costs.len(), 1, rule.weights);
     let mut chunks = 0;

@@ -1,7 +1,8 @@
-//! Recursive halving: a worker that takes a range puts second halves aside until one job is left, and runs that.
+//! Recursive halving: a worker that takes a range puts second halves aside until one job is left, and runs that job.
 //!
-//! It goes on with the last half that it put aside, which is the smallest; a worker without any takes the largest that waits anywhere,
-//! which is its victim's first. Ranges are halved when they are taken, so a worker that finds nothing will never find anything.
+//! The worker continues with the half that it put aside last, its smallest. A worker without halves takes the largest
+//! one of all workers, which is its victim's first. Ranges are halved as soon as they are taken, so a worker that finds
+//! no half can stop: none will appear later.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeSet, VecDeque};
@@ -23,9 +24,10 @@ pub(super) fn run(crew: &mut Crew<'_>) {
 }
 
 struct Halves {
-    /// What each worker has put aside, the largest in front.
+    /// The halves that each worker has put aside, the largest in front.
     aside: Vec<VecDeque<Range<usize>>>,
-    /// The length of each worker's largest, for those who have any; of equal ones, that of the first worker is last.
+    /// The length of each worker's largest half, for workers that have any; of equal lengths, the first worker's is
+    /// last.
     largest: BTreeSet<(usize, Reverse<usize>)>,
 }
 
@@ -34,7 +36,7 @@ impl Halves {
         self.aside[worker].front().map(|range| (range.len(), Reverse(worker)))
     }
 
-    /// What `worker` goes on with.
+    /// Takes the range with which `worker` continues.
     fn take(&mut self, worker: usize) -> Option<Range<usize>> {
         let own = self.key(worker);
         let (victim, key) = match own {
@@ -77,7 +79,7 @@ mod tests {
         assert_eq!(stolen, Some(4..8));
         assert_eq!(halves.split(1, 4..8), 4);
         assert_eq!(halves.aside[1], [6..8, 5..6]);
-        // Two jobs wait in front of both: the first worker's go first.
+        // Both workers have two jobs in front: the first worker's are taken first.
         assert_eq!(halves.take(2), Some(2..4));
         assert_eq!(halves.take(2), Some(6..8));
         assert_eq!(halves.take(2), Some(5..6));

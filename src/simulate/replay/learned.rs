@@ -1,4 +1,5 @@
-//! Self-scheduling by what has been seen: whoever is free tells how long its last jobs took, and takes a chunk by that.
+//! Self-scheduling by measured speed: a free worker reports how long its last jobs took, which decides the size of its
+//! next chunk.
 
 use super::crew::Crew;
 use crate::strategy::{LearnedRule, Ledger};

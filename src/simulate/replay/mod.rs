@@ -1,8 +1,8 @@
-//! The replay itself: jobs of known costs on virtual workers, from event to event.
+//! Replays: jobs of known costs on virtual workers, from event to event.
 //!
-//! One file for each family of disciplines. All of them are exact in the model: a worker that is free asks at once, hand-outs take
-//! what [`Overhead`] says, ties go to the worker with the lower number, and nothing but the seeds of noise and of random victims is
-//! random. A replay costs O(log P) a job, apart from the interruptions of noise.
+//! Each family of disciplines has a file. All of them are exact in the model: a free worker asks at once, hand-outs
+//! take the times in [`Overhead`], and ties go to the worker with the lower number. Only noise and the choice of random
+//! victims are random, with seeds. A replay costs O(log P) per job, apart from the interruptions of noise.
 
 mod all_at_once;
 mod chunks;
@@ -22,18 +22,18 @@ use crate::measure::Trace;
 use crate::strategy::Discipline;
 use crew::Crew;
 
-/// What a replay gave.
+/// The result of a replay.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
     /// Seconds from handing over the jobs until all are done.
     pub makespan_s: f64,
-    /// Who did what when, in the form of a measured run. Under [`Discipline::AllAtOnce`] a worker is a thread, and its span contains the
-    /// time in which others had the processor.
+    /// Which worker ran which job when, in the form of a measured run. Under [`Discipline::AllAtOnce`] a worker is a
+    /// thread, and its span contains the time in which other threads had the processor.
     pub trace: Trace,
 }
 
-/// Replays jobs of these costs (seconds of a processor of speed 1, in index order) on `workers` workers, each with a processor of its
-/// own. Under [`Discipline::AllAtOnce`], `workers` is the number of processors that the threads share.
+/// Replays jobs of these costs (seconds of a processor of speed 1, in index order) on `workers` workers, each with its
+/// own processor. Under [`Discipline::AllAtOnce`], `workers` is the number of processors that the threads share.
 pub fn replay(
     costs: &[f64],
     discipline: Discipline,
@@ -46,7 +46,7 @@ pub fn replay(
     }
     let workers = match discipline {
         Discipline::InOrder => 1,
-        // Strategies start no more workers than there are jobs.
+        // Strategies start at most as many workers as there are jobs.
         _ => workers.clamp(1, costs.len().max(1)),
     };
     let mut crew = Crew::new(costs, workers, overhead, hardware);

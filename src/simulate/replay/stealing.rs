@@ -1,8 +1,9 @@
-//! Work stealing: own queue first, then the shared one if there is any, then another worker's.
+//! Work stealing: a worker takes from its own queue first, then from the shared one if there is any, then from another
+//! worker's.
 //!
-//! A worker fills its queue only when it is empty, so a queue is always one contiguous range: the owner takes its first job, a thief its
-//! last ones. Moving jobs takes no time in itself (a steal is paid for like any other job, [`Overhead::job_s`]), so a worker that finds
-//! nothing anywhere will never find anything: no job makes new ones.
+//! A worker fills its queue only when it is empty, so a queue is always one contiguous range. The owner takes its first
+//! job, a thief its last ones. Moving jobs takes no extra time (a stolen job costs [`Overhead::job_s`] like any other).
+//! A worker that finds no job anywhere can stop, since jobs create no new jobs.
 //!
 //! [`Overhead::job_s`]: crate::simulate::Overhead::job_s
 
@@ -42,7 +43,8 @@ struct Queues {
     own: Vec<Range<usize>>,
     /// The workers whose queue is not empty.
     filled: BTreeSet<usize>,
-    /// The same, the longest queue last and of equal ones that of the first worker; kept only where thieves look for it.
+    /// The same workers, the longest queue last; of equal lengths, the first worker's is last. Kept only for
+    /// `Victim::Richest`.
     by_length: BTreeSet<(usize, Reverse<usize>)>,
     random: Pcg32,
 }
@@ -68,7 +70,7 @@ impl Queues {
         queues
     }
 
-    /// Half of the shared queue, up to the batch's size.
+    /// Takes half of the shared queue, up to the batch's size.
     fn take_shared(&mut self) -> Range<usize> {
         let most = match self.stealing.start {
             Start::Shared(most) => most.max(1),
@@ -117,7 +119,7 @@ impl Queues {
         let first = match self.stealing.victim {
             Victim::Richest => return self.by_length.last().map(|&(_, Reverse(worker))| worker),
             Victim::Neighbour => thief + 1,
-            // The product's high half is below the number of workers.
+            // The product's high half is less than the number of workers.
             Victim::Random => ((u64::from(self.random.next_u32()) * self.own.len() as u64) >> 32) as usize,
         };
         self.filled.range(first..).chain(&self.filled).next().copied()

@@ -1,4 +1,4 @@
-//! Pinholes and thin lenses: where their rays go.
+//! Rays of pinhole and thin-lens cameras.
 
 use crate::estimate::{diffuse, object, scene, sphere};
 use pathmark::math::{Ray, Vec3, dot};
@@ -19,12 +19,12 @@ fn seen_through(lens: Option<Lens>) -> Scene {
     scene(&[camera, object(&sphere([0.0; 3], 1.0), &diffuse(0.5), [0.0; 3])])
 }
 
-/// The ray of a place on the film and one on the lens, in an image of 40 x 30 pixels.
+/// The ray through a position on the film and one on the lens, in an image of 40 x 30 pixels.
 fn ray(scene: &Scene, [x, y]: [u32; 2], film: [f64; 2], lens: [f64; 2]) -> Ray {
     scene.camera.view(40, 30).ray::<AllEffects>(x, y, 0, film, || lens)
 }
 
-/// Where a ray meets the plane at a distance from the camera.
+/// Intersection of a ray with the plane at this distance from the camera.
 fn at_depth(ray: &Ray, depth: f64) -> Vec3 {
     ray.at((POSITION.z - depth - ray.origin.z) / ray.direction.z)
 }
@@ -33,7 +33,7 @@ fn apart(a: Vec3, b: Vec3) -> f64 {
     dot(a - b, a - b).sqrt()
 }
 
-/// Places on the lens: its rim and its inside.
+/// Positions on the lens, on its rim and inside.
 fn lens_places() -> impl Iterator<Item = [f64; 2]> {
     (0..=16).flat_map(|u| (0..=16).map(move |v| [f64::from(u) / 16.0, f64::from(v) / 16.0]))
 }
@@ -41,7 +41,8 @@ fn lens_places() -> impl Iterator<Item = [f64; 2]> {
 const PIXELS: [[u32; 2]; 5] = [[0, 0], [39, 0], [20, 15], [7, 22], [39, 29]];
 const LENS: Lens = Lens { radius: 0.25, focus: 5.0 };
 
-/// The border of the image lies at half the field of view, its corners where the image's shape puts them, its middle straight ahead.
+/// The top edge of the image lies at half the field of view, its corners follow the aspect ratio, and its middle is
+/// straight ahead.
 #[test]
 fn edges_lie_at_the_field_of_view() {
     let scene = seen_through(None);
@@ -72,7 +73,7 @@ fn directions_are_unit() {
     }
 }
 
-/// What lies in the plane of focus is sharp: every ray of a place on the film meets it where the pinhole's does.
+/// Points in the plane of focus are sharp: all rays of a film position meet that plane where the pinhole's ray does.
 #[test]
 fn a_point_in_focus_stays_a_point() {
     let (pinhole, lens) = (seen_through(None), seen_through(Some(LENS)));
@@ -85,7 +86,8 @@ fn a_point_in_focus_stays_a_point() {
     }
 }
 
-/// Elsewhere the rays of a point fill a disk around the pinhole's: at depth z, by similar triangles, of radius r |1 - z/f|.
+/// At other depths the rays of a point fill a disk around the pinhole's ray. By similar triangles, its radius at depth
+/// z is r |1 - z/f|.
 #[test]
 fn the_circle_of_confusion() {
     let (pinhole, lens) = (seen_through(None), seen_through(Some(LENS)));
@@ -98,7 +100,7 @@ fn the_circle_of_confusion() {
                 let off = at_depth(&ray(&lens, pixel, [0.3, 0.6], place), depth) - sharp;
                 middle = middle + off;
                 largest = largest.max(dot(off, off).sqrt());
-                // The border of the square is the rim of the lens.
+                // The border of the square maps to the rim of the lens.
                 let is_rim = place.iter().any(|u| *u == 0.0 || *u == 1.0);
                 rim += u32::from(is_rim);
                 assert!(!is_rim || (dot(off, off).sqrt() - radius).abs() < 1e-13, "depth {depth}: {off:?}");
@@ -110,7 +112,7 @@ fn the_circle_of_confusion() {
     }
 }
 
-/// The smaller the lens, the nearer is it to a pinhole, in proportion.
+/// A small lens deviates from a pinhole in proportion to its radius.
 #[test]
 fn a_small_lens_is_a_pinhole() {
     let pinhole = seen_through(None);

@@ -1,11 +1,12 @@
-//! `--max-depth` in any scene: a cut takes later bounces and nothing else. Its closed forms are in the table of hard cases.
+//! `--max-depth` in any scene: a cut removes later bounces and nothing else. Its closed forms are in the table of hard
+//! cases.
 
 use pathmark::estimator::{Bsdf, Estimator, Options, Probe, camera_ray};
 use pathmark::math::Rgb;
 use pathmark::sampling::{Independent, SampleKey};
 use pathmark::scene::{AllEffects, load};
 
-/// The light of a sample by the bounces that it has behind it.
+/// The light of a sample, by the number of bounces before it.
 #[derive(Default)]
 struct ByBounce(Vec<Rgb>);
 
@@ -19,7 +20,8 @@ impl Probe for ByBounce {
     }
 }
 
-/// In any scene a cut sample is the whole sample less what comes later, so the light of each bounce is known without a cut.
+/// In any scene, a cut sample equals the whole sample minus the later light. The light of each bounce is known from
+/// the whole sample.
 #[test]
 fn a_cut_takes_later_bounces_and_nothing_else() {
     for name in ["cornell", "cornell-fog", "sky", "report-c"] {

@@ -1,4 +1,4 @@
-//! Fog: single scattering against quadrature, what is lost on the way of light, and none inside of glass.
+//! Fog: single scattering compared with quadrature, attenuation of light, and no fog inside glass.
 
 use crate::estimate::{
     arriving_estimators, assert_exact, camera, diffuse, fog, object, plane, point_light, render, scene, sphere,
@@ -17,7 +17,8 @@ fn above(height: f64) -> String {
 
 const CLEAR: &str = "{ dielectric = { eta = 1.0, tint = [1.0, 1.0, 1.0] } }";
 
-/// Light of a point light that fog scatters once towards the camera: the integral over the line of sight, by Simpson's rule.
+/// Light of a point light that fog scatters once towards the camera: the integral over the camera ray, by Simpson's
+/// rule.
 #[test]
 fn single_scattering() {
     let (absorption, scattering, length) = (0.3, 0.5, 4.0);
@@ -37,8 +38,8 @@ fn single_scattering() {
     }
 }
 
-/// A point light through fog: what is lost on the way to the plane and on the way to the camera. Whitted's estimator also loses what is
-/// scattered, and only that.
+/// A point light through fog: attenuation on the way to the plane and on the way to the camera. Whitted's estimator
+/// also loses the scattered light, and only that.
 #[test]
 fn point_light_through_fog() {
     let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
@@ -51,14 +52,15 @@ fn point_light_through_fog() {
     assert_exact("scattered", &scattered, 0, exact * libm::exp(-0.25 * 3.0), 8);
 }
 
-/// What Whitted's estimator sees of fog that scatters and glows: the part of its light that arrives unscattered.
+/// Whitted's estimator sees only the part of the fog's emission that arrives unscattered.
 #[test]
 fn glow_that_is_scattered_away() {
     let scene = scene(&[above(2.0), fog(0.4, 0.6, 3.0), lamp(0.0)]);
     assert_exact("whitted", &render(&scene, "whitted", 4096, None), 0, 3.0 * 0.4 * (1.0 - libm::exp(-2.0)), 1);
 }
 
-/// Between its two surfaces a slab holds no fog; what it encloses stands in the clear, whatever the light left last.
+/// A slab holds no fog between its two surfaces. Objects that glass encloses are free of fog, whichever surface the
+/// light left last.
 #[test]
 fn no_fog_inside_glass() {
     let up = [0.0, 1.0, 0.0];
@@ -66,9 +68,9 @@ fn no_fog_inside_glass() {
         object(&plane([0.0, 2.0, 0.0], up), CLEAR, [0.0; 3]),
         object(&plane([0.0, 0.5, 0.0], [0.0, -1.0, 0.0]), CLEAR, [0.0; 3]),
     ];
-    // 3 above the lamp, 1.5 of it in the slab.
+    // The camera is 3 above the lamp; 1.5 of the distance lies in the slab.
     let through = scene(&[vec![above(3.0), fog(0.7, 0.0, 0.0), lamp(1.0)], slab.to_vec()].concat());
-    // A matte ball in a clear ball, and a light in there with it.
+    // A diffuse ball in a clear ball, with a point light inside the clear ball.
     let within = scene(&[
         above(3.0),
         fog(0.7, 0.0, 0.0),

@@ -1,9 +1,10 @@
-//! Metal that is rough and metal that is smooth.
+//! Rough and smooth metal.
 
 use crate::estimate::{diffuse, mean, object, render, scene, sphere, view};
 
-/// H23: the smoothest rough metal there is gives the image of the smooth one, which is a type of its own: within 3.3 standard errors, two-sided
-/// level 1e-3. The ball mirrors a lamp, so a lobe that is too wide or weighs too much would show.
+/// H23: the smoothest rough metal gives the image of the smooth one, which is a separate type: within 3.3 standard
+/// errors, two-sided level 1e-3. The ball mirrors a lamp, so a lobe that is too wide or has too large a weight would
+/// show.
 #[test]
 fn the_smoothest_metal_is_a_mirror() {
     let image = |alpha: f64| {

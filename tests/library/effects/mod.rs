@@ -1,5 +1,5 @@
-//! Effects that only some scenes call for: fog, lenses, cut paths, metal, point lights, Whitted's estimator; what they do, and that they do nothing
-//! elsewhere.
+//! Effects that only some scenes use: fog, lenses, cut paths, metal, point lights, Whitted's estimator. Each has its
+//! effect there, and none elsewhere.
 
 mod camera;
 mod depth;

@@ -1,4 +1,4 @@
-//! No path is so long or so branched that a thread's stack would matter: 128 KiB are enough, where Rust's own threads have 2 MiB.
+//! Long and branched paths on a small stack: 128 KiB are enough, where Rust's default is 2 MiB.
 
 use crate::estimate::{object, scene, sphere, view};
 use pathmark::film::{Bounds, Piece, TileBuffer};
@@ -22,7 +22,7 @@ fn pixel(scene: Scene, estimator: &str) -> Counts {
     thread::Builder::new().stack_size(STACK).spawn(render).unwrap().join().unwrap()
 }
 
-/// Nothing but mirrors, whose paths only roulette ends; and a closed box that loses a thousandth at each bounce.
+/// A scene of mirrors only, whose paths only roulette ends, and a closed box that loses a thousandth at each bounce.
 #[test]
 fn long_paths() {
     for estimator in ["smallpt", "bsdf"] {
@@ -34,7 +34,7 @@ fn long_paths() {
     }
 }
 
-/// Glass in glass, and all its branches followed.
+/// Nested glass, with all branches followed.
 #[test]
 fn branched_paths() {
     let glass = |eta: f64| format!("{{ dielectric = {{ eta = {eta:?}, tint = [1.0, 1.0, 1.0] }} }}");

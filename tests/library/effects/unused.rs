@@ -1,5 +1,5 @@
-//! An effect that a scene does not call for costs it nothing: its code is not entered even where it is compiled in, and no number is drawn
-//! for it.
+//! Unused effects cost a scene nothing: their code does not run, even if it is compiled in, and no random number is
+//! drawn for them.
 
 use pathmark::effect::Effects;
 use pathmark::estimator::{AnyEstimator, ESTIMATORS, Options, Probe, any_estimator, camera_ray};
@@ -21,7 +21,7 @@ impl Probe for Used {
     }
 }
 
-/// Counts what numbers are drawn for.
+/// Counts the random numbers drawn for lenses and for media.
 #[derive(Default)]
 struct Drawn {
     lens: AtomicU64,
@@ -39,7 +39,7 @@ impl Sampler for Drawn {
     }
 }
 
-/// A few samples of a scene with every effect compiled in.
+/// Takes a few samples of a scene with every effect compiled in.
 fn look(scene: &Scene, estimator: &dyn AnyEstimator) -> (Effects, [u64; 2]) {
     let view = scene.camera.view(SIDE, SIDE);
     let (mut used, drawn) = (Used::default(), Drawn::default());
@@ -71,7 +71,7 @@ fn no_scene_enters_an_effect_that_it_does_not_call_for() {
             seen = seen.and(used);
         }
     }
-    // The probe is told of everything that the scenes call for but shapes and how they are found, which no call announces.
+    // The probe hears of every effect that the scenes use, except shapes and hierarchies, which make no such call.
     let silent = PRIMITIVES.iter().fold(HIERARCHY.and(COMPOUND), |all, entry| all.and(entry.effect));
     for (name, _) in SCENES {
         let called = load(name).unwrap().effects();

@@ -1,4 +1,4 @@
-//! Whitted's estimator: where it agrees with those that follow all light, and what it leaves to chance.
+//! Whitted's estimator: where it agrees with the full estimators, and that it draws no random number.
 
 use crate::estimate::{camera, diffuse, full_estimators, mean, object, plane, point_light, render, scene, sphere};
 use pathmark::analysis::z_test::{critical_value, sidak};
@@ -6,8 +6,8 @@ use pathmark::estimator::{Estimator, Options, Whitted};
 use pathmark::sampling::{Address, SampleKey, Sampler};
 use pathmark::scene::{AllEffects, load};
 
-/// Without light by way of matte surfaces there is nothing to leave out: glass, a mirror and a polished black ball in a glowing sphere,
-/// and a point light on a wall that no other surface sees.
+/// The estimators agree where there is no indirect diffuse light: glass, a mirror and a polished black ball in a
+/// glowing sphere, and a point light on a wall that no other surface lights.
 #[test]
 fn agrees_where_there_is_no_indirect_diffuse_light() {
     let glass = "{ dielectric = { eta = 1.5, tint = [0.9, 1.0, 0.8] } }";
@@ -28,7 +28,7 @@ fn agrees_where_there_is_no_indirect_diffuse_light() {
             assert!((found - whitted).abs() < most * error + 1e-6, "{what}, {estimator}: {found} and {whitted}");
         }
     }
-    // A lit wall alone, past the ball: no other surface gives it light.
+    // A lit wall, seen past the ball: no other surface lights it.
     let lit = scene(&[camera([0.2, 0.3, 5.0], [2.0, 2.0, -3.0]), wall, light]);
     let (whitted, _) = mean(&render(&lit, "whitted", 4096, None), 1);
     for estimator in full_estimators() {
@@ -37,7 +37,7 @@ fn agrees_where_there_is_no_indirect_diffuse_light() {
     }
 }
 
-/// Diffuse light by way of surfaces is what is left out: in a closed matte sphere only the light's own emission is seen.
+/// Whitted's estimator omits indirect diffuse light: in a closed diffuse sphere it sees only the wall's own emission.
 #[test]
 fn leaves_out_what_matte_surfaces_send_on() {
     let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.5), [1.0; 3]);
@@ -45,7 +45,7 @@ fn leaves_out_what_matte_surfaces_send_on() {
     assert_eq!(mean(&render(&scene, "whitted", 4096, None), 0).0, 1.0);
 }
 
-/// Refuses to give any number.
+/// A sampler that panics instead of returning a number.
 struct Never;
 
 impl Sampler for Never {

@@ -1,8 +1,9 @@
-//! Every estimator that follows all light gives the same image, whichever way it finds light: emissive mirrors, light behind glass, a
+//! Agreement of all estimators that follow all light, however they find it: emissive mirrors, light behind glass, a
 //! camera inside a light, enclosures that glow.
 //!
-//! Pixel by pixel, the standardised differences to `bsdf` must have the mean 0 and the variance 1, which is tested on both sides, at the
-//! family-wise level 1e-3. Each pixel gives one channel, by turns, because the channels of a pixel go together.
+//! The standardised differences to `bsdf`, pixel by pixel, must have mean 0 and variance 1. Both are tested on both
+//! sides, at the family-wise level 1e-3. Each pixel contributes one channel, in turn, because the channels of a pixel
+//! are correlated.
 
 use pathmark::analysis::z_test::{critical_value, sidak};
 use pathmark::estimator::ESTIMATORS;
@@ -12,13 +13,13 @@ use pathmark::measure::{Settings, Setup};
 use pathmark::scene::SCENES;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Few pixels of many samples: a z-score is normal when its sample's variance has settled.
+/// Few pixels with many samples: a z-score is normal only if the sample variance has converged.
 const SIZE: (u32, u32) = (8, 6);
 const SPP: u32 = 1024;
 const LEVEL: f64 = 1e-3;
 
-/// Scenes in which few paths meet the small, bright lamps unless they aim at them: the spread of such paths within a pixel tells too little.
-/// There `nee` and `mis` are compared by pixels, and both with `bsdf` by the mean of the image.
+/// Scenes in which few paths hit the small, bright lamps unless they aim at them. The variance of such paths within a
+/// pixel is unreliable, so `nee` and `mis` are compared by pixels, and both with `bsdf` by the mean of the image.
 const RARELY_MET: [&str; 2] = ["cornell-small-light", "nightsky"];
 
 fn film(scene: &str, (estimator, camera_rays): (&str, Option<u16>), seed: u64) -> Film {
@@ -37,7 +38,7 @@ fn film(scene: &str, (estimator, camera_rays): (&str, Option<u16>), seed: u64) -
     outcome.film
 }
 
-/// Of one channel of each pixel the mean and its variance.
+/// The mean and its variance, for one channel of each pixel.
 fn pixels(film: &Film) -> Vec<(f64, f64)> {
     let estimate = |(index, pixel): (usize, &PixelSum)| {
         let (channel, n) = (index % 3, f64::from(pixel.count));
@@ -47,7 +48,7 @@ fn pixels(film: &Film) -> Vec<(f64, f64)> {
     film.pixels().iter().enumerate().map(estimate).collect()
 }
 
-/// The standardised differences of two images, pixel by pixel, where either has any spread.
+/// The standardised differences of two images, pixel by pixel, where either has any variance.
 fn scores(a: &[(f64, f64)], b: &[(f64, f64)]) -> Vec<f64> {
     let pairs = a.iter().zip(b).filter(|(a, b)| a.1 + b.1 > 0.0);
     pairs.map(|(a, b)| (a.0 - b.0) / (a.1 + b.1).sqrt()).collect()
@@ -59,7 +60,7 @@ fn score_of_means(a: &[(f64, f64)], b: &[(f64, f64)]) -> f64 {
     sum / f64::sqrt(variance)
 }
 
-/// What of two images does not fit together, if anything: the mean of the scores, or the sum of their squares.
+/// The disagreement of two images, if any: in the mean of the scores, or in the sum of their squares.
 fn disagreement(scores: &[f64], level: f64) -> Option<String> {
     let n = scores.len() as f64;
     let mean = scores.iter().sum::<f64>() / n.sqrt();
@@ -73,7 +74,7 @@ fn disagreement(scores: &[f64], level: f64) -> Option<String> {
 #[test]
 fn estimators_agree_on_every_scene() {
     let names = ESTIMATORS.iter().map(|entry| entry.name).filter(|name| !["bsdf", "whitted"].contains(name));
-    // Several camera rays change no expectation either.
+    // Several camera rays do not change the expectation, either.
     let others: Vec<(&str, Option<u16>)> =
         names.map(|name| (name, None)).chain([("bsdf", Some(4)), ("mis", Some(4))]).collect();
     let level = sidak(LEVEL, 2 * SCENES.len() * others.len()).unwrap();
@@ -94,7 +95,8 @@ fn estimators_agree_on_every_scene() {
                 let z = score_of_means(image, &right);
                 compare(&format!("mean of {name}, camera rays {rays:?}, against bsdf"), &[z]);
             }
-            // Several camera rays against one; `bsdf` of scenes whose lamps are rarely met by means alone.
+            // Several camera rays are compared with one. In scenes with rarely met lamps, `bsdf` is compared by means
+            // only.
             let right = if rays.is_some() { one_ray(name) } else { &right };
             if !is_rare || rays.is_some() && *name != "bsdf" {
                 let scores = scores(image, right);

@@ -1,4 +1,4 @@
-//! Where light is aimed at: S60 of the catalogue of hard cases, and that densities are those of the aims.
+//! Aims at lights: S60 of the catalogue of hard cases, and the agreement of densities with aims.
 
 use pathmark::math::{Ray, Vec3, dot};
 use pathmark::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
@@ -9,12 +9,13 @@ fn lit(name: &str) -> Scene {
     scene.lit(&scene.camera.view(64, 48))
 }
 
-/// A pair of numbers.
+/// A pair of random numbers.
 fn pair(k: u32, purpose: Purpose) -> [f64; 2] {
     Independent.pair(Address { key: SampleKey { seed: 7, pixel: 0, sample: k }, bounce: 1, branch: 0, purpose })
 }
 
-/// S60: of smallpt's light, a sphere of radius 600, a cap below the ceiling is aimed at: inside the circle of radius 17.944, of area 1011.807.
+/// S60: smallpt's light is a sphere of radius 600. Aims go only to its cap below the ceiling: a circle of radius
+/// 17.944 and area 1011.807.
 #[test]
 fn only_the_cap_of_smallpts_light_is_aimed_at() {
     let scene = lit("cornell");
@@ -26,7 +27,7 @@ fn only_the_cap_of_smallpts_light_is_aimed_at() {
         let aim = lights.aim(point, None, || unreachable!("one light"), pair(k, Purpose::Light)).unwrap();
         let ray = Ray { origin: point, direction: aim.direction };
         assert_eq!(aim.primitive, light);
-        // Onto the light itself: the walls are not asked.
+        // Intersects the light alone and ignores the walls.
         let sphere = scene.primitives.spheres[light as usize];
         let offset = sphere.center - point;
         let middle = dot(offset, aim.direction);
@@ -40,12 +41,12 @@ fn only_the_cap_of_smallpts_light_is_aimed_at() {
         let hit = scene.intersect::<AllEffects>(&ray, None, &mut Tests::default()).unwrap();
         arrived += u32::from(hit.primitive == light);
     }
-    // The balls hide a little of it from there, and nothing else does.
+    // From there only the balls hide a small part of it.
     assert!(arrived > n * 9 / 10, "{arrived} of {n}");
 }
 
-/// The density that a direction was chosen with is the one that is found for it where it arrives, in every scene, from points in the air and
-/// on surfaces.
+/// The density of an aim equals the density that is computed where it arrives, in every scene, from points in the air
+/// and on surfaces.
 #[test]
 fn densities_are_those_of_the_aims() {
     let mut arrived = 0;
@@ -64,7 +65,7 @@ fn densities_are_those_of_the_aims() {
                 let found = scene.intersect::<AllEffects>(&shadow, from, &mut Tests::default());
                 if let Some(found) = found.filter(|found| found.primitive == aim.primitive) {
                     let density = lights.density(&shadow, from, &found);
-                    // Seen edge on, a rounding of the direction is more than one of the density.
+                    // Edge on, a rounding of the direction changes the density by more than a rounding.
                     let cos = dot(aim.direction, found.normal).abs();
                     let allowed = 1e-9 / cos.max(1e-6);
                     assert!((density / aim.density - 1.0).abs() < allowed, "{name}: {density} for {}", aim.density);

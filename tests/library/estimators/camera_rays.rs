@@ -1,4 +1,5 @@
-//! Several camera rays of a sample: what they see is averaged, whatever renders, and nothing is counted twice or left out.
+//! Several camera rays per sample: their light is averaged, with every kernel, and nothing is counted twice or left
+//! out.
 
 use crate::lanes::assert_same;
 use pathmark::analysis::{chi_square, z_test::critical_value};
@@ -26,8 +27,9 @@ const HORIZON: &str = r#"
     material = { diffuse = { albedo = [0.0, 0.0, 0.0] } }
 "#;
 
-/// With `rays` camera rays a sample has light of the binomial distribution, a half each: the path's own ray counts no more and no less than the
-/// others, and their random numbers are independent of its own (chi-square tests of 20,000 samples, two-sided, family-wise level 1e-3).
+/// With `rays` camera rays, the light of a sample is binomially distributed with probability one half. So the path's
+/// own ray has the same weight as the others, and their random numbers are independent of its own (chi-square tests of
+/// 20,000 samples, two-sided, family-wise level 1e-3).
 #[test]
 fn a_sample_has_the_mean_of_what_its_camera_rays_see() {
     const SAMPLES: u32 = 20_000;
@@ -53,7 +55,8 @@ fn a_sample_has_the_mean_of_what_its_camera_rays_see() {
     }
 }
 
-/// Scenes of spheres, of triangles, with a sky, and with many primitives in a tree; samples whose number is no multiple of the lanes.
+/// Scenes of spheres, of triangles, with a sky, and with many primitives in a tree. The number of samples is no
+/// multiple of the lanes.
 #[test]
 fn lanes_have_the_scalar_kernels_bits() {
     let bounds = Bounds { x0: 0, y0: 0, x1: 13, y1: 7 };
@@ -77,8 +80,9 @@ fn lanes_have_the_scalar_kernels_bits() {
     }
 }
 
-/// All rays through the middle of a pixel are one ray, so a sample sees the same by four of them as by one: lamps, the sky, what fog gives off and leaves
-/// of both, a lamp that is not as bright from all sides; in single precision nearly the same.
+/// All rays through the centre of a pixel are the same ray, so four of them give the light of one: lamps, the sky, the
+/// emission of fog and its attenuation of both, and a lamp whose emission depends on the angle. In single precision
+/// they agree nearly.
 #[test]
 fn rays_that_are_one_ray_see_the_same() {
     let lit = r#"
@@ -123,7 +127,7 @@ fn rays_that_are_one_ray_see_the_same() {
     }
 }
 
-/// One is what is rendered where nothing is said.
+/// One camera ray is the default.
 #[test]
 fn one_camera_ray_is_none_to_speak_of() {
     let scene = load("cornell").unwrap();

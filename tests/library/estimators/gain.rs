@@ -1,4 +1,4 @@
-//! What aiming at light and spreading samples gain, by the spread of images over seeds.
+//! Gain from aiming at light and from spreading samples, measured by the variance of images over seeds.
 
 use pathmark::analysis::fit::log_log;
 use pathmark::check::stage::{diffuse, object, plane, scene, sphere, view};
@@ -16,7 +16,7 @@ fn film(scene: &Arc<Scene>, (width, height): (u32, u32), estimator: &str, sample
     Setup::for_scene(Arc::clone(scene), settings).unwrap().run(None).unwrap().film
 }
 
-/// The mean over pixels and channels of the variance of a pixel's estimate, over so many seeds.
+/// The variance of a pixel's estimate over so many seeds, averaged over pixels and channels.
 fn variance(scene: &Arc<Scene>, size: (u32, u32), estimator: &str, sampler: &str, spp: u32, seeds: u64) -> f64 {
     let images: Vec<_> =
         (0..seeds).map(|seed| film(scene, size, estimator, sampler, spp, 100 + seed).image().pixels).collect();
@@ -32,9 +32,10 @@ fn variance(scene: &Arc<Scene>, size: (u32, u32), estimator: &str, sampler: &str
     total / (3 * images[0].len()) as f64
 }
 
-/// A6: a lamp over a plane, aimed at by its cone of directions, is smooth in all four numbers of a sample, film and light. Spread over them
-/// together they are far steeper than spread over each pair by itself, which gives about -0.65. Weighted against directions that miss the lamp
-/// (`mis`) light is less smooth. Independent samples have the slope -1/2.
+/// A6: a lamp over a plane, aimed at by its cone of directions. The light is smooth in all four numbers of a sample,
+/// film and light. Sobol points over all four together give far steeper slopes than over each pair separately, which
+/// gives about -0.65. Weighting against directions that miss the lamp (`mis`) makes the light less smooth. Independent
+/// samples have the slope -1/2.
 #[test]
 fn sobol_is_steep_where_light_is_smooth() {
     let floor = object(&plane([0.0; 3], [0.0, 1.0, 0.0]), &diffuse(0.5), [0.0; 3]);
@@ -53,8 +54,8 @@ fn sobol_is_steep_where_light_is_smooth() {
     assert!((independent + 0.5).abs() < 0.1, "{independent}");
 }
 
-/// On smallpt's box aiming at the part of the lamp that can be seen is worth several times as many samples. Some paths by way of glass carry
-/// much light, so the ratios scatter from seeds to seeds, and less is asked here than what longer runs find.
+/// On smallpt's box, aiming at the visible part of the lamp is worth several times as many samples. Some paths through
+/// glass carry much light, so the ratios vary with the seeds, and the limits are below the ratios of longer runs.
 #[test]
 fn aiming_pays_on_smallpts_box() {
     let scene = Arc::new(load("cornell").unwrap());

@@ -1,4 +1,4 @@
-//! Estimators that aim at light: what they aim at, that all estimators agree on every scene, and what they gain.
+//! Estimators that aim at light: their aims, the agreement of all estimators on every scene, and the gain.
 
 mod agreement;
 mod aims;

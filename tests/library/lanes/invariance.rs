@@ -1,5 +1,6 @@
-//! Nothing that the program chooses by itself changes a bit: no accelerator, no instruction set and no number of lanes. Scenes have as many
-//! primitives as stand on either side of each threshold of such a choice; where those are is asked of the program.
+//! Invariance to the program's own choices: accelerator, instruction set and number of lanes change no bit. The
+//! numbers of primitives lie on both sides of each threshold of such a choice. The test asks the program for these
+//! thresholds.
 
 use super::{render, without_tests};
 use crate::watchdog::Watchdog;
@@ -13,12 +14,12 @@ use std::collections::BTreeSet;
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
 
-/// Numbers of primitives at which something changed once, and around which tables fit registers of some width.
+/// Numbers of primitives at which a choice changed in the past, and around which tables fit registers of some width.
 const OFTEN: [usize; 13] = [11, 12, 15, 16, 17, 31, 32, 33, 35, 36, 63, 64, 80];
-/// No choice changes from here on.
+/// No choice changes above this number.
 const MOST: usize = 300;
 
-/// Numbers in [0, 1), well enough spread.
+/// Random numbers in [0, 1) of sufficient quality.
 struct Random(u64);
 
 impl Random {
@@ -27,7 +28,7 @@ impl Random {
         (self.0 >> 40) as f64 / (1_u64 << 24) as f64
     }
 
-    /// Somewhere in a box.
+    /// A random point of a box.
     fn point(&mut self, low: Vec3, high: Vec3) -> Vec3 {
         let share = Vec3::new(self.unit(), self.unit(), self.unit());
         let size = high - low;
@@ -42,17 +43,17 @@ impl Random {
     }
 }
 
-/// What a scene has besides its walls.
+/// The contents of a scene besides its walls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Content {
     Spheres,
-    /// Every sphere is there twice: each hit is a tie.
+    /// Spheres in pairs at the same place: each hit of a pair is a tie.
     Twins,
     Triangles,
     Both,
 }
 
-/// A scene with so many primitives. Spheres are in smallpt's box of large spheres, triangles under an open sky.
+/// A scene with so many primitives. Spheres lie in smallpt's box of large spheres, triangles under an open sky.
 fn scene(content: Content, primitives: usize) -> Arc<Scene> {
     static BOX: LazyLock<Scene> = LazyLock::new(|| load("cornell").unwrap());
     let mut random = Random(primitives as u64);
@@ -90,7 +91,8 @@ fn scene(content: Content, primitives: usize) -> Arc<Scene> {
 
 const ALL: [Content; 4] = [Content::Spheres, Content::Twins, Content::Triangles, Content::Both];
 
-/// The kernels that render in a precision: lanes on each level and, in double precision, one path at a time.
+/// The kernels that render in a precision: lanes with each instruction set and, in double precision, one path at a
+/// time.
 fn kernels(precision: &str) -> Vec<Spec> {
     let spec = Spec { width: 8, height: 6, estimator: "mis".into(), precision: precision.into(), ..Spec::default() };
     let on_level = |name: &str| Spec { simd: Some(name.into()), ..spec.clone() };
@@ -99,7 +101,7 @@ fn kernels(precision: &str) -> Vec<Spec> {
     lanes.chain((precision == "f64").then_some(scalar)).collect()
 }
 
-/// The numbers of primitives on both sides of each threshold at which some kernel chooses another accelerator.
+/// The numbers of primitives on both sides of each threshold at which a kernel chooses another accelerator.
 fn thresholds(content: Content) -> BTreeSet<usize> {
     let kernels: Vec<Spec> = ["f64", "f32"].into_iter().flat_map(kernels).collect();
     let choices = |primitives: usize| {

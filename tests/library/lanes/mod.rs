@@ -1,5 +1,5 @@
-//! The kernel of SIMD lanes gives what the scalar kernel gives, sample by sample and bit for bit, on every instruction set that this processor
-//! has. The scalar kernel is the oracle here; that it is right is what the other tests are about.
+//! The lanes kernel gives the results of the scalar kernel, sample by sample and bit for bit, with every instruction
+//! set of this processor. The scalar kernel is the oracle here; the other tests check that it is right.
 
 mod invariance;
 mod precision;
@@ -20,14 +20,17 @@ fn render(kernel: &dyn Kernel, piece: &Piece) -> (TileBuffer, Counts) {
     (buffer, counts)
 }
 
-/// How many boxes and primitives rays are tested against depends on how many lanes there are; nothing else does.
+/// The numbers of boxes and primitives that rays are tested against depend on the number of lanes; no other count
+/// does.
 fn without_tests(counts: Counts) -> Counts {
     Counts { box_tests: 0, primitive_tests: 0, ..counts }
 }
 
-/// Insists that lanes on every level render a piece as the scalar kernel does, and that it is lanes that render.
+/// Asserts that lanes with every instruction set render the pieces as the scalar kernel does, and that lanes do render
+/// them.
 pub(crate) fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
-    // Lanes test more primitives before they look into a hierarchy; here both go by the same.
+    // Lanes choose a hierarchy only for more primitives than the scalar kernel does. Here both use the same
+    // accelerator.
     let accelerator = Some(choose(scene, spec).unwrap().accelerator().to_string());
     let spec = &Spec { accelerator, ..spec.clone() };
     let scalar = build(scene, &Spec { kernel: "scalar".into(), ..spec.clone() }).unwrap();
@@ -47,7 +50,7 @@ pub(crate) fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
     }
 }
 
-/// Whether lanes render a scene at all; [`what_lanes_cannot_do_is_told`] says which they do not.
+/// Whether lanes render a scene at all; [`what_lanes_cannot_do_is_told`] lists the exceptions.
 fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
     choose(scene, spec).unwrap().kernel() == "lanes"
 }
@@ -77,8 +80,9 @@ fn every_scene_has_the_scalar_kernels_bits() {
     assert!(scenes >= 24 && compared >= 8 * 24, "{compared} comparisons of {scenes} scenes");
 }
 
-/// Above 16,384 primitives lanes look up the rows of objects. In double precision the bits stay those of the scalar kernel; in single precision the same
-/// random numbers lead most paths to the same surfaces, so each channel has nearly the same light.
+/// Above 16,384 primitives lanes look up the rows of objects. In double precision the bits equal the scalar kernel's.
+/// In single precision the same random numbers lead most paths to the same surfaces, so each channel has nearly the
+/// same light.
 #[test]
 fn scenes_of_many_primitives_have_the_same_colours() {
     let bounds = Bounds { x0: 0, y0: 0, x1: 24, y1: 18 };
@@ -104,9 +108,10 @@ fn scenes_of_many_primitives_have_the_same_colours() {
     }
 }
 
-/// Single precision gives the same bits on every instruction set, and no sample that is none. It has the random numbers of double precision, to fewer
-/// digits, so most paths are nearly the same, and what is left of the difference of both images is its own standard error: no scene is darker or
-/// lighter by more than single precision rounds (z-test of the paired difference, two-sided, family-wise 1e-3).
+/// Single precision gives the same bits with every instruction set, and no invalid sample. It uses the random numbers
+/// of double precision, with fewer digits, so most paths are nearly the same. The remaining difference of both images
+/// is within its own standard error: no scene is darker or lighter by more than single precision rounds (z-test of the
+/// paired difference, two-sided, family-wise 1e-3).
 #[test]
 fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
     let watchdog = Watchdog::new(Duration::from_mins(5));
@@ -148,7 +153,7 @@ fn single_precision_is_the_same_everywhere_and_converges_to_the_same() {
     }
 }
 
-/// What the roundings along a path may change of its radiance, relatively.
+/// Relative change of a radiance that the roundings along a path may cause.
 const ROUNDING: f64 = 1e-5;
 
 /// The mean difference of two images' pixels.
@@ -172,7 +177,8 @@ fn difference(found: &TileBuffer, expected: &TileBuffer) -> Difference {
     Difference { mean, error: (square / n).sqrt(), of }
 }
 
-/// Of any shape: a pixel alone, a sample alone, more samples than may be out at once, a row, samples from the middle, and none.
+/// Pieces of any shape: a single pixel, a single sample, more samples than can be in flight, a row, samples from the
+/// middle, and none.
 #[test]
 fn pieces_of_any_shape_have_the_scalar_kernels_bits() {
     let watchdog = Watchdog::new(Duration::from_mins(2));
@@ -193,7 +199,7 @@ fn pieces_of_any_shape_have_the_scalar_kernels_bits() {
     }
 }
 
-/// Limits and rules: cut at every depth, ended by chance in every way.
+/// Depth limits, roulette rules and accelerators.
 #[test]
 fn options_have_the_scalar_kernels_bits() {
     let watchdog = Watchdog::new(Duration::from_mins(2));
@@ -214,7 +220,7 @@ fn options_have_the_scalar_kernels_bits() {
     }
 }
 
-/// The scalar kernel does it instead, and says why.
+/// Where lanes cannot render, the scalar kernel does, and the choice states the reason.
 #[test]
 fn what_lanes_cannot_do_is_told() {
     let spec = Spec::default;
@@ -254,7 +260,7 @@ fn the_scalar_kernel_has_one_precision() {
     let spec = Spec { kernel: "scalar".into(), precision: "f32".into(), ..Spec::default() };
     let Err(error) = choose(&load("cornell").unwrap(), &spec) else { panic!("it is taken") };
     assert!(error.to_string().contains("precision") && error.to_string().contains("f64"), "{error}");
-    // Where lanes cannot render, the record says which precision did.
+    // Where lanes cannot render, the record states the precision that was used instead.
     let choice = choose(&load("cornell-fog").unwrap(), &Spec { precision: "f32".into(), ..Spec::default() }).unwrap();
     assert_eq!((choice.kernel(), choice.precision().name(), choice.fallback()), ("scalar", "f64", "fog"));
 }

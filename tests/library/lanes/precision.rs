@@ -1,8 +1,9 @@
-//! Single precision converges to the image of double precision, pixel by pixel, and loses no ray.
+//! Convergence of single precision to the image of double precision, pixel by pixel and without lost rays.
 //!
-//! Each pixel of each scene is rendered by both precisions with eight seeds each, none of which both have. The difference of the means over its
-//! standard error is Student's t of 14 degrees of freedom, whose square is 14/12 on average with a known variance; many pixels' mean of squares is
-//! normal. Too small would be wrong, too: then the two would not be independent.
+//! Each pixel of each scene is rendered in both precisions with eight seeds each, all different. The difference of the
+//! means over its standard error follows Student's t with 14 degrees of freedom. Its square has the mean 14/12 and a
+//! known variance, and the mean of squares over many pixels is normal. Too small a value is wrong, too: then the two
+//! images would not be independent.
 
 use super::{is_for_lanes, render};
 use crate::watchdog::Watchdog;
@@ -14,22 +15,22 @@ use std::sync::Arc;
 use std::thread;
 use std::time::Duration;
 
-/// Of each precision.
+/// Seeds per precision.
 const SEEDS: u64 = 8;
 const WIDTH: u32 = 32;
 const HEIGHT: u32 = 24;
-/// Samples of both precisions and all scenes together, if the test is to be thorough.
+/// Samples of both precisions and all scenes together in a thorough test.
 const THOROUGH: f64 = 1e9;
-/// What a few operations in single precision change of a radiance, relatively.
+/// Relative change of a radiance by a few operations in single precision.
 const ROUNDING: f64 = 1e-6;
-/// What single precision may change of the mean of `cornell`, relatively.
+/// Relative change that single precision may cause in the mean of `cornell`.
 const DARKER: f64 = 2e-4;
 
 fn is_thorough() -> bool {
     std::env::var_os("PATHMARK_THOROUGH").is_some()
 }
 
-/// The mean of each pixel's channels by this precision and seed.
+/// The mean of each pixel's channels, in this precision and with this seed.
 fn image(scene: &Arc<Scene>, precision: &str, seed: u64, spp: u32) -> (Vec<f64>, Counts) {
     let spec = Spec {
         width: WIDTH,
@@ -44,7 +45,7 @@ fn image(scene: &Arc<Scene>, precision: &str, seed: u64, spp: u32) -> (Vec<f64>,
     (buffer.rows().flatten().map(|pixel| pixel.mean().iter().sum::<f64>() / 3.0).collect(), counts)
 }
 
-/// The images of seeds from `first` on.
+/// The images of the seeds from `first` on.
 fn images(scene: &Arc<Scene>, precision: &str, first: u64, spp: u32) -> Vec<(Vec<f64>, Counts)> {
     thread::scope(|scope| {
         let half = |from: u64| {
@@ -57,7 +58,7 @@ fn images(scene: &Arc<Scene>, precision: &str, first: u64, spp: u32) -> Vec<(Vec
     })
 }
 
-/// Mean and variance of the mean.
+/// The mean of the values, and the variance of this mean.
 fn mean_of(values: impl ExactSizeIterator<Item = f64> + Clone) -> (f64, f64) {
     let n = values.len() as f64;
     let mean = values.clone().sum::<f64>() / n;
@@ -65,7 +66,7 @@ fn mean_of(values: impl ExactSizeIterator<Item = f64> + Clone) -> (f64, f64) {
     (mean, squares / (n - 1.0) / n)
 }
 
-/// How far the mean square of the pixels' t is from what it should be, in standard deviations.
+/// Deviation of the mean square of the pixels' t from its expectation, in standard deviations.
 fn score(single: &[(Vec<f64>, Counts)], double: &[(Vec<f64>, Counts)]) -> f64 {
     let degrees = (2 * SEEDS - 2) as f64;
     let expected = degrees / (degrees - 2.0);
@@ -77,7 +78,7 @@ fn score(single: &[(Vec<f64>, Counts)], double: &[(Vec<f64>, Counts)]) -> f64 {
         };
         let ((m1, v1), (m2, v2)) = (of(single), of(double));
         if (v1 + v2).sqrt() <= ROUNDING * m2.abs() {
-            // All samples of it are the same but for rounding: a light, seen directly or in mirrors.
+            // All samples of this pixel are equal except for rounding: a light, seen directly or in mirrors.
             assert!((m1 - m2).abs() <= 8.0 * ROUNDING * m2.abs(), "pixel {pixel}: {m1}, {m2}");
             continue;
         }
@@ -87,7 +88,8 @@ fn score(single: &[(Vec<f64>, Counts)], double: &[(Vec<f64>, Counts)]) -> f64 {
     (sum / pixels - expected) / (variance / pixels).sqrt()
 }
 
-/// Family-wise 1e-3, two-sided. Few samples have heavy tails, which make t smaller than Student's: then only too large is wrong.
+/// Family-wise 1e-3, two-sided. Few samples have heavy tails, which make t smaller than Student's: then only too large
+/// a score is wrong.
 #[test]
 fn pixels_of_single_precision_converge_to_those_of_double() {
     let watchdog = Watchdog::new(Duration::from_mins(if is_thorough() { 60 } else { 5 }));
@@ -116,7 +118,7 @@ fn pixels_of_single_precision_converge_to_those_of_double() {
     }
 }
 
-/// With the same seeds most paths are nearly the same, and the mean over the image shows what rounding does to it.
+/// With the same seeds most paths are nearly the same, so the mean over the image shows the effect of rounding.
 #[test]
 fn single_precision_makes_cornell_neither_lighter_nor_darker() {
     let watchdog = Watchdog::new(Duration::from_mins(30));

@@ -1,4 +1,4 @@
-//! What is written is read again, to the bit; and no text makes a parser panic.
+//! Files: written data is read back to the bit, and no text makes a parser panic.
 
 use super::cases;
 use pathmark::Lab;
@@ -11,7 +11,7 @@ use pathmark::measure::{Record, SCHEMA};
 use proptest::prelude::*;
 use std::fs;
 
-/// Text with all that a format could stumble over.
+/// Text with characters that could break a format.
 fn text() -> impl Strategy<Value = String> {
     prop_oneof!["[ -~]{0,20}", "[\"',;\\\\\n\r\t#= ]{0,8}", any::<String>()]
 }
@@ -100,7 +100,7 @@ proptest! {
         prop_assert_eq!(found, film);
     }
 
-    /// Rows with any words and numbers are the same rows when they are read, also by a sweep that goes on.
+    /// Rows with any texts and numbers are read back unchanged, also when a sweep resumes.
     #[test]
     fn records_come_back(
         rows in prop::collection::vec((text(), text(), number(), prop::option::of(number()), any::<u64>(), prop::option::of(any::<u64>())), 1..5),
@@ -148,7 +148,7 @@ proptest! {
 proptest! {
     #![proptest_config(cases(30))]
 
-    /// Bytes of any kind, as scene and as every other file.
+    /// Arbitrary bytes, as a scene and as every other file.
     #[test]
     fn no_bytes_make_a_reader_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let folder = tempfile::tempdir().expect("a folder");

@@ -10,7 +10,7 @@ fn vector(limit: f64) -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(-limit..limit).prop_map(Vec3::from)
 }
 
-/// A unit vector; the axes, where components vanish, come often.
+/// A unit vector; the axes, where components vanish, are frequent.
 fn direction() -> impl Strategy<Value = Vec3> {
     let axis = (0..3_usize, any::<bool>()).prop_map(|(axis, negative)| {
         let mut d = [0.0; 3];
@@ -38,7 +38,7 @@ fn sphere() -> impl Strategy<Value = Sphere> {
     (vector(100.0), size()).prop_map(|(center, radius)| Sphere { center, radius })
 }
 
-/// A triangle that is no sliver.
+/// A triangle that is not a sliver.
 fn triangle() -> impl Strategy<Value = Triangle> {
     let corners = (vector(10.0), vector(10.0), vector(10.0));
     corners.prop_map(|(a, b, c)| Triangle { corners: [a, b, c] }).prop_filter("an area", |triangle| {
@@ -51,7 +51,7 @@ fn triangle() -> impl Strategy<Value = Triangle> {
 proptest! {
     #![proptest_config(cases(8000))]
 
-    /// From inside there is always a way out, no longer than the diameter; the second root from there is as far again.
+    /// A ray from inside always hits the sphere, at most a diameter away, at a point of its surface.
     #[test]
     fn a_sphere_surrounds_what_is_inside(sphere in sphere(), at in vector(1.0), direction in direction()) {
         let inside = at * (0.999 / length(at).max(1.0));
@@ -62,7 +62,7 @@ proptest! {
         prop_assert!((from_center - sphere.radius).abs() <= 1e-9 * sphere.radius.max(1.0), "{from_center}");
     }
 
-    /// A ray at a point inside hits on the way there; one that goes away from the sphere does not.
+    /// A ray towards a point inside hits the sphere before that point. A ray away from the sphere does not hit it.
     #[test]
     fn a_sphere_is_met_on_the_way_to_its_inside(sphere in sphere(), at in vector(1.0), out in direction(), far in 1.01..1e3_f64) {
         let target = sphere.center + at * (0.9 * sphere.radius / length(at).max(1.0));
@@ -75,7 +75,7 @@ proptest! {
         prop_assert!(away.is_nan() || away <= 0.0, "{away}");
     }
 
-    /// A scene in other units is the same scene: powers of two change no bit.
+    /// Scaling a scene by a power of two changes no bit of its hits.
     #[test]
     fn spheres_and_triangles_scale_exactly(
         sphere in sphere(), triangle in triangle(), origin in vector(100.0), direction in direction(), k in -40..40_i32,
@@ -87,7 +87,8 @@ proptest! {
         prop_assert_eq!(bits(meet(&triangle, &ray) * factor), bits(meet(&triangle.scaled(factor), &scaled)));
     }
 
-    /// Barycentric coordinates say what is hit, and the corners' order does not matter.
+    /// The barycentric coordinates of the target decide between hit and miss, and the order of the corners does not
+    /// matter.
     #[test]
     fn a_triangle_is_hit_inside_and_missed_outside(
         triangle in triangle(), (u, v) in (-1.0..2.0_f64, -1.0..2.0_f64), origin in vector(30.0), turn in 0..3_usize,
@@ -136,7 +137,8 @@ proptest! {
         prop_assert!(length(frame.to_world(frame.to_local(v)) - v) <= 1e-13 * length(v).max(1e-3));
     }
 
-    /// Snell's law, the way back, and a reflectance that is a share, the same from both sides.
+    /// Snell's law holds, and the reverse ray refracts back. The reflectance lies between 0 and 1 and is the same from
+    /// both sides.
     #[test]
     fn refraction_obeys_snell_and_can_be_undone(cos in 0.01..1.0_f64, turns in 0.0..1.0_f64, eta in 0.2..5.0_f64) {
         let sin = (1.0 - cos * cos).sqrt();
@@ -162,7 +164,7 @@ proptest! {
 proptest! {
     #![proptest_config(cases(60))]
 
-    /// Whatever accelerates the search finds what testing every primitive finds, to the bit.
+    /// Every hierarchy finds the hits that testing every primitive finds, to the bit.
     #[test]
     fn hierarchies_find_what_there_is(
         spheres in prop::collection::vec(sphere(), 0..30), triangles in prop::collection::vec(triangle(), 1..60),

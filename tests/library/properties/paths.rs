@@ -1,12 +1,12 @@
-//! Paths that nothing ends.
+//! Endless paths.
 
 use pathmark::estimator::{ESTIMATORS, MAX_BOUNCES};
 use pathmark::kernel::{KERNELS, Spec};
 use pathmark::measure::{Settings, Setup};
 use std::fs;
 
-/// P01, P03 in fog: where it scatters everything and absorbs nothing, a path comes to the last vertex that there can be, is cut there, and is
-/// counted.
+/// P01, P03 in fog: if it scatters everything and absorbs nothing, a path reaches the maximum number of vertices, is
+/// cut there, and is counted.
 #[test]
 fn paths_in_endless_fog_are_cut_and_counted() {
     let folder = tempfile::tempdir().unwrap();

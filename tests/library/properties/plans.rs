@@ -1,4 +1,4 @@
-//! Films cut into pieces, jobs handed out: everything once.
+//! Films cut into pieces and jobs handed out to workers: each sample and each job exactly once.
 
 use super::cases;
 use pathmark::film::{DECOMPOSITIONS, Decomposition, Plan, SAMPLE_BLOCK, sections};
@@ -8,7 +8,7 @@ use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Texts of every line of the table, with numbers of their own where a line has any.
+/// Texts for every line of the table, with random numbers as parameters where a line has any.
 fn decomposition() -> impl Strategy<Value = String> {
     let orders = prop::sample::select(&["", ":scanline", ":hilbert", ":spiral", ":cost"]);
     let numbers = (1..90_u32, 1..40_u32, 1..40_u32, 0..4_u32, orders);
@@ -22,7 +22,7 @@ fn decomposition() -> impl Strategy<Value = String> {
     })
 }
 
-/// What is wrong with a plan, if anything: each sample of each pixel must be in one piece.
+/// The problem of a plan, if any: each sample of each pixel must be in exactly one piece.
 fn problem(plan: &Plan, width: u32, height: u32, samples: u32) -> Option<String> {
     let mut covered = vec![Vec::new(); width as usize * height as usize];
     for piece in plan.pieces() {
@@ -58,7 +58,7 @@ proptest! {
         prop_assert_eq!(decomposition.name(), &text);
         let plan = decomposition.plan(width, height, &(0..samples));
         prop_assert_eq!(problem(&plan, width, height, samples), None, "{}", text);
-        // Whatever the pieces cost, the dearest come first and none is lost.
+        // For any costs, the most expensive pieces come first, and none is lost.
         let cost = |k: usize| (costs.rotate_left(k as u32) % 7) as f64;
         let costs: Vec<f64> = (0..plan.len()).map(cost).collect();
         let sorted = plan.clone().longest_first(&costs);
@@ -75,11 +75,11 @@ proptest! {
         let found = sections(&samples);
         let ends = [samples.start].into_iter().chain(found.iter().map(|section| section.end));
         prop_assert!(ends.eq(found.iter().map(|section| section.start).chain([samples.end])), "{found:?}");
-        // A run of samples has two slopes of subtrees at most, up and down.
+        // A range of samples has at most two slopes of subtrees, up and down.
         prop_assert!(found.len() <= 2 * 32);
     }
 
-    /// What each strategy says that it will do with its jobs has each of them once.
+    /// The announced discipline of each strategy hands out every job once.
     #[test]
     fn disciplines_hand_out_every_job_once(jobs in 0..3000_usize, workers in 1..70_usize) {
         for entry in STRATEGIES {
@@ -94,7 +94,7 @@ proptest! {
                     prop_assert!(handed.into_iter().eq(0..jobs), "{}", entry.name);
                 }
                 Discipline::Learned(rule) => {
-                    // Each worker in turn tells another speed.
+                    // Each worker in turn reports a different speed.
                     let (mut ledger, mut handed) = (Ledger::new(jobs, workers, rule.weights), Vec::new());
                     for worker in (0..workers).cycle() {
                         let Some(chunk) = rule.next(&mut ledger, worker) else { break };
@@ -115,7 +115,7 @@ proptest! {
 proptest! {
     #![proptest_config(cases(40))]
 
-    /// F12: no job, one, fewer than threads, many.
+    /// F12: no job, one job, fewer jobs than threads, many jobs.
     #[test]
     fn strategies_run_every_job_once(jobs in prop_oneof![0..4_usize, 0..40_usize, 0..700_usize], threads in 1..9_usize) {
         for entry in STRATEGIES {

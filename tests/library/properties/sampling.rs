@@ -46,7 +46,7 @@ proptest! {
         prop_assert!((-1.0..=1.0).contains(&tent(u[0])));
     }
 
-    /// Half a turn further is the other side, at the same height.
+    /// Adding half a turn gives the opposite side, at the same height.
     #[test]
     fn half_a_turn_further_is_opposite([u, v] in pair()) {
         let (here, there) = (cosine_hemisphere([0.5 * u, v]), cosine_hemisphere([0.5 * u + 0.5, v]));
@@ -58,7 +58,8 @@ proptest! {
 proptest! {
     #![proptest_config(cases(600))]
 
-    /// Every direction that a material chooses is one, with a finite weight that is nowhere below zero, on the right side.
+    /// Every sampled direction has length 1 and lies on the right side, and its weight is finite and at least zero in
+    /// each channel.
     #[test]
     fn materials_choose_directions(cos in 1e-3..=1.0_f64, turns in 0.0..1.0_f64, inside in any::<bool>(), u in pair()) {
         let (s, c) = sin_cos_turns(turns);
@@ -88,14 +89,14 @@ fn sum(values: &[[f64; 3]]) -> PixelSum {
 proptest! {
     #![proptest_config(cases(300))]
 
-    /// A pixel's samples may be shared out at any multiple of a power of two of blocks: the sum has the same bits, and is right.
+    /// A pixel's samples may be divided into parts of 2^k blocks each: the sum has the same bits, and is right.
     #[test]
     fn sums_do_not_depend_on_who_adds_them(
         values in prop::collection::vec(prop::array::uniform3(0.0..1e6_f64), 1..300), level in 0..5_u32,
     ) {
         let part = (SAMPLE_BLOCK << level) as usize;
         let whole = sum(&values);
-        // Parts are combined like the digits of a binary counter, which is what the sum of so many blocks does.
+        // Parts are combined like the digits of a binary counter, as the sum of single blocks is.
         let mut trees: Vec<(usize, PixelSum)> = Vec::new();
         for chunk in values.chunks(part) {
             let mut tree = (1, sum(chunk));

@@ -1,8 +1,8 @@
-//! Every deterministic sampler of the table, judged by what the estimators rely on besides the hard cases (`src/check/random_numbers`): nets,
-//! strata, rates, and what uses do together.
+//! Every deterministic sampler of the table, tested for the properties that estimators need besides the hard cases
+//! (`src/check/random_numbers`): nets, strata, convergence rates, and the joint distribution of uses.
 //!
-//! Every group of tests has a family-wise level of 1e-3 (Sidak), two-sided: numbers that are too even are as wrong as numbers that are not
-//! even enough. Seeds are fixed, so a pass is reproducible.
+//! Every group of tests has a family-wise level of 1e-3 (Sidak), two-sided: numbers that are too even are as wrong as
+//! numbers that are too uneven. Seeds are fixed, so a pass is reproducible.
 
 mod nets;
 mod projections;
@@ -24,7 +24,7 @@ fn all_keyed() -> Vec<Named> {
     keyed_ones.map(|entry| (entry.name, keyed(entry.name))).collect()
 }
 
-/// A use of numbers along a path.
+/// A use of random numbers along a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Use {
     bounce: u16,
@@ -34,7 +34,7 @@ struct Use {
 
 const PURPOSES: [Purpose; 4] = [Purpose::Film, Purpose::Bsdf, Purpose::Roulette, Purpose::Medium];
 
-/// 64 numbers: four purposes at eight bounces.
+/// The uses of 64 random numbers: four purposes at eight bounces.
 fn first_uses() -> Vec<Use> {
     (0..8).flat_map(|bounce| PURPOSES.map(|purpose| Use { bounce, branch: 0, purpose })).collect()
 }

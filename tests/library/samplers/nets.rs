@@ -1,10 +1,10 @@
-//! How a few samples of one pixel share out the square: exact counts.
+//! Distribution of a few samples of one pixel over the square: exact counts.
 
 use super::{Use, all_keyed, keyed};
 use pathmark::sampling::{Purpose, Sampler};
 use std::ops::Range;
 
-/// Uses near and far, of main paths and branches.
+/// Uses at early and late bounces, of main paths and branches.
 const USES: [Use; 6] = [
     Use { bounce: 0, branch: 0, purpose: Purpose::Film },
     Use { bounce: 1, branch: 0, purpose: Purpose::Bsdf },
@@ -25,7 +25,7 @@ fn sobols() -> impl Iterator<Item = (Box<dyn Sampler>, (u64, u32))> {
     ["sobol", "sobol-burley"].into_iter().flat_map(|name| KEYS.map(|key| (keyed(name), key)))
 }
 
-/// Whether each of `columns` x `rows` equal cells has exactly one of the points.
+/// Whether each of `columns` x `rows` equal cells contains exactly one of the points.
 fn one_in_each_cell(points: &[[f64; 2]], columns: u32, rows: u32) -> bool {
     let mut seen = vec![false; points.len()];
     let place =
@@ -33,8 +33,8 @@ fn one_in_each_cell(points: &[[f64; 2]], columns: u32, rows: u32) -> bool {
     points.iter().all(|point| !std::mem::replace(&mut seen[place(*point)], true))
 }
 
-/// A (0, 2)-sequence in base 2: aligned blocks of 2^m samples, first ones and far beyond 2^16, on every grid of 2^m cells. (Blocks of
-/// two are none for the first uses: their fours are in any order.)
+/// A (0, 2)-sequence in base 2: aligned blocks of 2^m samples, from the first to far beyond 2^16, on every grid of 2^m
+/// cells. (Blocks of two are not nets for the first uses, because their fours are in any order.)
 #[test]
 fn sobol_pairs_are_nets_on_every_grid() {
     for (sampler, key) in sobols() {
@@ -53,8 +53,9 @@ fn sobol_pairs_are_nets_on_every_grid() {
     }
 }
 
-/// The place in the pixel and the first direction together: (0, 4)-sequences in base 4, and those of each subpixel (1, m - 1, 4)-nets. So
-/// of 4^m samples every grid of 4^m cells has one in each, and of a subpixel's every grid of 4^(m-2) cells four.
+/// The position in the pixel and the first direction together form (0, 4)-sequences in base 4, and the samples of each
+/// subpixel form (1, m - 1, 4)-nets. So 4^m samples have one in each cell of every grid of 4^m cells, and the samples
+/// of a subpixel have four in each cell of every grid of 4^(m-2) cells.
 #[test]
 fn the_leading_sobol_pairs_are_nets_together() {
     for (sampler, key) in sobols() {
@@ -82,7 +83,7 @@ fn splits(sum: u32) -> impl Iterator<Item = [u32; 4]> {
     three.map(move |[a, b, c]| [a, b, c, sum - a - b - c])
 }
 
-/// Whether each cell of the grid of 4^a x 4^b x 4^c x 4^d cells has `each` of the points.
+/// Whether each cell of the grid of 4^a x 4^b x 4^c x 4^d cells contains `each` of the points.
 fn evenly(points: &[[f64; 4]], grid: [u32; 4], each: u32) -> bool {
     let mut counts = vec![0; 1 << (2 * grid.iter().sum::<u32>())];
     for point in points {
@@ -95,7 +96,7 @@ fn evenly(points: &[[f64; 4]], grid: [u32; 4], each: u32) -> bool {
     counts.iter().all(|count| *count == each)
 }
 
-/// Each 16 samples have one in each of 4x4 cells, and nobody sees a pattern in their order: another 16 have another.
+/// Each 16 samples have one in each of 4x4 cells. Their order shows no pattern: every block has a different one.
 #[test]
 fn stratified_samples_share_out_the_cells() {
     let sampler = keyed("stratified");
@@ -114,8 +115,8 @@ fn stratified_samples_share_out_the_cells() {
     }
 }
 
-/// smallpt's camera gives every fourth sample the same subpixel: those alone must reach the whole square. In Sobol's own order they
-/// stay in a quarter of it.
+/// smallpt's camera gives every fourth sample the same subpixel, so these samples alone must cover the whole square.
+/// In Sobol's original order they stay in a quarter of it.
 #[test]
 fn every_fourth_sample_sees_the_whole_square() {
     for (name, sampler) in all_keyed() {
@@ -126,7 +127,7 @@ fn every_fourth_sample_sees_the_whole_square() {
                     for [u, v] in points(&*sampler, key, used, 0..2048).iter().skip(subpixel).step_by(4) {
                         cells[(u * 4.0) as usize + 4 * (v * 4.0) as usize] += 1;
                     }
-                    // 32 in each on average; fewer than 8 are as good as impossible.
+                    // 32 in each on average; fewer than 8 are practically impossible.
                     let least = cells.iter().min().unwrap();
                     assert!(*least >= 8, "{name} {key:?} {used:?} subpixel {subpixel}: {cells:?}");
                 }
@@ -135,7 +136,7 @@ fn every_fourth_sample_sees_the_whole_square() {
     }
 }
 
-/// The extremes: numbers stay in [0, 1) for every index, seed and pixel that there is.
+/// Random numbers stay in [0, 1) for extreme indices, seeds and pixels.
 #[test]
 fn numbers_stay_below_one() {
     for (name, sampler) in all_keyed() {

@@ -1,4 +1,4 @@
-//! Numbers of different uses have nothing to do with each other: every two of the first 64.
+//! Independence of the random numbers of different uses: every pair of the first 64.
 
 use super::{LEVEL, Use, all_keyed, first_uses};
 use pathmark::analysis::randomness::correlation::of_uniform;
@@ -8,13 +8,14 @@ use pathmark::sampling::{REFERENCE_SEEDS, Sampler};
 const NUMBERS: usize = 64;
 const PAIRS: usize = NUMBERS * (NUMBERS - 1) / 2;
 
-/// The first 64 numbers of a sample, less 1/2.
+/// The first 64 numbers of a sample, minus 1/2.
 fn numbers(sampler: &dyn Sampler, uses: &[Use], seed: u64, pixel: u32, sample: u32) -> Vec<f64> {
     uses.iter().flat_map(|used| sampler.pair(used.of(seed, pixel, sample))).map(|u| u - 0.5).collect()
 }
 
-/// Within a pixel, two uses go together no more than chance has it: over the pixels their correlation has mean 0 and a variance near that
-/// of independent samples. Uses that visit one sequence in the same order have 64 times that, though each sample by itself is fine.
+/// Within a pixel, two uses are uncorrelated: over the pixels their correlation has mean 0 and a variance near that of
+/// independent samples. Uses that visit one sequence in the same order have 64 times this variance, though each sample
+/// alone is fine.
 #[test]
 fn uses_do_not_go_together_within_a_pixel() {
     const SAMPLES: u32 = 64;
@@ -48,7 +49,8 @@ fn uses_do_not_go_together_within_a_pixel() {
     }
 }
 
-/// Noise of neighbours, of the pixel below and of other seeds, references among them, is unrelated: sample 0 and sample 5 of each pixel.
+/// A pixel's noise is independent of the noise of its neighbour, of the pixel below and of other seeds, including
+/// references: samples 0 and 5.
 #[test]
 fn pixels_and_seeds_share_no_noise() {
     const WIDTH: u32 = 256;

@@ -1,4 +1,4 @@
-//! How fast errors fall: RMSE over scramblings against samples, on two logarithmic axes.
+//! Convergence rates: RMSE over scramblings against samples, on logarithmic axes.
 
 use super::{Use, keyed};
 use pathmark::analysis::fit::log_log;
@@ -7,7 +7,7 @@ use pathmark::sampling::{Purpose, Sampler};
 const LIGHT: Use = Use { bounce: 1, branch: 0, purpose: Purpose::Bsdf };
 const FILM: Use = Use { bounce: 0, branch: 0, purpose: Purpose::Film };
 
-/// Root of the mean squared error over 64 pixels after 4, 16, ... 4096 samples.
+/// Root mean squared error over 64 pixels after 4, 16, ... 4096 samples.
 fn errors(sampler: &dyn Sampler, mean: f64, value: impl Fn(&dyn Sampler, u32, u32) -> f64) -> Vec<(f64, f64)> {
     let mut squares = [0.0; 6];
     for pixel in 0..64 {
@@ -28,8 +28,8 @@ fn slope(name: &str, mean: f64, value: impl Fn(&dyn Sampler, u32, u32) -> f64) -
     log_log(&errors(&*keyed(name), mean, value), 0.95).unwrap().slope.value
 }
 
-/// A smooth function of one pair: independent samples along -1/2, and so strata of a fixed number; scrambled nets along -3/2 (Owen,
-/// "Scrambled net variance for integrals of smooth functions", 1997).
+/// A smooth function of one pair. Independent samples, and strata of a fixed number, have the slope -1/2; scrambled
+/// nets have -3/2 (Owen, "Scrambled net variance for integrals of smooth functions", 1997).
 #[test]
 fn smooth_functions_of_a_pair() {
     let value = |sampler: &dyn Sampler, pixel, sample| {
@@ -47,14 +47,15 @@ fn smooth_functions_of_a_pair() {
     }
 }
 
-/// Gauss's two nodes in each sixteenth of [0, 1]: means of the function below to 1e-11.
+/// Two Gauss nodes in each sixteenth of [0, 1]: they give the mean of the function below to 1e-11.
 fn nodes() -> [f64; 32] {
     let half = 0.5 / 3.0_f64.sqrt();
     std::array::from_fn(|k| ((k / 2) as f64 + 0.5 + if k % 2 == 0 { -half } else { half }) / 16.0)
 }
 
-/// Light from a small square on a plane, over a pixel with four subpixels: four numbers, of which two move the point a little. The place
-/// in the pixel and the first direction are one sequence, so what they do together falls as fast as the rest.
+/// Light from a small square on a plane, over a pixel with four subpixels: four numbers, of which two move the point
+/// slightly. The position in the pixel and the first direction are one sequence, so their joint error falls as fast as
+/// the rest.
 #[test]
 fn smooth_functions_of_two_pairs() {
     // The light is a quarter wide and two units above.

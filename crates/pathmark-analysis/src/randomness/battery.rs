@@ -1,27 +1,27 @@
-//! Tests of the leading 53 bits of numbers, such as batteries of tests of generators are made of (Marsaglia, 1985).
+//! Tests of random numbers of 53 bits, like those in batteries of tests of generators (Marsaglia, 1985).
 
 use super::repeats::repeated_words;
 use crate::chi_square::{against, even};
 
-/// Each of the leading six bytes.
+/// Tests whether each of the leading six bytes is evenly distributed.
 pub fn bytes(numbers: &[u64]) -> f64 {
     let mut cells = vec![0; 6 * 256];
     for number in numbers {
         (0..6).for_each(|byte| cells[256 * byte + (number >> (45 - 8 * byte) & 0xFF) as usize] += 1);
     }
     let scores: f64 = cells.chunks(256).map(even).sum();
-    // A byte that is always the same beside one that is all too even.
+    // Not a number: a constant byte (score infinity) together with one that is far too even (score minus infinity).
     if scores.is_nan() { f64::INFINITY } else { scores / 6.0_f64.sqrt() }
 }
 
-/// The first bytes of two in a row.
+/// Tests whether the first bytes of two successive numbers are evenly distributed.
 pub fn pairs(numbers: &[u64]) -> f64 {
     let mut cells = vec![0; 1 << 16];
     numbers.chunks_exact(2).for_each(|two| cells[(two[0] >> 45 << 8 | two[1] >> 45) as usize] += 1);
     even(&cells)
 }
 
-/// The worst of the 53 leading bits, which should be 1 half of the time.
+/// Returns the score farthest from 0 among the 53 leading bits, each of which should be 1 half of the time.
 pub fn single_bits(numbers: &[u64]) -> f64 {
     let n = numbers.len() as f64;
     let score = |bit: u32| {
@@ -31,7 +31,8 @@ pub fn single_bits(numbers: &[u64]) -> f64 {
     (0..53).map(score).fold(0.0, |worst: f64, z| if z.abs() > worst.abs() { z } else { worst })
 }
 
-/// Marsaglia's birthday spacings: of 4096 birthdays in a year of 2^32 days the spacings have 4096³/2^34 = 4 repetitions on average.
+/// Marsaglia's birthday spacings: the spacings of 4096 birthdays in a year of 2^32 days have 4096³/2^34 = 4 repetitions
+/// on average.
 pub fn birthdays(numbers: &[u64]) -> f64 {
     let mut repeated = 0.0;
     let groups = numbers.chunks_exact(4096);
@@ -44,7 +45,7 @@ pub fn birthdays(numbers: &[u64]) -> f64 {
     (repeated - expected) / expected.sqrt()
 }
 
-/// How many of 32 rows of bits are independent.
+/// Returns the number of linearly independent rows among 32 rows of bits.
 fn rank(mut rows: [u32; 32]) -> usize {
     let mut rank = 0;
     for column in 0..32 {
@@ -57,7 +58,7 @@ fn rank(mut rows: [u32; 32]) -> usize {
     rank
 }
 
-/// Of random matrices of 32 by 32 bits 28.88 % have full rank and 57.76 % one less.
+/// Tests the ranks of matrices of 32 by 32 bits: 28.88 % of random ones have full rank and 57.76 % one less.
 pub fn ranks(numbers: &[u64]) -> f64 {
     let mut cells = [0.0; 3];
     for group in numbers.chunks_exact(32) {
@@ -76,7 +77,7 @@ mod tests {
 
     type Test = fn(&[u64]) -> f64;
 
-    /// A generator that is in order passes each, and numbers that count fail each, on one side or the other.
+    /// A sound generator passes each test. A counter fails each, on one side or the other.
     #[test]
     fn each_test_tells_random_numbers_from_others() {
         let tests: [(&str, Test); 5] =
@@ -85,7 +86,7 @@ mod tests {
         let random: Vec<u64> = (0..1 << 18).map(|_| generator.next_u64() >> 11).collect();
         let counted: Vec<u64> = (0..1 << 18).map(|k| k << 30).collect();
         for (name, test) in tests {
-            // The worst of 53 bits is the largest; 5 deviations are one in a million.
+            // The score of the bits is the largest of 53; 5 standard deviations occur once in a million.
             assert!(test(&random).abs() < 5.0, "{name}: {}", test(&random));
             assert!(test(&counted).abs() > 50.0, "{name}: {}", test(&counted));
         }

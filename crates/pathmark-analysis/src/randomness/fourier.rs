@@ -1,4 +1,4 @@
-//! Correlations of two square images at all lags at once, by Fourier's transform (Cooley and Tukey, 1965).
+//! Correlations of two square images at all lags at once, by the fast Fourier transform (Cooley and Tukey, 1965).
 
 use std::f64::consts::TAU;
 
@@ -13,7 +13,7 @@ fn times([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
     [a * c - b * d, a * d + b * c]
 }
 
-/// The powers of the n-th root of 1, the first half of them.
+/// Returns the first n / 2 powers of the n-th root of 1.
 fn roots(n: usize) -> Vec<[f64; 2]> {
     let root = |k: usize| {
         let (sin, cos) = libm::sincos(TAU * k as f64 / n as f64);
@@ -22,7 +22,7 @@ fn roots(n: usize) -> Vec<[f64; 2]> {
     (0..n / 2).map(root).collect()
 }
 
-/// The transform of a power of two of numbers, in place.
+/// Transforms `line` in place; its length is a power of two.
 fn transform(line: &mut [[f64; 2]], roots: &[[f64; 2]]) {
     let n = line.len();
     let bits = n.trailing_zeros();
@@ -47,7 +47,7 @@ fn transform(line: &mut [[f64; 2]], roots: &[[f64; 2]]) {
 }
 
 impl Square {
-    /// A square of real numbers, `side` rows of them.
+    /// Creates a square from `side` rows of real numbers.
     pub fn new(side: usize, values: impl Iterator<Item = f64>) -> Self {
         debug_assert!(side.is_power_of_two());
         Self { side, values: values.map(|x| [x, 0.0]).collect() }
@@ -59,7 +59,7 @@ impl Square {
         Self { side, values }
     }
 
-    /// Its transform.
+    /// Returns its two-dimensional transform.
     #[must_use]
     pub fn transformed(mut self) -> Self {
         let roots = roots(self.side);
@@ -71,10 +71,12 @@ impl Square {
     }
 }
 
-/// The sums of products of two images, one of them moved by every lag in turn and coming in again on the other side, from their transforms.
+/// Returns the sums of products of two images at every lag, from their transforms. The lags are cyclic shifts of one
+/// image.
 pub fn correlations(a: &Square, b: &Square) -> Vec<f64> {
     let values = a.values.iter().zip(&b.values).map(|(a, b)| times([a[0], -a[1]], *b)).collect();
-    // Backwards is forwards up to the sign of the lag and a factor; the signs are both there.
+    // The forward transform replaces the inverse: they differ by a factor and the sign of the lag, and lags of both
+    // signs are present.
     let lags = Square { side: a.side, values }.transformed();
     let scale = 1.0 / (a.side * a.side) as f64;
     lags.values.iter().map(|value| value[0] * scale).collect()
@@ -84,7 +86,7 @@ pub fn correlations(a: &Square, b: &Square) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Against sums as they stand in the definition.
+    /// Compares with sums as the definition gives them.
     #[test]
     fn sums_of_products() {
         let side = 8;

@@ -1,4 +1,5 @@
-//! Whether numbers are as random as they should be: scores that are standard normal if they are, and far from 0 on either side if not.
+//! Tests of random numbers: scores that are standard normal for random numbers, and far from 0 on either side for
+//! others.
 
 pub mod battery;
 pub mod correlation;

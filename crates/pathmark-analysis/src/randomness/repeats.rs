@@ -1,16 +1,16 @@
-//! Numbers that have come before.
+//! Repetitions: counts of values that have occurred before.
 
 fn repeats<T: Ord>(mut all: Vec<T>) -> u64 {
     all.sort_unstable();
     all.windows(2).filter(|two| two[0] == two[1]).count() as u64
 }
 
-/// How many of some keys of at most 128 bits have come before.
+/// Counts the keys, of at most 128 bits, that have occurred before.
 pub fn repeated(all: Vec<u128>) -> u64 {
     repeats(all)
 }
 
-/// How many of some words of 32 bits have come before.
+/// Counts the words of 32 bits that have occurred before.
 pub fn repeated_words(all: Vec<u32>) -> u64 {
     repeats(all)
 }

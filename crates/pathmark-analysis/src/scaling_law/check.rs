@@ -1,9 +1,9 @@
-//! Whether a fitted law describes the points: the residuals against the scatter of the repetitions.
+//! Lack of fit: whether a fitted law describes the points, by its residuals and the scatter of the repetitions.
 //!
-//! The F test for lack of fit (N. R. Draper and H. Smith, "Applied Regression Analysis", 1998, 2.1): the weighted sum of squares around the
-//! curve is that of the repetitions around their means, the pure error, with n - m degrees of freedom, and that of the means around the
-//! curve, with m - q, for n repetitions at m worker counts and q parameters. If the law holds, the quotient of their mean squares follows
-//! F(m - q, n - m).
+//! The F test for lack of fit (N. R. Draper and H. Smith, "Applied Regression Analysis", 1998, 2.1) splits the weighted
+//! sum of squares around the curve in two. For n repetitions at m worker counts and q parameters, the repetitions
+//! around their means, the pure error, have n - m degrees of freedom, and the means around the curve have m - q. If the
+//! law holds, the mean square of the means over the mean square of the repetitions follows F(m - q, n - m).
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
@@ -11,24 +11,25 @@ use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use super::{Law, estimator};
 use crate::mean::Moments;
 
-/// The law is rejected if residuals this large are less likely than this while it holds.
+/// The law is rejected if its p-value is below this significance.
 pub const SIGNIFICANCE: f64 = 0.05;
 
-/// What the residuals say.
+/// The outcome of the test.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Check {
-    /// The residuals are no larger than the scatter of the repetitions explains.
+    /// The scatter of the repetitions explains the residuals.
     Passed {
         /// Probability of residuals at least this large if the law holds.
         p_value: f64,
     },
-    /// The points lie off the curve: the law does not describe them, whatever its parameters say.
+    /// The residuals are larger than the scatter explains: the law does not describe the points, whatever its
+    /// parameters are.
     Rejected {
         /// Probability of residuals at least this large if the law holds.
         p_value: f64,
     },
-    /// As many parameters as worker counts: the curve goes through every point, whether or not the law holds.
+    /// The law has as many parameters as there are worker counts, so the curve passes through every point.
     NotPossible,
 }
 
@@ -53,7 +54,7 @@ impl std::fmt::Display for Check {
     }
 }
 
-/// The test for parameters that were fitted to these groups.
+/// Tests a law with parameters that were fitted to these groups.
 pub(super) fn lack_of_fit(law: Law, parameters: [f64; 2], workers: &[f64], groups: &[Vec<f64>]) -> Check {
     let repetitions: usize = groups.iter().map(Vec::len).sum();
     let free_means = workers.len().saturating_sub(law.parameters().len());

@@ -17,7 +17,8 @@ pub(super) fn predicted(law: Law, [first, second]: [f64; 2], workers: f64) -> f6
     first * (workers - 1.0) + second * pairs
 }
 
-/// How much a square at this p counts: errors are a share of S, so those of p / S and of S itself are a share of their means.
+/// The weight of a squared residual at this p. Errors are proportional to S, so the errors of p / S and of S are
+/// proportional to their means.
 pub(super) fn weight(law: Law, workers: f64, mean_lost: f64) -> f64 {
     let size = match law {
         Law::Gustafson => workers - mean_lost,
@@ -26,15 +27,17 @@ pub(super) fn weight(law: Law, workers: f64, mean_lost: f64) -> f64 {
     1.0 / (size * size)
 }
 
-/// The parameters that make the weighted sum of squares smallest, in the order of [`Law::parameters`]; the second is 0 for a law with one.
+/// The parameters that minimise the weighted sum of squares, in the order of [`Law::parameters`]; the second is 0 for a
+/// law with one.
 ///
-/// Solved by the normal equations after the second regressor has been made orthogonal to the first; `None` if they are parallel.
+/// The normal equations are solved after the second regressor has been made orthogonal to the first; `None` if they are
+/// parallel.
 pub(super) fn parameters(law: Law, workers: &[f64], groups: &[Vec<f64>]) -> Option<[f64; 2]> {
     let mut rows = Vec::with_capacity(workers.len());
     for (&p, group) in workers.iter().zip(groups) {
         let each: Vec<f64> = group.iter().map(|&speedup| lost(law, p, speedup)).collect();
         let mean = Moments::of(&each).mean()?;
-        // Within a group only the mean matters: the scatter around it adds the same to every sum of squares.
+        // Only the mean of a group matters: the scatter around it adds the same to every sum of squares.
         rows.push((weight(law, p, mean) * group.len() as f64, p - 1.0, p * (p - 1.0), mean));
     }
     let sum = |term: &dyn Fn(f64, f64, f64) -> f64| rows.iter().map(|&(w, a, b, y)| w * term(a, b, y)).sum::<f64>();

@@ -1,20 +1,22 @@
-//! Laws of speedup fitted to measured speedups, and whether they may be believed.
+//! Speedup laws: fits to measured speedups, with a check of each fit.
 //!
 //! * Amdahl: S = 1 / (s + (1 - s) / p) (G. M. Amdahl, "Validity of the single processor approach to achieving large scale computing
 //!   capabilities", AFIPS 1967), for one problem on more workers.
 //! * Gustafson: S = p - s (p - 1) (J. L. Gustafson, "Reevaluating Amdahl's law", Communications of the ACM 31(5), 1988), for a problem
 //!   that grows with the workers.
-//! * Universal: S = p / (1 + sigma (p - 1) + kappa p (p - 1)) (N. J. Gunther, "A simple capacity model of massively parallel transaction
-//!   systems", CMG 1993; "Guerrilla Capacity Planning", 2007), where sigma is contention and kappa the cost of agreement, which grows with every
-//!   pair of workers. Its peak is at p = sqrt((1 - sigma) / kappa).
+//! * Universal: S = p / (1 + sigma (p - 1) + kappa p (p - 1)) (N. J. Gunther, "A simple capacity model of massively
+//!   parallel transaction systems", CMG 1993; "Guerrilla Capacity Planning", 2007), where sigma is contention and kappa
+//!   is the cost of agreement, which grows with the number of pairs of workers. Its peak is at p = sqrt((1 - sigma) /
+//!   kappa).
 //!
-//! Each is linear in its parameters once S is turned round (see [`Law`]), so least squares needs no search. All laws pass through S = 1 at
-//! p = 1 by their form, so points at one worker say nothing about parameters and are left out. Errors are taken to be a share of the speedup,
-//! of one size at every p. Intervals come from a bootstrap over the repetitions at each p.
+//! Each law is linear in its parameters once S is transformed (see [`Law`]), so least squares needs no search. All laws
+//! give S = 1 at p = 1, so points at one worker carry no information about the parameters and are left out. The
+//! relative error of a speedup is assumed to be equal at every p. Intervals come from a bootstrap over the repetitions
+//! at each p.
 //!
-//! What can't be identified gives a [`Reason`] instead of numbers. One worker count above 1 fixes one parameter and leaves nothing
-//! to check the law by, which the fit says. A curve with two parameters goes through any two points, whatever law they obey, so the
-//! universal law is fitted from three worker counts above 1 on.
+//! A fit that can't identify its parameters returns a [`Reason`] instead. One worker count above 1 fixes one parameter
+//! and leaves no point to check the law with, which the fit reports. A curve with two parameters passes through any two
+//! points, so the universal law needs at least three worker counts above 1.
 
 mod check;
 mod estimator;
@@ -48,25 +50,25 @@ pub enum Law {
 /// A parameter of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Parameter {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// Its value, without a unit, and the bootstrap interval.
     pub estimate: Estimate,
 }
 
-/// A law that describes the points, as far as could be checked.
+/// A fitted law, with the check of its residuals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fitted {
     /// The law.
     pub law: Law,
     /// s; or sigma and kappa.
     pub parameters: Vec<Parameter>,
-    /// Workers at the highest speedup of the universal law; `None` for the other laws, which have no peak, and for a kappa that can't be
-    /// told from 0.
+    /// Workers at the highest speedup of the universal law; `None` for the other laws, which have no peak, and if kappa
+    /// can't be distinguished from 0.
     pub peak: Option<Estimate>,
-    /// Whether the points lie off the curve by more than their repetitions scatter.
+    /// Whether the residuals are larger than the scatter of the repetitions explains.
     pub check: Check,
-    /// Worker counts above 1 that went into it.
+    /// Number of worker counts above 1 that the fit used.
     pub worker_counts: usize,
 }
 
@@ -76,12 +78,12 @@ pub struct Fitted {
 pub enum Fit {
     /// A law with its parameters.
     Found(Fitted),
-    /// Numbers would mean nothing, and why.
+    /// The parameters can't be identified, for this reason.
     Unidentifiable(Reason),
 }
 
 impl Law {
-    /// What its parameters are called, in order.
+    /// Returns the names of its parameters, in order.
     pub fn parameters(self) -> &'static [&'static str] {
         match self {
             Self::Amdahl | Self::Gustafson => &["s"],
@@ -89,7 +91,7 @@ impl Law {
         }
     }
 
-    /// How many worker counts above 1 a fit needs.
+    /// Returns the number of worker counts above 1 that a fit needs.
     pub fn least_worker_counts(self) -> usize {
         if self == Self::Universal { 3 } else { 1 }
     }
@@ -105,7 +107,8 @@ impl std::fmt::Display for Law {
     }
 }
 
-/// Fits `law` to `points`, in any order; points with the same number of workers are pooled. Gustafson's law wants scaled speedups.
+/// Fits `law` to `points`, in any order; points with the same number of workers are pooled. Gustafson's law expects
+/// scaled speedups.
 pub fn fit(law: Law, points: &[Point], level: f64) -> Fit {
     try_fit(law, points, level).map_or_else(Fit::Unidentifiable, Fit::Found)
 }
@@ -149,10 +152,10 @@ fn prepared(points: &[Point]) -> Result<(Vec<f64>, Vec<Vec<f64>>), Reason> {
     Ok(pooled.into_iter().map(|(workers, speedups)| (workers as f64, speedups)).unzip())
 }
 
-/// The smallest and the largest value that each parameter can have: the first is a share, the second a cost.
+/// The allowed range of each parameter: the first is a share, the second a cost.
 const RANGES: [(f64, f64); 2] = [(0.0, 1.0), (0.0, f64::INFINITY)];
 
-/// Refuses a parameter that the data leave open and one that the law does not allow.
+/// Refuses a parameter whose interval covers its whole range, or whose value lies outside the range.
 fn judge(parameter: Parameter, (low, high): (f64, f64)) -> Result<(), Reason> {
     let Parameter { estimate: Estimate { value, interval }, .. } = parameter;
     if interval.low <= low && interval.high >= high {
@@ -164,7 +167,8 @@ fn judge(parameter: Parameter, (low, high): (f64, f64)) -> Result<(), Reason> {
     Ok(())
 }
 
-/// The workers at the peak of the universal law. A resample without one, because its kappa is not positive, leaves none.
+/// The number of workers at the peak of the universal law; `None` if a resample has no peak, because its kappa is not
+/// positive or its sigma is 1 or more.
 fn peak(workers: &[f64], groups: &[Vec<f64>], level: f64) -> Option<Estimate> {
     let of_sample = |groups: &[Vec<f64>]| {
         let [sigma, kappa] = estimator::parameters(Law::Universal, workers, groups)?;

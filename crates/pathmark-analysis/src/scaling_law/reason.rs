@@ -1,4 +1,4 @@
-//! Why a law of speedup can't be fitted, in words for a reader of the report.
+//! Reasons why a speedup law can't be fitted, with messages for the reader of the report.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Parameter;
 
-/// Why there are no numbers.
+/// The reason why a fit gives no parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
@@ -14,21 +14,21 @@ pub enum Reason {
     NotASpeedup,
     /// Too few different numbers of workers above 1.
     TooFewWorkerCounts {
-        /// How many there are.
+        /// The number of worker counts found.
         found: usize,
-        /// How many the law needs.
+        /// The number that the law needs.
         needed: usize,
     },
     /// Fewer than two repetitions at some number of workers.
     TooFewRepetitions,
-    /// All repetitions are equal, so nothing says how far they can be trusted.
+    /// All repetitions are equal, so they don't show their scatter.
     NoSpread,
-    /// The interval of a parameter covers all that it can be.
+    /// The interval of a parameter covers all values that the law allows.
     Open {
         /// The parameter.
         parameter: Parameter,
     },
-    /// The estimate of a parameter is not one that the law allows.
+    /// The estimate of a parameter lies outside the range that the law allows.
     OutOfRange {
         /// The parameter.
         parameter: Parameter,

@@ -1,4 +1,4 @@
-//! Laws are found again in speedups made from them, and nothing is found where there is nothing to find.
+//! Tests: a fit recovers a law from speedups made with it, and refuses points that identify no law.
 
 use rand::Rng;
 use rand_pcg::Pcg64Dxsm;
@@ -7,9 +7,9 @@ use super::{Check, Fit, Fitted, Law, Point, Reason, estimator, fit};
 
 const WORKERS: [usize; 7] = [1, 2, 4, 8, 16, 32, 64];
 
-/// Repetitions of a law's speedups, each off by up to `noise` of itself.
+/// Synthetic repetitions of a law's speedups, each with a relative error of up to `noise`.
 fn made(speedup: impl Fn(f64) -> f64, workers: &[usize], repetitions: usize, noise: f64, seed: u128) -> Vec<Point> {
-    // Spread out, since generators with neighbouring states begin alike.
+    // Multiplied to spread the seeds, since generators with neighbouring states start with similar output.
     let mut generator = Pcg64Dxsm::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835), 3);
     let mut off = || 1.0 + noise * ((generator.next_u64() >> 11) as f64 / 4_503_599_627_370_496.0 - 1.0);
     workers.iter().map(|&p| (p, (0..repetitions).map(|_| speedup(p as f64) * off()).collect())).collect()
@@ -126,7 +126,7 @@ fn superlinear_speedups_have_no_serial_fraction() {
     let reason = refused(Law::Amdahl, &made(|p| 1.1 * p, &[2, 4, 8], 7, 0.01, 2));
     assert!(matches!(reason, Reason::OutOfRange { parameter, .. } if parameter.estimate.value < 0.0));
     assert!(reason.to_string().ends_with("outside 0 to 1: the speedups are higher than the law allows"), "{reason}");
-    // A speedup a hair above ideal is compatible with s = 0, and the words say so.
+    // A speedup slightly above ideal is compatible with s = 0, and the message says so.
     let near = refused(Law::Amdahl, &[(2, vec![2.01, 1.99, 2.02, 1.98, 2.01])]);
     assert!(near.to_string().ends_with("and the data can't tell it from 0"), "{near}");
     let slow = refused(Law::Gustafson, &made(|_| 0.5, &[2, 4, 8], 7, 0.01, 2));

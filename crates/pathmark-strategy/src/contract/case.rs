@@ -1,4 +1,4 @@
-//! What is tried at the moment, and a record of the jobs that ran.
+//! The current test case, and a record of the jobs that ran.
 
 use std::num::NonZeroUsize;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -8,13 +8,13 @@ use super::Contract;
 use super::spawner::CountedThreads;
 use crate::{Config, Entry, Job, Spawner, Strategy, StrategyError};
 
-/// Tries one promise; says what was found instead if it is broken.
+/// A test of one promise; its error describes the violation.
 pub(super) type Check = fn(&Case) -> Result<(), String>;
 
-/// Numbers of threads that are tried.
+/// The tested numbers of threads.
 const THREADS: [usize; 4] = [1, 2, 3, 8];
 
-/// The strategy on trial.
+/// The strategy under test.
 pub(super) struct Case {
     pub(super) contract: Contract,
     pub(super) entry: Entry,
@@ -27,23 +27,23 @@ impl Case {
         Self { contract: contract.clone(), entry, now: Mutex::default(), pulse: Arc::default() }
     }
 
-    /// Says what is tried next.
+    /// Describes the test case that begins.
     pub(super) fn at(&self, what: impl Into<String>) {
         *self.now.lock().unwrap_or_else(PoisonError::into_inner) = what.into();
         self.pulse.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// What is being tried, or was last.
+    /// Returns the description of the current or last test case.
     pub(super) fn now(&self) -> String {
         self.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// A number that changes whenever something happens.
+    /// Returns a number that changes with every sign of progress.
     pub(super) fn pulse(&self) -> usize {
         self.pulse.load(Ordering::Relaxed)
     }
 
-    /// The numbers of threads that the strategy can have.
+    /// Returns the tested numbers of threads that the strategy accepts.
     pub(super) fn threads(&self) -> impl Iterator<Item = usize> {
         THREADS.into_iter().filter(|&threads| {
             let too_many = matches!(
@@ -54,12 +54,12 @@ impl Case {
         })
     }
 
-    /// The largest of these numbers up to `most`.
+    /// Returns the largest of these numbers up to `most`.
     pub(super) fn up_to(&self, most: usize) -> usize {
         self.threads().filter(|&threads| threads <= most).max().unwrap_or(1)
     }
 
-    /// A strategy of so many threads from `spawner`.
+    /// Makes the strategy with `threads` threads from `spawner`.
     pub(super) fn try_build(
         &self,
         threads: usize,
@@ -72,22 +72,22 @@ impl Case {
         })
     }
 
-    /// As [`Case::try_build`], where it must be possible.
+    /// As [`Case::try_build`], but a failure is a violation.
     pub(super) fn build(&self, threads: usize, spawner: &Arc<CountedThreads>) -> Result<Box<dyn Strategy>, String> {
         self.try_build(threads, spawner).map_err(|error| format!("it can't be made: {error}"))
     }
 
-    /// A strategy of so many threads, which nobody counts.
+    /// Makes the strategy with `threads` threads from an unlimited spawner.
     pub(super) fn ready(&self, threads: usize) -> Result<Box<dyn Strategy>, String> {
         self.build(threads, &CountedThreads::unlimited())
     }
 
-    /// A record for so many jobs.
+    /// Returns a record for `jobs` jobs.
     pub(super) fn runs(&self, jobs: usize) -> Runs {
         Runs { counts: (0..jobs).map(|_| AtomicUsize::new(0)).collect(), pulse: Arc::clone(&self.pulse) }
     }
 
-    /// Runs so many jobs that do nothing, each of which must run once.
+    /// Runs `jobs` jobs that do nothing and checks that each has run once.
     pub(super) fn run_each_once(&self, strategy: &mut dyn Strategy, jobs: usize) -> Result<(), String> {
         let runs = self.runs(jobs);
         run(strategy, jobs, runs.job())?;
@@ -95,12 +95,12 @@ impl Case {
     }
 }
 
-/// A run that must end without an error.
+/// Runs `job` with all indices; an error of the run is a violation.
 pub(super) fn run(strategy: &mut dyn Strategy, jobs: usize, job: Job) -> Result<(), String> {
     strategy.run(jobs, job).map_err(|error| format!("the run failed: {error}"))
 }
 
-/// How often each job has begun.
+/// A record of how often each job has begun.
 #[derive(Clone)]
 pub(super) struct Runs {
     counts: Arc<[AtomicUsize]>,
@@ -108,13 +108,13 @@ pub(super) struct Runs {
 }
 
 impl Runs {
-    /// A job that is noted and does nothing.
+    /// Returns a job that is recorded and does nothing else.
     pub(super) fn job(&self) -> Job {
         let runs = self.clone();
         Arc::new(move |index| runs.note(index))
     }
 
-    /// Job `index` has begun. An index that no job has is noted as a second run of the last one.
+    /// Records that job `index` has begun. An index that no job has counts as two runs of the last job, a violation.
     pub(super) fn note(&self, index: usize) {
         self.pulse.fetch_add(1, Ordering::Relaxed);
         if let Some(count) = self.counts.get(index) {
@@ -128,7 +128,7 @@ impl Runs {
         self.counts.iter().map(|count| count.load(Ordering::SeqCst))
     }
 
-    /// How often a job has begun, all together.
+    /// Returns how many jobs have begun, repeated ones included.
     pub(super) fn started(&self) -> usize {
         self.counts().sum()
     }

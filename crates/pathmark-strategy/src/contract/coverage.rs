@@ -1,4 +1,4 @@
-//! Each job exactly once, however many jobs and threads there are, and however often a strategy is used.
+//! Coverage: each job runs exactly once, for any numbers of jobs and threads, and in every run of a strategy.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::case::{Case, run};
 use crate::Job;
 
-/// None, fewer than threads, as many, more, and many.
+/// Tests no jobs, fewer jobs than threads, as many, more, and many.
 pub(super) fn any_numbers(case: &Case) -> Result<(), String> {
     for threads in case.threads() {
         for jobs in [0, 1, threads - 1, threads, threads + 1, 1000] {
@@ -28,11 +28,11 @@ pub(super) fn many_runs(case: &Case) -> Result<(), String> {
     Ok(())
 }
 
-/// Past the room in a bounded channel, the blocks of an unbounded one and the first buffer of a deque.
+/// Tests more jobs than fit into a bounded channel, a block of an unbounded channel, or the first buffer of a deque.
 pub(super) fn many_jobs(case: &Case) -> Result<(), String> {
     const JOBS: usize = 20_000;
     let threads = case.up_to(2);
-    // A thread for each of so many is more than a system gives.
+    // No system provides a thread for each of so many jobs.
     if case.entry.workers.at_once(threads, JOBS) < JOBS {
         case.at(format!("{threads} threads, {JOBS} jobs"));
         case.run_each_once(&mut *case.ready(threads)?, JOBS)?;
@@ -40,7 +40,7 @@ pub(super) fn many_jobs(case: &Case) -> Result<(), String> {
     Ok(())
 }
 
-/// One job takes its time; it ends early if the run returns before it.
+/// Delays one job, which ends early if the run returns before it.
 pub(super) fn ends_last(case: &Case) -> Result<(), String> {
     const JOBS: usize = 8;
     const SLOW: Duration = Duration::from_millis(50);

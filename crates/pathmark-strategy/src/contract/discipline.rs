@@ -1,4 +1,4 @@
-//! What a strategy says of itself is what it does, as far as that can be seen from outside without luck.
+//! Discipline: a strategy hands out jobs as it says, as far as a test from outside can show it without luck.
 
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
@@ -18,14 +18,14 @@ pub(super) fn as_told(case: &Case) -> Result<(), String> {
             Discipline::Chunks(rule) => in_chunks(case, threads, rule)?,
             Discipline::Learned(_) => ascending(case, threads)?,
             Discipline::Stealing(stealing) if stealing.start == Start::Blocks => from_blocks(case, threads)?,
-            // Who gets what depends on who asks when.
+            // Which worker gets which job depends on the time of requests.
             Discipline::Stealing(_) | Discipline::Halving | Discipline::AllAtOnce => {}
         }
     }
     Ok(())
 }
 
-/// The jobs of each thread in the order in which they ran, of a run whose jobs do `then`.
+/// Runs jobs that call `then`, and returns the jobs of each thread in the order in which they ran.
 fn by_thread(
     case: &Case,
     threads: usize,
@@ -74,7 +74,7 @@ fn dealt(case: &Case, threads: usize, deal: Deal) -> Result<(), String> {
     }
 }
 
-/// Each chunk on one thread, job after job. Who takes which, and in what order of time, is open.
+/// Each chunk must run on one thread, job after job. Any thread may take it, at any time.
 fn in_chunks(case: &Case, threads: usize, rule: ChunkRule) -> Result<(), String> {
     const JOBS: usize = 1000;
     let hands = by_thread(case, threads, JOBS, |_| ())?;
@@ -94,7 +94,8 @@ fn in_chunks(case: &Case, threads: usize, rule: ChunkRule) -> Result<(), String>
     }
 }
 
-/// Chunks of one range that are handed out in order: no worker goes back in it. How large they are depends on the clock.
+/// Chunks of one range are handed out in order, so the jobs of each worker must ascend. Their sizes depend on the
+/// clock.
 fn ascending(case: &Case, threads: usize) -> Result<(), String> {
     let hands = by_thread(case, threads, 1000, |_| ())?;
     match hands.values().find(|jobs| !jobs.is_sorted()) {
@@ -103,7 +104,7 @@ fn ascending(case: &Case, threads: usize) -> Result<(), String> {
     }
 }
 
-/// The first jobs wait for each other: each is from another worker's block.
+/// The first jobs wait for each other. Each must be from another worker's block.
 fn from_blocks(case: &Case, threads: usize) -> Result<(), String> {
     if case.entry.sharing != Sharing::AtOnce {
         return Ok(());

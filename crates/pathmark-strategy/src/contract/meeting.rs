@@ -1,4 +1,4 @@
-//! Jobs that wait for each other, which shows how many can run at the same time.
+//! Meetings: jobs that wait for each other show how many can run at the same time.
 
 use std::collections::BTreeSet;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -7,15 +7,15 @@ use std::time::Duration;
 use super::case::Case;
 use crate::{Discipline, Sharing};
 
-/// How long a job waits for others where they need not come, the first time that they are asked for.
+/// How long a job waits for others in the first plan for heartbeats, where the others need not come.
 const SHORT: Duration = Duration::from_millis(2);
 
-/// A place where jobs wait until so many of them are there, again and again.
+/// A reusable barrier: jobs wait until `size` of them are present.
 pub(super) struct Meeting {
     size: usize,
-    /// Those who wait; all if `None`.
+    /// The jobs that wait; all jobs if `None`.
     invited: Option<BTreeSet<usize>>,
-    /// Nobody waits after the first meeting.
+    /// No job waits after the first meeting.
     once: bool,
     sharing: Sharing,
     patience: Duration,
@@ -27,26 +27,27 @@ pub(super) struct Meeting {
 struct State {
     present: usize,
     most: usize,
-    /// Counts meetings, so that those who wait for one don't wait for the next.
+    /// Counts meetings, so that jobs that wait for one meeting don't wait for the next.
     met: usize,
     given_up: bool,
 }
 
 impl Meeting {
-    /// Where `size` jobs come together, if only those that are invited wait, and for so long.
+    /// Returns a meeting of `size` jobs. Only the invited jobs wait, and at most for `patience`.
     fn new(case: &Case, size: usize, invited: Option<BTreeSet<usize>>, patience: Duration) -> Self {
         let sharing = case.entry.sharing;
         let once = sharing == Sharing::Heartbeat;
         Self { size, invited, once, sharing, patience, state: Mutex::default(), change: Condvar::new() }
     }
 
-    /// Runs of so many jobs, and where their jobs meet, for which the strategy of `threads` is meant to have a worker each.
+    /// Returns pairs of a number of jobs to run and their meeting. The strategy with `threads` threads must have a
+    /// worker for each job of a meeting.
     pub(super) fn plans(case: &Case, threads: usize) -> Result<Vec<(usize, Self)>, String> {
         let discipline =
             case.entry.discipline(case.contract.parameter.as_deref()).map_err(|error| error.to_string())?;
         let patience = case.contract.patience;
         if case.entry.sharing == Sharing::Heartbeat {
-            // Many, so that there is something to share at one heartbeat after the other; fewer where each may take long.
+            // Many jobs, so that there is work to share at one heartbeat after the other; fewer if each may take long.
             let plan = |(jobs, factor): (usize, u32)| (jobs * threads, Self::new(case, threads, None, SHORT * factor));
             return Ok([(200, 1), (50, 10), (12, 100)].map(plan).into());
         }
@@ -54,7 +55,8 @@ impl Meeting {
         let some =
             |jobs: usize, invited: BTreeSet<usize>| (jobs, Self::new(case, invited.len(), Some(invited), patience));
         Ok(match discipline {
-            // The second job of a worker waits for the end of the first, which may be waiting for the second. So only first ones meet.
+            // A worker's second job starts after the first has ended, which could be waiting for the second. So only
+            // first jobs meet.
             Discipline::Dealt(deal) => [threads, 5 * threads]
                 .map(|jobs| some(jobs, (0..threads).filter_map(|worker| deal(worker, threads, jobs).next()).collect()))
                 .into(),
@@ -66,16 +68,17 @@ impl Meeting {
                     enough.into_iter().map(|jobs| (jobs, heads(jobs))).filter(|(_, heads)| heads.len() == threads);
                 plans.next().map(|(jobs, heads)| some(jobs, heads)).into_iter().collect()
             }
-            // Who has how many jobs left depends on the clock, but everybody begins with one.
+            // Later chunks depend on the clock, but every worker begins with one job.
             Discipline::Learned(_) => {
                 [threads, 5 * threads].map(|jobs| (jobs, Self { once: true, ..all(jobs).1 })).into()
             }
-            // With more jobs than workers, one that has taken several and waits in the first must leave the rest to others.
+            // With more jobs than workers, a worker that has taken several and waits in the first must leave the rest
+            // to others.
             _ => vec![all(threads), all(5 * threads)],
         })
     }
 
-    /// Where the first `size` jobs to begin come together.
+    /// Returns a meeting of the first `size` jobs to begin.
     pub(super) fn of_first(case: &Case, size: usize) -> Self {
         Self::new(case, size, None, case.contract.patience)
     }
@@ -84,12 +87,13 @@ impl Meeting {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether job `index` is one of those that wait.
+    /// Returns whether job `index` waits in this meeting.
     pub(super) fn invites(&self, index: usize) -> bool {
         self.invited.as_ref().is_none_or(|invited| invited.contains(&index))
     }
 
-    /// What job `index` does: waits for the others, and not at all once they have not come or, where one meeting is enough, have come.
+    /// Makes job `index` wait for the others. It does not wait after a meeting has failed, or after a success if one is
+    /// enough.
     pub(super) fn wait(&self, index: usize) {
         if !self.invites(index) {
             return;
@@ -116,7 +120,7 @@ impl Meeting {
         }
     }
 
-    /// After a run that has ended: that all were there together, each time where they had to be.
+    /// Checks, after a run, that the jobs have met, and that no meeting has failed where all are required.
     pub(super) fn met(&self) -> Result<(), String> {
         let state = self.state();
         if state.met > 0 && !state.given_up {

@@ -1,4 +1,4 @@
-//! What every strategy promises, tried on any [`Entry`]: call [`verify`] from a test of your strategy.
+//! The contract of every strategy, tested on any [`Entry`]: call [`verify`] from a test of your strategy.
 //!
 //! ```
 //! use pathmark_strategy::{contract, find};
@@ -7,9 +7,9 @@
 //! contract::verify(entry).unwrap();
 //! ```
 //!
-//! What shows a fault is order and number, not time. Three verdicts need [`Contract::patience`], and their violations say so: a run in which
-//! nothing happens for twice as long never ends, jobs that have not come together for that long never will, and a worker that goes on
-//! for a part of it has not heard of a panic.
+//! Faults show in the order and number of jobs, not in times. Three verdicts need [`Contract::patience`], and their
+//! violations say so. A run without progress for twice the patience counts as endless. Jobs that have not met within
+//! the patience count as too few. A worker that goes on for a part of it counts as unaware of a panic.
 
 mod case;
 mod coverage;
@@ -30,23 +30,25 @@ use std::time::Duration;
 use crate::Entry;
 use case::{Case, Check};
 
-/// Tries every promise on `entry`'s strategy, in some seconds, and says which it breaks, one violation a promise and kind of case.
+/// Tests every promise on `entry`'s strategy, which takes some seconds. Returns the violations, one for each broken
+/// promise and kind of test case.
 ///
 /// # Panics
 ///
-/// Panics if the system gives no thread to try it on.
+/// Panics if the system refuses the thread for a test.
 pub fn verify(entry: &Entry) -> Result<(), Vec<Violation>> {
     Contract::default().verify(entry)
 }
 
-/// How [`verify`] goes about it.
+/// The settings of [`verify`].
 #[derive(Debug, Clone)]
 pub struct Contract {
-    /// How long jobs may take to come together before they count as too few: half a minute by default, which no machine should need.
+    /// How long jobs may take to meet before they count as too few: by default half a minute, which should be enough on
+    /// any machine.
     pub patience: Duration,
-    /// What is set of the strategy; its default if `None`.
+    /// The strategy's parameter; its default if `None`.
     pub parameter: Option<String>,
-    /// Whether to try a panic in each of a thousand jobs instead of some: minutes.
+    /// Whether to test a panic in each of a thousand jobs instead of some, which takes minutes.
     pub thorough: bool,
 }
 
@@ -59,11 +61,11 @@ impl Default for Contract {
 /// A promise that a strategy breaks.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Violation {
-    /// What was promised.
+    /// The broken promise.
     pub promise: Promise,
-    /// When it was broken: threads, jobs and what they did.
+    /// The test case: threads, jobs and their behaviour.
     pub case: String,
-    /// What happened instead.
+    /// The observed result.
     pub found: String,
 }
 
@@ -75,30 +77,30 @@ impl fmt::Display for Violation {
 
 impl std::error::Error for Violation {}
 
-/// What a strategy promises.
+/// A promise of the contract.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Promise {
-    /// A name that fits a command line, and what it does in one line.
+    /// The name fits a command line, and the description has one line.
     Name,
-    /// A parameter that means nothing is refused.
+    /// An invalid parameter is refused.
     Parameter,
-    /// Each job runs exactly once, however many jobs and threads there are, and however often the strategy is used.
+    /// Each job runs exactly once, for any numbers of jobs and threads, and in every run of the strategy.
     EachJobOnce,
-    /// A run ends, and only when all its jobs have.
+    /// A run ends, and only when all its jobs have ended.
     End,
-    /// As many jobs at a time as `workers` and `sharing` say, on threads that are not the caller's.
+    /// As many jobs run at a time as `workers` and `sharing` say, and on the caller's thread only if `workers` says so.
     Workers,
     /// Jobs are handed out as `discipline` says.
     Discipline,
     /// A panic reaches the caller as it was thrown, and the strategy works again.
     Panics,
-    /// After a panic no worker begins a further job, but for those that have not heard of it yet.
+    /// After a panic, only workers that have not noticed it yet begin a further job.
     Stopping,
     /// No clone of the job is left when a run has ended.
     NoJobLeft,
-    /// No thread of the spawner is left when the strategy has been dropped, and no more are started than there is use for.
+    /// No thread of the spawner is left when the strategy has been dropped, and none is started without use.
     NoThreadLeft,
-    /// A thread that is refused is an error; no job runs twice, and the strategy works again.
+    /// A refused thread is an error; no job runs twice, and the strategy works again.
     Refusals,
 }
 
@@ -138,11 +140,12 @@ const CHECKS: &[(Promise, Check)] = &[
     (Promise::Stopping, stopping::others),
 ];
 
-/// A strategy that drops what its jobs throw may end the whole program here: only those that keep the other promises come this far.
+/// Run last: here a strategy that drops the payloads of panics may end the whole program. So only strategies that keep
+/// the other promises are tested.
 const LAST: &[(Promise, Check)] = &[(Promise::Panics, panics::of_all_workers)];
 
 impl Contract {
-    /// As [`verify`], on these terms. After a run that does not end nothing more is tried.
+    /// As [`verify`], with these settings. After a run that does not end, nothing more is tested.
     pub fn verify(&self, entry: &Entry) -> Result<(), Vec<Violation>> {
         let case = Arc::new(Case::new(self, *entry));
         for checks in [CHECKS, LAST] {

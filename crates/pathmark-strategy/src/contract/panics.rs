@@ -1,4 +1,4 @@
-//! A panic in a job reaches the caller as it was thrown, and leaves nothing behind.
+//! Panics: a panic in a job reaches the caller as it was thrown, and leaves no clone of the job and no thread behind.
 
 use std::any::Any;
 use std::mem;
@@ -11,7 +11,7 @@ use super::spawner::CountedThreads;
 use crate::library::message;
 use crate::{Job, Strategy, Workers};
 
-/// A run in which a job panics.
+/// Runs jobs of which one must panic, and returns the payload that reaches the caller.
 pub(super) fn thrown(strategy: &mut dyn Strategy, jobs: usize, job: Job) -> Result<Box<dyn Any + Send>, String> {
     match panic::catch_unwind(AssertUnwindSafe(|| strategy.run(jobs, job))) {
         Err(payload) => Ok(payload),
@@ -20,12 +20,12 @@ pub(super) fn thrown(strategy: &mut dyn Strategy, jobs: usize, job: Job) -> Resu
     }
 }
 
-/// Without the report on stderr that `panic!` makes for each of some thousand.
+/// Panics without the report on stderr that `panic!` would make for each of some thousand panics.
 fn throw(index: usize) {
     panic::resume_unwind(Box::new(format!("job {index} fails")));
 }
 
-/// Panics while the job's own values are dropped.
+/// A value that panics when a job drops it.
 struct Bomb(usize);
 
 impl Drop for Bomb {
@@ -34,10 +34,10 @@ impl Drop for Bomb {
     }
 }
 
-/// Panics somewhere in job `index`; the lock is all jobs'.
+/// A way to panic in job `index`; all jobs share the lock.
 type Way = fn(usize, &Mutex<usize>);
 
-/// Where in a job a panic may start.
+/// The places in a job where a panic may start.
 const WAYS: [(&str, Way); 3] = [
     ("in its body", |index, _| throw(index)),
     ("in a drop", |index, _| drop(Bomb(index))),
@@ -48,7 +48,7 @@ const WAYS: [(&str, Way); 3] = [
 ];
 
 pub(super) fn in_any_job(case: &Case) -> Result<(), String> {
-    // A thread for each job, a thousand at a time and thousands of times, would take minutes.
+    // With a thread for each job, thousands of runs of a thousand jobs would take minutes.
     let (jobs, step) = match (case.entry.workers, case.contract.thorough) {
         (Workers::PerJob, false) => (100, 33),
         (_, false) => (1000, 111),
@@ -86,7 +86,7 @@ pub(super) fn in_any_job(case: &Case) -> Result<(), String> {
     Ok(())
 }
 
-/// Whoever drops it panics, and a worker of a pool that did so would be missing in the next run.
+/// A payload that panics when it is dropped. A pool's worker that dropped it would be missing in the next run.
 struct Spiteful;
 
 impl Drop for Spiteful {

@@ -1,4 +1,4 @@
-//! As many jobs at a time as there are workers: no fewer, and no more.
+//! Parallelism: as many jobs run at a time as there are workers, no fewer and no more.
 
 use std::collections::HashSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +9,8 @@ use super::case::{Case, run};
 use super::meeting::Meeting;
 use crate::{Sharing, Workers};
 
-/// Where jobs need not come together, one meeting out of some that get easier is enough. Else all must come about.
+/// Combines the results of meetings. With heartbeats jobs need not meet, so one success among easier and easier
+/// meetings is enough. Otherwise all meetings must succeed.
 fn verdict(sharing: Sharing, meetings: impl Iterator<Item = Result<(), String>>) -> Result<(), String> {
     match sharing {
         Sharing::AtOnce => meetings.collect(),
@@ -26,7 +27,8 @@ fn verdict(sharing: Sharing, meetings: impl Iterator<Item = Result<(), String>>)
     }
 }
 
-/// Many rounds, because a worker that leaves too early does so in a gap of nanoseconds, and one too many may come too late to meet others.
+/// Tests many rounds: a worker that leaves too early does so in a gap of nanoseconds, and a surplus worker may come too
+/// late to meet others.
 pub(super) fn as_many_as_told(case: &Case) -> Result<(), String> {
     for threads in case.threads() {
         let mut strategy = case.ready(threads)?;
@@ -89,7 +91,7 @@ impl Seen {
         Ok(())
     }
 
-    /// That jobs ran on as many threads as `workers` says, and on the caller's only where it says so.
+    /// Checks that jobs ran on as many threads as `workers` says, and on the caller's thread only if it says so.
     fn are(&self, workers: Workers, threads: usize, jobs: usize) -> Result<(), String> {
         let (seen, expected) = (self.threads(), workers.at_once(threads, jobs));
         if seen.len() != expected {

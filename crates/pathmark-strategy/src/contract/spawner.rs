@@ -1,4 +1,4 @@
-//! A source of threads that counts them and can run dry.
+//! A source of threads that counts them and can refuse them.
 
 use std::io;
 use std::ops::Range;
@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 
 use crate::{Spawner, SystemThreads};
 
-/// Real threads, counted. Calls whose numbers are in a range are refused.
+/// A spawner of real threads that counts them. It refuses the calls whose numbers are in a range.
 pub(super) struct CountedThreads {
     refused: Range<usize>,
     asked: AtomicUsize,
@@ -33,17 +33,17 @@ impl CountedThreads {
         Arc::new(Self { refused, asked: AtomicUsize::new(0), refusals: AtomicUsize::new(0), alive: Arc::default() })
     }
 
-    /// How many threads have been asked for.
+    /// Returns how many threads have been requested.
     pub(super) fn asked(&self) -> usize {
         self.asked.load(Ordering::SeqCst)
     }
 
-    /// How many have been refused.
+    /// Returns how many threads have been refused.
     pub(super) fn refusals(&self) -> usize {
         self.refusals.load(Ordering::SeqCst)
     }
 
-    /// That no thread is alive; those who say so have dropped the strategy.
+    /// Checks that no thread is alive. The caller must have dropped the strategy.
     pub(super) fn none_left(&self) -> Result<(), String> {
         match self.alive.load(Ordering::SeqCst) {
             0 => Ok(()),

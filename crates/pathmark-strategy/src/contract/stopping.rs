@@ -1,4 +1,4 @@
-//! After a panic no worker begins a further job, but for those that have not heard of it yet.
+//! Stopping: after a panic, only workers that have not noticed it yet begin a further job.
 
 use std::panic;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use super::case::Case;
 use super::panics::thrown;
 use crate::Workers;
 
-/// A lone worker hears of it at once.
+/// A single worker must stop at once.
 pub(super) fn alone(case: &Case) -> Result<(), String> {
     const JOBS: usize = 10_000;
     const LAST: usize = 10;
@@ -33,8 +33,8 @@ pub(super) fn alone(case: &Case) -> Result<(), String> {
     }
 }
 
-/// The second job to begin panics and all take a millisecond. Two workers that went on to the end would take most of the time that there is
-/// patience for, and it is enough to stop in the first half.
+/// The second job to begin panics, and all jobs take a millisecond. The two workers must stop in the first half of the
+/// jobs, whose number follows from the patience.
 pub(super) fn others(case: &Case) -> Result<(), String> {
     const EACH: Duration = Duration::from_millis(1);
     let threads = case.up_to(2);

@@ -1,10 +1,10 @@
-//! What an entry says, before anything runs.
+//! The terms of an entry that can be checked without running jobs.
 
 use super::case::Case;
 use super::spawner::CountedThreads;
 use crate::StrategyError;
 
-/// Lower-case words with `-` between them, and an explanation of one line.
+/// The name must be lower-case words with `-` between them, and the description one line.
 pub(super) fn name(case: &Case) -> Result<(), String> {
     let (name, about) = (case.entry.name, case.entry.about);
     case.at(format!("the name {name:?}"));

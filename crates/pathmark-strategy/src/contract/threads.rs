@@ -1,4 +1,4 @@
-//! Threads come from the spawner, no more than there is use for, and go again; one that is refused is an error.
+//! Threads: all come from the spawner, none is started without use, and all end; a refused thread is an error.
 
 use std::sync::Arc;
 
@@ -6,7 +6,8 @@ use super::case::Case;
 use super::spawner::CountedThreads;
 use crate::{Job, StrategyError, Threads, Workers};
 
-/// A pool starts its threads once and others in each run: never more than were asked for, and not more in a run than there are jobs.
+/// A pool starts its threads once, other strategies in each run: never more than requested, and in a run at most one
+/// for each job.
 pub(super) fn none_in_vain(case: &Case) -> Result<(), String> {
     const JOBS: usize = 3;
     let threads = case.up_to(8);
@@ -25,7 +26,7 @@ pub(super) fn none_in_vain(case: &Case) -> Result<(), String> {
         started.push(spawner.asked() - before);
         before = spawner.asked();
     }
-    // In the construction, in the first run (a pool may wait for that) and in the second.
+    // Threads started in the construction, in the first run (a pool may wait for that) and in the second.
     let right = match started[..] {
         [pool, 0, 0] | [0, pool, 0] if pool <= threads && pool >= workers => true,
         [0, first, second] => first == workers && second == workers,
@@ -57,7 +58,7 @@ pub(super) fn none_left(case: &Case) -> Result<(), String> {
     Ok(())
 }
 
-/// Each thread in turn, once or from then on.
+/// Refuses each thread in turn, once or together with all that follow.
 pub(super) fn refused(case: &Case) -> Result<(), String> {
     let threads = case.up_to(8);
     for jobs in [threads, 100] {

@@ -1,4 +1,4 @@
-//! A check on a thread of its own, watched from outside: a run that never ends must not take the author's tests with it.
+//! A check on its own thread, watched from outside: a run that never ends must not block the author's other tests.
 
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -7,22 +7,22 @@ use std::thread;
 use super::case::{Case, Check};
 use crate::library::message;
 
-/// How a check went.
+/// The outcome of a check.
 pub(super) enum Outcome {
     Kept,
     Broken(String),
     Hangs(String),
 }
 
-/// Runs `check`. As long as something happens, it is given time; the thread of one that hangs is left behind.
+/// Runs `check` for as long as it makes progress. The thread of a check that hangs is left behind.
 pub(super) fn run(case: &Arc<Case>, check: Check) -> Outcome {
     let (tell, told) = channel();
     let theirs = Arc::clone(case);
-    // A meeting of jobs may take all the patience that there is.
+    // A meeting of jobs may use up the whole patience.
     let patience = 2 * case.contract.patience;
     let checker = thread::spawn(move || {
         let verdict = check(&theirs);
-        // It is listened for until it hangs, and then nobody cares.
+        // If the check counted as hanging, nobody receives its verdict, and nobody needs it.
         let _ = tell.send(verdict);
     });
     loop {

@@ -1,14 +1,15 @@
-//! Adaptive factoring: chunks by the mean and the variance of each worker's jobs so far.
+//! Adaptive factoring: chunk sizes from the mean and the variance of each worker's jobs so far.
 //!
 //! `pathmark render cornell --strategy adaptive-factoring --threads 4`
 //!
-//! Banicescu and Liu, "Adaptive factoring: a dynamic scheduling method tuned to the rate of weight changes", HPC 2000. With R jobs left, worker
-//! j of mean m and variance v gets (D + 2 T R - sqrt(D^2 + 4 D T R)) / (2 m), where D is the sum of v/m over all workers and T is 1 over the
-//! sum of 1/m. Its first chunk, which has to tell both, is a tenth of a p-th of the jobs, but at least two, and no more than a p-th. Mean and
-//! variance are of all jobs that a worker has done, since its latest chunk can be too small for a variance.
+//! Banicescu and Liu, "Adaptive factoring: a dynamic scheduling method tuned to the rate of weight changes", HPC 2000.
+//! With R jobs left, a worker of mean m and variance v gets (D + 2 T R - sqrt(D^2 + 4 D T R)) / (2 m) jobs. D is the
+//! sum of v/m over all workers, and T is 1 over the sum of 1/m. The first chunk must be large enough to measure both:
+//! it is a tenth of a worker's equal share, but at least two jobs and at most the share. Mean and variance are of all
+//! jobs that a worker has done, because its latest chunk can be too small for a variance.
 //!
-//! Cost: one thread's start for each worker; a lock for each chunk, of which there are the fewer the more alike the jobs are; a reading of the
-//! clock for each job.
+//! Cost: one thread start for each worker; a lock for each chunk; a clock reading for each job. The more alike the jobs
+//! are, the fewer chunks there are.
 
 use crate::{Clock, Entry, LearnedRule, Ledger, Weights};
 
@@ -24,7 +25,7 @@ fn size(ledger: &Ledger, worker: usize) -> f64 {
         let equal_share = ledger.jobs() as f64 / workers as f64;
         return (equal_share / 10.0).max(2.0).min(equal_share);
     };
-    // A worker of which nothing is known yet is taken for one like the others.
+    // A worker without measurements counts as average.
     let known = || (0..workers).filter_map(|worker| ledger.mean_and_variance(worker));
     let of_all = workers as f64 / known().count() as f64;
     let spread = of_all * known().map(|(mean, variance)| variance / mean).sum::<f64>();
@@ -46,7 +47,7 @@ mod tests {
         ledger
     }
 
-    /// Jobs that are alike are shared by speed: 2/3 and 1/3 of 1000.
+    /// Without variance jobs are shared by speed: 2/3 and 1/3 of 1000.
     #[test]
     fn without_variance_all_that_is_left_is_shared_by_speed() {
         let ledger = told([&[1.0, 1.0], &[2.0, 2.0]]);
@@ -58,7 +59,7 @@ mod tests {
     fn the_more_jobs_differ_the_smaller_the_chunks() {
         let ledger = told([&[1.0, 3.0], &[1.0, 3.0]]);
         assert!((size(&ledger, 0) - (2002.0 - 8004f64.sqrt()) / 4.0).abs() < 1e-9, "{}", size(&ledger, 0));
-        // The other worker has told nothing: it is taken for one like the first.
+        // The other worker has no measurements, so it counts as equal to the first.
         assert_eq!(size(&told([&[1.0, 3.0], &[]]), 0), size(&ledger, 0));
         assert_eq!(size(&told([&[], &[]]), 0), 50.0);
         assert_eq!(size(&told([&[9.0], &[1.0, 3.0]]), 0), 50.0, "one job has no variance");

@@ -1,12 +1,13 @@
-//! Adaptive weighted factoring by batches: weighted factoring whose weights are measured, and set anew for each batch.
+//! Adaptive weighted factoring by batches: weighted factoring with measured weights, updated at each batch.
 //!
 //! `pathmark render cornell --strategy awf-b --threads 4`
 //!
-//! Cariño and Banicescu, "Dynamic load balancing with adaptive factoring methods in scientific applications", The Journal of Supercomputing 44,
-//! 2008. A worker's speed is its jobs a second, where its k-th chunk counts k times. The first batch has equal weights.
+//! Cariño and Banicescu, "Dynamic load balancing with adaptive factoring methods in scientific applications", The
+//! Journal of Supercomputing 44, 2008. A worker's speed is its jobs per second, where its k-th chunk counts k times.
+//! The first batch has equal weights.
 //!
-//! Cost: one thread's start for each worker; a lock and two readings of the clock for each of about p log2(n/p) chunks. On processors that are
-//! alike it gains nothing over `factoring`: what it measures there is which jobs a worker happened to have.
+//! Cost: one thread start for each worker; a lock and two clock readings for each of about p log2(n/p) chunks. On equal
+//! processors it gains nothing over `factoring`: the measured speeds only reflect which jobs a worker happened to have.
 
 use crate::{Clock, Entry, LearnedRule, Ledger, Weights};
 
@@ -16,7 +17,7 @@ pub(super) const ENTRY: Entry = Entry::learned(
     LearnedRule { size, clock: Clock::Chunks, weights: Weights::EQUAL },
 );
 
-/// A worker's share of half of what was left when the batch began, by its speed up to then.
+/// Returns a worker's share, by its speed up to then, of half of the jobs that were left when the batch began.
 fn size(ledger: &Ledger, worker: usize) -> f64 {
     ledger.batch_weight(worker) * ledger.batch_left() as f64 / (2.0 * ledger.workers() as f64)
 }
@@ -26,8 +27,9 @@ mod tests {
     use super::*;
     use crate::{Discipline, Seen};
 
-    /// 160 jobs on two workers, of which the second is a third as fast. The first batch is 40 and 40. When the second one begins, only the first
-    /// worker has told its speed: 20 and 20, though the other tells its own meanwhile. The third one is 3/2 and 1/2 of 10.
+    /// 160 jobs on two workers; the second is a third as fast. The first batch is 40 and 40. When the second batch
+    /// begins, only the first worker's speed is known: 20 and 20, although the second worker reports its speed
+    /// meanwhile. The third batch is 3/2 and 1/2 of 10.
     #[test]
     fn weights_are_those_of_the_batchs_beginning() {
         let Discipline::Learned(rule) = ENTRY.discipline else { panic!("it learns") };

@@ -1,11 +1,12 @@
-//! Adaptive weighted factoring by chunks: each chunk is a worker's share, by its speed so far, of half of what is left when it asks.
+//! Adaptive weighted factoring by chunks: each chunk is the worker's share, by its speed so far, of half of the jobs
+//! that are left when it asks.
 //!
 //! `pathmark render cornell --strategy awf-c --threads 4`
 //!
-//! Cariño and Banicescu, "Dynamic load balancing with adaptive factoring methods in scientific applications", The Journal of Supercomputing 44,
-//! 2008. A worker's speed is its jobs a second, where its k-th chunk counts k times.
+//! Cariño and Banicescu, "Dynamic load balancing with adaptive factoring methods in scientific applications", The
+//! Journal of Supercomputing 44, 2008. A worker's speed is its jobs per second, where its k-th chunk counts k times.
 //!
-//! Cost: one thread's start for each worker; a lock and two readings of the clock for each of about 2p ln(n/p) chunks.
+//! Cost: one thread start for each worker; a lock and two clock readings for each of about 2p ln(n/p) chunks.
 
 use crate::{Clock, Entry, LearnedRule, Ledger, Weights};
 
@@ -15,7 +16,7 @@ pub(super) const ENTRY: Entry = Entry::learned(
     LearnedRule { size, clock: Clock::Chunks, weights: Weights::EQUAL },
 );
 
-/// A worker's share of half of what is left.
+/// Returns a worker's share of half of the jobs left.
 fn size(ledger: &Ledger, worker: usize) -> f64 {
     ledger.learned_weight(worker) * ledger.left() as f64 / (2.0 * ledger.workers() as f64)
 }
@@ -25,7 +26,8 @@ mod tests {
     use super::*;
     use crate::{Discipline, Seen};
 
-    /// 160 jobs on two workers: 160/4 and 120/4, then by speeds 1 and 1/3, so weights 3/2 and 1/2, of 90/4 and of what is left.
+    /// 160 jobs on two workers: chunks of 160/4 and 120/4. Then the speeds are 1 and 1/3, so the weights are 3/2 and
+    /// 1/2.
     #[test]
     fn each_chunk_follows_the_latest_speeds() {
         let Discipline::Learned(rule) = ENTRY.discipline else { panic!("it learns") };

@@ -2,12 +2,14 @@
 //!
 //! `pathmark render cornell --strategy chili --threads 4`
 //!
-//! Acar, Charguéraud, Guatto, Rainey and Sieczkowski, "Heartbeat scheduling: provable efficiency for nested parallelism", PLDI 2018, as the
-//! crate `chili` has it. A `join` costs a few nanoseconds, because its second half stays private to the worker. Every 100 microseconds a
-//! clock's thread sets each worker's flag; a worker that sees its flag hands over the largest half that it still has.
+//! Acar, Charguéraud, Guatto, Rainey and Sieczkowski, "Heartbeat scheduling: provable efficiency for nested
+//! parallelism", PLDI 2018, as implemented by the crate `chili`. A `join` costs a few nanoseconds, because its second
+//! half stays private to the worker. Every 100 microseconds a clock thread sets each worker's flag. A worker that sees
+//! its flag hands over the largest half that it still has.
 //!
-//! Cost: threads start once, in the construction and not in the run. Two cheap `join`s for each job and a box for each half handed over. The
-//! flag is seen between jobs only, so while a worker is in a long one, what it keeps waits with it.
+//! Cost: threads start once, in the construction and not in the run. Each job costs two cheap `join`s, and each half
+//! handed over costs a box. A worker checks its flag only between jobs, so during a long job its other jobs wait with
+//! it.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -30,7 +32,8 @@ pub(super) const ENTRY: Entry = Entry {
 
 fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
     let threads = blueprint.threads;
-    // Chili counts the thread that uses the pool, here the host, and starts one fewer. Its clock's thread comes on top.
+    // Chili counts the thread that uses the pool, here the host, and starts one thread fewer. It also starts a clock
+    // thread.
     let config = PoolConfig { thread_count: Some(threads), ..PoolConfig::default() };
     let pool = library::start(blueprint, threads.get() + 1, || ThreadPool::with_config(config))?;
     Ok(Box::new(Chili { host: Host::new(blueprint)?, pool: Arc::new(pool) }))
@@ -49,13 +52,13 @@ impl Strategy for Chili {
     }
 }
 
-/// Runs the jobs of a range. Chili runs the second closure of a `join` first, and looks at the flag when it comes to the first one; the
-/// `1` says that it does so each time.
+/// Runs the jobs of a range. Chili runs the second closure of a `join` first, and checks the flag before the first one;
+/// the `1` makes it check each time.
 fn halve(scope: &mut Scope<'_>, range: Range<usize>, leaf: &(impl Fn(usize) + Sync)) {
     let Range { start, end } = range;
     match end - start {
         0 => {}
-        // A `join` with nothing, so that the flag is looked at before the very first job too.
+        // A `join` with an empty closure, so that the flag is checked before the very first job, too.
         1 => drop(scope.join_with_heartbeat_every::<1, _, _, _, _>(|_| leaf(start), |_| ())),
         jobs => {
             let middle = start + jobs / 2;

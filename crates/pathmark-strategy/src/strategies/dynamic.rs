@@ -1,12 +1,12 @@
-//! Dynamic: whoever is free takes the next C jobs.
+//! Dynamic: a free worker takes the next C jobs.
 //!
 //! `pathmark render cornell --strategy dynamic:8 --threads 4`; without a number C is 1, which is `shared-counter` with a list.
 //!
 //! Chunk self-scheduling: Kruskal and Weiss, "Allocating independent subtasks on parallel processors", IEEE TSE 11(10), 1985. OpenMP
 //! calls it `schedule(dynamic, C)`.
 //!
-//! Cost: one thread's start for each worker, one atomic addition for each chunk. Larger chunks mean fewer additions and a longer tail: up
-//! to C jobs are left to one worker when the others have nothing more to take.
+//! Cost: one thread start for each worker, one atomic addition for each chunk. Larger chunks need fewer additions but
+//! leave a longer tail: up to C jobs remain with one worker when the others have no more jobs to take.
 
 use crate::{ChunkRule, Discipline, Entry, Handout, Parameter};
 
@@ -15,7 +15,7 @@ pub(super) const ENTRY: Entry = Entry {
     ..Entry::chunks("dynamic", "whoever is free takes the next C jobs (dynamic:C; 1 if no number is given)", size)
 };
 
-/// C jobs each time.
+/// Returns C for every chunk.
 pub(super) fn size(handout: &Handout) -> usize {
     handout.parameter
 }

@@ -1,19 +1,19 @@
-//! Factoring: half of what is left is dealt out in p equal chunks, then half of the rest, and so on.
+//! Factoring: half of the jobs are handed out in p equal chunks, then half of the rest, and so on.
 //!
 //! `pathmark render cornell --strategy factoring --threads 4`
 //!
-//! Hummel, Schonberg and Flynn, "Factoring: a method for scheduling parallel loops", Communications of the ACM 35(8), 1992, in the form
-//! FAC2 that needs to know nothing about the jobs.
+//! Hummel, Schonberg and Flynn, "Factoring: a method for scheduling parallel loops", Communications of the ACM 35(8),
+//! 1992, in the form FAC2, which needs no knowledge of the jobs.
 //!
-//! Cost: one thread's start for each worker, one atomic addition for each of about p log2(n/p) chunks. Every batch leaves as much work as it
-//! hands out, so even a chunk that turns out twice as dear as its batch can be caught up with.
+//! Cost: one thread start for each worker, one atomic addition for each of about p log2(n/p) chunks. Every batch leaves
+//! as many jobs as it hands out, so later batches can balance even a chunk that is twice as expensive as the others.
 
 use crate::{Entry, Handout};
 
 pub(super) const ENTRY: Entry =
     Entry::chunks("factoring", "batches of p equal chunks, each batch half of the jobs left (FAC2)", size);
 
-/// A 2p-th, rounded up, of what was left when the chunk's batch began.
+/// Returns 1/(2p), rounded up, of the jobs that were left when the chunk's batch began.
 pub(super) fn size(handout: &Handout) -> usize {
     let (mut left, mut size) = (handout.jobs, 1);
     for _ in 0..=handout.chunks / handout.workers {

@@ -2,11 +2,12 @@
 //!
 //! `pathmark render cornell --strategy fixed-pool --threads 4`
 //!
-//! The thread pool of servers and the bag of tasks of Carriero and Gelernter ("How to write parallel programs", MIT Press 1990): a
-//! queue that anyone may take from. The caller puts all indices in while the workers take them out.
+//! The thread pool of servers and the bag of tasks of Carriero and Gelernter ("How to write parallel programs", MIT
+//! Press 1990): a queue from which any worker may take. The caller puts all indices in while the workers take them out.
 //!
-//! Cost: threads start once, in the construction and not in the run. A run wakes the workers; a job passes through a `crossbeam`
-//! channel, which is two atomic updates on shared lines, and a parked worker to wake whenever the queue has run dry.
+//! Cost: threads start once, in the construction and not in the run. A run wakes the workers. A job passes through a
+//! `crossbeam` channel: two atomic updates on shared cache lines, and a parked worker to wake whenever the queue was
+//! empty.
 
 use std::sync::Arc;
 
@@ -26,7 +27,8 @@ pub(super) const ENTRY: Entry = Entry::new(
 
 fn make(Blueprint { threads, spawner, .. }: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
     let threads = threads.get();
-    // Declared before the sender and so dropped after it, should a worker be missing: the others then see the end and leave.
+    // Declared before the sender, so dropped after it if a worker can't be started: the others then see the channel
+    // close, and end.
     let mut crew = Crew::default();
     let (rounds, calls) = channel::unbounded::<Round>();
     for _ in 0..threads {
@@ -36,10 +38,10 @@ fn make(Blueprint { threads, spawner, .. }: &Blueprint) -> Result<Box<dyn Strate
     Ok(Box::new(FixedPool { rounds, crew }))
 }
 
-/// How many indices may wait in the channel: enough that workers seldom find it empty, and no memory for 2^32 of them.
+/// Capacity of the channel in indices: enough that workers seldom find it empty, without memory for 2^32 indices.
 const QUEUE: usize = 4096;
 
-/// Fields are dropped in this order: the closed channel is what ends the threads that `crew` then waits for.
+/// Fields are dropped in this order: closing the channel ends the threads, which `crew` then joins.
 struct FixedPool {
     rounds: Sender<Round>,
     crew: Crew,
@@ -64,7 +66,7 @@ impl Round {
                 job(index);
             }
         });
-        // Last, so that whoever waits for it finds no clone of the job left here.
+        // Dropped last, so that the waiting caller finds no clone of the job left here.
         drop((job, indices, panics));
         drop(done);
     }
@@ -75,14 +77,15 @@ impl Strategy for FixedPool {
         let panics = Arc::new(Panics::default());
         let done = WaitGroup::new();
         let (feed, indices) = channel::bounded(jobs.min(QUEUE));
-        // All workers take their rounds from one channel. One that has finished may take another's, and finds nothing to do:
-        // a round ends only when no index is left and none can come.
+        // All workers take their rounds from one channel. A worker that has finished may take another worker's round.
+        // That is harmless: a round ends only when no index is left and none can come.
         for _ in 0..self.crew.len().min(jobs) {
             let (job, indices) = (Arc::clone(&job), indices.clone());
             let round = Round { job, indices, panics: Arc::clone(&panics), done: done.clone() };
             self.rounds.send(round).expect("workers stay until this sender is dropped");
         }
-        // Only workers may hold this end, or sending would wait forever for room once they have stopped.
+        // Only workers may hold the receiving end. Otherwise sending would wait forever for room once they have
+        // stopped.
         drop(indices);
         for index in 0..jobs {
             if feed.send(index).is_err() {

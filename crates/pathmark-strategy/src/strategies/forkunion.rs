@@ -1,12 +1,12 @@
-//! `forkunion`: a pool of C++ whose workers wait for the next run without ever asking the system.
+//! `forkunion`: a C++ pool whose workers wait for the next run without system calls.
 //!
 //! `pathmark render cornell --strategy forkunion --threads 4`, in a build with `--features forkunion`, which needs a C++ compiler.
 //!
-//! The crate `forkunion` over the C++ library of that name, by its `for_n_dynamic`: whoever is free takes the next job. It takes no lock and
-//! makes no system call in a run.
+//! The crate `forkunion`, over the C++ library of that name, with its `for_n_dynamic`: a free worker takes the next
+//! job. A run takes no lock and makes no system call.
 //!
-//! Cost: threads start once, in the construction and not in the run. Between runs, and when they find no job, they spin, which takes a processor
-//! each from everyone else. A job is an atomic addition and a call through C.
+//! Cost: threads start once, in the construction and not in the run. Between runs, and when they find no job, the
+//! workers spin, and each occupies a processor. A job costs an atomic addition and a call through C.
 
 use forkunion::{CallerExclusivity, ThreadPool, Topology};
 
@@ -42,7 +42,7 @@ struct ForkUnion(ThreadPool);
 impl Strategy for ForkUnion {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
         let panics = Panics::default();
-        // Its drop is what runs it.
+        // Dropping the returned value runs the loop.
         drop(self.0.for_n_dynamic(jobs, |prong| panics.attempt(|| job(prong.task_index))));
         drop(job);
         panics.raise();

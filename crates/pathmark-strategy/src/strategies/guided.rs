@@ -1,18 +1,19 @@
-//! Guided self-scheduling: whoever is free takes a p-th of what is left.
+//! Guided self-scheduling: a free worker takes 1/p of the jobs left.
 //!
 //! `pathmark render cornell --strategy guided --threads 4`
 //!
 //! Polychronopoulos and Kuck, "Guided self-scheduling: a practical scheduling scheme for parallel supercomputers", IEEE Trans. Computers
 //! C-36(12), 1987. OpenMP calls it `schedule(guided)`.
 //!
-//! Cost: one thread's start for each worker, one atomic addition for each of about p ln(n/p) chunks. The first chunks are as large as
-//! static ones: if the dear jobs come first, one worker still has them when all others are done.
+//! Cost: one thread start for each worker, one atomic addition for each of about p ln(n/p) chunks. The first chunks are
+//! as large as static ones: if the expensive jobs come first, one worker is still busy with them when all others are
+//! done.
 
 use crate::{Entry, Handout};
 
 pub(super) const ENTRY: Entry = Entry::chunks("guided", "whoever is free takes a p-th of the jobs left (GSS)", size);
 
-/// A p-th of what is left, rounded up.
+/// Returns 1/p of the jobs left, rounded up.
 pub(super) fn size(handout: &Handout) -> usize {
     (handout.jobs - handout.start).div_ceil(handout.workers)
 }

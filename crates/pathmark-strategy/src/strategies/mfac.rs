@@ -1,15 +1,16 @@
-//! Factoring that knows how much jobs differ, with chunks that can be told beforehand (mFAC).
+//! mFAC: factoring with a known deviation of job costs, whose chunks can be computed beforehand.
 //!
 //! `pathmark render cornell --strategy mfac:50 --threads 4`: the standard deviation of the jobs' costs is 50 % of their mean; without a number
 //! it is 100 %.
 //!
-//! Hummel, Schonberg and Flynn, "Factoring: a method for scheduling parallel loops", Communications of the ACM 35(8), 1992: a batch leaves as
-//! much work as its p chunks need if they turn out dear. With R jobs left, b = p s / (2 sqrt(R)) for a coefficient of variation s. The first
-//! batch has R / (x p) jobs a chunk for x = 1 + b^2 + b sqrt(b^2 + 2), the others for x = 2 + b^2 + b sqrt(b^2 + 4). Korndörfer and others,
-//! "LB4OMP: a dynamic load balancing library for multithreaded applications", IEEE TPDS 33, 2022, take chunks by a counter instead of a lock and
-//! call that mFAC; so does every chunk rule here.
+//! Hummel, Schonberg and Flynn, "Factoring: a method for scheduling parallel loops", Communications of the ACM 35(8),
+//! 1992: a batch leaves enough work to balance its p chunks if they turn out expensive. With R jobs left,
+//! b = p s / (2 sqrt(R)) for a coefficient of variation s. A chunk has R / (x p) jobs. In the first batch
+//! x = 1 + b^2 + b sqrt(b^2 + 2), in the others x = 2 + b^2 + b sqrt(b^2 + 4). Korndörfer and others, "LB4OMP: a
+//! dynamic load balancing library for multithreaded applications", IEEE TPDS 33, 2022, replace the lock by a counter
+//! and call that mFAC. Every chunk rule here uses a counter.
 //!
-//! Cost: one thread's start for each worker, one atomic addition for each chunk, and the list of chunks.
+//! Cost: one thread start for each worker, one atomic addition for each chunk, and the list of chunks.
 
 use crate::{ChunkRule, Discipline, Entry, Handout, Parameter};
 
@@ -28,7 +29,7 @@ fn size(handout: &Handout) -> usize {
     size
 }
 
-/// Jobs of each chunk of a batch, before which so many are left.
+/// Returns the chunk size of a batch that begins with `left` jobs left.
 fn of_batch(left: usize, workers: usize, deviation: usize, is_first: bool) -> usize {
     let (left, workers) = (left as f64, workers as f64);
     let b = workers * deviation as f64 / (200.0 * left.max(1.0).sqrt());
@@ -50,8 +51,9 @@ mod tests {
         ChunkRule { size, parameter }.chunks(jobs, workers).map(|chunk| chunk.len()).collect()
     }
 
-    /// Jobs that are all alike go out in one batch. With s = 1, p = 2 and R = 100, b is 0.1 and x = 1.01 + 0.1 sqrt(2.01) = 1.1518, so chunks
-    /// have ceil(43.41) = 44 jobs. 12 are left: b = 1 / sqrt(12), x = 2.0833 + 0.28868 sqrt(4.0833) = 2.6667, and 12 / 5.3333 = 2.25.
+    /// Equal jobs go out in one batch. With s = 1, p = 2 and R = 100, b is 0.1 and x = 1.01 + 0.1 sqrt(2.01) = 1.1518,
+    /// so chunks have ceil(43.41) = 44 jobs. 12 are left: b = 1 / sqrt(12), x = 2.0833 + 0.28868 sqrt(4.0833) = 2.6667,
+    /// and 12 / 5.3333 = 2.25.
     #[test]
     fn batches_are_those_of_the_formula() {
         assert_eq!(sizes(0, 100, 4), [25; 4]);

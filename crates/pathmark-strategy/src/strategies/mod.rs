@@ -1,4 +1,4 @@
-//! The strategies, one a file, and their table.
+//! The strategies, each in its own file, and their table.
 
 mod adaptive_factoring;
 mod awf_b;
@@ -42,7 +42,7 @@ use crate::Entry;
 
 pub use static_blocks::block;
 
-/// Every strategy there is, in the order in which people meet them.
+/// All strategies, in the order in which they are listed.
 pub static STRATEGIES: &[Entry] = &[
     serial::ENTRY,
     thread_per_job::ENTRY,
@@ -79,7 +79,7 @@ pub static STRATEGIES: &[Entry] = &[
     openmp_guided::ENTRY,
 ];
 
-/// The strategy called `name`.
+/// Returns the strategy called `name`.
 pub fn find(name: &str) -> Option<&'static Entry> {
     STRATEGIES.iter().find(|entry| entry.name == name)
 }

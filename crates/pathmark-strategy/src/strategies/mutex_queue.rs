@@ -1,12 +1,12 @@
-//! Mutex queue: whoever is free takes the next index from a queue behind one lock.
+//! Mutex queue: a free worker takes the next index from a queue behind one lock.
 //!
 //! `pathmark render cornell --strategy mutex-queue --threads 4`
 //!
-//! The task queue as it is first taught, with the central queue of Tang and Yew, "Processor self-scheduling for multiple-nested parallel
-//! loops", ICPP 1986, and nothing clever. What it adds to `shared-counter` is what a lock costs.
+//! The textbook task queue, with the central queue of Tang and Yew, "Processor self-scheduling for multiple-nested
+//! parallel loops", ICPP 1986. Compared with `shared-counter` it shows the cost of a lock.
 //!
-//! Cost: one thread's start for each worker, memory for all indices, and a lock and an unlock for each job. Workers that meet at the lock
-//! sleep and are woken by the system, which small jobs make the rule.
+//! Cost: one thread start for each worker, memory for all indices, and a lock and an unlock for each job. Workers that
+//! find the lock taken sleep until the system wakes them; with small jobs that is the rule.
 
 use std::sync::Arc;
 

@@ -2,10 +2,11 @@
 //!
 //! `pathmark render cornell --strategy openmp-static --threads 4`, in a build with `--features openmp`
 //!
-//! The `schedule(static)` of OpenMP: "OpenMP Application Programming Interface", version 5.2, 2021, section 11.5.3. It deals like
-//! `static-blocks`, so what differs is who starts and wakes the threads.
+//! The `schedule(static)` of OpenMP: "OpenMP Application Programming Interface", version 5.2, 2021, section 11.5.3. It
+//! deals jobs like `static-blocks`; only the starting and waking of threads differs.
 //!
-//! Cost: threads start once, in the construction. A run wakes them and ends with a barrier; a job is a call through C.
+//! Cost: threads start once, in the construction. A run wakes them and ends with a barrier. A job costs a call through
+//! C.
 
 use super::openmp::{Schedule, entry, make};
 use super::static_blocks;

@@ -1,13 +1,14 @@
-//! Orx-parallel: whoever is free takes the next C jobs from a concurrent iterator.
+//! Orx-parallel: a free worker takes the next C jobs from a concurrent iterator.
 //!
 //! `pathmark render cornell --strategy orx-parallel:8 --threads 4`; without a number C is 1.
 //!
-//! The crate `orx-parallel` does not split a loop: workers pull chunks from one iterator that all share, which for a range is a counter. So it
-//! hands out like `dynamic`. By itself it would choose the size of chunks as it learns what jobs cost, and use no more threads than there are
-//! processors; here both are as asked. Its pool is rayon's, whose threads come from the spawner.
+//! The crate `orx-parallel` does not split a loop: all workers pull chunks from one shared iterator, which for a range
+//! is a counter. So it hands out jobs like `dynamic`. By default it adapts the chunk size as it learns the cost of
+//! jobs, and uses at most as many threads as there are processors; here the user sets both. Its pool is rayon's, whose
+//! threads come from the spawner.
 //!
-//! Cost: threads start once, in the construction and not in the run. A run starts a task for each worker, in a scope of rayon's; a chunk is
-//! an atomic addition.
+//! Cost: threads start once, in the construction and not in the run. A run starts a task for each worker, in a scope of
+//! rayon. A chunk costs an atomic addition.
 
 use std::num::NonZeroUsize;
 

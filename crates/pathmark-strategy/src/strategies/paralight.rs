@@ -1,13 +1,13 @@
-//! Paralight: a block of the jobs for each thread of a pool, and whoever is done takes the upper half of the largest that is left.
+//! Paralight: a block of jobs for each thread of a pool; an idle thread takes the upper half of the largest block left.
 //!
 //! `pathmark render cornell --strategy paralight --threads 4`
 //!
-//! The crate `paralight` for loops over indices, with its range strategy `WorkStealing`. It is `steal-half:richest` with a pool: a range is one
-//! 64-bit word there too, and every change of it one compare-exchange.
+//! The crate `paralight` for loops over indices, with its range strategy `WorkStealing`. It is `steal-half:richest`
+//! with a pool: its ranges, too, are 64-bit words, and every change is one compare-exchange.
 //!
-//! Cost: threads start once, in the construction and not in the run. A run wakes all of them and waits until all have gone to sleep again;
-//! a job is a compare-exchange on the worker's own cache line. A thief looks at everybody's range. A worker that finds none leaves the run,
-//! even if a thief is about to have more than it can do.
+//! Cost: threads start once, in the construction and not in the run. A run wakes all of them and waits until all sleep
+//! again. A job costs a compare-exchange on the worker's own cache line. A thief looks at every worker's range. A
+//! worker that finds no job leaves the run, even if a thief is about to have more jobs than it can do.
 
 use paralight::prelude::{
     CpuPinningPolicy, ExactParallelSourceExt, IntoExactParallelSource, ParallelIteratorExt, RangeStrategy, ThreadCount,
@@ -31,7 +31,7 @@ pub(super) const ENTRY: Entry = Entry {
     )
 };
 
-/// Paralight's numbers of jobs and threads have 32 bits.
+/// Largest number of jobs and of threads, which have 32 bits in paralight.
 const MOST: usize = u32::MAX as usize;
 
 fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {

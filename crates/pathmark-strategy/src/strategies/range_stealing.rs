@@ -1,5 +1,5 @@
-//! What `steal-one` and `steal-half` share: each worker begins with its block of the jobs, and whoever has none left steals from another
-//! worker's end.
+//! Range stealing, the common part of `steal-one` and `steal-half`: each worker begins with a block of jobs. A worker
+//! without jobs steals from the end of another worker's block.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -16,14 +16,15 @@ use crate::{
     Amount, Blueprint, Discipline, Entry, Job, Parameter, Start, Stealing, Strategy, StrategyError, Victim, team,
 };
 
-/// What may follow the colon.
+/// The texts allowed after the colon.
 const VICTIMS: [(&str, Victim); 3] =
     [("neighbour", Victim::Neighbour), ("random", Victim::Random), ("richest", Victim::Richest)];
 
-/// A job's number has half of a 64-bit word.
+/// Largest number of jobs: a job's number has half of a 64-bit word.
 const MOST: usize = u32::MAX as usize;
 
-/// The strategy that steals so much; `read` is its [`discipline`], from the victim that the user names.
+/// Returns the entry of a strategy that steals `amount`; `read` is its [`discipline`] for the victim that the user
+/// names.
 pub(super) const fn entry(
     name: &'static str,
     about: &'static str,
@@ -37,7 +38,7 @@ pub(super) const fn entry(
     }
 }
 
-/// Stealing so much from a victim by name.
+/// Returns the discipline that steals `amount` from `victim`; `None` if there is no such victim.
 pub(super) fn discipline(amount: Amount, victim: &str) -> Option<Discipline> {
     let &(_, victim) = VICTIMS.iter().find(|(known, _)| *known == victim)?;
     Some(Discipline::Stealing(Stealing { start: Start::Blocks, amount, victim }))
@@ -85,7 +86,7 @@ struct Thief {
     worker: usize,
     amount: Amount,
     victim: Victim,
-    /// Its stream is the worker's number, so that no clock and no luck from outside has a part in a run.
+    /// Its stream is the worker's number, so random victims depend neither on the clock nor on outside randomness.
     random: Pcg32,
 }
 
@@ -94,7 +95,8 @@ impl Thief {
         Self { worker, amount, victim, random: Pcg32::new(0, worker as u64) }
     }
 
-    /// A job from another worker; what comes with it is in this worker's range afterwards. `None` if no worker had one when asked.
+    /// Steals from another worker and returns one job. The other stolen jobs are in this worker's range afterwards.
+    /// `None` if no worker had a job when asked.
     fn steal(&mut self, ranges: &Ranges) -> Option<u32> {
         let workers = ranges.workers();
         let thief = self.worker;
@@ -106,7 +108,7 @@ impl Thief {
             Victim::Neighbour => thief + 1,
             // The product's high half is below the number of workers.
             Victim::Random => ((u64::from(self.random.next_u32()) * workers as u64) >> 32) as usize,
-            // Of equals the first. If it has become poor meanwhile, its neighbour will do.
+            // The first of equals. If it has lost its jobs meanwhile, the search goes on with its neighbour.
             Victim::Richest => (0..workers).max_by_key(|&worker| (ranges.left(worker), Reverse(worker)))?,
         };
         let mut victims = (first..first + workers).map(|worker| worker % workers).filter(|&victim| victim != thief);
@@ -120,7 +122,7 @@ mod tests {
     use crate::{Config, find};
     use std::num::NonZeroUsize;
 
-    /// Worker 0 has nothing, 1 one job, 2 none, 3 four jobs and 4 two.
+    /// Worker 0 has no job, 1 has one, 2 has none, 3 has four and 4 has two.
     fn ranges() -> Ranges {
         Ranges::new([0..0, 0..1, 1..1, 1..5, 5..7].into_iter())
     }
@@ -134,7 +136,7 @@ mod tests {
         let from = ranges();
         assert_eq!(stolen(2, Amount::One, Victim::Neighbour, &from), Some(4));
         assert_eq!([2, 3].map(|worker| from.left(worker)), [0, 3]);
-        // Half of three is two: 2 is run at once and 3 is the thief's.
+        // Half of three is two: job 2 is returned, job 3 is in the thief's range.
         assert_eq!(stolen(2, Amount::Half, Victim::Neighbour, &from), Some(2));
         assert_eq!([2, 3].map(|worker| from.left(worker)), [1, 1]);
         assert_eq!((from.pop(2), from.pop(2), from.pop(3), from.pop(3)), (Some(3), None, Some(1), None));
@@ -144,7 +146,7 @@ mod tests {
     fn the_victim_is_the_one_that_was_asked_for() {
         assert_eq!(stolen(0, Amount::One, Victim::Neighbour, &ranges()), Some(0));
         assert_eq!(stolen(0, Amount::One, Victim::Richest, &ranges()), Some(4));
-        // Worker 3 first, then 4: a random start reaches both, and 1.
+        // Some random start leads to each of the workers 1, 3 and 4.
         let mut thief = Thief::new(0, Amount::One, Victim::Random);
         let mut seen: Vec<_> = (0..50).filter_map(|_| thief.steal(&ranges())).collect();
         seen.sort_unstable();

@@ -1,9 +1,9 @@
-//! Rayon: a parallel iterator over the jobs, split down to single ones.
+//! Rayon: a parallel iterator over the jobs, split down to single jobs.
 //!
 //! `pathmark render cornell --strategy rayon --threads 4`
 //!
-//! The library that most Rust programs use, as they use it. The range of jobs is halved again and again by `join`, whose second half may be
-//! stolen (the scheme of Cilk: Blumofe and Leiserson, JACM 46(5), 1999).
+//! Most Rust programs use this library, and in this form. The range of jobs is halved again and again by `join`, whose
+//! second half may be stolen (the scheme of Cilk: Blumofe and Leiserson, JACM 46(5), 1999).
 //!
 //! Cost: threads start once, in the construction and not in the run. A run wakes the pool; a job is a leaf of the tree of joins
 //! and costs about one push and pop on the worker's own deque. Idle workers search for a while before they sleep.

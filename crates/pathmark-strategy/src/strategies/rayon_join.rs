@@ -2,9 +2,9 @@
 //!
 //! `pathmark render cornell --strategy rayon-join --threads 4`
 //!
-//! Divide and conquer as Cilk has it: Blumofe et al., "Cilk: an efficient multithreaded runtime system", PPoPP 1995; in Rust, `join` of
-//! rayon. A worker goes on with the first half and leaves the second where others may steal it. Against `rayon` this shows what the
-//! machinery of parallel iterators adds to the same halving.
+//! Divide and conquer as in Cilk: Blumofe et al., "Cilk: an efficient multithreaded runtime system", PPoPP 1995; in
+//! Rust, `join` of rayon. A worker continues with the first half and leaves the second where others may steal it. A
+//! comparison with `rayon` shows the overhead of parallel iterators on the same halving.
 //!
 //! Cost: threads start once, in the construction and not in the run. One `join` for each job, which is a push and a pop on the worker's
 //! own deque unless the second half was stolen.
@@ -32,7 +32,7 @@ impl Strategy for RayonJoin {
     }
 }
 
-/// Runs the jobs of a range, the two halves perhaps on two workers.
+/// Runs the jobs of a range, whose two halves may run on two workers.
 fn halve(range: Range<usize>, leaf: &(impl Fn(usize) + Sync)) {
     let Range { start, end } = range;
     match end - start {

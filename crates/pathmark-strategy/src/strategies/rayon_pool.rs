@@ -1,4 +1,4 @@
-//! What the strategies on rayon share: a pool of their own, whose threads come from the spawner.
+//! The pool of a strategy on rayon: each strategy has its own, whose threads come from the spawner.
 
 use std::io;
 
@@ -8,15 +8,16 @@ use crate::panics::Panics;
 use crate::team::Crew;
 use crate::{Blueprint, StrategyError};
 
-/// Fields are dropped in this order: the end of the pool is what ends the threads that the crew then waits for, which the pool
-/// itself does not do.
+/// A pool and its threads. Fields are dropped in this order: dropping the pool ends the threads without waiting for
+/// them, then the crew joins them.
 pub(super) struct Pool {
     pool: ThreadPool,
     _crew: Crew,
 }
 
 impl Pool {
-    /// Starts a strategy's pool. It has the size asked for; rayon's global pool, which has the machine's size, is never touched.
+    /// Starts a strategy's pool with the requested size. Rayon's global pool, which has the machine's size, is never
+    /// used.
     pub(super) fn new(blueprint: &Blueprint) -> Result<Self, StrategyError> {
         let &Blueprint { strategy, threads, ref spawner, .. } = blueprint;
         let (threads, most) = (threads.get(), max_num_threads());
@@ -44,15 +45,15 @@ impl Pool {
         }
     }
 
-    /// Runs `body` on a worker while the caller waits, and passes on what it has caught. Rayon alone would pass a panic on too, but run
-    /// all other jobs first.
+    /// Runs `body` on a worker while the caller waits, and raises again a panic that it has caught. Rayon alone would
+    /// pass a panic on, too, but would first run all other jobs.
     pub(super) fn run(&self, body: impl FnOnce(&Panics) + Send) {
         let panics = Panics::default();
         self.pool.install(|| body(&panics));
         panics.raise();
     }
 
-    /// The pool itself.
+    /// Returns rayon's pool.
     pub(super) fn rayon(&self) -> &ThreadPool {
         &self.pool
     }

@@ -1,13 +1,14 @@
-//! Rayon's scope: every job is spawned as a task of its own.
+//! Rayon's scope: every job is spawned as its own task.
 //!
 //! `pathmark render cornell --strategy rayon-scope --threads 4`
 //!
-//! What a program does that meets its work piece by piece, such as a server or a walk through a tree; the tasks of Cilk without its
-//! recursion (Blumofe et al., "Cilk: an efficient multithreaded runtime system", PPoPP 1995). One worker puts all tasks into its own deque,
-//! and only then begins with the last; the others have stolen them from the front meanwhile, one at a time.
+//! The method of programs that find their work step by step, such as a server or a tree traversal; the tasks of Cilk
+//! without its recursion (Blumofe et al., "Cilk: an efficient multithreaded runtime system", PPoPP 1995). One worker
+//! pushes all tasks onto its own deque, and only then begins with the last. Meanwhile the others steal from the front,
+//! one task at a time.
 //!
-//! Cost: threads start once, in the construction and not in the run. Each job is an allocation, a push by the one worker, and a theft for
-//! every job that another worker runs. With small jobs the worker that spawns is the bottleneck.
+//! Cost: threads start once, in the construction and not in the run. Each job costs an allocation, a push by the one
+//! worker, and a theft if another worker runs it. With small jobs the worker that spawns is the bottleneck.
 
 use ::rayon::scope;
 
@@ -26,7 +27,8 @@ struct RayonScope(Pool);
 impl Strategy for RayonScope {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
         self.0.run(|panics| {
-            // Tasks borrow the job: a clone for each would be two atomic updates on a line that all workers want.
+            // Tasks borrow the job: a clone for each would cost two atomic updates on a cache line that all workers
+            // use.
             let job = &*job;
             scope(|scope| {
                 for index in 0..jobs {

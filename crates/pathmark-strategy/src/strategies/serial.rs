@@ -2,10 +2,10 @@
 //!
 //! `pathmark render cornell --strategy serial`
 //!
-//! The baseline T1 of every speedup: the best that one thread can do. It starts nothing and synchronises nothing, so a parallel
-//! strategy on one thread is measured *against* it, not instead of it.
+//! The baseline T1 of every speedup: the best that one thread can achieve. It starts no thread and synchronises
+//! nothing. So a parallel strategy on one thread is measured *against* it, not instead of it.
 //!
-//! Cost: an indirect call a job.
+//! Cost: an indirect call for each job.
 
 use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, Workers};
 

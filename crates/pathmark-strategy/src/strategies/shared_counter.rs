@@ -1,12 +1,13 @@
-//! Shared counter: whoever is free takes the next index from one atomic counter.
+//! Shared counter: a free worker takes the next index from one atomic counter.
 //!
 //! `pathmark render cornell --strategy shared-counter --threads 4`
 //!
-//! Processor self-scheduling in its purest form, a chunk of one job: Tang and Yew, "Processor self-scheduling for multiple-nested
+//! Processor self-scheduling with chunks of one job: Tang and Yew, "Processor self-scheduling for multiple-nested
 //! parallel loops", ICPP 1986. OpenMP calls it `schedule(dynamic, 1)`.
 //!
-//! Cost: one thread's start for each worker, and for each job one atomic addition on a cache line that all workers want. No
-//! worker idles while a job is left, so the imbalance is one job at most; with very small jobs the line is the bottleneck.
+//! Cost: one thread start for each worker, and for each job one atomic addition on a cache line that all workers use.
+//! No worker idles while a job is left, so the imbalance is at most one job. With very small jobs that cache line is
+//! the bottleneck.
 
 use std::sync::Arc;
 

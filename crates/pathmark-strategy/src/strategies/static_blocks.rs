@@ -1,12 +1,12 @@
-//! Static blocks: each worker gets one contiguous run of jobs, fixed before the first one starts.
+//! Static blocks: each worker gets one contiguous block of jobs, fixed before the first job starts.
 //!
 //! `pathmark render cornell --strategy static-blocks --threads 4`
 //!
-//! The block distribution of data-parallel languages, and OpenMP's `schedule(static)`. Sizes differ by one job at most: the
-//! remainder goes to the first workers, one each.
+//! The block distribution of data-parallel languages, and OpenMP's `schedule(static)`. Sizes differ by at most one job:
+//! the first workers get the remainder, one job each.
 //!
-//! Cost: one thread's start for each worker and nothing for a job. Neighbouring jobs stay together, which is good for caches and
-//! bad for balance: where costs vary smoothly, one worker gets all the dear ones.
+//! Cost: one thread start for each worker and nothing for a job. Neighbouring jobs stay together, which is good for
+//! caches and bad for balance: if costs vary smoothly, one worker gets all the expensive jobs.
 
 use std::iter::StepBy;
 use std::ops::Range;
@@ -16,15 +16,16 @@ use crate::Entry;
 pub(super) const ENTRY: Entry =
     Entry::dealt("static-blocks", "one contiguous block of jobs for each worker, fixed beforehand", deal);
 
-/// The jobs of `worker`. Block w starts where block w - 1 ends, the first at 0 and the last ends at `jobs`: each index is in one.
+/// Returns the jobs of `worker`. Block w starts where block w - 1 ends. The first block starts at 0 and the last ends
+/// at `jobs`, so each index is in one block.
 pub fn block(worker: usize, workers: usize, jobs: usize) -> Range<usize> {
-    // Not worker * jobs / workers, whose product overflows.
+    // Not worker * jobs / workers, because the product can overflow.
     let (size, remainder) = (jobs / workers, jobs % workers);
     let start = |worker: usize| worker * size + worker.min(remainder);
     start(worker)..start(worker + 1)
 }
 
-/// The blocks as a deal, which lets a worker's jobs lie apart.
+/// Returns the block of `worker` as a deal, whose type also allows jobs that lie apart.
 pub(super) fn deal(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>> {
     block(worker, workers, jobs).step_by(1)
 }

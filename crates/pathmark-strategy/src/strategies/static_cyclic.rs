@@ -4,8 +4,8 @@
 //!
 //! The cyclic distribution of data-parallel languages, and OpenMP's `schedule(static, 1)`.
 //!
-//! Cost: one thread's start for each worker and nothing for a job. It spreads a dear region over all workers, so it balances
-//! smooth costs well; costs that repeat with a period of p jobs defeat it.
+//! Cost: one thread start for each worker and nothing for a job. It spreads an expensive region over all workers, so it
+//! balances smooth costs well. It fails for costs that repeat with a period of p jobs.
 
 use std::iter::StepBy;
 use std::ops::Range;
@@ -15,7 +15,8 @@ use crate::Entry;
 pub(super) const ENTRY: Entry =
     Entry::dealt("static-cyclic", "jobs dealt out to the workers like cards, fixed beforehand", cycle);
 
-/// The jobs of `worker`: every `workers`-th from its own number on, so each index has one remainder and is in one worker's share.
+/// Returns the jobs of `worker`: every `workers`-th job from its own number on. Each index has one remainder, so it
+/// belongs to one worker.
 fn cycle(worker: usize, workers: usize, jobs: usize) -> StepBy<Range<usize>> {
     (worker.min(jobs)..jobs).step_by(workers)
 }

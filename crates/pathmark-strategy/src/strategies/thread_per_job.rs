@@ -2,11 +2,12 @@
 //!
 //! `pathmark render cornell --strategy thread-per-job --decomposition rows`, or `--strategy thread-per-row` for short
 //!
-//! The plan of report A (docs/reports.md), which starts 768 threads for the 768 rows of its picture. It ignores `--threads`.
+//! The method of report A (docs/reports.md), which starts 768 threads for the 768 rows of its image. It ignores
+//! `--threads`.
 //!
-//! Cost: a thread's start and end for each job (tens of microseconds), a stack for each, and time slices shared among far more
-//! threads than cores. Balance is left to the kernel. With tens of thousands of jobs the system refuses or ends the process, so
-//! whoever chooses the jobs keeps below that.
+//! Cost: a thread start and end for each job (tens of microseconds), a stack for each, and time slices shared among far
+//! more threads than cores. The kernel of the operating system balances the load. With tens of thousands of jobs the
+//! system refuses threads or ends the process, so the number of jobs must stay below that.
 
 use std::sync::Arc;
 

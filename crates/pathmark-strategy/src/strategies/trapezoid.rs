@@ -5,8 +5,8 @@
 //! Tzen and Ni, "Trapezoid self-scheduling: a practical scheduling scheme for parallel compilers", IEEE TPDS 4(1), 1993, with the sizes
 //! they recommend: the first chunk has n/(2p) jobs, the last one job.
 //!
-//! Cost: one thread's start for each worker, one atomic addition for each of about 4p chunks. The first chunks are half the size of
-//! guided self-scheduling's, so dear jobs at the beginning hurt less.
+//! Cost: one thread start for each worker, one atomic addition for each of about 4p chunks. The first chunks are half
+//! as large as in guided self-scheduling, so expensive jobs at the beginning hurt less.
 
 use crate::{Entry, Handout};
 
@@ -16,7 +16,8 @@ pub(super) const ENTRY: Entry = Entry::chunks(
     size,
 );
 
-/// Chunk number k has first - k step jobs, where the step is such that about ceil(2n / (first + last)) chunks are needed.
+/// Returns the size of chunk k: first - k step jobs. The step is such that about ceil(2n / (first + last)) chunks are
+/// needed.
 pub(super) fn size(handout: &Handout) -> usize {
     let first = (handout.jobs / (2 * handout.workers)).max(1);
     let chunks = (2 * handout.jobs).div_ceil(first + 1);

@@ -1,12 +1,13 @@
-//! Weighted factoring: batches as those of `factoring`, whose chunks are as large as their workers are fast, by weights that the user knows.
+//! Weighted factoring: the batches of `factoring`, whose chunk sizes are in proportion to worker speeds given by the
+//! user.
 //!
 //! `pathmark render cornell --strategy weighted-factoring:1:0.5 --threads 4`: the second and the fourth worker are half as fast as the others.
 //! Without weights it is `factoring`.
 //!
 //! Hummel, Schmidt, Uma and Wein, "Load-sharing in heterogeneous systems via weighted factoring", SPAA 1996.
 //!
-//! Cost: one thread's start for each worker; a lock and two readings of the clock for each of about p log2(n/p) chunks. On processors that are
-//! alike it gains nothing over `factoring`.
+//! Cost: one thread start for each worker; a lock and two clock readings for each of about p log2(n/p) chunks. On equal
+//! processors it gains nothing over `factoring`.
 
 use crate::{Clock, Discipline, Entry, LearnedRule, Ledger, Parameter, Weights};
 
@@ -21,7 +22,7 @@ pub(super) const ENTRY: Entry = Entry {
 
 const RULE: LearnedRule = LearnedRule { size, clock: Clock::Chunks, weights: Weights::EQUAL };
 
-/// A worker's share of half of what was left when the batch began.
+/// Returns a worker's share of half of the jobs that were left when the batch began.
 fn size(ledger: &Ledger, worker: usize) -> f64 {
     ledger.given_weight(worker) * ledger.batch_left() as f64 / (2.0 * ledger.workers() as f64)
 }
@@ -41,8 +42,9 @@ mod tests {
         in_turn.map_while(|worker| Some(rule.next(&mut ledger, worker)?.len())).collect()
     }
 
-    /// Equal weights give the batches of FAC2: 13, 6, 3, 2 and 1 on four workers. Weights 3 and 1 on two workers are 3/2 and 1/2: of 50 jobs
-    /// for the first batch they take ceil(37.5) = 38 and ceil(12.5) = 13, of half of the other 49 ceil(18.375) = 19 and ceil(6.125) = 7.
+    /// Equal weights give the batches of FAC2: 13, 6, 3, 2 and 1 on four workers. On two workers, weights 3 and 1
+    /// become 3/2 and 1/2. Of the first batch's 50 jobs they take ceil(37.5) = 38 and ceil(12.5) = 13, of half of the
+    /// other 49 ceil(18.375) = 19 and ceil(6.125) = 7.
     #[test]
     fn chunks_are_in_proportion_to_the_weights() {
         assert_eq!(sizes("1", 4), [[13; 4], [6; 4], [3; 4], [2; 4], [1; 4]].concat());

@@ -1,14 +1,14 @@
-//! Work stealing: each worker has a queue of its own, and one whose queue is empty helps itself elsewhere.
+//! Work stealing: each worker has its own queue, and a worker whose queue is empty steals jobs from elsewhere.
 //!
 //! `pathmark render cornell --strategy work-stealing --threads 4`
 //!
-//! Blumofe and Leiserson, "Scheduling multithreaded computations by work stealing", JACM 46(5), 1999; the queues are the deques of
-//! Chase and Lev, "Dynamic circular work-stealing deque", SPAA 2005, as `crossbeam-deque` has them. All jobs start in one shared
-//! injector. A worker takes its next job from its own deque, else a batch from the injector, else half of another worker's deque,
-//! asking its neighbours in turn.
+//! Blumofe and Leiserson, "Scheduling multithreaded computations by work stealing", JACM 46(5), 1999; the queues are
+//! the deques of Chase and Lev, "Dynamic circular work-stealing deque", SPAA 2005, as implemented by `crossbeam-deque`.
+//! All jobs start in one shared injector. A worker takes its next job from its own deque, else a batch from the
+//! injector, else half of another worker's deque, asking its neighbours in turn.
 //!
-//! Cost: one thread's start for each worker, a push into the injector for each job before that, then mostly operations on the
-//! worker's own cache lines. Other workers' lines are touched once a batch.
+//! Cost: one thread start for each worker, a push into the injector for each job before that, then mostly operations on
+//! the worker's own cache lines. A worker touches the cache lines of others once for each batch.
 
 use std::iter;
 use std::sync::Arc;
@@ -55,7 +55,7 @@ impl Strategy for WorkStealing {
     }
 }
 
-/// What the workers of one run share.
+/// The data that the workers of one run share.
 struct Shared {
     injector: Injector<usize>,
     stealers: Box<[Stealer<usize>]>,
@@ -63,7 +63,8 @@ struct Shared {
 }
 
 impl Shared {
-    /// A job from elsewhere; what comes with it goes into `deque`, where others can steal it while this worker is busy.
+    /// Steals a batch from the injector or another deque and returns one of its jobs. The others go into `deque`, where
+    /// other workers can steal them while this worker is busy.
     fn steal(&self, thief: usize, deque: &Worker<usize>) -> Option<usize> {
         let (before, after) = self.stealers.split_at(thief);
         let victims = after.iter().skip(1).chain(before).map(|victim| victim.steal_batch_and_pop(deque));

@@ -1,7 +1,7 @@
 //! Our own concurrent primitives under loom, which runs a small program in every interleaving with up to three preemptions, and with every
 //! value that a relaxed load may see.
 //!
-//! The files of `src` are included here as they are: what they take from `super::sync` is loom's instead of std's.
+//! The files of `src` are included here unchanged; their imports from `super::sync` are loom's types instead of std's.
 
 #[path = "../../src/counter.rs"]
 mod counter;
@@ -100,7 +100,7 @@ fn a_locked_queue_hands_out_each_job_once() {
     });
 }
 
-/// One worker throws 0 and later 2, the other throws 1: whatever comes first, 2 does not.
+/// One worker throws 0 and later 2, the other throws 1. The first payload is 0 or 1, never 2.
 #[test]
 fn the_first_payload_is_raised_and_everyone_is_asked_to_stop() {
     check(|| {
@@ -121,7 +121,8 @@ fn the_first_payload_is_raised_and_everyone_is_asked_to_stop() {
     });
 }
 
-/// The wish reaches a worker that has thrown nothing: no job is begun by one that has seen it, and the run ends.
+/// The stop request reaches a worker that has thrown nothing: once it has seen the request it begins no job, and the
+/// run ends.
 #[test]
 fn a_worker_that_sees_the_wish_takes_no_job() {
     check(|| {

@@ -1,4 +1,4 @@
-//! Ranges that are popped from and stolen from, and the count by which workers know that nothing is left.
+//! Stealing: ranges from which workers pop and steal, and the count that shows workers that no job is left.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -11,8 +11,8 @@ use crate::{Runs, check, team};
 const ONE: fn(u32) -> u32 = |_| 1;
 const HALF: fn(u32) -> u32 = |left| left.div_ceil(2);
 
-/// One run in which workers with these ranges steal from their neighbours, as `steal-one` and `steal-half` do. A job is noted and then
-/// does `then`.
+/// Runs workers with these ranges that steal from their neighbours, as `steal-one` and `steal-half` do. A job is
+/// recorded and then calls `then`.
 fn run(ranges: &[Range<u32>], amount: fn(u32) -> u32, then: impl Fn(usize, &Runs) + Send + Sync + 'static) -> Runs {
     let (workers, jobs) = (ranges.len(), ranges.iter().map(ExactSizeIterator::len).sum());
     let (ranges, taken) = (Ranges::new(ranges.iter().cloned()), Taken::new(jobs, workers));
@@ -33,7 +33,7 @@ fn run(ranges: &[Range<u32>], amount: fn(u32) -> u32, then: impl Fn(usize, &Runs
     runs
 }
 
-/// Ends only if jobs `a` and `b` run at the same time.
+/// Returns the body of a job that ends only if jobs `a` and `b` run at the same time.
 fn meet(a: usize, b: usize) -> impl Fn(usize, &Runs) {
     move |job, runs| {
         let other = if job == a { b } else { a };
@@ -57,7 +57,7 @@ fn two_workers_rob_each_other() {
     }
 }
 
-/// Without the waiting at the end, which with three workers is too much for loom.
+/// Omits the waiting at the end, which is too much for loom with three workers.
 #[test]
 fn two_thieves_want_the_same_jobs() {
     for amount in [ONE, HALF] {
@@ -75,16 +75,16 @@ fn two_thieves_want_the_same_jobs() {
     }
 }
 
-/// Half of four jobs is on its way to the thief, who begins with job 2 and stays in it until someone else runs job 3. A worker that took
-/// the empty ranges for the end would be missing, and the model would not end.
+/// The thief steals half of four jobs, begins with job 2 and stays in it until another worker runs job 3. A worker that
+/// took the empty ranges for the end would be missing, and the model would not end.
 #[test]
 fn nobody_leaves_while_a_batch_is_on_its_way() {
     check(|| run(&[0..4, 4..4], HALF, meet(2, 3)).assert_each_once());
 }
 
-/// As seen from the owner's thief: with the whole range stolen, its owner comes back for a part.
+/// The owner runs job 0 and the thief job 1, and each job waits until the other has begun.
 #[test]
-fn an_owner_gets_back_what_was_stolen() {
+fn owner_and_thief_can_work_at_the_same_time() {
     check(|| run(&[0..2, 2..2], HALF, meet(0, 1)).assert_each_once());
 }
 

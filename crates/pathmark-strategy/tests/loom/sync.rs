@@ -1,10 +1,10 @@
-//! What `src/sync.rs` names, as loom has it.
+//! The names of `src/sync.rs`, with loom's types.
 
 pub(super) use crossbeam::utils::CachePadded;
 pub(super) use loom::sync::Mutex;
 pub(super) use loom::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
-/// Waiting, of which loom must be told, or it would try an endless loop to its end.
+/// A wait that yields to loom; otherwise loom would follow an endless loop.
 pub(super) struct Backoff(fn());
 
 impl Backoff {

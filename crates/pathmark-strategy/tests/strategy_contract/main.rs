@@ -11,14 +11,15 @@ use std::thread;
 use pathmark_strategy::contract::Contract;
 use pathmark_strategy::{Entry, STRATEGIES, find};
 
-/// As `contract::verify`; with `PATHMARK_THOROUGH`, at every place where a job may panic.
+/// As `contract::verify`; if `PATHMARK_THOROUGH` is set, with a panic in each of a thousand jobs.
 fn verify(entry: &Entry, parameter: Option<&str>) {
     let thorough = std::env::var_os("PATHMARK_THOROUGH").is_some();
     let contract = Contract { thorough, parameter: parameter.map(str::to_owned), ..Contract::default() };
     contract.verify(entry).unwrap_or_else(|violations| panic!("{}: {violations:#?}", entry.name));
 }
 
-/// Four at a time, because a trial waits more than it works; no more, so that waiting for each other is no matter of patience.
+/// Runs four trials at a time, because a trial mostly waits. With more, waiting for each other could use up the
+/// patience.
 fn verify_all(trials: &[(&Entry, Option<&str>)]) {
     let next = Mutex::new(trials.iter());
     thread::scope(|scope| {
@@ -61,7 +62,7 @@ fn parameters() -> impl Iterator<Item = (&'static Entry, Option<&'static str>)> 
 #[test]
 fn every_parameter_keeps_the_contract() {
     verify_all(&parameters().collect::<Vec<_>>());
-    // Who has a parameter is in the list.
+    // Every strategy with a parameter is in the list.
     let listed = |entry: &&Entry| PARAMETERS.iter().any(|(name, _)| *name == entry.name);
     assert!(STRATEGIES.iter().filter(|entry| entry.parameter.is_some()).all(|entry| listed(&entry)));
 }

@@ -1,4 +1,4 @@
-//! What OpenMP would do differently from everyone else, if it were left alone.
+//! OpenMP's strategies keep the contract, too, and report a team that OpenMP would silently make too small.
 
 use std::env;
 use std::num::NonZeroUsize;
@@ -7,12 +7,13 @@ use std::sync::Arc;
 
 use pathmark_strategy::{Config, STRATEGIES, StrategyError, find};
 
-/// What OpenMP reads once, when its program starts.
+/// The environment variable that OpenMP reads once, when its program starts.
 const LIMIT: &str = "OMP_THREAD_LIMIT";
 
 const NAMES: [&str; 3] = ["openmp-static", "openmp-dynamic", "openmp-guided"];
 
-/// By itself, because the others' contract does not depend on the feature: whoever has tried them without it need not try them again.
+/// A separate test, because the feature does not affect the other strategies: those tested without it need no second
+/// test.
 #[test]
 fn every_strategy_on_openmp_keeps_the_contract() {
     let ours = |name: &str| NAMES.contains(&name);
@@ -22,8 +23,8 @@ fn every_strategy_on_openmp_keeps_the_contract() {
     super::verify_all(&trials);
 }
 
-/// A limit in the environment would quietly leave a smaller team, and a record with a false number of threads. This test runs itself once more
-/// under such a limit.
+/// A limit in the environment would silently give a smaller team, and a record with a wrong number of threads. This
+/// test runs itself again under such a limit.
 #[test]
 fn a_team_that_is_too_small_is_an_error() {
     if env::var_os(LIMIT).is_none() {

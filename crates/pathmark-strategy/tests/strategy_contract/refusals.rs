@@ -1,4 +1,4 @@
-//! What our strategies say of a thread that is refused: which of how many. That it is an error at all is part of the contract.
+//! Errors for a refused thread: they name its number and the total. The contract already requires that it is an error.
 
 use std::io;
 use std::num::NonZeroUsize;
@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 
 use pathmark_strategy::{Config, STRATEGIES, Spawner, StrategyError, SystemThreads, Threads, find};
 
-/// Refuses the thread of that number, from 0.
+/// A spawner that refuses the thread of this number, counted from 0.
 struct Refusing(usize, AtomicUsize);
 
 impl Spawner for Refusing {
@@ -37,7 +37,7 @@ fn a_refused_thread_is_named() {
                 continue;
             };
             assert_eq!((*worker, source.kind()), (refused + 1, io::ErrorKind::WouldBlock), "{}", entry.name);
-            // A library may start more than run jobs.
+            // A library may start more threads than run jobs.
             assert!(*workers == THREADS || entry.threads == Threads::Library && *workers > THREADS, "{}", entry.name);
         }
     }
@@ -46,7 +46,7 @@ fn a_refused_thread_is_named() {
 #[test]
 fn rayon_refuses_more_threads_than_it_would_start() {
     for name in ["rayon", "rayon-join", "rayon-scope"] {
-        // The first thread is refused, so an error of another kind says that none was asked for.
+        // The first thread is refused, so an error of another kind shows that no thread was requested.
         let error = find(name).and_then(|entry| entry.build(config(rayon::max_num_threads() + 1, 0)).err());
         assert!(matches!(error, Some(StrategyError::TooManyThreads { strategy, .. }) if strategy == name), "{error:?}");
     }

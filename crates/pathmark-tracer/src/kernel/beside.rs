@@ -1,5 +1,6 @@
-//! `--kernel lanes+device:ID`, or with several devices `lanes+device:ID+device:ID`: workers render pieces with a kernel of the processor, and devices
-//! render others meanwhile. Which piece was rendered by whom changes no bit, because all these kernels have the same.
+//! `--kernel lanes+device:ID`, or with several devices `lanes+device:ID+device:ID`: workers render pieces with a kernel
+//! of the processor, while devices render others. All these kernels produce the same bits, so the assignment of pieces
+//! changes none.
 
 use super::device::OnDevice;
 use super::{Counts, Kernel};
@@ -7,7 +8,7 @@ use crate::error::Error;
 use crate::film::{Piece, TileBuffer};
 use pathmark_device::Costs;
 
-/// The kernels.
+/// A kernel of the processor and kernels of devices.
 pub(super) struct Beside {
     pub(super) own: Box<dyn Kernel>,
     pub(super) devices: Vec<OnDevice>,

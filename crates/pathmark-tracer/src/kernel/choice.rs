@@ -1,4 +1,4 @@
-//! What the names of a [`Spec`] come to for a scene: everything that a user could have got wrong is found here.
+//! Resolution of a [`Spec`] for a scene: every error in the user's settings is found here.
 
 use super::way::{Way, way_for};
 use super::{Clamp, Clamped, LANES, OwnEstimator, SCALAR, Spec};
@@ -13,10 +13,10 @@ use crate::scene::{
 use crate::simd::{Precision, Sizes, sizes_of};
 use std::sync::Arc;
 
-/// What effects are called of a kernel that asks at run time whether any of its lanes needs one.
+/// Name for the effects of a kernel that checks at run time whether any of its lanes needs one.
 const AT_RUN_TIME: &str = "run-time";
 
-/// What a spec comes to for a scene: no name of it has to be looked up again.
+/// A spec resolved for a scene: none of its names has to be looked up again.
 #[derive(Clone)]
 pub struct Choice {
     pub(super) width: u32,
@@ -25,7 +25,7 @@ pub struct Choice {
     pub(super) clamp: Option<Clamp>,
     /// The filter, if it is not the camera's own.
     filter: Option<Filter>,
-    /// Nearer than this nothing is hit.
+    /// Distance below which nothing is hit.
     pub(super) epsilon: Option<f64>,
     pub(super) estimator: EstimatorEntry,
     /// The estimator, if it is in no table.
@@ -34,7 +34,7 @@ pub struct Choice {
     pub(super) sampler: &'static SamplerEntry,
     pub(super) profile: &'static ProfileEntry,
     accelerator: &'static Accelerator,
-    /// Where hierarchies are looked for and kept.
+    /// Store in which hierarchies are looked up and kept.
     trees: Option<Arc<dyn TreeStore>>,
     pub(super) way: Way,
 }
@@ -50,30 +50,30 @@ impl Choice {
         self.sampler
     }
 
-    /// The same radiance from samples of another seed, and nothing clamped.
+    /// The same choice with another seed and without a clamp, for independent samples of the same radiance.
     #[must_use]
     pub fn pilot(self, seed: u64) -> Self {
         Self { seed, clamp: None, ..self }
     }
 
-    /// The same with hierarchies from the store, which keeps those that it does not have.
+    /// The same choice with a store of hierarchies, which keeps those that it lacks.
     #[must_use]
     pub fn with_trees(self, store: Arc<dyn TreeStore>) -> Self {
         Self { trees: Some(store), ..self }
     }
 
-    /// Whether the scene's hierarchy may have been built before.
+    /// Whether the scene's hierarchy is looked up in the store.
     pub fn asks_store(&self, scene: &Scene) -> bool {
         let with_box = scene.primitives.spheres.len() + scene.primitives.triangles.len();
         self.trees.is_some() && self.accelerator.is_kept(with_box)
     }
 
-    /// The scene's hierarchy; `None` if there is to be none.
+    /// The scene's hierarchy; `None` if the accelerator has none.
     pub(super) fn hierarchy(&self, scene: &Scene) -> Result<Option<Hierarchy>> {
         scene.hierarchy_by(self.accelerator(), self.trees.as_deref())
     }
 
-    /// What is clamped.
+    /// The clamp, if any.
     pub fn clamp(&self) -> Option<Clamp> {
         self.clamp
     }
@@ -83,7 +83,7 @@ impl Choice {
         self.filter
     }
 
-    /// Nearer than this nothing is hit; `None` if where a ray starts is told exactly.
+    /// Distance below which nothing is hit; `None` if the primitive that a ray starts on is known exactly.
     pub fn epsilon(&self) -> Option<f64> {
         self.epsilon
     }
@@ -93,27 +93,27 @@ impl Choice {
         scene.camera.view(self.width, self.height).filtered(self.filter)
     }
 
-    /// Over so many subpixels the samples of a pixel are spread in turn; 1 if it has none.
+    /// Number of subpixels over which a pixel's samples are spread in turn; 1 without subpixels.
     pub fn subpixels(&self, scene: &Scene) -> u32 {
         if self.filter.unwrap_or(scene.camera.filter) == Filter::Tent { SUBPIXELS } else { 1 }
     }
 
-    /// When and how chance ends paths: what was asked for, or else the estimator's own rule.
+    /// The rule of Russian roulette: the requested one, or else the estimator's own.
     pub fn roulette(&self) -> Option<Roulette> {
         self.options.roulette.or(self.estimator.roulette)
     }
 
-    /// After so many bounces a path is cut: what was asked for, or else the estimator's own limit.
+    /// Bounces after which a path is cut: the requested number, or else the estimator's own limit.
     pub fn depth(&self) -> Option<u16> {
         self.options.max_depth.or(self.estimator.max_depth)
     }
 
-    /// Camera rays of a sample.
+    /// Camera rays per sample.
     pub fn camera_rays(&self) -> u16 {
         self.options.camera_rays()
     }
 
-    /// Whether an option is on that changes what the image converges to.
+    /// Whether an option changes the limit to which the image converges.
     pub fn is_biased(&self) -> bool {
         self.clamp.is_some() || self.depth().is_some() || self.filter.is_some() || self.epsilon.is_some()
     }
@@ -129,22 +129,22 @@ impl Choice {
         }
     }
 
-    /// The same, rendered by another kernel.
+    /// The same choice with another kernel.
     pub(super) fn by(&self, way: &Way) -> Self {
         Self { way: way.clone(), ..self.clone() }
     }
 
-    /// How many devices render beside the workers.
+    /// Number of devices that render beside the workers.
     pub fn devices_beside(&self) -> usize {
         if let Way::Beside { devices, .. } = &self.way { devices.len() } else { 0 }
     }
 
-    /// Whether it asks for a GPU and there is none: then there is no kernel to be made.
+    /// Whether the choice requires a GPU and there is none. No kernel can be built then.
     pub fn lacks_device(&self) -> bool {
         matches!(&self.way, Way::Device(device) if device.id.is_none())
     }
 
-    /// Name of the kernel that renders; of a device with the device's own: `device:cuda:0`.
+    /// Name of the kernel that renders. For a device it includes the device's name: `device:cuda:0`.
     pub fn kernel(&self) -> &str {
         match &self.way {
             Way::Lanes(_) => LANES,
@@ -154,12 +154,12 @@ impl Choice {
         }
     }
 
-    /// Instruction set of its lanes; empty if it has none.
+    /// Instruction set of the lanes; empty without lanes.
     pub fn simd(&self) -> &'static str {
         self.way.lanes().map_or("", |lanes| lanes.level.name())
     }
 
-    /// Floating-point format of what it computes with.
+    /// Floating-point format of the computation.
     pub fn precision(&self) -> Precision {
         match &self.way {
             Way::Lanes(lanes) => lanes.precision,
@@ -169,17 +169,18 @@ impl Choice {
         }
     }
 
-    /// Why it is not the kernel that was asked for; empty if it is.
+    /// Reason why the scalar kernel replaces the requested one; empty if it does not.
     pub fn fallback(&self) -> &'static str {
         if let Way::Scalar { instead_because } = self.way { instead_because } else { "" }
     }
 
-    /// Name of the smallest effect profile that covers the scene, or of the one that was asked for.
+    /// Name of the effect profile: the requested one, or the smallest one that covers the scene.
     pub fn profile(&self) -> &'static str {
         self.profile.name
     }
 
-    /// The effects that the kernel was compiled for: a profile's name (of lanes, whose primitives are no part of it), or that it asks at run time.
+    /// The effects that the kernel was compiled for: the name of a profile, or `run-time` for lanes that check at run
+    /// time. A profile of lanes does not include primitives.
     pub fn effects(&self) -> &'static str {
         match &self.way {
             Way::Device(_) | Way::Scalar { .. } => self.profile.name,
@@ -209,7 +210,7 @@ pub(super) fn unknown(field: &str, value: &str, names: impl Iterator<Item = &'st
 /// The sampler that every profile is compiled for.
 pub(super) const INDEPENDENT: &str = "independent";
 
-/// The profiles that kernels of an estimator with a sampler are compiled for; all of them if it is empty.
+/// The profiles for which kernels of an estimator and a sampler are compiled; empty for all.
 fn profiles_for(estimator: &EstimatorEntry, sampler: &SamplerEntry) -> &'static [&'static str] {
     match estimator.compiled {
         Compiled::EveryProfile if sampler.name == INDEPENDENT => &[],
@@ -218,7 +219,7 @@ fn profiles_for(estimator: &EstimatorEntry, sampler: &SamplerEntry) -> &'static 
     }
 }
 
-/// The estimator of that name among the built-in ones and those of one's own.
+/// Looks up an estimator among the built-in and the user-defined ones.
 fn estimator_named(name: &str, own: &[OwnEstimator]) -> Result<(EstimatorEntry, Option<OwnEstimator>)> {
     if let Some(entry) = ESTIMATORS.iter().find(|entry| entry.name == name) {
         return Ok((*entry, None));
@@ -230,12 +231,12 @@ fn estimator_named(name: &str, own: &[OwnEstimator]) -> Result<(EstimatorEntry, 
     Ok((*found.entry(), Some(found.clone())))
 }
 
-/// Checks every name of the spec against what is built in, and chooses what it leaves open.
+/// Checks every name of the spec against the built-in tables, and chooses the settings that it leaves open.
 pub fn choose(scene: &Scene, spec: &Spec) -> Result<Choice> {
     choose_among(scene, spec, &[])
 }
 
-/// Likewise, where there are estimators that are in no table.
+/// Like [`choose`], with user-defined estimators besides the built-in ones.
 pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<Choice> {
     let Some(sampler) = SAMPLERS.iter().find(|entry| entry.name == spec.sampler) else {
         return Err(unknown("sampler", &spec.sampler, SAMPLERS.iter().map(|entry| entry.name)).into());
@@ -247,7 +248,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         None => any_estimator(estimator.name, options).and_then(|estimator| estimator.any_rules()),
     };
     if own.is_some() {
-        // It was made with its own.
+        // A user-defined estimator already has its number of camera rays.
         options.camera_rays = rules.map(|rules| rules.camera_rays).filter(|number| *number != 1);
     }
     let clamp = spec.clamp.as_deref().map(Clamp::parse).transpose()?;
@@ -297,7 +298,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
     })
 }
 
-/// The profile that was asked for, or the smallest one that covers the effects and that kernels with the sampler are compiled for.
+/// The requested profile, or else the smallest one that covers the effects and is compiled for estimator and sampler.
 fn profile(
     effects: Effects,
     wanted: Option<&str>,
@@ -323,7 +324,7 @@ fn profile(
     Ok(profile)
 }
 
-/// What the estimator is told, where it can be told that.
+/// The options for the estimator. Options that it does not have are errors.
 fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Options> {
     if let Some(depth) = spec.max_depth.filter(|depth| is_own || *depth > estimator.largest_depth) {
         let problem = format!("is more than {} can follow", estimator.name);
@@ -344,7 +345,7 @@ fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Opti
     Ok(Options { max_depth: spec.max_depth, roulette, camera_rays: camera_rays(spec, estimator, is_own)? })
 }
 
-/// The number of camera rays that the spec asks for, if it is not one.
+/// The requested number of camera rays, if it is not one.
 fn camera_rays(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Option<u16>> {
     let Some(number) = spec.camera_rays.filter(|number| *number != 1) else { return Ok(None) };
     let error = |problem: &str, allowed| InputError::new("camera-rays", number.to_string(), problem).allowed(allowed);
@@ -366,7 +367,7 @@ fn filter(scene: &Scene, spec: &Spec) -> Result<Option<Filter>> {
     Ok(Some(entry.filter).filter(|filter| *filter != scene.camera.filter))
 }
 
-/// The distance below which nothing is hit, if there is to be one.
+/// The distance below which nothing is hit, if one is requested.
 fn epsilon(spec: &Spec) -> Result<Option<f64>> {
     let Some(text) = spec.epsilon.as_deref().filter(|text| *text != "none") else { return Ok(None) };
     let parsed = text.parse().ok().filter(|distance: &f64| distance.is_finite() && *distance >= 0.0);

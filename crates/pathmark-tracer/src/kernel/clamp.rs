@@ -1,29 +1,29 @@
-//! Clamps: what cuts bright light away, and so noise and energy with it. `--clamp subpixel` is smallpt's, `--clamp recursion` report B's, and
-//! `--clamp recursion:10` cuts at 10 instead of 1.
+//! Clamps: they cut bright radiance, and with it noise and energy. `--clamp subpixel` is smallpt's clamp, `--clamp
+//! recursion` is report B's, and `--clamp recursion:10` cuts at 10 instead of 1.
 
 use crate::error::{InputError, Result};
 use std::fmt;
 
-/// What of the light is clamped.
+/// The quantity that is clamped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clamped {
     /// The mean of each subpixel before averaging, as smallpt does.
     Subpixel,
-    /// What each recursion returns, as report B does.
+    /// The radiance that each recursion returns, as report B does.
     Recursion,
 }
 
 /// A clamp of radiance in each channel: biased.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clamp {
-    /// What is clamped.
+    /// The quantity that is clamped.
     pub what: Clamped,
-    /// The radiance that it is clamped to, above 0.
+    /// The largest radiance after the clamp, above 0.
     pub limit: f64,
 }
 
 impl Clamp {
-    /// What `--clamp` allows.
+    /// The values that `--clamp` allows, for error messages.
     pub const ALLOWED: &str = "subpixel or recursion, or with a limit above 0 other than 1, like recursion:10";
 
     /// Reads `subpixel`, `recursion` or `recursion:10`.

@@ -1,4 +1,4 @@
-//! Whether lanes render a scene with some settings, and on which level.
+//! Selection of lanes: whether they can render a scene with given settings, and with which instruction set.
 
 use super::choice::unknown;
 use super::{SCALAR, Spec};
@@ -9,21 +9,21 @@ use crate::sampling::InLanes as LaneSampler;
 use crate::scene::{ANGULAR_EMISSION, FOG, LENS, POINT_LIGHT, Scene};
 use crate::simd::{Entry as LevelEntry, LEVELS, Level, Precision};
 
-/// What lanes are made with.
+/// The settings of lanes.
 #[derive(Clone, Copy)]
 pub(super) struct InLanes {
     pub(super) level: Level,
     pub(super) precision: Precision,
     pub(super) rules: PathRules,
     pub(super) sampler: LaneSampler,
-    /// Whether they are compiled for diffuse surfaces alone.
+    /// Whether the code for diffuse surfaces alone is used.
     pub(super) is_diffuse_only: bool,
 }
 
-/// As many primitives as single precision has whole numbers for are more than lanes tell apart.
+/// Lanes allow fewer primitives than this: single precision must represent a primitive's number exactly.
 pub(super) const MOST_IN_LANES: usize = 1 << f32::MANTISSA_DIGITS;
 
-/// What of a scene or of its settings lanes have no code for.
+/// The feature of a scene or of its settings that lanes have no code for.
 fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static str> {
     let features = [(FOG, "fog"), (LENS, "lens"), (POINT_LIGHT, "point-light"), (ANGULAR_EMISSION, "angular-emission")];
     let of_scene = features.into_iter().find(|(effect, _)| scene.effects().cover(*effect)).map(|(_, name)| name);
@@ -36,7 +36,7 @@ fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>) -> Option<&'static
     of_scene.or_else(|| others.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name))
 }
 
-/// The level on which lanes render a scene with these settings, or why they do not.
+/// The settings of lanes for a scene, or the feature that they have no code for.
 pub(super) fn lanes_for(
     scene: &Scene,
     spec: &Spec,
@@ -48,7 +48,8 @@ pub(super) fn lanes_for(
     Ok(Err(match (obstacle(scene, spec, epsilon), rules, LaneSampler::find(&spec.sampler)) {
         (None, Some(rules), Some(sampler)) => {
             let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
-            // Where most of the time goes to lights, being compiled for it would gain 3 %, and takes as long to compile as the others.
+            // Under next-event estimation, lights take most of the time: code for diffuse surfaces alone would gain 3
+            // %, and take as long to compile as the other versions.
             let is_diffuse_only = is_diffuse && rules.aims.is_none() && !level.is_fallback();
             return Ok(Ok(InLanes { level, precision, rules, sampler, is_diffuse_only }));
         }
@@ -58,7 +59,7 @@ pub(super) fn lanes_for(
     }))
 }
 
-/// The level of that name, or the fastest that this processor has.
+/// The instruction set of that name, or the fastest one of this processor.
 pub(super) fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Result<Level> {
     let available = || levels.iter().filter_map(LevelEntry::here);
     if let Some(level) = available().find(|level| wanted.is_none_or(|name| level.name() == name)) {
@@ -73,7 +74,7 @@ pub(super) fn level(levels: &'static [LevelEntry], wanted: Option<&str>) -> Resu
     Err(unknown("simd", name, available().map(Level::name)).into())
 }
 
-/// The format that the spec names; the scalar kernel has but one.
+/// The floating-point format that the spec names. The scalar kernel has only f64.
 pub(super) fn precision(spec: &Spec) -> Result<Precision> {
     let name = &spec.precision;
     let Some(precision) = Precision::ALL.into_iter().find(|precision| precision.name() == name) else {
@@ -90,7 +91,8 @@ pub(super) fn precision(spec: &Spec) -> Result<Precision> {
 mod tests {
     use super::*;
 
-    /// On a processor without the first level the next one renders, and the first is refused by what there is.
+    /// If the processor lacks the first instruction set, the next one is chosen. A request for the first is an error
+    /// that lists the available ones.
     #[test]
     fn a_level_that_the_processor_lacks_is_refused() {
         let [mut first, last] = [&LEVELS[0], &LEVELS[LEVELS.len() - 1]].map(LevelEntry::clone);

@@ -1,4 +1,4 @@
-//! How an estimator is executed over a piece of the film. A kernel never sees a thread.
+//! Kernels: the execution of an estimator over a piece of the film. A kernel knows nothing of threads.
 
 mod beside;
 mod choice;
@@ -41,10 +41,11 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 use way::Way;
 
-/// Version of the arithmetic. It changes when the same settings give other bits than before, and films of the old ones are no longer used.
+/// Version of the arithmetic. It changes when the same settings produce different bits; films of older versions are
+/// then no longer used.
 pub const REVISION: u32 = 2;
 
-/// What happened while a piece was rendered.
+/// Counts of the events while a piece was rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Counts {
     /// Samples.
@@ -53,18 +54,18 @@ pub struct Counts {
     pub rays: u64,
     /// Samples that were NaN, infinite or negative; they contribute nothing.
     pub invalid: u64,
-    /// Rays of paths that met nothing.
+    /// Rays of paths that met no primitive.
     pub escaped: u64,
     /// Paths cut at the bounce limit.
     pub truncated: u64,
-    /// Boxes that rays were tested against.
+    /// Tests of a ray against a bounding box.
     pub box_tests: u64,
-    /// Primitives that rays were tested against in a hierarchy; without one every ray is tested against all.
+    /// Tests of a ray against a primitive of a hierarchy. Without one, every ray is tested against all primitives.
     pub primitive_tests: u64,
 }
 
 impl Counts {
-    /// Adds another piece's.
+    /// Adds the counts of another piece.
     pub fn add(&mut self, other: &Self) {
         self.paths += other.paths;
         self.rays += other.rays;
@@ -76,32 +77,32 @@ impl Counts {
     }
 }
 
-/// Renders pieces. The same piece gives the same bits, whoever asks, if the sampler is deterministic.
+/// Renders pieces. With a deterministic sampler, the same piece has the same bits for every caller.
 pub trait Kernel: Send + Sync {
     /// Renders the samples of the piece into the buffer, which has the piece's columns and at least its rows.
     fn render(&self, piece: &Piece, out: &mut TileBuffer) -> Counts;
 
-    /// Renders pieces, each into its buffer, and tells what happened in each.
+    /// Renders pieces, each into its buffer, and returns the counts of each.
     fn render_all(&self, pieces: &[&Piece], out: &mut [TileBuffer]) -> Vec<Counts> {
         pieces.iter().zip(out).map(|(piece, out)| self.render(piece, out)).collect()
     }
 
-    /// Devices that render pieces beside whoever asks this kernel to.
+    /// Devices that render pieces while the callers of this kernel render others.
     fn beside(&self) -> Vec<&dyn Kernel> {
         Vec::new()
     }
 
-    /// What a user should hear of how it rendered, besides counts.
+    /// Remarks for the user on the rendering, besides counts.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// What it took to make programs for devices, if it has any.
+    /// Time spent on programs for devices, if the kernel has any.
     fn costs(&self) -> Option<DeviceCosts> {
         None
     }
 
-    /// Why pieces were not rendered, if the system refused; what is in their buffers then counts for nothing.
+    /// The system error that prevented the rendering of pieces, if any. Their buffers are then invalid.
     fn failure(&self) -> Option<Error> {
         None
     }
@@ -111,7 +112,7 @@ pub trait Kernel: Send + Sync {
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
 }
 
@@ -121,7 +122,8 @@ pub const KERNELS: &[Entry] = &[
     Entry { name: SCALAR, about: "one path at a time" },
 ];
 
-/// The kernel for devices: `device` for the first GPU, `device:ID` for the device of that name, `lanes+device:ID` for both beside each other.
+/// The kernel for devices. `device` selects the first GPU, `device:ID` the device of that name, `lanes+device:ID` lanes
+/// and a device together.
 pub const DEVICE_KERNEL: Entry =
     Entry { name: DEVICE, about: "on a device, with the bits of the others; `lanes+device:ID` renders on both" };
 
@@ -129,7 +131,7 @@ const DEVICE: &str = "device";
 const LANES: &str = "lanes";
 const SCALAR: &str = "scalar";
 
-/// The scene with what the accelerator and the estimator need of it.
+/// Returns the scene with the hierarchy, the lights and the epsilon that the choice requires.
 fn prepared(scene: &Arc<Scene>, choice: &Choice) -> Result<Arc<Scene>> {
     let mut prepared = Arc::clone(scene);
     let hierarchy = choice.hierarchy(scene)?;
@@ -145,17 +147,17 @@ fn prepared(scene: &Arc<Scene>, choice: &Choice) -> Result<Arc<Scene>> {
     Ok(prepared)
 }
 
-/// Builds the kernel for a scene, and what accelerates it, from names of what is built in.
+/// Builds the kernel for a scene, with its accelerator, from the names of built-in parts.
 pub fn build(scene: &Arc<Scene>, spec: &Spec) -> Result<Box<dyn Kernel>> {
     construct(scene, &choose(scene, spec)?)
 }
 
-/// Builds what looks into samples of a scene, from names of what is built in.
+/// Builds an inspector for samples of a scene, from the names of built-in parts.
 pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Inspector> {
     Inspector::new(scene, &choose(scene, spec)?)
 }
 
-/// Builds the kernel for a scene, and what accelerates it.
+/// Builds the kernel for a scene, with its accelerator.
 pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>> {
     match &choice.way {
         Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(scene, choice, *chosen)?)),
@@ -193,7 +195,8 @@ pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>>
     kernel.ok_or_else(|| unknown("kernel", choice.kernel(), KERNELS.iter().map(|entry| entry.name)).into())
 }
 
-/// What an image is given of one sample, in sum and counts. A kernel that is asked for no more gives the same bits.
+/// Renders a single sample. Returns its contribution to the image's sum, and its counts. Its bits are the same as in a
+/// whole image.
 pub fn one_sample(kernel: &dyn Kernel, [x, y]: [u32; 2], sample: u32) -> ([f64; 3], Counts) {
     let bounds = Bounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
     let mut buffer = TileBuffer::new(bounds);
@@ -201,7 +204,7 @@ pub fn one_sample(kernel: &dyn Kernel, [x, y]: [u32; 2], sample: u32) -> ([f64; 
     (buffer.row_mut(y)[0].sum, counts)
 }
 
-/// From the profile's name to a type.
+/// Maps the profile's name to a type.
 struct ByProfile<'a> {
     scene: Arc<Scene>,
     choice: &'a Choice,
@@ -214,7 +217,7 @@ impl ProfileVisitor for ByProfile<'_> {
     }
 }
 
-/// From the sampler's name to a type, then from the estimator's.
+/// Maps the sampler's name to a type, then the estimator's.
 struct BySampler<'a, X> {
     scene: Arc<Scene>,
     choice: &'a Choice,
@@ -244,7 +247,7 @@ const fn is_compiled<E: Estimator, X: EffectSet>() -> bool {
     }
 }
 
-/// From the estimator's name to a type, then to a kernel.
+/// Maps the estimator's name to a type, then to a kernel.
 struct ByEstimator<'a, S, X> {
     scene: Arc<Scene>,
     choice: &'a Choice,
@@ -256,7 +259,8 @@ impl<S: Sampler + 'static, X: EffectSet> EstimatorVisitor for ByEstimator<'_, S,
     type Output = Box<dyn Kernel>;
     fn visit<E: Estimator + 'static>(self, estimator: E) -> Self::Output {
         let Self { scene, choice, sampler, .. } = self;
-        // The condition is a constant: what is not compiled for takes no time to compile. `choose` asks for no such profile.
+        // The condition is a constant, so a profile that is not compiled for takes no compile time. `choose` never asks
+        // for one.
         if const { is_compiled::<E, X>() } {
             Box::new(Scalar::<E, S, X>::new(scene, choice, estimator, sampler))
         } else {

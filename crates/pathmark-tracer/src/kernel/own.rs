@@ -1,4 +1,4 @@
-//! An estimator that is in no table: a user's own.
+//! User-defined estimators, which are in no table.
 
 use super::scalar::Scalar;
 use super::{Choice, Kernel};
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 type Build = dyn Fn(Arc<Scene>, &Choice, Box<dyn Sampler>) -> Box<dyn Kernel> + Send + Sync;
 
-/// An estimator with a name. It is compiled where it is written, once, with every effect and for any sampler.
+/// A named user-defined estimator. It is compiled once, where it is written, with every effect and for any sampler.
 #[derive(Clone)]
 pub struct OwnEstimator {
     entry: Entry,
@@ -18,7 +18,7 @@ pub struct OwnEstimator {
 }
 
 impl OwnEstimator {
-    /// The estimator under a name.
+    /// Wraps an estimator under a name.
     pub fn new<E: Estimator + 'static>(name: &'static str, estimator: E) -> Self {
         let estimator = Arc::new(estimator);
         let any = Arc::clone(&estimator);
@@ -29,12 +29,12 @@ impl OwnEstimator {
         Self { entry: Entry::of::<E>(name, E::ABOUT), any, build: Arc::new(build) }
     }
 
-    /// What is known of it.
+    /// Its properties, as in the table of estimators.
     pub fn entry(&self) -> &Entry {
         &self.entry
     }
 
-    /// The same behind a pointer.
+    /// The estimator behind a pointer.
     pub(super) fn any(&self) -> Arc<dyn AnyEstimator> {
         Arc::clone(&self.any)
     }

@@ -1,4 +1,5 @@
-//! The search for the first thing along rays, apart from all else that a path needs: for a comparison with programs that do nothing but that.
+//! Ray search alone: the nearest primitive along given rays without the rest of a path, for comparison with programs
+//! that only search.
 
 use super::lanes::Lanes;
 use super::{Choice, Counts, Inspector, prepared};
@@ -10,7 +11,7 @@ use crate::simd::{Numbers, Precision};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A ray, and what it starts on.
+/// A ray, and the side of the primitive that it starts on, if any.
 pub type Start = (Ray, Option<Standpoint>);
 
 /// The rays from vertex to vertex that meet something, in the order of a path.
@@ -34,8 +35,8 @@ impl Probe for Segments {
     }
 }
 
-/// The rays of an image's paths, pixel by pixel: without those that meet nothing and those that ask whether a light is hidden. Paths that fog scatters
-/// or that split are refused, because their rays start elsewhere.
+/// Returns the rays of an image's paths, pixel by pixel, without shadow rays and rays that meet nothing. Scenes with
+/// fog and estimators that split paths are refused, because their rays start elsewhere.
 pub fn path_rays(scene: &Arc<Scene>, choice: &Choice, samples: &Range<u32>) -> Result<Vec<Start>> {
     if !choice.estimator.is_one_path {
         let problem = "follows several paths at once, whose rays are not told apart";
@@ -58,18 +59,18 @@ pub fn path_rays(scene: &Arc<Scene>, choice: &Choice, samples: &Range<u32>) -> R
     Ok(segments.rays)
 }
 
-/// What was found along rays.
+/// The result of a search along rays.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FoundRays {
     /// Rays that met something.
     pub met: u64,
     /// The sum of their distances, in the order of the rays.
     pub distance: f64,
-    /// What they were tested against.
+    /// Counts of the rays and of their tests.
     pub counts: Counts,
 }
 
-/// Rays by one way to search.
+/// Rays and a method to search along them.
 pub struct RaySearch {
     way: Way,
     count: usize,
@@ -81,7 +82,7 @@ enum Way {
 }
 
 impl RaySearch {
-    /// The way that a kernel of this choice searches.
+    /// Prepares the search of the kernel that the choice names.
     pub fn new(scene: &Arc<Scene>, choice: &Choice, rays: Vec<Start>) -> Result<Self> {
         let count = rays.len();
         let way = match choice.way.lanes().copied() {
@@ -95,12 +96,12 @@ impl RaySearch {
         Ok(Self { way, count })
     }
 
-    /// How many rays there are.
+    /// The number of rays.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Searches along all of them.
+    /// Searches along all rays.
     pub fn run(&self) -> FoundRays {
         match &self.way {
             Way::Lanes { lanes, rays } => lanes.search(rays, self.count),
@@ -126,7 +127,7 @@ impl RaySearch {
 }
 
 impl Choice {
-    /// The same paths as the scalar kernel has them.
+    /// The same choice with f64, whose paths are the scalar kernel's.
     fn in_double_precision(mut self) -> Self {
         if let super::way::Way::Lanes(lanes) = &mut self.way {
             lanes.precision = Precision::F64;

@@ -1,8 +1,9 @@
-//! Report B's clamp: the light that each recursion returns is cut at a limit, 1 in the report, so that no sample is brighter than white.
-//! Biased, and no number of samples mends it.
+//! Report B's clamp: the radiance that each recursion returns is cut at a limit, 1 in the report, so that no sample is
+//! brighter than white. The clamp is biased, and more samples do not remove the bias.
 //!
-//! Written without the recursion: a ray that sets out with throughput T brings at most T times the limit to the sample. So the sample is the least of what
-//! was collected before any vertex plus what the ray that led there can bring, and of everything collected.
+//! This kernel does without the recursion. A ray with throughput T contributes at most T times the limit to the sample.
+//! So each vertex gives the sample an upper bound: the radiance collected before the vertex plus that contribution. The
+//! sample is the least of these bounds and of all collected radiance.
 
 use super::{Counts, Inspector, Kernel};
 use crate::estimator::Probe;
@@ -10,14 +11,14 @@ use crate::film::{Piece, SampleSum, TileBuffer};
 use crate::math::{Ray, Rgb};
 use crate::scene::{Hit, Tests};
 
-/// The kernel. It looks into another's samples, which is slow, and fast enough for what it is to show.
+/// The kernel. It inspects samples, which is slow but fast enough for a demonstration.
 pub(super) struct RecursionClamp {
     pub(super) inspector: Inspector,
     /// See [`Clamp::limit`](super::Clamp::limit).
     pub(super) limit: f64,
 }
 
-/// What of a sample is left so far.
+/// The state of the clamp within a sample.
 struct Clamped<'a> {
     counts: &'a mut Counts,
     limit: f64,
@@ -77,7 +78,8 @@ mod tests {
     use crate::math::Vec3;
     use crate::sampling::{Address, Independent, Purpose, SampleKey, Sampler};
 
-    /// Against the recursion as report B writes it, cut at every level, on paths of up to eight vertices with dim and bright light.
+    /// Compares with the recursion as report B writes it, cut at every level, on paths of up to eight vertices with dim
+    /// and bright light.
     #[test]
     fn is_the_clamp_of_every_recursion() {
         [1.0, 0.25, 3.0].into_iter().for_each(is_the_clamp_at);

@@ -56,7 +56,7 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
         }
     }
 
-    /// What a sample contributes to its pixel.
+    /// The contribution of a sample to its pixel.
     #[inline(always)]
     fn sample(&self, x: u32, y: u32, sample: u32, counts: &mut Counts) -> Rgb {
         let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
@@ -73,8 +73,9 @@ impl<E: Estimator, S: Sampler, X: EffectSet> Scalar<E, S, X> {
         Rgb::BLACK
     }
 
-    /// Where subpixels are clamped, each is a pass of its own over its samples; smallpt cuts its mean at 1 before the four are averaged. Squares
-    /// are those of the unclamped samples. One loop serves both, because the compiler repeats a whole path at every place that calls it.
+    /// Sums the samples of a pixel. If subpixels are clamped, each subpixel is one pass over its own samples, and its
+    /// mean is cut at the limit before the four means are averaged; smallpt's limit is 1. Squares are taken of the
+    /// unclamped samples. One loop serves both cases, because the compiler inlines a whole path at every call.
     fn pixel(&self, x: u32, y: u32, piece: &Piece, sum: &mut SampleSum, counts: &mut Counts) -> PixelSum {
         let passes = if self.subpixel_limit.is_some() { SUBPIXELS } else { 1 };
         let mut pixel = PixelSum::default();

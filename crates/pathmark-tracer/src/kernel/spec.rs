@@ -1,10 +1,10 @@
-//! The *what* of a render, by name.
+//! Specification of a render by names: its *what*.
 
 use super::LANES;
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
-/// Which kernel to build: the *what* of a render.
+/// Specification of a kernel: the *what* of a render.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Spec {
     /// Columns of the image.
@@ -27,29 +27,29 @@ pub struct Spec {
     pub precision: String,
     /// Effect profile by name; the smallest that covers the scene if `None`.
     pub effects: Option<String>,
-    /// Accelerator by name; the fitting one for so many primitives if `None`.
+    /// Accelerator by name; `None` chooses it by the number of primitives.
     pub accelerator: Option<String>,
-    /// After so many bounces a path is cut; `None` leaves it to the estimator.
+    /// Bounces after which a path is cut; `None` leaves it to the estimator.
     pub max_depth: Option<u16>,
-    /// Camera rays of a sample, over which the light that they see is averaged; `None` for one.
+    /// Camera rays of a sample, whose radiance is averaged; `None` for one.
     #[serde(default)]
     pub camera_rays: Option<u16>,
-    /// When and how chance ends paths, as [`Roulette`](crate::estimator::Roulette) reads it; `None` leaves it to the estimator.
+    /// Russian roulette, as [`Roulette`](crate::estimator::Roulette) reads it; `None` leaves it to the estimator.
     #[serde(default)]
     pub roulette: Option<String>,
-    /// What is clamped, as [`Clamp`](super::Clamp) reads it: biased.
+    /// The clamp, as [`Clamp`](super::Clamp) reads it: biased.
     #[serde(default)]
     pub clamp: Option<String>,
     /// Pixel filter by name; the camera's own if `None`.
     #[serde(default)]
     pub filter: Option<String>,
-    /// Nearer than this, in the scene's lengths, nothing is hit, as programs do it that cannot tell where a ray starts: biased. `None` or "none" tells
-    /// it exactly.
+    /// Distance in the scene's lengths below which nothing is hit, as in programs that do not know the primitive a ray
+    /// starts on: biased. With `None` or "none" that primitive is known exactly.
     #[serde(default)]
     pub epsilon: Option<String>,
 }
 
-/// What was there before there was a choice.
+/// The only format of specs that were written before there was a choice.
 fn double() -> String {
     Precision::F64.name().to_string()
 }

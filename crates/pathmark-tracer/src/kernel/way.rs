@@ -1,4 +1,4 @@
-//! Which kernel renders a scene: the one that was asked for, or the scalar one where that has no code for something.
+//! Selection of the kernel: the requested one, or the scalar kernel where that one has no code for a feature.
 
 use super::choice::unknown;
 use super::device::{ForDevice, device_for, missing};
@@ -9,31 +9,31 @@ use crate::estimator::PathRules;
 use crate::scene::Scene;
 use crate::simd::LEVELS;
 
-/// A kernel with what it is made from.
+/// A kernel and the settings that it is built from.
 #[derive(Clone)]
 pub(super) enum Way {
-    /// Paths side by side.
+    /// Paths in SIMD lanes.
     Lanes(InLanes),
     /// On a device.
     Device(ForDevice),
-    /// By a kernel of the processor, and on devices beside it.
+    /// A kernel of the processor, with devices beside it.
     Beside {
-        /// Name of all of it.
+        /// Name of the combination.
         kernel: String,
-        /// The processor's.
+        /// The processor's kernel.
         own: Box<Way>,
-        /// The devices'.
+        /// The devices.
         devices: Vec<ForDevice>,
     },
     /// One path at a time.
     Scalar {
-        /// What the kernel that was asked for has no code for; empty if this one was asked for.
+        /// The feature that the requested kernel has no code for; empty if the scalar kernel was requested.
         instead_because: &'static str,
     },
 }
 
 impl Way {
-    /// How lanes go about it, if they do.
+    /// The settings of the lanes, if there are any.
     pub(super) fn lanes(&self) -> Option<&InLanes> {
         match self {
             Self::Lanes(lanes) => Some(lanes),
@@ -64,7 +64,8 @@ pub(super) fn way_for(scene: &Scene, spec: &Spec, rules: Option<PathRules>, epsi
     }
 }
 
-/// The processor's kernel and devices beside it. Where either has no code for something, the processor renders alone: all must have the same bits.
+/// The processor's kernel with devices beside it. If either has no code for a feature, the processor renders alone,
+/// because all kernels must produce the same bits.
 fn beside(
     scene: &Scene,
     spec: &Spec,

@@ -1,4 +1,4 @@
-//! Sixty-four bits as random numbers are mixed from them: `u64`, or SIMD lanes of it, with the same results per lane.
+//! Words of 64 bits from which random numbers are mixed: `u64`, or SIMD lanes with the same results per lane.
 
 use std::ops::{BitAnd, BitOr, BitXor};
 
@@ -12,7 +12,7 @@ pub trait Bits: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Out
     /// The product modulo 2^64.
     #[must_use]
     fn times(self, other: Self) -> Self;
-    /// The product of the lower 32 bits of both, all 64 bits of it.
+    /// The full 64-bit product of the lower 32 bits of both.
     #[must_use]
     fn times_low(self, other: Self) -> Self;
     /// Shifted towards the higher bits by `N` < 64.
@@ -21,10 +21,10 @@ pub trait Bits: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + BitXor<Out
     /// Shifted towards the lower bits by `N` < 64; zeros come in.
     #[must_use]
     fn down<const N: u32>(self) -> Self;
-    /// Likewise, each lane by its own number, below 64.
+    /// Shifted towards the lower bits, each lane by its own count below 64.
     #[must_use]
     fn down_by(self, count: Self) -> Self;
-    /// The first bit last.
+    /// The bits in reverse order.
     #[must_use]
     fn reversed(self) -> Self;
 }

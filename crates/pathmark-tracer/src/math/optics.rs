@@ -26,10 +26,11 @@ pub fn fresnel_schlick<T: Real>(cos: T, r0: T) -> T {
     r0 + (one - r0) * c * c * c * c * c
 }
 
-/// Fresnel's reflectance (1823) of unpolarised light between two dielectrics, in the form of Cook and Torrance, "A Reflectance Model for
-/// Computer Graphics", ACM Transactions on Graphics 1(1), 1982. `cos` is taken on the side where the light is, `eta` = index there / index
-/// here. 1 under total internal reflection, exactly 0 between equal indices. The relative error is a few roundings except next to the critical
-/// angle, where the slope has no end: k roundings of the cosine away from it the result is off by up to 4e-7 sqrt(k).
+/// Fresnel's reflectance (1823) of unpolarised light between two dielectrics, in the form of Cook and Torrance, "A
+/// Reflectance Model for Computer Graphics", ACM Transactions on Graphics 1(1), 1982. `cos` is taken on the side where
+/// the light is, `eta` = index there / index here. 1 under total internal reflection, exactly 0 between equal indices.
+/// The relative error is a few roundings except near the critical angle, where the slope is infinite: k roundings of
+/// the cosine away from it, the result is off by up to 4e-7 sqrt(k).
 #[inline(always)]
 pub fn fresnel_dielectric<T: Real>(cos: T, eta: T) -> T {
     let (zero, one) = (T::splat(0.0), T::splat(1.0));
@@ -38,7 +39,7 @@ pub fn fresnel_dielectric<T: Real>(cos: T, eta: T) -> T {
     let g2 = (eta - one) * (eta + one) + c * c;
     let g = T::select(g2.lt(zero), zero, g2).sqrt();
     let (sum, difference) = (g + c, g - c);
-    // Both vanish together only along a surface between equal indices.
+    // Both vanish together only for a direction along a surface between equal indices.
     let perpendicular = T::select(sum.le(zero), zero, difference / sum);
     let ratio = (c * sum - one) / (c * difference + one);
     let reflectance = T::splat(0.5) * perpendicular * perpendicular * (one + ratio * ratio);

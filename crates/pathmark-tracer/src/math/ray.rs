@@ -5,9 +5,9 @@ use super::{Real, Vec3};
 /// Origin and direction. The integrator keeps directions at length 1; the intersection formulas that take a squared length do not need it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ray<T = f64> {
-    /// Where it starts.
+    /// Its start.
     pub origin: Vec3<T>,
-    /// Where it goes.
+    /// Its direction.
     pub direction: Vec3<T>,
 }
 

@@ -1,4 +1,4 @@
-//! The number trait that leaf formulas are written over: `f64`, `f32` to see what it costs, and SIMD lanes of the same formulas.
+//! The number trait of the leaf formulas: `f64`, `f32` to measure its cost, and SIMD lanes of the same formulas.
 //!
 //! A formula over [`Real`] may not branch on a value; it computes both sides and selects. Each operation is one that IEEE 754 rounds
 //! exactly (no reciprocal estimate), so every implementation of a precision gives the same bits per lane.
@@ -9,14 +9,14 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// The answer of a comparison, one per lane.
+    /// The result of a comparison, one per lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask>;
 
     /// Binary digits of the significand: 53 in double precision, 24 in single.
     const SIGNIFICAND: u32;
-    /// Whether that is more than single precision has.
+    /// Whether single precision has fewer digits.
     const IS_DOUBLE: bool = Self::SIGNIFICAND > f32::MANTISSA_DIGITS;
-    /// The smallest positive number that has all of them.
+    /// The smallest positive number with all of these digits.
     const SMALLEST: f64;
 
     /// The same constant in every lane.
@@ -27,8 +27,9 @@ pub trait Real:
     /// The magnitude.
     #[must_use]
     fn abs(self) -> Self;
-    /// `self * factor + addend`, rounded after each; in SIMD lanes of single precision once, on every processor. (Not all processors have an
-    /// instruction for that, and double precision must have the same bits by one number as by many.)
+    /// `self * factor + addend`, rounded after each operation. SIMD lanes of single precision round only once, on every
+    /// processor. (Not all processors have an instruction for that, and double precision must have the same bits with
+    /// one number as with many.)
     #[must_use]
     fn times_plus(self, factor: Self, addend: Self) -> Self;
     /// The magnitude of `self` with the sign of `sign`, zeros included.

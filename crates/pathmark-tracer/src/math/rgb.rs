@@ -26,13 +26,13 @@ impl Rgb {
     /// One in every channel.
     pub const WHITE: Self = Self { r: 1.0, g: 1.0, b: 1.0 };
 
-    /// The largest channel: the probability by which smallpt's roulette lets a path live.
+    /// The largest channel: the survival probability of smallpt's Russian roulette.
     #[inline(always)]
     pub fn max_channel(self) -> f64 {
         self.r.max(self.g).max(self.b)
     }
 
-    /// Whether every channel is zero: nothing that a path still finds could reach the film.
+    /// Whether every channel is zero: no light that a path still finds could reach the film.
     #[inline(always)]
     pub fn is_black(self) -> bool {
         self.r == 0.0 && self.g == 0.0 && self.b == 0.0
@@ -73,7 +73,7 @@ impl<T: Real> Rgb<T> {
         Self { r: T::select(mask, yes.r, no.r), g: T::select(mask, yes.g, no.g), b: T::select(mask, yes.b, no.b) }
     }
 
-    /// The largest channel of what has no NaN.
+    /// The largest channel; no channel may be NaN.
     #[inline(always)]
     pub fn largest(self) -> T {
         let larger = T::select(self.r.lt(self.g), self.g, self.r);

@@ -1,16 +1,16 @@
 //! Ray against sphere.
 //!
-//! The discriminant is taken from the ray's closest approach (Haines et al., "Precision Improvements for Ray/Sphere Intersection",
-//! Ray Tracing Gems, 2019, ch. 7), which keeps small spheres far away; the roots come from q and c/q, which keeps the small root of a
-//! huge sphere. smallpt's own b² - f·f + r² loses both.
+//! The discriminant is computed from the ray's closest approach (Haines et al., "Precision Improvements for Ray/Sphere
+//! Intersection", Ray Tracing Gems, 2019, ch. 7), which keeps the digits of small spheres far away. The roots come from
+//! q and c/q, which keeps the digits of the small root of a huge sphere. smallpt's own b² - f·f + r² loses both.
 //!
-//! `f` is the ray's origin seen from the centre, `d` its direction, `a` = |d|², `r` the radius. The quadratic is a t² - 2 b t + c = 0.
-//! Errors of the roots are bounded by 8u(|t| + |f| + (r² + 2l|f|)/2s + (|f|² + r²)/(|b| + s)), where l is the line's distance from the
-//! centre, s² = r² - l² and u = 2^-53.
+//! `f` is the ray's origin relative to the centre, `d` its direction, `a` = |d|², `r` the radius.
+//! The quadratic is a t² - 2 b t + c = 0. Errors of the roots are bounded by 8u(|t| + |f| + (r² + 2l|f|)/2s + (|f|² +
+//! r²)/(|b| + s)), where l is the line's distance from the centre, s² = r² - l² and u = 2^-53.
 
 use super::{Real, Vec3, dot};
 
-/// b, and the discriminant over a.
+/// b, and the discriminant divided by a.
 #[inline(always)]
 fn discriminant<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
     let b = -dot(f, d);
@@ -18,7 +18,7 @@ fn discriminant<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
     (b, r * r - dot(closest, closest))
 }
 
-/// c and q, the root of larger magnitude times a, in which nothing cancels. q is NaN if the line misses.
+/// c and q: q is the root of larger magnitude times a, computed without cancellation. q is NaN if the line misses.
 #[inline(always)]
 fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
     let (b, discriminant) = discriminant(f, d, a, r);
@@ -26,7 +26,7 @@ fn quadratic<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
     (dot(f, f) - r * r, q)
 }
 
-/// Whether the whole line meets the sphere: where it does not, there are no roots.
+/// Whether the whole line meets the sphere; otherwise there are no roots.
 #[inline(always)]
 pub fn line_meets<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T::Mask {
     T::splat(0.0).le(discriminant(f, d, a, r).1)
@@ -43,26 +43,27 @@ pub fn roots<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> (T, T) {
 
 /// The first intersection at t > 0 of a ray with the sphere, in lengths of `d`; zero, negative or NaN if there is none.
 ///
-/// A ray that starts exactly on the sphere does not see the point it starts from. There is no branch, because most rays miss some of the
-/// spheres and hit others in no order that a processor could foresee.
+/// A ray that starts exactly on the sphere does not meet its start. There is no branch, because most rays miss some of
+/// the spheres and hit others in an order that no processor can predict.
 #[inline(always)]
 pub fn first_root<T: Real>(f: Vec3<T>, d: Vec3<T>, a: T, r: T) -> T {
     let (c, q) = quadratic(f, d, a, r);
     let zero = T::splat(0.0);
-    // From inside (c <= 0) and forward (q > 0) the far root q/a is the first ahead; in every other case that hits it is c/q.
+    // From inside (c <= 0) and forward (q > 0) the first root ahead is the far one, q/a; in every other case with a hit
+    // it is c/q.
     T::select(zero.lt(q) & c.le(zero), q / a, c / q)
 }
 
-/// Where a ray that starts on the sphere and goes inside meets it again, in lengths of `d`, which has length 1: one root is the start, the other is
-/// twice the way to the closest approach.
+/// Distance at which a ray that starts on the sphere and goes inside meets it again. `d` must have length 1. One root
+/// is the start; the other is twice the distance to the closest approach.
 #[inline(always)]
 pub fn other_root<T: Real>(f: Vec3<T>, d: Vec3<T>) -> T {
     T::splat(2.0) * dot(f, d).abs()
 }
 
-/// A sphere by its curvature: where k |x|² + 2 n·x + c = 0, k being the inverse of the radius, n = -k centre and c = k (|centre|² - r²). Nothing
-/// of the size of the radius ever cancels, so a wall that is a sphere of radius 1e5 does not shake in single precision as long as the scene is
-/// near the origin.
+/// A sphere in curvature form: k |x|² + 2 n·x + c = 0, where k is the inverse of the radius, n = -k centre and c = k
+/// (|centre|² - r²). No values of the radius's size cancel. So a wall that is a sphere of radius 1e5 does not shake in
+/// single precision, as long as the scene is near the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Curved<T = f64> {
     /// -k times the centre.
@@ -82,8 +83,8 @@ impl Curved {
     }
 }
 
-/// The outward normal at a point of a [`Curved`] sphere by its normal and curvature; of length 1 up to rounding. The plane's own where the curvature
-/// is 0.
+/// The outward normal at a point of a [`Curved`] sphere, from its normal and curvature. Its length is 1 up to rounding.
+/// With curvature 0 it is the plane's normal.
 #[inline(always)]
 pub fn curved_normal<T: Real>(normal: Vec3<T>, curvature: T, point: Vec3<T>) -> Vec3<T> {
     point.times_plus(curvature, normal)
@@ -104,12 +105,12 @@ pub fn curved_quadratic<T: Real>(sphere: &Curved<T>, o: Vec3<T>, d: Vec3<T>, squ
 pub fn first_root_curved<T: Real>(k: T, b: T, c: T) -> T {
     let q = b + b.times_plus(b, -(k * c)).sqrt().copysign(b);
     let zero = T::splat(0.0);
-    // From inside and away from the surface nearby: the far side, -q/k; in every other case that hits it is -c/q.
+    // From inside and away from the nearby surface: the far side, -q/k; in every other case with a hit it is -c/q.
     let far = q.lt(zero) & c.le(zero);
     -(T::select(far, q, c) / T::select(far, k, q))
 }
 
-/// Likewise, the root at which a ray leaves the sphere for good, whether ahead or behind; NaN if the line misses.
+/// The root at which a ray leaves the sphere for good, ahead or behind, from the same numbers; NaN if the line misses.
 #[inline(always)]
 pub fn last_root_curved<T: Real>(k: T, b: T, c: T) -> T {
     let q = b + b.times_plus(b, -(k * c)).sqrt().copysign(b);
@@ -145,8 +146,8 @@ mod tests {
         root(sphere.curvature, b, c)
     }
 
-    /// By curvature a sphere is met where it is by centre and radius: in double precision from inside, from outside, near and far; in single
-    /// precision to a thousandth of a unit where the wall is not grazed.
+    /// A sphere by curvature is met where a sphere by centre and radius is met. In double precision from inside, from
+    /// outside, near and far; in single precision to a thousandth of a unit, except at grazing angles.
     #[test]
     fn first_root_curved_is_the_first_root() {
         let mut met = [0, 0];
@@ -160,7 +161,7 @@ mod tests {
                 let f = origin - center;
                 let expected = first_root(f, direction, 1.0, radius);
                 let found: f64 = curved_root(center, radius, origin, direction);
-                // Where the line is nearly tangent both have few digits.
+                // If the line is nearly tangent, both have few correct digits.
                 let closest = f + direction * -dot(f, direction);
                 let cos = (1.0 - dot(closest, closest) / (radius * radius)).max(0.0).sqrt();
                 if cos < 1e-3 {

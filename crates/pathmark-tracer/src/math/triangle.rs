@@ -1,18 +1,19 @@
 //! Ray against triangle.
 //!
-//! Watertight after Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are sheared to where the ray
-//! is the z axis, and the signs of three edge functions decide. Two triangles that share an edge compute the same product with opposite
-//! signs, so no ray passes between them; a ray through the edge itself meets both. Their second look in a higher precision has no place
-//! here: what is on an edge to the last digit counts as inside.
+//! Watertight after Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013: corners are
+//! sheared so that the ray is the z axis, and the signs of three edge functions decide. Two triangles that share an
+//! edge compute the same product with opposite signs, so no ray passes between them; a ray through the edge itself
+//! meets both. The paper's second test in a higher precision is left out: a point that is on an edge to the last digit
+//! counts as inside.
 
 use super::{Real, Vec3};
 
-/// The ray's own axes: z is the direction's longest component, and the shear takes the direction there.
+/// The ray's own axes: z is the direction's longest component, and the shear maps the direction onto it.
 #[derive(Debug, Clone, Copy)]
 pub struct Shear<T = f64> {
-    /// Which of the coordinates become x, y and z.
+    /// Indices of the coordinates that become x, y and z.
     pub axes: [usize; 3],
-    /// What x, y and z lose or become for each unit of z.
+    /// For each unit of z: the terms subtracted from x and from y, and the new z.
     pub by: [T; 3],
 }
 
@@ -41,7 +42,7 @@ impl Shear {
         Self { axes, by: [component(direction, axes[0]) * inverse, component(direction, axes[1]) * inverse, inverse] }
     }
 
-    /// A vector by the ray's axes.
+    /// A vector in the ray's axes.
     #[inline(always)]
     pub fn turned(&self, v: Vec3) -> [f64; 3] {
         let [x, y, z] = self.axes;
@@ -49,7 +50,8 @@ impl Shear {
     }
 }
 
-/// A corner, seen from the ray's origin and by its axes, where the ray is the z axis; the same bits in whichever triangle it is a corner.
+/// A corner relative to the ray's origin and in its axes, sheared so that the ray is the z axis. A corner has the same
+/// bits in all its triangles.
 #[inline(always)]
 pub fn sheared<T: Real>([x, y, z]: [T; 3], [sx, sy, sz]: [T; 3]) -> [T; 3] {
     [x - sx * z, y - sy * z, sz * z]
@@ -57,9 +59,10 @@ pub fn sheared<T: Real>([x, y, z]: [T; 3], [sx, sy, sz]: [T; 3]) -> [T; 3] {
 
 /// The edge function of two corners: twice the area that they span with the ray.
 ///
-/// In double precision it is off by as much as its products are rounded, which is more than itself where a triangle is seen as a sliver. Where product
-/// and sum are rounded at once it is right to the last digit but one, whatever cancels (Jeannerod, Louvet and Muller, "Further Analysis of Kahan's
-/// Algorithm for the Accurate Computation of 2 x 2 Determinants", 2013).
+/// In double precision its error is the rounding error of its products, which exceeds its value if a triangle is seen
+/// as a sliver. Where product and sum are rounded at once, it is right to the last digit but one, whatever cancels
+/// (Jeannerod, Louvet and Muller, "Further Analysis of Kahan's Algorithm for the Accurate Computation of 2 x 2
+/// Determinants", 2013).
 #[inline(always)]
 fn across<T: Real>([px, py, _]: [T; 3], [qx, qy, _]: [T; 3]) -> T {
     let product = py * qx;
@@ -70,18 +73,18 @@ fn across<T: Real>([px, py, _]: [T; 3], [qx, qy, _]: [T; 3]) -> T {
     px.times_plus(qy, -product) + lost
 }
 
-/// Where the z axis crosses the plane of a triangle.
+/// The point where the z axis crosses the plane of a triangle.
 #[derive(Debug, Clone, Copy)]
 pub struct Crossing<T: Real> {
-    /// Whether that is within the triangle, seen from either side, if it has an area.
+    /// Whether the point is within the triangle, seen from either side. Only valid if the triangle has an area.
     pub is_met: T::Mask,
-    /// Of the corners.
+    /// Weights of the corners.
     weights: [T; 3],
     heights: [T; 3],
 }
 
 impl<T: Real> Crossing<T> {
-    /// Of the triangle with these corners.
+    /// The crossing with the triangle of these corners.
     #[inline(always)]
     pub fn of([a, b, c]: [[T; 3]; 3]) -> Self {
         let weights @ [u, v, w] = [across(c, b), across(a, c), across(b, a)];
@@ -97,7 +100,7 @@ impl<T: Real> Crossing<T> {
         let ([u, v, w], [a, b, c], zero) = (self.weights, self.heights, T::splat(0.0));
         let determinant = u + v + w;
         let t = (u * a + v * b + w * c) / determinant;
-        // Edge on, the determinant is zero and the quotient infinite or NaN.
+        // Seen edge on, the determinant is zero and the quotient infinite or NaN.
         let has_area = determinant.lt(zero) | zero.lt(determinant);
         T::select(self.is_met & has_area, t, T::splat(f64::NAN))
     }

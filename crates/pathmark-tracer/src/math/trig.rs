@@ -2,7 +2,7 @@
 
 use super::Real;
 
-/// Coefficients of sin(x)/x in x², from the Taylor series: on |x| <= π/4 the first term left out is below 1e-19.
+/// Coefficients of sin(x)/x in x², from the Taylor series: on |x| <= π/4 the first omitted term is below 1e-19.
 pub(crate) const SIN: [f64; 9] = [
     1.0,
     -1.0 / 6.0,
@@ -35,12 +35,12 @@ fn linear<T: Real>(c: &[f64; 9], k: usize, x: T) -> T {
 
 #[inline(always)]
 fn polynomial<T: Real>(c: &[f64; 9], x: T) -> T {
-    // Estrin's grouping: a third of Horner's dependency chain, and as fixed an order.
+    // Estrin's grouping: a third of Horner's dependency chain, and an order that is just as fixed.
     let x2 = x * x;
     let x4 = x2 * x2;
     let low = linear(c, 2, x).times_plus(x2, linear(c, 0, x));
     if !T::IS_DOUBLE {
-        // The first term left out is below 3e-8.
+        // The first omitted term is below 3e-8.
         return T::splat(c[4]).times_plus(x4, low);
     }
     let high = linear(c, 6, x).times_plus(x2, linear(c, 4, x));
@@ -55,11 +55,11 @@ fn is<T: Real>(number: T, k: f64) -> T::Mask {
 
 /// (sin 2πu, cos 2πu) for `u` in turns, 0 <= u <= 1; absolute error below 2.3e-16 each, in single precision below 1.5e-7.
 ///
-/// The reduction to an eighth of a turn is exact, because it happens before π comes in.
+/// The reduction to an eighth of a turn is exact, because it precedes the multiplication by π.
 #[inline(always)]
 pub fn sin_cos_turns<T: Real>(u: T) -> (T, T) {
-    // Adding 1.5 * 2^52 (2^23 in single precision) leaves no room for a fraction: the nearest integer without a call that old instruction
-    // sets lack.
+    // Adding 1.5 * 2^52 (2^23 in single precision) leaves no digits for a fraction. This gives the nearest integer
+    // without a function call, which old instruction sets would need.
     let shift = T::splat(1.5 * (1_u64 << (T::SIGNIFICAND - 1)) as f64);
     let quarter = (u * T::splat(4.0) + shift) - shift;
     let x = quarter.times_plus(T::splat(-0.25), u) * T::splat(std::f64::consts::TAU);

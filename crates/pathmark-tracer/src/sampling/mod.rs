@@ -168,7 +168,7 @@ macro_rules! samplers {
         }
 
         /// Creates the stateful sampler of that name for an image's seed; `None` if there is none. Kernels are compiled
-        /// once for all of them: a virtual call costs little compared with their locks.
+        /// once for all of them: a virtual call costs little compared with a lock.
         pub fn stateful_sampler(name: &str, seed: u64) -> Option<Box<dyn Sampler>> {
             match name {
                 $($stateful => Some(Box::new($new_stateful(seed))),)*

@@ -1,4 +1,4 @@
-//! Lists that begin with a cache line: a register as wide as a line is then loaded from one line and not from two.
+//! Lists that begin with a cache line: a register as wide as a line is then loaded from one line instead of two.
 #![expect(unsafe_code, reason = "lines are looked at as the numbers that were put into them")]
 
 use super::{LINE, Number};
@@ -21,7 +21,7 @@ pub struct Aligned<T> {
 impl<T: Number> Aligned<T> {
     const IN_LINE: usize = LINE / size_of::<T>();
 
-    /// An empty list with room for so many.
+    /// An empty list with room for `count` numbers.
     pub fn with_capacity(count: usize) -> Self {
         Self { lines: Vec::with_capacity(count.div_ceil(Self::IN_LINE)), count: 0, numbers: PhantomData }
     }
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn lists_begin_with_a_line() {
         for count in [0_u16, 1, 15, 16, 1000, 50_000] {
-            // Less room than is needed is made more.
+            // A list grows if its initial room is too small.
             let (mut singles, mut doubles) = (Aligned::with_capacity(100), Aligned::with_capacity(count.into()));
             singles.extend((0..count).map(f32::from));
             doubles.extend((0..count).map(f64::from));

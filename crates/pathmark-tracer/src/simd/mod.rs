@@ -1,13 +1,15 @@
-//! Numbers side by side in the registers of a processor: the same formulas as for one number, over more of them at once.
+//! Numbers side by side in the registers of a processor: the same formulas as for one number, for several at once.
 //!
-//! One instruction set a folder or file; this file is their table. What the processor has is found out at run time, so the program needs no build flags
-//! and runs anywhere. Every level gives the same bits, lane by lane: each operation is one that IEEE 754 rounds exactly, fused are those that
-//! [`Real::times_plus`] says, and there are no estimates.
+//! Each instruction set has a folder or a file; this file has their table. The processor's instruction sets are
+//! detected at run time, so the program needs no build flags and runs anywhere. Every instruction set gives the same
+//! bits, lane by lane: IEEE 754 rounds each operation exactly, only the operations that [`Real::times_plus`] names are
+//! fused, and there are no estimates.
 //!
-//! To add an instruction set: write its file with types that implement [`Float`] and [`Words`], and a line in `levels!` below.
+//! To add an instruction set: write its file with types that implement [`Float`] and [`Words`], and a line in
+//! `levels!`.
 
-/// Half bytes with their bits in reverse order, in the upper half of a byte and in the lower, and the bytes of two words in reverse order:
-/// what turns words round on processors that shuffle bytes by a table.
+/// Tables that reverse the bits of words, for processors that shuffle bytes by a table: half bytes with reversed bits,
+/// in the upper half of a byte and in the lower, and the bytes of two words in reverse order.
 #[cfg(target_arch = "x86_64")]
 const REVERSED: [[i8; 16]; 3] = [
     [0, -128, 64, -64, 32, -96, 96, -32, 16, -112, 80, -48, 48, -80, 112, -16],
@@ -15,8 +17,8 @@ const REVERSED: [[i8; 16]; 3] = [
     [7, 6, 5, 4, 3, 2, 1, 0, 15, 14, 13, 12, 11, 10, 9, 8],
 ];
 
-/// Whether the processor counts bits by an instruction, as all do that have AVX2. It does not follow from AVX2 for the compiler, and lanes of a mask are
-/// counted often.
+/// Whether the processor has instructions that count bits, as all processors with AVX2 have. The compiler does not
+/// infer them from AVX2, and lanes of a mask are counted often.
 #[cfg(target_arch = "x86_64")]
 fn has_bit_counts() -> bool {
     is_x86_feature_detected!("popcnt")
@@ -46,26 +48,26 @@ pub use aligned::Aligned;
 use std::ops::{BitAnd, BitOr, Not};
 pub use table::{Column, Number, Numbers, Table};
 
-/// The answers of a comparison, one bit a lane.
+/// The result of a comparison, one bit per lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
-    /// From bits, the lowest for lane 0; those beyond the last lane are not looked at.
+    /// From bits, the lowest for lane 0; bits beyond the last lane are ignored.
     fn from_bits(bits: u32) -> Self;
-    /// To bits; none is set beyond the last lane.
+    /// To bits; no bit is set beyond the last lane.
     fn bits(self) -> u32;
-    /// Whether it holds in a lane.
+    /// Whether it holds in any lane.
     #[inline(always)]
     fn any(self) -> bool {
         self.bits() != 0
     }
 }
 
-/// As many words of 64 bits as a mask has lanes.
+/// Words of 64 bits, as many as a mask has lanes.
 pub trait Words<M>: Bits {
     /// From at least as many words as there are lanes.
     fn load(from: &[u64]) -> Self;
     /// To at least as many words as there are lanes.
     fn store(self, to: &mut [u64]);
-    /// `self`, but where the mask holds the next of the words, in order; there must be as many as there are lanes.
+    /// `self`, but lanes in the mask get the next of the words, in order. There must be as many words as lanes.
     #[must_use]
     fn fill(self, mask: M, from: &[u64]) -> Self;
     /// The word in a lane.
@@ -75,7 +77,7 @@ pub trait Words<M>: Bits {
     /// `yes` where the mask holds, `no` elsewhere.
     #[must_use]
     fn choose(mask: M, yes: Self, no: Self) -> Self;
-    /// Whether words below 2^63 are less than others.
+    /// Whether words are less than others, for words below 2^63.
     fn less(self, other: Self) -> M;
     /// Whether words are equal.
     fn equal(self, other: Self) -> M;
@@ -83,25 +85,26 @@ pub trait Words<M>: Bits {
 
 /// Numbers in lanes, at most [`MOST_LANES`] of them.
 pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
-    /// As many words of 64 bits.
+    /// Words of 64 bits, as many as there are numbers.
     type Bits: Words<Self::Mask>;
-    /// One of the numbers.
+    /// The type of one number.
     type One: Number;
-    /// What one register of the same instruction set holds in single precision.
+    /// One register of the same instruction set in single precision.
     type Single: Float<One = f32>;
-    /// What one register holds of such numbers.
+    /// One register of these numbers.
     type Register: Float<One = Self::One>;
-    /// How many there are.
+    /// Number of lanes.
     const LANES: usize;
 
     /// From at least as many numbers as there are lanes.
     fn load(from: &[Self::One]) -> Self;
     /// To at least as many numbers as there are lanes.
     fn store(self, to: &mut [Self::One]);
-    /// `self`, but where the mask holds the next of the numbers, in order; there must be as many as there are lanes.
+    /// `self`, but lanes in the mask get the next of the numbers, in order. There must be as many numbers as lanes.
     #[must_use]
     fn fill(self, mask: Self::Mask, from: &[Self::One]) -> Self;
-    /// Stores the numbers where the mask holds, in order. There must be room for as many as there are lanes; what is behind them may change.
+    /// Stores the numbers where the mask holds, in order. There must be room for all lanes; places behind the stored
+    /// numbers may change.
     #[inline(always)]
     fn pack(self, mask: Self::Mask, to: &mut [Self::One]) {
         let mut all = [Self::One::default(); MOST_LANES];
@@ -140,22 +143,22 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
         self.store(&mut all);
         all[..Self::LANES].iter().fold(f64::INFINITY, |least, number| least.min((*number).into()))
     }
-    /// `self * factor + addend`, rounded once or twice, as the processor does it faster: only for what is made sure of by other means, or
-    /// processors would differ.
+    /// `self * factor + addend`, rounded once or twice, whichever is faster on the processor. Only for values whose
+    /// effect is checked by other means; otherwise processors would differ.
     #[must_use]
     #[inline(always)]
     fn about_times_plus(self, factor: Self, addend: Self) -> Self {
         self.times_plus(factor, addend)
     }
-    /// The first of two distances along a ray, the nearer and the farther, that is not behind its start: not negative and not NaN. If both are, it
-    /// is one that no other is [`Float::sooner`] than.
+    /// The first of two distances along a ray, the nearer and the farther, that is not behind the ray's start: not
+    /// negative and not NaN. If both are, there is none, and the result is not [`Float::sooner`] than any other.
     #[must_use]
     #[inline(always)]
     fn ahead(near: Self, far: Self) -> Self {
         let (zero, never) = (Self::splat(0.0), Self::splat(f64::INFINITY));
         Self::select(zero.le(near), near, Self::select(zero.le(far), far, never))
     }
-    /// The sooner of two distances ahead; infinity is sooner than none.
+    /// The sooner of two distances ahead; infinity is sooner than no distance.
     #[must_use]
     #[inline(always)]
     fn sooner(self, other: Self) -> Self {
@@ -174,19 +177,20 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
     }
     /// Words below 2^53 as numbers, rounded if need be.
     fn number(bits: Self::Bits) -> Self;
-    /// The leading bits of a word as a number in [0, 1), as many as a number has digits: exact, and never 1.
+    /// The leading bits of a word as a number in [0, 1), as many as the significand has digits: exact, and never 1.
     fn unit(bits: Self::Bits) -> Self;
-    /// Asks for the memory at an address, which need not be one.
+    /// Prefetches the memory at an address, which need not be valid.
     #[inline(always)]
     fn ask_for(_address: *const i8) {}
-    /// Does some work in a function of its own, which is compiled once for all that call it: what takes so long that a call is nothing beside it
-    /// need not be part of each of them.
+    /// Runs work in a separate function, which is compiled once for all its callers. Work that takes much longer than a
+    /// call need not be compiled into each of them.
     fn apart<W: Apart>(work: W) -> W::Output;
-    /// Rows of a table by their numbers, turned so that lane k of result j is `table[rows[k]][j]`. Numbers must be whole and in the table.
+    /// Rows of a table by their numbers, transposed so that lane k of result j is `table[rows[k]][j]`. Numbers must be
+    /// whole and in the table.
     fn rows(table: &Table, rows: Self) -> [Self; 4];
 }
 
-/// Asks for what will soon be loaded, so many from a place on; what is not there is not asked for. It changes nothing but the time.
+/// Prefetches `count` elements from `place` on, which may lie beyond the end. It changes nothing but the time.
 #[inline(always)]
 pub fn prefetch<V: Float, T>(from: &[T], place: usize, count: usize) {
     let start = from.as_ptr().wrapping_add(place).cast::<i8>();
@@ -195,28 +199,29 @@ pub fn prefetch<V: Float, T>(from: &[T], place: usize, count: usize) {
     }
 }
 
-/// Bytes that come from memory together.
+/// Bytes of a cache line, which memory delivers together.
 const LINE: usize = 64;
 
-/// The most lanes that any level has: masks are words of 32 bits.
+/// The most lanes of any instruction set: masks are words of 32 bits.
 pub const MOST_LANES: usize = 32;
 
-/// What runs on a level: a function that is compiled once for each.
+/// Work that is compiled once for each instruction set.
 pub trait Work {
-    /// Whether other work gives the same and this is only faster. A level that is a last resort ([`Level::is_fallback`]) is not compiled for it.
+    /// Whether other work gives the same result, only more slowly. A fallback ([`Level::is_fallback`]) is not compiled
+    /// for it.
     const IS_SHORTCUT: bool = false;
-    /// What it returns.
+    /// The result.
     type Output;
-    /// Does it. Everything that it calls must be `#[inline(always)]`, or it is compiled without the
-    /// instructions of the level.
+    /// Runs the work. Everything that it calls must be `#[inline(always)]`; otherwise it is compiled without the
+    /// instructions of the set.
     fn run<V: Float>(self) -> Self::Output;
 }
 
-/// What a function of its own does with the instructions of a level.
+/// Work that runs in a separate function with the instructions of the set.
 pub trait Apart {
-    /// What it returns.
+    /// The result.
     type Output;
-    /// Does it; the same holds as for [`Work::run`].
+    /// Runs the work; the same holds as for [`Work::run`].
     fn run(self) -> Self::Output;
 }
 
@@ -230,7 +235,7 @@ pub enum Precision {
 }
 
 impl Precision {
-    /// All of them, the default first.
+    /// All formats, the default first.
     pub const ALL: [Self; 2] = [Self::F64, Self::F32];
 
     /// Its name on the command line, in CSV and TOML.
@@ -242,25 +247,25 @@ impl Precision {
     }
 }
 
-/// One line of the table of levels.
+/// One line of the table of instruction sets.
 #[derive(Debug, Clone)]
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
     set: Set,
     pub is_available: fn() -> bool,
 }
 
 impl Entry {
-    /// The level, if this processor has it.
+    /// The instruction set, if this processor has it.
     pub fn here(&'static self) -> Option<Level> {
         (self.is_available)().then_some(Level(self))
     }
 }
 
-/// A level that this processor has: only [`Entry::here`] makes one.
+/// An instruction set that this processor has: only [`Entry::here`] makes one.
 #[derive(Debug, Clone, Copy)]
 pub struct Level(&'static Entry);
 
@@ -270,7 +275,7 @@ impl Level {
         self.0.name
     }
 
-    /// Whether it is for processors alone that have none of the others: [`Work::IS_SHORTCUT`].
+    /// Whether it is only for processors that have none of the others; see [`Work::IS_SHORTCUT`].
     pub fn is_fallback(self) -> bool {
         plain::IS_FALLBACK && matches!(self.0.set, Set::Baseline)
     }
@@ -281,13 +286,13 @@ macro_rules! levels {
         #[derive(Debug, Clone, Copy)]
         enum Set { $($(#[$attribute])* $Set),* }
 
-        /// The table of levels, the fastest first; the last one is everywhere.
+        /// The table of instruction sets, the fastest first. Every processor has the last one.
         pub const LEVELS: &[Entry] = &[$(
             $(#[$attribute])*
             Entry { name: $name, about: $about, set: Set::$Set, is_available: $module::is_available },
         )*];
 
-        /// Does some work on a level.
+        /// Runs work with an instruction set.
         pub fn on_level<W: Work>(level: Level, precision: Precision, work: W) -> W::Output {
             match level.0.set {
                 $($(#[$attribute])* Set::$Set => $module::run(precision, work)),*
@@ -314,23 +319,23 @@ impl Work for OfLevel {
     }
 }
 
-/// How many numbers a level has side by side.
+/// Lane counts of an instruction set.
 #[derive(Debug, Clone, Copy)]
 pub struct Sizes {
-    /// In all.
+    /// Of all registers together.
     pub lanes: usize,
-    /// In one register.
+    /// Of one register.
     pub register: usize,
-    /// In one register of single precision.
+    /// Of one register in single precision.
     pub single: usize,
 }
 
-/// How many numbers a level has side by side.
+/// The lane counts of an instruction set.
 pub fn sizes_of(level: Level, precision: Precision) -> Sizes {
     on_level(level, precision, OfLevel)
 }
 
-/// The levels of this processor, the fastest first.
+/// The instruction sets of this processor, the fastest first.
 pub fn levels() -> impl Iterator<Item = Level> + Clone {
     LEVELS.iter().filter_map(Entry::here)
 }

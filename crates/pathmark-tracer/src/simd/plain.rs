@@ -1,21 +1,21 @@
-//! Small arrays, which compilers turn into what every processor of its kind has: SSE2 or NEON.
+//! Small arrays, from which compilers make instructions that every processor of its kind has: SSE2 or NEON.
 
 use super::{Apart, Float, Mask, Precision, Table, Words, Work};
 use crate::math::{Bits, Real, single_unit, unit};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// Two numbers in double precision fill a register of SSE2 or NEON; more of them are compiled for longer and are no faster.
+/// Two numbers in double precision fill a register of SSE2 or NEON. More take longer to compile and are no faster.
 const LANES: usize = 2;
 
-/// Everywhere.
+/// Available on every processor.
 pub(super) fn is_available() -> bool {
     true
 }
 
-/// Processors of x86 that have nothing better are older than 2013.
+/// x86 processors without a better instruction set are older than 2013.
 pub(super) const IS_FALLBACK: bool = cfg!(target_arch = "x86_64");
 
-/// Does the work.
+/// Runs `work` with this instruction set.
 pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     assert!(!(IS_FALLBACK && W::IS_SHORTCUT), "a fallback is not compiled for shortcuts");
     match precision {
@@ -24,11 +24,11 @@ pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     }
 }
 
-/// A few of something.
+/// One value per lane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Plain<T>([T; LANES]);
 
-/// One value from each lane of one or two or three others. Written out, because a closure in the loop may stay a call.
+/// Computes a value for each lane. Written out, because a closure in a loop may stay a call.
 macro_rules! each {
     ($k:ident => $value:expr) => {
         Plain([
@@ -122,7 +122,7 @@ impl Mask for Plain<bool> {
 }
 
 impl<T: Copy> Plain<T> {
-    /// The next of some values in each lane that a mask holds.
+    /// `self`, but lanes in the mask get the next of the values, in order.
     #[inline(always)]
     fn filled(mut self, mask: Plain<bool>, from: &[T]) -> Self {
         let mut next = 0;

@@ -1,7 +1,7 @@
-//! What registers of numbers have in common, whatever the instruction set: a type is a list of the intrinsics that are its operations.
+//! Registers of numbers for any instruction set: a type lists the intrinsics that are its operations.
 
-/// An intrinsic of a level that not every processor has. No value of such a level's types is made outside of its `enter`, which only
-/// processors that have its instructions come to.
+/// An intrinsic of an instruction set that not every processor has. Values of such a set's types are made only within
+/// its `enter`, which runs only on processors with these instructions.
 macro_rules! op {
     ($call:expr) => {
         // SAFETY: reached through `enter` alone, as above; loads and stores go to arrays of the register's size.
@@ -22,7 +22,8 @@ macro_rules! operator {
     )*};
 }
 
-/// A register of numbers by its intrinsics. `own` holds what it does in a way of its own of [`Float`](super::Float).
+/// A register of numbers by its intrinsics. `own` holds its own implementations of the other methods of
+/// [`Float`](super::Float).
 macro_rules! register {
     (
         $(#[$about:meta])*
@@ -122,7 +123,7 @@ macro_rules! register {
             fn equal(self, other: Self) -> $Mask {
                 $Mask(op!(x86::$compare::<{ x86::_CMP_EQ_OQ }>(self.0, other.0)))
             }
-            // As the processor does it where one is NaN: the second.
+            // Like the processor: if either is NaN, the second.
             #[inline(always)]
             fn larger(self, other: Self) -> Self {
                 Self(op!(x86::$max(self.0, other.0)))

@@ -1,15 +1,15 @@
-//! Numbers that lanes look up, each its own row of a table, or load side by side.
+//! Numbers that lanes look up, each lane in its own row of a table, or load side by side.
 
 use super::{Aligned, Apart, Float, MOST_LANES, Precision};
 
-/// Rows of four in one format. Those of the other are a row of zeros, so that whoever asks for them finds something.
+/// Rows of four numbers in one format. The other format has a row of zeros, so that a lookup in it finds something.
 pub struct Table {
     pub(super) rows: Vec<[f64; 4]>,
     pub(super) singles: Vec<[f32; 4]>,
     /// The columns of a table of at most 16 rows, padded with zeros: they fit two registers of 512 bits.
     #[cfg(target_arch = "x86_64")]
     pub(super) columns: Option<[[f64; 16]; 4]>,
-    /// Those of a table of at most 32 rows.
+    /// The columns of a table of at most 32 rows, in single precision.
     #[cfg(target_arch = "x86_64")]
     pub(super) single_columns: Option<[[f32; 32]; 4]>,
 }
@@ -33,7 +33,7 @@ fn start<T>(rows: &[[T; 4]], number: i32) -> *const [T; 4] {
 }
 
 impl Table {
-    /// A table, its numbers rounded if need be; there must be a row.
+    /// A table whose numbers are rounded if need be. There must be at least one row.
     pub fn new(rows: impl IntoIterator<Item = [f64; 4]>, precision: Precision) -> Self {
         let (mut doubles, mut singles) = (vec![[0.0; 4]], vec![[0.0; 4]]);
         match precision {
@@ -51,7 +51,7 @@ impl Table {
         }
     }
 
-    /// Where the row of that number begins, as [`Table::row`] has it: without a branch, for loads into registers.
+    /// Address of the row with that number, as in [`Table::row`]: without a branch, for loads into registers.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn row_start(&self, number: i32) -> *const f64 {
@@ -64,7 +64,7 @@ impl Table {
         start(&self.singles, number).cast()
     }
 
-    /// The row of that number; the first if there is none, since what is in a lane without a ray may be anything.
+    /// The row with that number; the first if there is none, because a lane without a ray may hold any number.
     #[inline(always)]
     pub fn row(&self, number: i32) -> &[f64; 4] {
         self.rows.get(number as usize).unwrap_or(&self.rows[0])
@@ -76,25 +76,25 @@ impl Table {
     }
 }
 
-/// One number in each row, which single precision has exactly.
+/// One number per row, exact in single precision.
 pub struct Column(Vec<f32>);
 
 impl Column {
-    /// A column; there must be a row.
+    /// A column. There must be at least one row.
     pub fn new(numbers: impl IntoIterator<Item = f32>) -> Self {
         let numbers: Vec<f32> = numbers.into_iter().collect();
         assert!(!numbers.is_empty(), "a column needs a row");
         Self(numbers)
     }
 
-    /// The numbers in these rows; that in the first where there is no such row.
+    /// The numbers in these rows; the first row's number where there is no such row.
     #[inline(always)]
     pub fn at<V: Float>(&self, rows: V) -> V {
         V::apart(Rows { column: self, rows })
     }
 }
 
-/// Rows of a column. Its loop over lanes would take registers from whoever asks.
+/// A lookup in a column. In the caller, its loop over lanes would take registers.
 struct Rows<'a, V> {
     column: &'a Column,
     rows: V,
@@ -116,7 +116,7 @@ impl<V: Float> Apart for Rows<'_, V> {
     }
 }
 
-/// Numbers that stand side by side, in the format in which they will be loaded.
+/// Numbers side by side, in the format in which they are loaded.
 pub struct Numbers {
     precision: Precision,
     doubles: Aligned<f64>,
@@ -124,7 +124,7 @@ pub struct Numbers {
 }
 
 impl Numbers {
-    /// None yet, with room for so many.
+    /// An empty list with room for `count` numbers.
     pub fn with_capacity(count: usize, precision: Precision) -> Self {
         let (doubles, singles) = match precision {
             Precision::F64 => (count, 0),
@@ -152,12 +152,12 @@ impl Numbers {
         self.len() == 0
     }
 
-    /// How many there are.
+    /// The count of the numbers.
     pub fn len(&self) -> usize {
         self.doubles.len() + self.singles.len()
     }
 
-    /// The number in that place, as it is in its format.
+    /// The number in that place, as stored.
     pub fn at(&self, place: usize) -> f64 {
         match self.precision {
             Precision::F64 => self.doubles[place],
@@ -165,7 +165,7 @@ impl Numbers {
         }
     }
 
-    /// How many bytes they have.
+    /// Their size in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.doubles) + size_of_val(&*self.singles)
     }
@@ -178,9 +178,9 @@ impl Numbers {
     }
 }
 
-/// A number of either format; nothing else is one, since memory is looked at as such.
+/// A number of either format. No other type is one, because memory is read as these numbers.
 pub trait Number: Copy + Default + PartialOrd + Into<f64> + Send + Sync {
-    /// Those of that format; none if they are of another.
+    /// The numbers in that format; none if they are in the other.
     fn all(numbers: &Numbers) -> &[Self];
 }
 

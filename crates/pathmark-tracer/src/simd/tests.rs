@@ -1,4 +1,5 @@
-//! Every operation of every level against the same operation on one number, lane by lane: bit for bit, NaN for NaN.
+//! Compares every operation of every instruction set with the same operation on one number, lane by lane: bit for bit,
+//! NaN for NaN.
 
 use super::{Float, MOST_LANES, Mask, Precision, Table, Words, Work, levels, on_level};
 use crate::math::{Bits, single_unit, unit};
@@ -51,7 +52,7 @@ impl Work for Operations {
 
     #[inline(always)]
     fn run<V: Float>(self) {
-        // Each number with each: few lanes hold few of them at a time.
+        // Every pair of numbers: few lanes hold only a few of them at a time.
         for (first, second) in (0..16).flat_map(|first| (0..16).map(move |second| (first, second))) {
             let (v, w) = (of::<V>(numbers(first)), of::<V>(numbers(second)));
             let mask = v.lt(w);
@@ -61,8 +62,8 @@ impl Work for Operations {
             assert!(all.least() == least, "the least is {}, not {least}", all.least());
             for lane in 0..V::LANES {
                 let (x, y) = (v.lane(lane), w.lane(lane));
-                // An operation in double precision whose result is rounded once more is that of single precision: it has more than twice the
-                // digits (Figueroa, "When is double rounding innocuous?", 1995).
+                // A double-precision result, rounded once more, equals the single-precision result, because it has more
+                // than twice the digits (Figueroa, "When is double rounding innocuous?", 1995).
                 let rounded = |exact: f64| if V::IS_DOUBLE { exact } else { f64::from(exact as f32) };
                 let numbers = [
                     ("sum", (v + w).lane(lane), rounded(x + y)),
@@ -71,13 +72,13 @@ impl Work for Operations {
                     ("quotient", (v / w).lane(lane), rounded(x / y)),
                     ("opposite", (-v).lane(lane), -x),
                     ("product and sum", v.times_plus(w, v).lane(lane), times_plus::<V>(x, y, x)),
-                    // What the product was rounded by, if it is not rounded before the sum.
+                    // The rounding error of the product, if it is not rounded before the sum.
                     (
                         "product less itself",
                         v.times_plus(w, -(v * w)).lane(lane),
                         times_plus::<V>(x, y, -rounded(x * y)),
                     ),
-                    // Once or twice: of this sum either way the same.
+                    // This sum is the same, rounded once or twice.
                     ("tripled", v.about_times_plus(V::splat(2.0), v).lane(lane), rounded(3.0 * x)),
                     ("root", v.sqrt().lane(lane), rounded(x.sqrt())),
                     ("magnitude", v.abs().lane(lane), x.abs()),
@@ -138,19 +139,19 @@ impl Work for Operations {
     }
 }
 
-/// The order of what is ahead on a ray.
+/// Checks the order of distances ahead on a ray.
 #[inline(always)]
 fn distances<V: Float>() {
     let infinity = f64::INFINITY;
     for (near, far) in (0..16).flat_map(|first| (0..16).map(move |second| (numbers(first), numbers(second)))) {
         let (v, w) = (of::<V>(near), of::<V>(far));
         let (one, two) = (V::ahead(v, w), V::ahead(w, w));
-        // What is none says nothing of itself, but that it is not sooner than infinity.
+        // A missing distance has no defined value, but it is not sooner than infinity.
         let found = [one, two, one.later(two), two.sooner(one)].map(|t| t.sooner(V::splat(infinity)));
         let is_sooner = one.is_sooner(two.sooner(V::splat(infinity)));
         for lane in 0..V::LANES {
             let (x, y) = (v.lane(lane), w.lane(lane));
-            // The nearer comes first, and whether -0 is behind is left open.
+            // The nearer distance comes first, and whether -0 is behind the start is left open.
             let is_ahead = |t: f64| t.is_sign_positive() && !t.is_nan();
             if x > y || x == 0.0 && x.is_sign_negative() || y == 0.0 && y.is_sign_negative() {
                 continue;
@@ -175,7 +176,7 @@ fn of<V: Float>(numbers: [f64; MOST_LANES]) -> V {
     lanes
 }
 
-/// What puts numbers into lanes and takes them out.
+/// Checks the operations that move numbers into lanes and out of them.
 #[inline(always)]
 fn lanes_move<V: Float>() {
     let counted = of::<V>(std::array::from_fn(|k| k as f64 + 0.5));
@@ -218,7 +219,7 @@ fn lanes_move<V: Float>() {
     assert!((0..V::LANES).all(|lane| v.lane(lane) == lane as f64 && w.word(lane) == lane as u64));
 }
 
-/// What a mask holds comes out in order.
+/// The numbers that a mask selects come out in order.
 #[inline(always)]
 fn lanes_are_packed<V: Float>() {
     let counted = of::<V>(std::array::from_fn(|k| k as f64 + 0.5));

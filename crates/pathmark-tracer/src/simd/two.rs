@@ -1,4 +1,5 @@
-//! Two vectors as one: each operation is done on one and then on the other, so that the second's work hides the first's latency.
+//! Two vectors as one: each operation runs on one, then on the other, so that the second's work hides the first's
+//! latency.
 
 use super::{Apart, Float, Mask, Table, Words};
 use crate::math::{Bits, Real};
@@ -8,7 +9,7 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Two<V>(pub(super) V, pub(super) V);
 
-/// Operations that are done on the lower lanes, then on the upper ones.
+/// Operations on the lower lanes, then on the upper ones.
 macro_rules! forward {
     ($($method:ident($($other:ident),*);)*) => {$(
         #[inline(always)]
@@ -18,7 +19,7 @@ macro_rules! forward {
     )*};
 }
 
-/// Likewise, comparisons.
+/// Comparisons likewise.
 macro_rules! compare {
     ($($method:ident)*) => {$(
         #[inline(always)]
@@ -30,7 +31,8 @@ macro_rules! compare {
 
 macro_rules! operators {
     ($($Trait:ident $method:ident($($other:ident)?);)*) => {$(
-        // What can be copied needs no code that drops it: without `Copy` each operation had a tenfold of branches for the compiler to remove.
+        // `Copy` types need no drop code: without `Copy` the compiler had to remove ten times as many branches from
+        // each operation.
         impl<V: $Trait<Output = V> + Copy> $Trait for Two<V> {
             type Output = Self;
             forward! { $method($($other)?); }
@@ -94,7 +96,7 @@ impl<B: Bits> Bits for Two<B> {
     }
 }
 
-/// Masks of two vectors; how many lanes the lower one has is known to the vectors alone.
+/// Masks of two vectors; the lower vector has the lower bits.
 impl<M: HalfMask> Mask for Two<M> {
     #[inline(always)]
     fn from_bits(bits: u32) -> Self {
@@ -106,14 +108,14 @@ impl<M: HalfMask> Mask for Two<M> {
     }
 }
 
-/// A mask that knows how many lanes it is for.
+/// A mask with a fixed number of lanes.
 pub(super) trait HalfMask: Mask {
     const LANES: u32;
 }
 
 /// A mask for the lanes of two registers of words.
 pub(super) trait PairMask: Mask {
-    /// The mask of one of them.
+    /// The mask of one register.
     type Half: HalfMask;
     fn halves(self) -> Two<Self::Half>;
     fn of_halves(halves: Two<Self::Half>) -> Self;

@@ -23,10 +23,11 @@ unsafe extern "C" {
     ) -> c_int;
 }
 
-/// Calls `body(i)` once for each `i` below `jobs`, on a team of `threads` (at least 1) that the calling thread leads, and returns when all
-/// calls have. `chunk` is 0 for the schedule's own size. `body` must not panic, which would end the program.
+/// Calls `body(i)` once for each `i` below `jobs`, on a team of `threads` (at least 1) that the calling thread leads.
+/// Returns when all calls have returned. `chunk` is 0 for the schedule's own size. `body` must not panic: a panic would
+/// end the program.
 ///
-/// Returns how large the team was. If that is less than `threads`, nothing has been called.
+/// Returns the size of the team. If it is less than `threads`, `body` has not been called.
 pub(super) fn parallel_for<F: Fn(usize) + Sync>(
     schedule: Schedule,
     chunk: c_int,

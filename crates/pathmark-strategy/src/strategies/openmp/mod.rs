@@ -1,8 +1,9 @@
-//! What the strategies on OpenMP share: a loop of libgomp, the runtime that comes with GCC. Built with `--features openmp`.
+//! The common part of the strategies on OpenMP: a loop of libgomp, the runtime that comes with GCC. Built with
+//! `--features openmp`.
 //!
-//! The loop runs on a thread from the spawner, which OpenMP counts as the first of the team; libgomp starts the others in the construction and
-//! keeps them. They end with the thread that leads them. When a loop is done they spin for a while before they sleep (`OMP_WAIT_POLICY`),
-//! which costs whoever runs next on a busy machine.
+//! The loop runs on a thread from the spawner, which OpenMP counts as the first of the team. libgomp starts the others
+//! in the construction and keeps them; they end with the thread that leads them. After a loop they spin for a while
+//! before they sleep (`OMP_WAIT_POLICY`), which slows down other threads on a busy machine.
 
 mod ffi;
 
@@ -15,7 +16,8 @@ use crate::{
     Blueprint, ChunkRule, Discipline, Entry, Handout, Host, Job, Parameter, Strategy, StrategyError, Threads, library,
 };
 
-/// The strategy that hands out jobs as `discipline` says; `make` makes it from one of OpenMP's schedules.
+/// Returns the entry of a strategy that hands out jobs as `discipline` says; `make` builds it on one of OpenMP's
+/// schedules.
 pub(super) const fn entry(
     name: &'static str,
     about: &'static str,
@@ -25,18 +27,18 @@ pub(super) const fn entry(
     Entry { threads: Threads::Library, ..Entry::new(name, about, discipline, make) }
 }
 
-/// What may be set of a schedule with chunks of at least, or exactly, so many jobs.
+/// Returns the parameter of a schedule: the exact or the least number of jobs in a chunk.
 pub(super) const fn chunk(read: fn(&str) -> Option<Discipline>) -> Option<Parameter> {
     Some(Parameter { allowed: "a number of jobs from 1 to 2147483647", read })
 }
 
-/// A schedule with chunks of at least, or exactly, so many jobs as the parameter says.
+/// Parses the exact or the least number of jobs in a chunk, and returns the discipline of that schedule.
 pub(super) fn chunks(size: fn(&Handout) -> usize, value: &str) -> Option<Discipline> {
     let chunk = value.parse::<c_int>().ok().filter(|chunk| *chunk > 0)?;
     Some(Discipline::Chunks(ChunkRule { size, parameter: chunk as usize }))
 }
 
-/// A strategy that is one of OpenMP's schedules.
+/// Makes a strategy on one of OpenMP's schedules.
 pub(super) fn make(blueprint: &Blueprint, schedule: Schedule) -> Result<Box<dyn Strategy>, StrategyError> {
     let chunk = match blueprint.discipline {
         Discipline::Chunks(rule) => rule.parameter as c_int,
@@ -63,13 +65,13 @@ struct OpenMp {
 
 impl Strategy for OpenMp {
     fn run(&mut self, jobs: usize, job: Job) -> Result<(), StrategyError> {
-        // All of them, however few jobs there are: libgomp ends threads that a team has no use for, and would start them anew.
+        // All threads, even for few jobs: libgomp ends threads that a team does not use, and would start them anew.
         let (schedule, chunk, threads) = (self.schedule, self.chunk, self.threads);
         let team = self.host.run(move |panics| {
             let body = |index| panics.attempt(|| job(index));
             ffi::parallel_for(schedule, chunk, threads as c_int, jobs, &body) as usize
         });
-        // A limit in the environment, such as OMP_THREAD_LIMIT.
+        // The environment sets a limit, such as OMP_THREAD_LIMIT.
         if team < threads {
             return Err(StrategyError::TooManyThreads { strategy: self.strategy, threads, most: team });
         }

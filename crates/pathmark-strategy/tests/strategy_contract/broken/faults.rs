@@ -1,4 +1,4 @@
-//! What can be wrong with an entry and with threads.
+//! Faults of entries and of threads.
 
 use std::sync::{Arc, Barrier};
 use std::thread;
@@ -10,7 +10,7 @@ use pathmark_strategy::{
 
 use super::{Fault, made_by, of_threads, other, runs};
 
-/// Two names for what a queue of single jobs does not do.
+/// Two disciplines that a queue of single jobs does not follow.
 const DEALT: Discipline = Discipline::Dealt(|worker, workers, jobs| block(worker, workers, jobs).step_by(1));
 const BLOCKS: Discipline =
     Discipline::Stealing(Stealing { start: Start::Blocks, amount: Amount::One, victim: Victim::Neighbour });
@@ -36,7 +36,7 @@ pub(super) const FAULTS: &[Fault] = &[
         runs!(|broken, jobs, job| {
             let Blueprint { threads, spawner, .. } = &broken.blueprint;
             let workers = threads.get() + 1;
-            // Each of them takes a job, whoever is first: the first jobs wait until all have one.
+            // Every worker takes a job: the first jobs wait until all workers have one.
             let all = Barrier::new(workers);
             let together = move |index| {
                 if jobs >= workers && index < workers {
@@ -44,7 +44,7 @@ pub(super) const FAULTS: &[Fault] = &[
                 }
                 job(index);
             };
-            // A pool whose threads are all there before a job begins: none waits for one that was refused.
+            // A pool has all its threads before a job begins, so no job waits for a refused thread.
             of_threads("fixed-pool", workers, spawner)?.run(jobs, Arc::new(together))
         }),
     ),

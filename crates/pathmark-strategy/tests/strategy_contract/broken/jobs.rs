@@ -1,4 +1,4 @@
-//! What can go wrong with jobs, panics and clones in a run.
+//! Faults of jobs, panics and clones in a run.
 
 use std::panic::{self, AssertUnwindSafe};
 use std::sync::{Arc, Mutex};

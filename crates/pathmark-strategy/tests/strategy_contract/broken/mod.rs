@@ -1,4 +1,4 @@
-//! Strategies with one fault each, which the contract must notice: that is how it is seen red.
+//! Strategies with one fault each, which the contract must notice; this shows that its checks can fail.
 
 mod faults;
 mod jobs;
@@ -14,10 +14,10 @@ use pathmark_strategy::{Blueprint, Config, Discipline, Entry, Job, Spawner, Stra
 /// A fault, the promise that it breaks, and a strategy that has it.
 type Fault = (&'static str, Promise, Entry);
 
-/// What goes wrong in a run.
+/// A run with a fault.
 type Run = fn(&mut Broken, usize, Job) -> Result<(), StrategyError>;
 
-/// A sound strategy, and what is made of it.
+/// A sound strategy, and the fault in its runs.
 struct Broken {
     inner: Box<dyn Strategy>,
     blueprint: Blueprint,
@@ -37,24 +37,24 @@ fn broken(blueprint: &Blueprint, run: Run) -> Result<Box<dyn Strategy>, Strategy
     Ok(Box::new(Broken { inner, blueprint: blueprint.clone(), run, kept: Vec::new(), panicked: false }))
 }
 
-/// The strategy of another name, made from the same.
+/// Makes the strategy called `name` from the same blueprint.
 fn other(name: &str, blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
     of_threads(name, blueprint.threads.get(), &blueprint.spawner)
 }
 
-/// The strategy of another name on so many threads, but at least one.
+/// Makes the strategy called `name` on `threads` threads, but at least one.
 fn of_threads(name: &str, threads: usize, spawner: &Arc<dyn Spawner>) -> Result<Box<dyn Strategy>, StrategyError> {
     let (name, parameter) = name.split_once(':').map_or((name, None), |(name, value)| (name, Some(value.to_owned())));
     let threads = NonZeroUsize::new(threads).unwrap_or(NonZeroUsize::MIN);
     find(name).expect("it is in the table").build(Config { threads, parameter, spawner: Arc::clone(spawner) })
 }
 
-/// Says that it hands out jobs one by one.
+/// Returns an entry that claims to hand out jobs one by one.
 const fn made_by(make: fn(&Blueprint) -> Result<Box<dyn Strategy>, StrategyError>) -> Entry {
     Entry::new("faulty", "for a test", Discipline::ONE_BY_ONE, make)
 }
 
-/// Makes what runs on `shared-counter` and has this wrong with its runs.
+/// The entry of a strategy on `shared-counter` with this fault in its runs.
 macro_rules! runs {
     ($run:expr) => {
         crate::broken::made_by(|blueprint| crate::broken::broken(blueprint, $run))
@@ -62,8 +62,9 @@ macro_rules! runs {
 }
 use runs;
 
-/// Less patient than for a sound strategy, since some faults are waiting in vain. Still seconds: all faults are tried at once, and a panic
-/// prints a backtrace for which the others wait; a check that stands still for so long would count as a run that never ends.
+/// Shorter than for a sound strategy, because some faults use up the patience. Still seconds: all faults are tested at
+/// once, and the others wait while a panic prints a backtrace. A check that makes no progress for so long would count
+/// as a run that never ends.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 fn promises_broken_by(entry: &Entry, patience: Duration) -> Vec<Promise> {
@@ -87,7 +88,7 @@ fn the_contract_notices_each_fault() {
     assert!(missed.is_empty(), "not noticed: {missed:#?}");
 }
 
-/// The same without a fault.
+/// A strategy without a fault, made in the same way.
 #[test]
 fn the_contract_finds_no_fault_where_there_is_none() {
     let sound = runs!(|broken, jobs, job| broken.inner.run(jobs, job));

@@ -1,4 +1,4 @@
-//! Whether a device renders a scene with some settings, and which one.
+//! Selection of a device: whether one can render a scene with given settings, and which one.
 
 use super::super::in_lanes::{MOST_IN_LANES, precision};
 use super::super::{DEVICE, Spec};
@@ -11,20 +11,20 @@ use crate::simd::Precision;
 use pathmark_device::Listed;
 use std::io;
 
-/// What the kernel is made with.
+/// The settings of the device kernel.
 #[derive(Debug, Clone)]
 pub(in crate::kernel) struct ForDevice {
-    /// The kernel's name with the device's: `device:opencl:0`.
+    /// The kernel's name with the device's name: `device:opencl:0`.
     pub(in crate::kernel) kernel: String,
-    /// The device's own name; `None` where any GPU would do and there is none.
+    /// The device's name; `None` if any GPU was requested and there is none.
     pub(in crate::kernel) id: Option<String>,
     pub(super) rules: PathRules,
     pub(in crate::kernel) precision: Precision,
-    /// The sampler's place among [`SAMPLERS`].
+    /// The sampler's index in [`SAMPLERS`].
     pub(super) sampler: u32,
 }
 
-/// What of a scene or of its settings the program has no code for.
+/// The feature of a scene or of its settings that the program has no code for.
 fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>, precision: Precision) -> Option<&'static str> {
     let is_single = precision == Precision::F32;
     let is_unknown = |index: usize| !is_known(&scene.objects[index].material);
@@ -34,7 +34,7 @@ fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>, precision: Precisi
         ((0..scene.objects.len()).any(is_unknown), "material"),
         (spec.clamp.is_some(), "clamp"),
         (epsilon.is_some(), "epsilon"),
-        // As with lanes.
+        // Lanes have no code for these either.
         (is_single && scene.effects().cover(LENS), "lens"),
         (is_single && scene.effects().cover(POINT_LIGHT), "point-light"),
         (is_single && scene.owners.len() >= MOST_IN_LANES, "primitives"),
@@ -42,7 +42,7 @@ fn obstacle(scene: &Scene, spec: &Spec, epsilon: Option<f64>, precision: Precisi
     obstacles.into_iter().find(|(is_there, _)| *is_there).map(|(_, name)| name)
 }
 
-/// The device that was asked for: the one that is named, or else the first GPU, if there is one.
+/// The requested device: the named one, or else the first GPU, if there is one.
 fn chosen(kernel: &str) -> Result<Option<String>> {
     let all = pathmark_device::list();
     let there = |wanted: &dyn Fn(&Listed) -> bool| all.iter().find(|listed| listed.is_there && wanted(listed));
@@ -54,7 +54,7 @@ fn chosen(kernel: &str) -> Result<Option<String>> {
     if let Some(found) = found {
         return Ok(Some(found.id.clone()));
     }
-    // What was asked for may be what a driver refuses to show.
+    // A broken driver may hide the requested device.
     let is_meant = |listed: &&Listed| named.map_or(listed.is_accelerator, |id| id.starts_with(&listed.id));
     if let Some(broken) = all.iter().filter(is_meant).find(|listed| listed.is_broken) {
         return Err(Error::system("opening", named.unwrap_or(&broken.id), io::Error::other(broken.about.clone())));
@@ -62,7 +62,7 @@ fn chosen(kernel: &str) -> Result<Option<String>> {
     if named.is_none() { Ok(None) } else { Err(missing(kernel)) }
 }
 
-/// There is no such device here.
+/// The error of a missing device.
 pub(in crate::kernel) fn missing(kernel: &str) -> Error {
     let (all, named) = (pathmark_device::list(), kernel.split_once(':').map(|(_, id)| id));
     let missing = all.iter().filter(|listed| !listed.is_there);
@@ -77,7 +77,7 @@ pub(in crate::kernel) fn missing(kernel: &str) -> Error {
     InputError::new("kernel", kernel, problem).allowed(allowed.join(", ")).into()
 }
 
-/// The device that renders a scene with these settings, or why none does.
+/// The device that renders a scene with these settings, or the feature that the program has no code for.
 pub(in crate::kernel) fn device_for(
     scene: &Scene,
     spec: &Spec,
@@ -90,7 +90,7 @@ pub(in crate::kernel) fn device_for(
     }
     let precision = precision(spec)?;
     let id = chosen(&spec.kernel)?;
-    // Single precision has the samplers of lanes.
+    // Single precision has only the samplers of lanes.
     let is_there = precision == Precision::F64 || LaneSampler::find(&spec.sampler).is_some();
     let sampler = (0..).zip(SAMPLERS).find(|(_, (name, _))| is_there && *name == spec.sampler);
     let sampler = sampler.map(|(number, _)| number);

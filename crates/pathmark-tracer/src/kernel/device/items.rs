@@ -1,14 +1,14 @@
-//! What a device is given to do and what it gives back. An *item* is a pixel and a part of its samples, which is a subtree of the film's sum; the items
-//! of a piece come pixel by pixel.
+//! Input and output of a launch. An *item* is a pixel and a part of its samples, which is a subtree of the film's sum.
+//! The items of a piece are ordered by pixel.
 
 use crate::film::{Piece, PixelSum, SampleSum, TileBuffer};
 use crate::kernel::Counts;
 
-/// What the program is told of a launch, and how many words each takes, in the order in which they stand; then comes a row for each piece.
+/// The input of a launch: its fields in order, with the number of words of each. A row for each piece follows.
 pub(super) const TASK: &[(&str, usize)] =
     &[("TASK_PIECES", 1), ("TASK_PART_SAMPLES", 1), ("TASK_FIRST_ITEM", 2), ("TASK_TABLE", 0)];
 
-/// What it is told of a piece.
+/// The fields of a piece's row, with the number of words of each.
 pub(super) const PIECE: &[(&str, usize)] = &[
     ("PIECE_FIRST_ITEM", 2),
     ("PIECE_X", 1),
@@ -19,19 +19,19 @@ pub(super) const PIECE: &[(&str, usize)] = &[
     ("PIECE_END_SAMPLE", 1),
 ];
 
-/// The two halves of a number.
+/// The lower and the upper half of a number.
 fn halves(number: u64) -> [u32; 2] {
     [number as u32, (number >> 32) as u32]
 }
 
-/// Pieces as a launch has them: each item is a pixel of one of them and a part of its samples.
+/// The pieces in items: each item is a pixel of a piece and a part of its samples.
 pub(super) struct Items<'a> {
     pieces: &'a [&'a Piece],
     /// Samples of a part.
     pub(super) part: u32,
-    /// The first item of each piece.
+    /// Number of the first item of each piece.
     first: Vec<u64>,
-    /// How many there are.
+    /// Number of all items.
     pub(super) count: u64,
 }
 
@@ -51,7 +51,7 @@ impl<'a> Items<'a> {
         u64::from((piece.samples.end - piece.samples.start).div_ceil(part))
     }
 
-    /// The words of a launch that begins with an item.
+    /// The input words of a launch whose first item is this one.
     pub(super) fn task(&self, first_item: u64) -> Vec<u32> {
         let mut task = vec![self.pieces.len() as u32, self.part];
         task.extend(halves(first_item));
@@ -68,7 +68,7 @@ impl<'a> Items<'a> {
 /// Words that an item writes: three sums, three sums of squares, and six counts.
 pub(super) const OUT_WORDS: usize = 12;
 
-/// Puts results of items, as they come, where they belong.
+/// Writes the results of items, in their order, to the pixels.
 pub(super) struct Placing<'a> {
     items: &'a Items<'a>,
     out: &'a mut [TileBuffer],
@@ -86,7 +86,7 @@ impl<'a> Placing<'a> {
         Self { items, out, counts, sum: SampleSum::default(), piece: 0, pixel: 0, number: 0 }
     }
 
-    /// Puts the words of the next item.
+    /// Adds the output words of the next item.
     pub(super) fn put(&mut self, words: &[u64]) {
         let piece = self.items.pieces[self.piece];
         let parts = Items::parts(piece, self.items.part);

@@ -1,9 +1,11 @@
-//! `--kernel device`: pieces are rendered by a GPU, by CUDA or OpenCL, or by whatever else compiles the program in `program/`.
+//! `--kernel device`: pieces are rendered by a GPU, through CUDA or OpenCL, or by another device that compiles the
+//! program in `program/`.
 //!
-//! The program is the scalar kernel's path in the common subset of C, OpenCL C and CUDA C, one operation for one operation, so an image has the same
-//! bits on every device and on the processor; in single precision the path is that of lanes. It is compiled for an effect profile, as scalar kernels
-//! are, when a kernel is made. Numbers that the scalar kernel has in tables are written into it from those ([`program`]); the scene goes to the device
-//! as arrays ([`tables`]). A launch is so many items ([`items`]) as take a quarter of a second, because drivers of displays end longer ones.
+//! The program is the scalar kernel's path in the common subset of C, OpenCL C and CUDA C, operation by operation. So
+//! an image has the same bits on every device and on the processor; in single precision the path is the path of lanes.
+//! The program is compiled when a kernel is built, for an effect profile like a scalar kernel. The scalar kernel's
+//! tables of constants are written into its text ([`program`]); the scene goes to the device as arrays ([`tables`]). A
+//! launch has as many items ([`items`]) as take a quarter of a second, because display drivers abort longer ones.
 
 mod choice;
 mod items;
@@ -22,30 +24,30 @@ use std::io;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Seconds that a launch is to take.
+/// Target duration of a launch, in seconds.
 const LAUNCH_S: f64 = 0.25;
-/// Samples of the first launch, of which nobody knows how long they take.
+/// Samples of the first launch, when the device's speed is unknown.
 const FIRST_SAMPLES: u64 = 1 << 14;
-/// Items of a launch at most: their results take 24 MiB.
+/// Most items in a launch: their results take 24 MiB.
 const MOST_ITEMS: u64 = 1 << 18;
-/// Blocks of samples in an item at most, as a power of two.
+/// Most blocks of samples in an item, as an exponent of two.
 const MOST_BLOCKS: u32 = 8;
 
 /// The kernel.
 pub(super) struct OnDevice {
     id: String,
     loaded: Box<dyn Loaded>,
-    /// Items that keep the device busy.
+    /// Number of items that keeps the device busy.
     width: u32,
-    /// Samples a second of the last launch, as bits; 0 before it.
+    /// Samples per second of the last launch, as bits; 0 before the first.
     rate: AtomicU64,
-    /// Launches so far, and microseconds that they took, with copies of their results.
+    /// Number of launches so far, and their microseconds, with the copying of results.
     launches: AtomicU64,
     launches_us: AtomicU64,
     failed: OnceLock<DeviceError>,
 }
 
-/// A failure of a device, which is the system's.
+/// A failure of a device as an error of the system.
 fn system(id: &str, error: &DeviceError) -> Error {
     Error::system("rendering on", id, io::Error::other(error.to_string()))
 }
@@ -65,16 +67,16 @@ impl OnDevice {
         Ok(Self { id, loaded, width, rate, launches, launches_us, failed: OnceLock::new() })
     }
 
-    /// The samples of an item: as many blocks, a power of two, as leave the device enough items.
+    /// The samples of an item: the most blocks, by powers of two, that still leave the device enough items.
     fn part_samples(&self, pieces: &[&Piece]) -> u32 {
         let enough = |part: u32| Items::new(pieces, part).count >= u64::from(self.width);
         let samples = pieces.iter().map(|piece| piece.samples.end - piece.samples.start).max().unwrap_or_default();
         let mut sizes = (0..=MOST_BLOCKS).rev().map(|level| SAMPLE_BLOCK << level);
-        // No larger than it needs to be: parts are what a launch ends at.
+        // No larger than needed: a launch ends only at the end of a part.
         sizes.find(|part| *part < 2 * samples.max(SAMPLE_BLOCK) && enough(*part)).unwrap_or(SAMPLE_BLOCK)
     }
 
-    /// Items of the next launch.
+    /// Number of items in the next launch.
     fn items(&self, part: u32) -> u64 {
         let rate = f64::from_bits(self.rate.load(Ordering::Relaxed));
         let samples = if rate > 0.0 { (rate * LAUNCH_S) as u64 } else { FIRST_SAMPLES };
@@ -108,7 +110,7 @@ impl Kernel for OnDevice {
         self.render_all(&[piece], std::slice::from_mut(out)).first().copied().unwrap_or_default()
     }
 
-    /// Once the device has failed, nothing more is asked of it.
+    /// Once the device has failed, it gets no more launches.
     fn render_all(&self, pieces: &[&Piece], out: &mut [TileBuffer]) -> Vec<Counts> {
         let nothing = || vec![Counts::default(); pieces.len()];
         if self.failed.get().is_some() {

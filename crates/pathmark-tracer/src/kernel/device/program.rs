@@ -1,4 +1,4 @@
-//! The text of the program: the files in `program/` behind the numbers that they have in common with the processor's kernels.
+//! The text of the program: the constants that it shares with the processor's kernels, then the files in `program/`.
 
 use super::MOST_BLOCKS;
 use super::items::{OUT_WORDS, PIECE, TASK};
@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::{FRAC_1_PI, PI, TAU};
 use std::fmt::{Display, Write};
 
-/// What is in double precision in every program: single precision asks it where it is not sure, and for rough materials.
+/// The double-precision part of every program. Single precision uses it for uncertain hits and for rough materials.
 const DOUBLE: &[&str] = &[
     include_str!("program/double.cl"),
     MATH,
@@ -25,7 +25,7 @@ const DOUBLE: &[&str] = &[
     include_str!("program/material.cl"),
 ];
 
-/// Formulas, the walk through a tree, and the path with all that it needs besides, in the precision of the path.
+/// Formulas, the traversal of a tree, and the path with the rest of its code, in the precision of the path.
 const MATH: &str = include_str!("program/math.cl");
 const TREE: &str = include_str!("program/tree.cl");
 const PATH: &[&str] = &[
@@ -36,19 +36,19 @@ const PATH: &[&str] = &[
     include_str!("program/film.cl"),
 ];
 
-/// What single precision does in a way of its own: before its formulas, between them and the tree, and behind that.
+/// Code for single precision alone: before its formulas, between formulas and tree, and after the tree.
 const SINGLE: &str = include_str!("program/single.cl");
 const SINGLE_SHAPE: &str = include_str!("program/single_shape.cl");
 const SINGLE_SEARCH: &[&str] = &[include_str!("program/single_search.cl"), include_str!("program/single_material.cl")];
 
-/// The name by which devices call a program, for the one of single precision.
+/// The entry point that devices call, for the single-precision program.
 const ENTRY: &str = "
 FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {
     run_item_s(item, numbers, words, task, out);
 }
 ";
 
-/// Words of the dialects and of `double.cl` that single precision has, too.
+/// Names of the dialects and of `double.cl` that also exist in single precision.
 const WORDS_OF_BOTH: &[&str] = &[
     "INFINITE",
     "MAGNITUDE",
@@ -60,31 +60,31 @@ const WORDS_OF_BOTH: &[&str] = &[
     "COSINE_COEFFICIENTS",
 ];
 
-/// Coefficients of sine and cosine that single precision needs.
+/// Number of sine and cosine coefficients in single precision.
 const SINGLE_COEFFICIENTS: usize = 5;
 
-/// Names with their values.
+/// Preprocessor definitions.
 struct Definitions(String);
 
 impl Definitions {
     fn add(&mut self, name: &str, value: impl Display) {
-        // Writing to a text cannot fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(self.0, "#define {name} {value}");
     }
 
-    /// A number, with as many digits as it takes to read the same one.
+    /// Defines a number with enough digits to be read back exactly.
     fn add_number(&mut self, name: &str, value: f64) {
         self.add(name, format_args!("({value:e})"));
     }
 
-    /// Names that are numbered from 0.
+    /// Defines names as numbers from 0.
     fn add_numbered<'a>(&mut self, names: impl Iterator<Item = &'a str>) {
         for (number, name) in names.enumerate() {
             self.add(name, format_args!("{number}U"));
         }
     }
 
-    /// Places of what lies behind each other.
+    /// Defines names as the offsets of consecutive fields.
     fn add_places(&mut self, layout: &[(&str, usize)]) {
         let mut first = 0;
         for (name, length) in layout {
@@ -94,12 +94,12 @@ impl Definitions {
     }
 }
 
-/// The words of a name as constants have them: `fresnel-mirror` is `FRESNEL_MIRROR`.
+/// A name in the form of a constant: `fresnel-mirror` becomes `FRESNEL_MIRROR`.
 fn constant(name: &str) -> String {
     name.to_uppercase().replace('-', "_")
 }
 
-/// Constants of both precisions.
+/// Constants that both precisions define.
 fn numbers(precision: Precision) -> Vec<(&'static str, f64)> {
     let digits = match precision {
         Precision::F64 => f64::MANTISSA_DIGITS,
@@ -179,7 +179,7 @@ fn definitions(effects: Effects, rules: &PathRules, precision: Precision) -> Str
     for (name, value) in numbers(Precision::F32) {
         all.add(&format!("{name}_S"), format_args!("({:e}f)", value as f32));
     }
-    // Where paths are in single precision, double precision judges their rays, which are no more exact than that.
+    // If paths are in single precision, double precision judges rays that are only exact to single precision.
     let digits = match precision {
         Precision::F64 => f64::MANTISSA_DIGITS,
         Precision::F32 => f32::MANTISSA_DIGITS,
@@ -191,16 +191,18 @@ fn definitions(effects: Effects, rules: &PathRules, precision: Precision) -> Str
     all.0
 }
 
-/// The words of a text, and what stands between them. A word goes on behind a dot, so a number is one, and the name of a field is none.
+/// Splits a text into words and the text between them. A dot continues a word, so a number is one word, and a field's
+/// name is part of a longer one.
 fn tokens(text: &str) -> impl Iterator<Item = &str> {
     let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'.';
     text.as_bytes().chunk_by(move |a, b| is_word(*a) == is_word(*b)).map(|chunk| {
-        // What is cut at bytes of ASCII is whole.
+        // Cuts between ASCII bytes leave valid UTF-8.
         std::str::from_utf8(chunk).unwrap_or_default()
     })
 }
 
-/// The functions and types that a text declares: each begins a line, a type may end on another.
+/// The functions and types that a text declares. Each declaration begins a line; the declaration of a type may end on a
+/// later line.
 fn declared(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter_map(|line| {
         let line = line.split("//").next().unwrap_or_default().trim_end();
@@ -215,7 +217,8 @@ fn declared(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// A text of double precision in single: numbers are of that type, and what both have ends in `_s`.
+/// Translates a text from double to single precision: the type and the suffix of numbers change, and names in both
+/// precisions end in `_s` or `_S`.
 fn in_single(text: &str, names: &BTreeSet<&str>) -> String {
     let mut single = String::with_capacity(text.len() + text.len() / 8);
     for line in text.split_inclusive('\n') {
@@ -233,7 +236,7 @@ fn in_single(text: &str, names: &BTreeSet<&str>) -> String {
     single
 }
 
-/// The program for scenes with these effects and paths by these rules.
+/// The program's text for scenes with these effects and paths with these rules.
 pub(super) fn text(effects: Effects, rules: &PathRules, precision: Precision) -> String {
     let definitions = definitions(effects, rules, precision);
     let double = [&[definitions.as_str()], DOUBLE].concat().concat();
@@ -257,7 +260,7 @@ mod tests {
     use crate::scene::PROFILES;
     use pathmark_device::{DeviceError, inexact_instructions, ptx_of};
 
-    /// Types, declared names, words of both and numbers change; fields, comments and other names do not.
+    /// Types, declared names, shared names and numbers change; fields, comments and other names do not.
     #[test]
     fn a_text_is_put_into_single_precision() {
         let text = "FN real plus(real a, vec b) { return TAU * a + 0.5 * plus(b.plus, -1.0); }  // plus 1.0\n} vec;\n";
@@ -268,7 +271,8 @@ mod tests {
         assert_eq!(in_single(text, &names), single);
     }
 
-    /// Every program as CUDA's compiler makes it: no operation is fused with another, estimated, or rounded as the assembler likes.
+    /// Every program as CUDA's compiler translates it: no operation is fused, approximated, or rounded by the
+    /// assembler's choice.
     #[test]
     fn no_code_for_gpus_fuses_or_estimates() {
         let (max_depth, roulette) = (u16::MAX, Roulette::SMALLPT);

@@ -1,4 +1,4 @@
-//! A scene as arrays of numbers and words, and where everything is in them: the program's names of places come from here.
+//! A scene as arrays of numbers and words, and the layout of both. The program's names of offsets come from here.
 
 use super::super::Choice;
 use super::super::lanes::{Singles, surfaces};
@@ -19,7 +19,7 @@ pub(super) const SAMPLERS: &[(&str, &str)] = &[
     ("stratified", "SAMPLER_STRATIFIED"),
 ];
 
-/// Places at the beginning of the words, and how many words each takes.
+/// Fields at the beginning of the words, with the number of words of each.
 pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_SAMPLER", 1),
     ("AT_SEED_KEY", 2),
@@ -37,7 +37,7 @@ pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_POINT_LIGHT_COUNT", 1),
     ("AT_ENCLOSING_COUNT", 1),
     ("AT_LARGE_COUNT", 1),
-    // Where arrays of numbers begin.
+    // Offsets of the arrays of numbers.
     ("AT_SPHERES", 1),
     ("AT_PLANES", 1),
     ("AT_TRIANGLES", 1),
@@ -47,7 +47,7 @@ pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_POINT_LIGHTS", 1),
     ("AT_LARGE", 1),
     ("AT_SURFACES", 1),
-    // Where arrays of words begin.
+    // Offsets of the arrays of words.
     ("AT_NODES", 1),
     ("AT_ORDER", 1),
     ("AT_OWNERS", 1),
@@ -59,7 +59,7 @@ pub(super) const WORDS: &[(&str, usize)] = &[
     ("AT_ORDERS", ORDERS.len()),
 ];
 
-/// Places at the beginning of the numbers.
+/// Fields at the beginning of the numbers, with the length of each.
 pub(super) const NUMBERS: &[(&str, usize)] = &[
     ("VIEW_POSITION", 3),
     ("VIEW_DIRECTION", 3),
@@ -77,12 +77,12 @@ pub(super) const NUMBERS: &[(&str, usize)] = &[
     ("VIEW_CAMERA_SHARE", 1),
 ];
 
-/// Numbers of an object, of a light and of a point light.
+/// Count of the numbers of an object, of a light and of a point light.
 pub(super) const OBJECT_NUMBERS: usize = 14;
 pub(super) const LIGHT_NUMBERS: usize = 15;
 pub(super) const POINT_LIGHT_NUMBERS: usize = 7;
 
-/// Materials by the program's numbers.
+/// Materials, in the order of the program's numbers for them.
 pub(super) const MATERIALS: &[&str] = &[
     "MATERIAL_DIFFUSE",
     "MATERIAL_MIRROR",
@@ -93,19 +93,19 @@ pub(super) const MATERIALS: &[&str] = &[
     "MATERIAL_KD_KS",
 ];
 
-/// Other things that have numbers in the program, each from 0.
+/// Other enumerations of the program, each numbered from 0.
 pub(super) const KINDS: &[&[&str]] = &[
     &["FILTER_TENT", "FILTER_BOX", "FILTER_CENTER"],
     &["ROULETTE_ALBEDO", "ROULETTE_THROUGHPUT", "ROULETTE_CONSTANT"],
     &["LIGHT_SPHERE", "LIGHT_CAP", "LIGHT_TRIANGLE"],
 ];
 
-/// The place of a name.
+/// The offset of a field.
 fn place(layout: &[(&str, usize)], name: &str) -> usize {
     layout.iter().take_while(|(other, _)| *other != name).map(|(_, length)| length).sum()
 }
 
-/// What the program needs of a material: the name of its kind, flags, a colour, η, α and a reflectivity.
+/// The program's data of a material: the name of its kind, flags, a colour, η, α and a reflectivity.
 struct Surface {
     kind: &'static str,
     flags: u32,
@@ -119,7 +119,7 @@ fn alpha(facets: Facets) -> f64 {
     if let Facets::Rough(ggx) = facets { ggx.alpha() } else { 0.0 }
 }
 
-/// `None` of a material that the program does not know.
+/// The data of a material; `None` if the program does not know the material.
 fn surface(material: &Material) -> Option<Surface> {
     let plain = |kind, colour| Surface { kind, flags: 0, colour, eta: 1.0, alpha: 0.0, reflectivity: 0.0 };
     Some(match material {
@@ -144,7 +144,7 @@ pub(super) fn is_known(material: &Material) -> bool {
     surface(material).is_some()
 }
 
-/// The arrays, as they grow behind their beginnings.
+/// The arrays: fields at the beginning, then appended arrays.
 struct Tables {
     precision: Precision,
     numbers: Vec<f64>,
@@ -162,14 +162,14 @@ impl Tables {
         self.numbers[first..first + values.len()].copy_from_slice(values);
     }
 
-    /// Adds an array of numbers, and says where it begins.
+    /// Appends an array of numbers and stores its offset.
     fn add_numbers(&mut self, name: &str, values: impl Iterator<Item = f64>) {
         let first = self.numbers.len() as u32;
         self.set_words(name, &[first]);
         self.numbers.extend(values);
     }
 
-    /// Likewise of words.
+    /// Appends an array of words and stores its offset.
     fn add_words(&mut self, name: &str, values: impl Iterator<Item = u32>) {
         let first = self.words.len() as u32;
         self.set_words(name, &[first]);
@@ -191,7 +191,7 @@ impl Tables {
         let tree = scene.hierarchy.as_ref();
         self.set_words("AT_NODE_COUNT", &[tree.map_or(0, |tree| tree.nodes().len() as u32)]);
         let nodes = || tree.into_iter().flat_map(Hierarchy::nodes);
-        // The padding that boxes have is for double precision; hits in single precision are less exact.
+        // The hierarchy pads its boxes for double precision; hits in single precision are less exact.
         let more = if self.precision == Precision::F32 { padding(f32::MANTISSA_DIGITS) } else { 0.0 };
         let padded = |[low, high]: [[f64; 3]; 2]| {
             let bounds = Bounds { low, high };
@@ -259,7 +259,7 @@ impl Tables {
         );
     }
 
-    /// What single precision needs of primitives besides: large spheres by curvature, and surfaces as they are shaded.
+    /// Adds the data of primitives for single precision: large spheres by curvature, and surfaces for shading.
     fn add_singles(&mut self, scene: &Scene, enclosing: &[u32]) {
         let large = Singles::large(scene, enclosing);
         let (count, curved) = large.in_order();
@@ -330,7 +330,7 @@ fn coordinates(v: Vec3) -> [f64; 3] {
     [v.x, v.y, v.z]
 }
 
-/// The numbers and the words of a scene that has been made ready for the choice.
+/// The numbers and words of a scene that is prepared for the choice.
 pub(super) fn of(scene: &Scene, choice: &Choice, chosen: &ForDevice) -> (Vec<f64>, Vec<u32>) {
     let length = |layout: &[(&str, usize)]| layout.iter().map(|(_, length)| length).sum::<usize>();
     let mut tables =

@@ -1,5 +1,5 @@
-//! The light of an image by the bounces that it made, and where paths end: the terms of the Neumann series L = E + KE + K²E + ... that
-//! report B writes down, where E is what surfaces give off and K is one bounce.
+//! Light of an image by number of bounces, and the lengths of paths: the terms of report B's Neumann series
+//! L = E + KE + K²E + ..., where E is the emission of surfaces and K is one bounce.
 
 use super::Inspector;
 use crate::estimator::Probe;
@@ -7,12 +7,12 @@ use crate::math::Rgb;
 use crate::scene::Tests;
 use std::ops::Range;
 
-/// What arrives over exactly so many bounces.
+/// The light that arrives after exactly this number of bounces.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BounceRow {
     /// The sum of that light over all samples.
     pub light: [f64; 3],
-    /// Parts of paths that ended after so many bounces.
+    /// Parts of paths that ended after this number of bounces.
     pub ended: u64,
 }
 
@@ -28,18 +28,18 @@ impl BounceRow {
 /// Light and path lengths of some samples, by bounces.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct LightByBounce {
-    /// The row of each number of bounces, from 0.
+    /// One row for each number of bounces, from 0.
     pub rows: Vec<BounceRow>,
     /// Samples.
     pub samples: u64,
     /// Rays traced, shadow rays included.
     pub rays: u64,
-    /// Samples that were no valid radiance; nothing of them is in the rows.
+    /// Samples with an invalid radiance; the rows contain nothing of them.
     pub invalid: u64,
 }
 
 impl LightByBounce {
-    /// The samples of some rows of an image of that width, added up row by row.
+    /// Adds up the samples of some rows of an image of that width, row by row.
     pub fn of(inspector: &Inspector, width: u32, rows: Range<u32>, samples: &Range<u32>) -> Self {
         let mut total = Self::default();
         for y in rows {
@@ -60,7 +60,7 @@ impl LightByBounce {
         total
     }
 
-    /// Adds other samples'.
+    /// Adds the light of other samples.
     pub fn add(&mut self, other: &Self) {
         if self.rows.len() < other.rows.len() {
             self.rows.resize(other.rows.len(), BounceRow::default());
@@ -73,7 +73,7 @@ impl LightByBounce {
         self.invalid += other.invalid;
     }
 
-    /// Mean radiance over exactly so many bounces, per channel.
+    /// Mean radiance after exactly this number of bounces, per channel.
     pub fn mean(&self, bounces: usize) -> [f64; 3] {
         let light = self.rows.get(bounces).map_or([0.0; 3], |row| row.light);
         light.map(|sum| sum / self.samples.max(1) as f64)
@@ -84,13 +84,13 @@ impl LightByBounce {
         self.rows.iter().map(|row| row.ended).sum()
     }
 
-    /// Bounces of a part in the mean; `None` if nothing ended.
+    /// Mean number of bounces of a part; `None` if no part ended.
     pub fn mean_length(&self) -> Option<f64> {
         let bounces: f64 = (0u64..).zip(&self.rows).map(|(bounces, row)| (bounces * row.ended) as f64).sum();
         (self.parts() > 0).then(|| bounces / self.parts() as f64)
     }
 
-    /// Bounces of the longest part.
+    /// Bounces of the longest part; `None` if no part ended.
     pub fn longest(&self) -> Option<usize> {
         self.rows.iter().rposition(|row| row.ended > 0)
     }

@@ -1,6 +1,6 @@
-//! Looking into single samples. What runs is the estimator's own code behind a pointer, with every effect in it; an effect that a scene does not
-//! call for changes no bit, so a sample here is what the image was given. That holds in f64; in f32, which lanes alone have, nothing can be looked
-//! into but a sample's value ([`super::one_sample`]).
+//! Inspection of single samples. The estimator's own code runs behind a pointer, with every effect compiled in. An
+//! effect that a scene does not need changes no bit, so an inspected sample equals the image's. This holds in f64. In
+//! f32 only a sample's value is available ([`super::one_sample`]).
 
 mod by_bounce;
 mod path_log;
@@ -16,7 +16,7 @@ pub use by_bounce::{BounceRow, LightByBounce};
 pub use path_log::{Event, PathLog};
 use std::sync::Arc;
 
-/// Renders single samples and tells a probe what their paths do.
+/// Renders single samples and reports the events of their paths to a probe.
 pub struct Inspector {
     scene: Arc<Scene>,
     view: View,
@@ -28,7 +28,7 @@ pub struct Inspector {
 }
 
 impl Inspector {
-    /// For the samples of an image.
+    /// An inspector for the samples of an image.
     pub fn new(scene: &Arc<Scene>, choice: &Choice) -> Result<Self> {
         if choice.precision() != Precision::F64 {
             let name = choice.precision().name();
@@ -52,8 +52,8 @@ impl Inspector {
         })
     }
 
-    /// The radiance of a sample as the estimator gives it. An image takes it bit for bit, unless it is no valid radiance: then it
-    /// takes nothing.
+    /// The radiance of a sample as the estimator returns it. An image takes it bit for bit, or takes nothing if it is
+    /// no valid radiance.
     pub fn estimate(&self, x: u32, y: u32, sample: u32, mut probe: &mut dyn Probe) -> Rgb {
         let key = SampleKey { seed: self.seed, pixel: y * self.width + x, sample };
         let ray = camera_ray::<Box<dyn Sampler>, AllEffects, &mut dyn Probe>(

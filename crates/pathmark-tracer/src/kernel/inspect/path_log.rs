@@ -1,72 +1,72 @@
-//! Everything that one path does, in order.
+//! A log of one path: its events, in order.
 
 use crate::estimator::Probe;
 use crate::math::{Ray, Rgb, Vec3};
 use crate::scene::Hit;
 
-/// Something that a path did. `bounces` are those before it.
+/// An event of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Event {
     /// A ray arrived at a surface.
     Surface {
-        /// Bounces before.
+        /// Bounces before it.
         bounces: u16,
-        /// Where the ray began.
+        /// Origin of the ray.
         origin: Vec3,
-        /// Where it arrived.
+        /// The intersection.
         hit: Hit,
-        /// What light from here counts for.
+        /// Throughput of the light from there.
         throughput: Rgb,
     },
     /// Fog scattered a ray.
     Fog {
-        /// Bounces before.
+        /// Bounces before it.
         bounces: u16,
-        /// Where the ray began.
+        /// Origin of the ray.
         origin: Vec3,
-        /// Where it was scattered.
+        /// Point where the ray was scattered.
         point: Vec3,
-        /// How far that is.
+        /// Distance from the origin to that point.
         distance: f64,
-        /// What light from here counts for.
+        /// Throughput of the light from there.
         throughput: Rgb,
     },
     /// Light was added to the sample.
     Light {
-        /// Bounces that it makes on its way to the camera.
+        /// Bounces of the light on its way to the camera.
         bounces: u16,
-        /// How much, throughput included.
+        /// Its contribution, throughput included.
         radiance: Rgb,
     },
     /// The path split.
     Split {
-        /// Bounces before.
+        /// Bounces before it.
         bounces: u16,
     },
     /// A ray met nothing.
     Escaped,
     /// The path was cut at the bounce limit.
     Truncated,
-    /// Roulette ended a part.
+    /// Russian roulette ended a part of the path.
     Roulette,
-    /// A part ended. What comes next belongs to the part that was split off last.
+    /// A part of the path ended. The next event belongs to the part that was split off last.
     Ended {
-        /// Bounces that it made.
+        /// Bounces of the part.
         bounces: u16,
     },
 }
 
-/// A probe that writes down what a path does.
+/// A probe that records the events of a path.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PathLog {
-    /// What it did, in order.
+    /// The events, in order.
     pub events: Vec<Event>,
     /// Rays traced.
     pub rays: u64,
 }
 
 impl PathLog {
-    /// The light that was added, in the order in which it was: the sample's radiance bit for bit.
+    /// The sum of the light, in the order of the events: the sample's radiance bit for bit.
     pub fn light(&self) -> Rgb {
         let mut sum = Rgb::BLACK;
         for event in &self.events {

@@ -1,16 +1,19 @@
-//! The first sphere by a quick formula, made sure of by the exact one: a floating-point filter (Fortune and Van Wyk, "Efficient exact arithmetic
-//! for computational geometry", 1993).
+//! The nearest sphere by a quick formula, confirmed by the exact one: a floating-point filter (Fortune and Van Wyk,
+//! "Efficient exact arithmetic for computational geometry", 1993).
 //!
-//! About the scene's origin the quadratic of a ray o + t d and a sphere is t² - 2 (c·d - o·d) t + |o|² - 2 c·o + |c|² - r²: half of the work of
-//! [`first_root`], without a division, but with an error of the size of the scene where that has one of the size of the sphere. So the sphere
-//! that is first by it is tested again by `first_root`, and that is the answer only if no other could come before it. Else the scene is asked.
-//! Either way the answer is what the test of all by `first_root` would have been, to the bit; how the quick formula rounds does not matter.
+//! With the scene's origin as reference, the quadratic of a ray o + t d and a sphere is
+//! t² - 2 (c·d - o·d) t + |o|² - 2 c·o + |c|² - r². It takes half the work of [`first_root`] and no division, but its
+//! error is of the scene's size instead of the sphere's. So the sphere that is nearest by this formula is tested again
+//! by `first_root`. That root is the result only if no other sphere could come before it; otherwise the scene is
+//! searched. Either way the result equals a test of all spheres by `first_root`, to the bit. The rounding of the quick
+//! formula does not matter.
 //!
-//! How far quick and exact roots are apart: the discriminants of both differ by less than E = 100 u (r² + 2|c|² + 2|o|²), with u = 2^-53.
-//! (First-order counts: 36 for `first_root`, of which 16 come from a direction whose length is 1 up to 8 u, 21 for the quick formula, the rest
-//! to spare.) With E added to the quick discriminant it sees every sphere that `first_root` does. Where its root s is not below some S, both
-//! square roots differ by at most 2E/S, and so do the distances; what else is rounded, and a wrong sign of |f|² - r², is no more than that.
-//! Where s is below S nothing is sure.
+//! Distance between quick and exact roots: the two discriminants differ by less than E = 100 u (r² + 2|c|² + 2|o|²),
+//! with u = 2^-53. (First-order counts: 36 for `first_root`, of which 16 come from a direction whose length is 1 up to
+//! 8 u, and 21 for the quick formula; the rest is reserve.) With E added to the quick discriminant, the quick formula
+//! finds every sphere that `first_root` finds. If its root s is at least some S, the two square roots differ by at most
+//! 2E/S, and so do the distances. The other rounding errors, and a wrong sign of |f|² - r², add no more than that. If s
+//! is below S, nothing is sure.
 
 use super::nearest::Found;
 use super::packet::Rays;
@@ -21,7 +24,7 @@ use crate::simd::Float;
 
 /// E is this many times r² + 2|c|² + 2|o|².
 const SHARE: f64 = 128.0 / 9_007_199_254_740_992.0;
-/// By how many sizes of the scene roots of rays from its origin may differ.
+/// Largest difference between roots of rays from the scene's origin, in sizes of the scene.
 const SLACK: f64 = 1.0 / 4_194_304.0;
 /// The least S, in sizes of the scene.
 const LEAST: f64 = 1.0 / 16_384.0;
@@ -29,7 +32,8 @@ const LEAST: f64 = 1.0 / 16_384.0;
 /// The spheres of a scene.
 pub(super) struct Filter {
     spheres: Vec<Quick>,
-    /// How far roots of rays from the scene's origin may be apart, and by how much more for each square unit from there.
+    /// Largest difference between roots of rays from the scene's origin, and its increase for each square unit of
+    /// distance from there.
     slack: [f64; 2],
 }
 
@@ -37,7 +41,7 @@ pub(super) struct Filter {
 struct Quick {
     number: f64,
     center: Vec3,
-    /// r² - |c|², with the sphere's part of E.
+    /// r² - |c|², plus the sphere's part of E.
     constant: f64,
     /// S.
     least: f64,
@@ -56,7 +60,7 @@ impl Filter {
         Self { spheres: spheres.collect(), slack: [SLACK * size, 4.0 * SHARE / (LEAST * size)] }
     }
 
-    /// The first sphere along each ray, and the lanes in which that is sure.
+    /// The nearest sphere along each ray, and the lanes in which it is sure.
     #[inline(always)]
     pub(super) fn nearest<V: Float>(&self, tables: &Tables, rays: &Rays<V>) -> (Found<V>, V::Mask) {
         let (origin, direction) = (rays.ray.origin, rays.ray.direction);
@@ -74,7 +78,7 @@ impl Filter {
             let c = dot_and(twice, center, V::splat(sphere.constant) - less);
             let root = b.about_times_plus(b, c).sqrt();
             grazes = grazes | root.lt(V::splat(sphere.least));
-            // Later by the slack, so that what may be ahead is.
+            // Later by the slack, so that a root that may be ahead counts as ahead.
             let later = b + slack;
             let t = V::select(rays.from.equal(this), own_root, V::ahead(later - root, later + root));
             let is_first = t.is_sooner(first);
@@ -86,14 +90,14 @@ impl Filter {
         let exact = first_root(origin - Vec3 { x, y, z }, direction, V::splat(1.0), radius);
         let exact = V::select(rays.from.equal(number), rays.own_root, exact);
         let is_none = number.lt(zero);
-        // What is second is later by the slack, too.
+        // The runner-up's distance includes the slack, too.
         let limit = slack + slack;
         let is_sure = V::select(is_none, limit, exact + limit).lt(second) & (is_none | zero.lt(exact)) & !grazes;
         (Found { nearest: V::select(is_none, infinity, exact), primitive: number }, is_sure)
     }
 }
 
-/// The dot product, and a number.
+/// The dot product plus a number.
 #[inline(always)]
 fn dot_and<V: Float>(a: Vec3<V>, b: Vec3<V>, number: V) -> V {
     a.x.about_times_plus(b.x, a.y.about_times_plus(b.y, a.z.about_times_plus(b.z, number)))
@@ -107,7 +111,7 @@ mod tests {
     use crate::scene::{SCENES, load};
     use crate::simd::{Mask, Precision, Work, levels, on_level};
 
-    /// Compares the filter with a test of all; which share of the rays it was sure of.
+    /// Compares the filter with a test of all spheres. Returns the share of rays of which it was sure.
     struct Compare<'a>(&'a Scene, &'a [Start]);
 
     impl Work for Compare<'_> {
@@ -131,8 +135,8 @@ mod tests {
         }
     }
 
-    /// Whatever the filter is sure of is what the test of all spheres finds, to the bit, down to edges where two spheres are met at once; and in
-    /// walks it is sure of nearly all.
+    /// A sure result equals the test of all spheres, to the bit, even near edges where two spheres are met at once. In
+    /// walks the filter is sure of nearly all rays.
     #[test]
     fn what_is_sure_is_right() {
         let mut scenes = 0;

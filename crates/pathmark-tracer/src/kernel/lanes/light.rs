@@ -1,4 +1,4 @@
-//! Light that paths aim at: next-event estimation with a shadow ray from every lane that can be lit.
+//! Next-event estimation in lanes, with a shadow ray from every lane that a light can reach.
 
 use super::Lanes;
 use super::packet::{LanesOf, Packet, Rays, vector};
@@ -13,17 +13,17 @@ use crate::scene::AllEffects;
 use crate::simd::{Apart, Float, Mask, Words};
 use std::f64::consts::FRAC_1_PI;
 
-/// What a surface does with the light of some directions.
+/// Light from given directions, scattered by surfaces.
 struct Lit<V: Float> {
-    /// Where any is scattered.
+    /// The lanes that scatter any light.
     lanes: V::Mask,
     scattered: Rgb<V>,
-    /// The density with which the surface chooses the direction itself.
+    /// The density with which the surface itself samples the direction.
     density: V,
 }
 
-/// Rays that arrived where light is given off. A function of its own, because few do, and the time to compile a function grows with the square of
-/// its length.
+/// Rays that met an emitting surface. A separate function, because few rays do, and the time to compile a function
+/// grows with the square of its length.
 pub(super) struct ArrivedAtLight<'a, V: Float> {
     pub(super) kernel: &'a Lanes,
     pub(super) packet: &'a Packet<'a, V>,
@@ -41,7 +41,7 @@ impl<V: Float> Apart for ArrivedAtLight<'_, V> {
 }
 
 impl Lanes {
-    /// What counts of light that paths arrive at: a share of what their camera rays see.
+    /// Weights the light that paths meet: light that a camera ray sees counts by this ray's share.
     #[inline(always)]
     pub(super) fn counted<V: Float>(&self, packet: &Packet<'_, V>, light: Rgb<V>) -> Rgb<V> {
         if self.rules.camera_rays == 1 {
@@ -51,7 +51,7 @@ impl Lanes {
         Rgb::select(is_seen, light * V::splat(camera_share(self.rules.camera_rays)), light)
     }
 
-    /// The share of emission that counts where rays arrived whose start aimed at light, too.
+    /// The weight of emission that rays met, for rays whose start aimed at light, too; 1 for the others.
     #[inline(always)]
     fn share_of_arrival<V: Float>(&self, packet: &Packet<'_, V>, at: &Arrival<V>, lit: V::Mask) -> V {
         let (zero, one) = (V::splat(0.0), V::splat(1.0));
@@ -75,7 +75,7 @@ impl Lanes {
         V::select(lanes, share, one)
     }
 
-    /// Adds the light that vertices aim at.
+    /// Adds the light from next-event estimation.
     #[inline(always)]
     pub(super) fn aim<V: Float>(
         &self,
@@ -114,7 +114,7 @@ impl Lanes {
         packet.collected = Rgb::select(lit.lanes & met.equal(aims.primitive), found, packet.collected);
     }
 
-    /// What surfaces make of light from the local direction `wi`.
+    /// Evaluates the scattering of light from the local direction `wi`.
     #[inline(always)]
     fn scattered<V: Float>(
         &self,

@@ -1,6 +1,6 @@
-//! Many paths at a time, in the lanes of SIMD registers: `--kernel lanes`. Each lane follows a path of its own from vertex to vertex and takes the
-//! next sample when it has ended. Sums are taken in the order of the samples (`window`), so in f64 an image is that of the scalar
-//! kernel, bit for bit, on every instruction set.
+//! Many paths at a time, in the lanes of SIMD registers: `--kernel lanes`. Each lane follows its own path from vertex
+//! to vertex and takes the next sample when the path has ended. Sums are taken in the order of the samples (`window`).
+//! So in f64 an image equals the scalar kernel's image, bit for bit, with every instruction set.
 
 mod filter;
 mod light;
@@ -53,11 +53,11 @@ pub(super) struct Lanes {
     search: Search,
 }
 
-/// How the first thing on each ray is found.
+/// Method to find the nearest primitive along each ray.
 enum Search {
-    /// Every sphere is tested, because there are few and nothing else: quickly, and the first one exactly.
+    /// Few primitives, all of them spheres: a quick formula tests every sphere, and an exact one confirms the nearest.
     Filter(Filter),
-    /// Likewise, as single precision has them.
+    /// The same primitives by the formulas of single precision.
     Singles(Singles),
     /// Any primitives: one ray at a time.
     Wide(Box<Wide>),
@@ -96,12 +96,12 @@ impl Lanes {
         })
     }
 
-    /// Room for searches, where there is a tree.
+    /// Stacks for searches, if there is a tree.
     fn stacks(&self) -> Option<Box<Stacks>> {
         matches!(&self.search, Search::Wide(wide) if wide.has_tree()).then(Stacks::new)
     }
 
-    /// Gives back the samples whose paths have ended; paths that have another part go on with that.
+    /// Gives back the samples whose paths have ended. A path with a waiting part continues with that part.
     #[inline(always)]
     fn retire<V: Float, const DIFFUSE_ONLY: bool>(
         &self,
@@ -134,7 +134,7 @@ impl Lanes {
         let mut window = Window::over(piece, out, self.rules.camera_rays > 1);
         let mut packet = Packet::<V>::new(waiting, stacks);
         let mut supply = Supply::<V>::new();
-        // Lanes whose part of a path has ended, and that still hold it.
+        // Lanes whose part of a path has ended and has not been retired yet.
         let mut ended = 0_u32;
         loop {
             let idle = V::LANES as u32 - packet.alive.count_ones();
@@ -153,13 +153,13 @@ impl Lanes {
     }
 }
 
-/// How many lanes must be idle before they are given other paths: doing that for two takes little more time than for one, and costs more than the
-/// lanes that wait.
+/// Idle lanes required before a refill: refilling two costs little more than refilling one, and more than letting one
+/// lane wait.
 const fn held<V: Float>() -> u32 {
     if V::LANES < 8 { 1 } else { 2 }
 }
 
-/// A piece to render: by paths that aim at light or by paths that do not, in a scene in which every surface is diffuse or in any.
+/// A piece to render. `AIMS`: paths use next-event estimation. `DIFFUSE_ONLY`: every surface of the scene is diffuse.
 struct Render<'a, const AIMS: bool, const DIFFUSE_ONLY: bool> {
     kernel: &'a Lanes,
     piece: &'a Piece,

@@ -1,4 +1,4 @@
-//! The first thing that each ray meets.
+//! The nearest primitive along each ray.
 
 use super::packet::{LanesOf, Rays};
 use super::wide::{Nearest, Scratch};
@@ -9,8 +9,8 @@ use crate::scene::{Standpoint, Tests};
 use crate::simd::{Apart, Float, MOST_LANES, Mask};
 
 impl Lanes {
-    /// Distance and number of the first primitive along each ray; the number is -1 where there is none. What is in lanes that are not `wanted`
-    /// is not looked at. Ties go to the lowest number, as with one path at a time.
+    /// Distance and number of the nearest primitive along each ray; the number is -1 if there is none. Lanes that are
+    /// not `wanted` have meaningless results. Ties go to the lowest number, as in the scalar search.
     #[inline(always)]
     pub(super) fn nearest<V: Float>(
         &self,
@@ -28,7 +28,7 @@ impl Lanes {
             Search::Wide(wide) => {
                 Nearest { scene: &self.scene, wide, tables: &self.tables, rays, wanted, scratch, counts }.run()
             }
-            // What is of the other precision is not looked at by this one.
+            // A search for the other precision is never run.
             _ => (Found::nothing(), wanted),
         };
         if left != 0 {
@@ -37,7 +37,7 @@ impl Lanes {
         (found.nearest, found.primitive)
     }
 
-    /// Searches along each ray by itself.
+    /// Searches along each ray separately.
     #[inline(always)]
     fn one_by_one<V: Float>(&self, rays: &Rays<V>, wanted: u32, found: &mut Found<V>, counts: &mut Counts) {
         let Ray { origin, direction } = rays.ray;
@@ -55,13 +55,15 @@ impl Lanes {
     }
 }
 
-/// Rays out of their registers: origins, directions, what they start on and where they meet that again.
+/// Rays in memory instead of registers: origins, directions, the primitives that they start on, and the distances at
+/// which they meet these again.
 struct AllRays<T> {
     numbers: [[T; MOST_LANES]; 8],
 }
 
 impl<T: Copy + Into<f64>> AllRays<T> {
-    /// Finds what rays meet first: distances and primitives. It has no need of a level's instructions, and stays out of what does.
+    /// Finds the nearest primitives: distances and numbers. It needs no SIMD instructions and is compiled apart from
+    /// code with them.
     #[inline(never)]
     fn ask(
         &self,
@@ -75,7 +77,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
         for lane in LanesOf(wanted) {
             let [ox, oy, oz, dx, dy, dz, from, own_root] = self.numbers.each_ref().map(|numbers| numbers[lane].into());
             let ray = Ray { origin: Vec3::new(ox, oy, oz), direction: Vec3::new(dx, dy, dz) };
-            // Only what goes inside has another root; what is flat has none on either side.
+            // Only a ray into a sphere has another root; a flat primitive has none on either side.
             let inside = !own_root.is_nan();
             let from = (from >= 0.0).then_some(Standpoint { primitive: from as u32, inside });
             let found = match &lanes.search {
@@ -90,7 +92,7 @@ impl<T: Copy + Into<f64>> AllRays<T> {
     }
 }
 
-/// What the rays met so far.
+/// The nearest primitives so far.
 pub(super) struct Found<V: Float> {
     pub(super) nearest: V,
     pub(super) primitive: V,
@@ -102,20 +104,20 @@ impl<V: Float> Found<V> {
         Self { nearest: V::splat(f64::INFINITY), primitive: V::splat(-1.0) }
     }
 
-    /// A root of a primitive; that of the one on which a ray starts is known.
+    /// Takes a root of a primitive. If the ray starts on that primitive, its known root is taken instead.
     #[inline(always)]
     pub(super) fn take(&mut self, rays: &Rays<V>, number: V, root: V) {
         self.take_from_anywhere(number, V::select(rays.from.equal(number), rays.own_root, root));
     }
 
-    /// A distance to a primitive, whether the ray starts on it or not.
+    /// Takes a distance to a primitive, even if the ray starts on it.
     #[inline(always)]
     pub(super) fn take_from_anywhere(&mut self, number: V, distance: V) {
         let is_nearer = V::splat(0.0).lt(distance) & distance.lt(self.nearest);
         self.replace(is_nearer, number, distance);
     }
 
-    /// Likewise, for primitives in any order: among equally near ones the lowest number wins.
+    /// Takes a distance likewise, for primitives in any order: among equally near ones the lowest number wins.
     #[inline(always)]
     pub(super) fn take_in_any_order(&mut self, number: V, distance: V) {
         let comes_first = distance.equal(self.nearest) & number.lt(self.primitive);

@@ -1,4 +1,4 @@
-//! Paths side by side: what of each is between two vertices.
+//! Packets: the state of paths in lanes between two vertices.
 
 use super::wide::{Scratch, Stack};
 use crate::math::{Bits, Ray, Rgb, Vec3};
@@ -40,15 +40,15 @@ const NO_PART: Part = Part {
     branch: 0,
 };
 
-/// The parts of a path that wait.
+/// The waiting parts of a path.
 pub(super) type Parts = [Part; LARGEST_STACK];
 
-/// None of them.
+/// No waiting parts.
 pub(super) const NO_PARTS: Parts = [NO_PART; LARGEST_STACK];
 
-/// The paths.
+/// The paths of a packet.
 pub(super) struct Packet<'a, V: Float> {
-    /// The lanes in which there is one.
+    /// The lanes with a path.
     pub(super) alive: u32,
     pub(super) rays: Rays<V>,
     pub(super) throughput: Rgb<V>,
@@ -56,15 +56,15 @@ pub(super) struct Packet<'a, V: Float> {
     pub(super) vertices: V::Bits,
     pub(super) branch: V::Bits,
     pub(super) words: PathWords<V::Bits>,
-    /// How likely the direction was, per steradian; -1 if light was not aimed at where the ray starts.
+    /// Density of the ray's direction per steradian; -1 if the vertex at its start did not aim at light.
     pub(super) density: V,
-    /// By what the sample is given back.
+    /// The slots of the samples in the window.
     pub(super) slots: [u64; MOST_LANES],
-    /// None where no path splits: they take more room than everything else here. Borrowed, because every call in the scope of what has to be dropped
-    /// ends a block for the compiler.
+    /// Empty if no path splits, because waiting parts take more room than all other fields. Borrowed, because the
+    /// compiler ends a block at every call in the scope of a value that has to be dropped.
     waiting: &'a mut [Parts],
     depth: [u8; MOST_LANES],
-    /// For searches.
+    /// Working memory of searches.
     pub(super) scratch: Scratch<'a, V>,
 }
 
@@ -94,14 +94,14 @@ impl<'a, V: Float> Packet<'a, V> {
         }
     }
 
-    /// Puts a part aside until the lane's own has ended.
+    /// Puts a part aside until the lane's current part has ended.
     #[inline(always)]
     pub(super) fn push(&mut self, lane: usize, part: Part) {
         self.waiting[lane][usize::from(self.depth[lane])] = part;
         self.depth[lane] += 1;
     }
 
-    /// Goes on with the part that was put aside last; `false` if there is none.
+    /// Continues with the part that was put aside last; `false` if there is none.
     #[inline(always)]
     fn pop(&mut self, lane: usize) -> bool {
         if self.depth[lane] == 0 {
@@ -122,7 +122,8 @@ impl<'a, V: Float> Packet<'a, V> {
     }
 }
 
-/// A lane whose part of a path has ended, in a packet of paths that split. A function of its own for the sake of compilation, see [`super::supply`].
+/// A lane whose part of a path has ended, in a packet of paths that split. A separate function to limit compile time,
+/// see [`super::supply`].
 pub(super) struct NextPart<'a, 'w, V: Float> {
     pub(super) packet: &'a mut Packet<'w, V>,
     pub(super) lane: usize,

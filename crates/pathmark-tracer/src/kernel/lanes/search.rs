@@ -1,4 +1,4 @@
-//! The search alone, for rays that are known beforehand.
+//! Ray search alone, along rays that are known in advance.
 
 use super::Lanes;
 use super::packet::Rays;
@@ -9,10 +9,11 @@ use crate::math::{Ray, Vec3, other_root};
 use crate::scene::Scene;
 use crate::simd::{Float, Number, Numbers, Work, on_level, sizes_of};
 
-/// Numbers of a ray: origin, direction, what it starts on and where it meets that again.
+/// Numbers of a ray: origin, direction, the primitive that it starts on, and the distance at which it meets that
+/// primitive again.
 const OF_RAY: usize = 8;
 
-/// A ray as it is in a lane.
+/// The numbers of a ray in a lane.
 fn numbers(scene: &Scene, (Ray { origin, direction }, from): &Start) -> [f64; OF_RAY] {
     let number = from.map_or(-1.0, |from| from.primitive.into());
     let sphere = from.filter(|from| from.inside).and_then(|from| scene.primitives.spheres.get(from.primitive as usize));
@@ -20,7 +21,8 @@ fn numbers(scene: &Scene, (Ray { origin, direction }, from): &Start) -> [f64; OF
     [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, number, own_root]
 }
 
-/// Rays in packets of so many lanes: of each packet one number of all rays after the other. The last packet's empty lanes have the last ray.
+/// Rays in packets of `lanes` lanes. Each packet stores one number of all its rays after the other. Empty lanes of the
+/// last packet repeat the last ray.
 pub(super) fn in_packets(scene: &Scene, rays: &[Start], lanes: usize) -> Vec<f64> {
     let mut all = Vec::with_capacity(rays.len().next_multiple_of(lanes) * OF_RAY);
     for packet in rays.chunks(lanes) {
@@ -51,7 +53,7 @@ impl Lanes {
         Numbers::new(in_packets(&self.scene, rays, lanes), self.precision)
     }
 
-    /// Searches along so many rays, made by [`Self::side_by_side`].
+    /// Searches along `count` rays, made by [`Self::side_by_side`].
     pub(in crate::kernel) fn search(&self, rays: &Numbers, count: usize) -> FoundRays {
         let mut stacks = self.stacks();
         let work = Searching { lanes: self, rays, count, stacks: Stacks::of_lanes(&mut stacks) };

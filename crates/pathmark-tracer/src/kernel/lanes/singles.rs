@@ -1,10 +1,12 @@
-//! Spheres as single precision has them: by centre and radius where they are small, by curvature where they are as large as the scene.
+//! Spheres in single precision: by centre and radius if they are small, by curvature if they are as large as the scene.
 //!
-//! A centre 1e5 away leaves a coordinate of the scene seven hundredths of its unit. What [`Curved`] has instead is of the scene's own size. For
-//! spheres that are small next to their distance from the origin it would be worse: k |x|² is that distance times the ratio of both.
+//! A centre 1e5 away leaves a coordinate of the scene exact to only seven hundredths of its unit. [`Curved`] stores
+//! values of the scene's own size instead. For spheres that are small next to their distance from the origin it would
+//! be worse: k |x|² is that distance times the ratio of distance to radius.
 //!
-//! Where two surfaces meet at an angle, a point on one may be rounded to behind the other, as one in 1e8 is in scenes as wide as `sky`, and
-//! a ray from there may find nothing at all. What is rounded to behind a sphere that no path gets out of is therefore taken to be at it.
+//! If two surfaces meet at an angle, a point on one may be rounded to behind the other, as one point in 1e8 is in
+//! scenes as wide as `sky`. A ray from there may meet nothing at all. A ray that starts behind a sphere that no path
+//! leaves is therefore taken to meet it at once.
 
 use super::nearest::Found;
 use super::packet::Rays;
@@ -14,10 +16,10 @@ use crate::simd::Float;
 
 /// The spheres of a scene, each with the number of its primitive.
 pub(in crate::kernel) struct Singles {
-    /// Those that no path gets out of.
+    /// The large spheres that no path leaves.
     enclosing: Vec<(f32, Curved<f32>)>,
     curved: Vec<(f32, Curved<f32>)>,
-    /// Centres and radii.
+    /// The small spheres: centres and radii.
     centred: Vec<(f32, Vec3<f32>, f32)>,
 }
 
@@ -48,30 +50,30 @@ impl Singles {
         Self { enclosing, curved, centred }
     }
 
-    /// Those of them that are as large as the scene.
+    /// Only the spheres that are as large as the scene.
     pub(in crate::kernel) fn large(scene: &Scene, enclosing_all: &[u32]) -> Self {
         Self { centred: Vec::new(), ..Self::of(scene, enclosing_all) }
     }
 
-    /// Those of them that are as large as the scene with their numbers, and how many of them, the first ones, no path gets out of.
+    /// The spheres by curvature with their numbers, and how many of them, from the first on, no path leaves.
     pub(in crate::kernel) fn in_order(&self) -> (usize, Vec<(u32, Curved<f32>)>) {
         let all = self.enclosing.iter().chain(&self.curved).map(|(number, curved)| (*number as u32, *curved));
         (self.enclosing.len(), all.collect())
     }
 
-    /// Whether the sphere with that number is among them.
+    /// Whether the sphere with that number is one of these.
     pub(in crate::kernel) fn contains(&self, number: u32) -> bool {
         self.numbers().any(|own| own == number)
     }
 
-    /// The numbers of their primitives.
+    /// The numbers of these spheres.
     pub(super) fn numbers(&self) -> impl Iterator<Item = u32> {
         let curved = self.enclosing.iter().chain(&self.curved).map(|(number, _)| *number as u32);
         curved.chain(self.centred.iter().map(|(number, ..)| *number as u32))
     }
 
-    /// The first sphere along each ray. Among equally near ones the lowest number wins; of large ones, those that enclose all win first. A tree
-    /// over the small ones ([`super::wide`]) finds the same by the same formula.
+    /// The nearest sphere along each ray. Among equally near spheres the lowest number wins; among large ones, spheres
+    /// that no path leaves win first. A tree over the small ones ([`super::wide`]) finds the same by the same formula.
     #[inline(always)]
     pub(super) fn scan<V: Float>(&self, rays: &Rays<V>) -> Found<V> {
         let (origin, direction) = (rays.ray.origin, rays.ray.direction);
@@ -116,7 +118,7 @@ mod tests {
     use crate::scene::load;
     use crate::simd::{Precision, Work, levels, on_level};
 
-    /// What rays find that start on the primitive `from` without meeting it again.
+    /// Distance and number found along a ray that starts on the primitive `from` and does not meet it again.
     struct Find<'a>(&'a Singles, Vec3, Vec3, f64);
 
     impl Work for Find<'_> {
@@ -131,7 +133,7 @@ mod tests {
         }
     }
 
-    /// Rays of the top row of a small image start above the ceiling and meet the light there; those of a larger one do not.
+    /// Top-row rays of a small image start above the ceiling and meet the light there; rays of a larger image do not.
     #[test]
     fn what_rays_start_outside_of_encloses_nothing() {
         let scene = load("cornell").unwrap();
@@ -141,8 +143,9 @@ mod tests {
         assert_eq!([[32, 24], [1024, 768]].map(encloses), [false, true]);
     }
 
-    /// Where the ground meets the sky, a point of the ground that is rounded to outside of the sky is at the sky for a ray that goes up and out,
-    /// and so is one of the sky itself; a ray that goes back in finds the other side of the sky.
+    /// Where ground and sky meet, a point of the ground may be rounded to outside the sky. A ray from there that goes
+    /// up and out meets the sky at once, and so does a ray from the sky itself. A ray that goes back in meets the other
+    /// side of the sky.
     #[test]
     fn no_ray_gets_out_of_what_encloses_all() {
         let scene = load("sky").unwrap();
@@ -152,7 +155,7 @@ mod tests {
         let [sky, ground] = [2, 3].map(|k: usize| &scene.primitives.spheres[k]);
         let across = ground.center - sky.center;
         let distance = dot(across, across).sqrt();
-        // The circle in which both spheres meet: how far its middle is from the sky's, and its radius.
+        // The circle in which both spheres meet: the distance of its centre from the sky's centre, and its radius.
         let along = (distance * distance + sky.radius * sky.radius - ground.radius * ground.radius) / (2.0 * distance);
         let circle = (sky.radius * sky.radius - along * along).sqrt();
         let down = across * (1.0 / distance);

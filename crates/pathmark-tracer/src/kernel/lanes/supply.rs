@@ -1,4 +1,4 @@
-//! Camera rays made ahead, a whole packet of them at a time, so that lanes which end one by one can be given their next one by one.
+//! Camera rays made in advance, a whole packet at a time, for lanes whose paths end one by one.
 
 use super::Lanes;
 use super::packet::{LanesOf, Packet, Rays, colour};
@@ -11,22 +11,22 @@ use crate::sampling::{PathWords, Purpose, SampleKey};
 use crate::scene::SUBPIXELS;
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Words};
 
-/// Rays that can wait, twice: what is read begins at any of them and is as long as all.
+/// Places for waiting rays, twice as many as can wait: a load may start at any ray and always has full length.
 const SIZE: usize = 2 * MOST_LANES;
 
-/// The rays that wait.
+/// The waiting rays.
 pub(super) struct Supply<V: Float> {
     /// Origins and directions.
     rays: [[V::One; SIZE]; 6],
-    /// What the numbers of their samples have in common.
+    /// The words that all random numbers of a sample share.
     words: [[u64; SIZE]; 4],
-    /// By what the sample of the next one is given back; those of the others follow.
+    /// Window slot of the next ray's sample; the slots of the others follow.
     slot: u64,
-    /// Of those that are being made: columns, rows, pixels, samples, and their two places.
+    /// For the rays that are being made: columns, rows, pixels, samples, and the two joined words.
     keys: [[u64; MOST_LANES]; 6],
-    /// The next one.
+    /// Index of the next ray.
     first: usize,
-    /// How many there are.
+    /// Number of waiting rays.
     count: usize,
 }
 
@@ -43,8 +43,8 @@ impl<V: Float> Supply<V> {
     }
 }
 
-/// Rays made ahead. A function of its own, because a call for as many rays as there are lanes costs nothing, every kind of kernel shares it, and
-/// the time to compile a function grows with the square of its length.
+/// Makes rays in advance. A separate function, because one call for a whole packet costs nothing, every kind of kernel
+/// shares it, and the time to compile a function grows with the square of its length.
 struct Produce<'a, 'w, 's, V: Float> {
     kernel: &'a Lanes,
     supply: &'a mut Supply<V>,
@@ -93,7 +93,7 @@ impl Lanes {
         }
     }
 
-    /// Makes as many rays as there are lanes, or samples left.
+    /// Makes a ray for each lane, or as many as samples are left.
     #[inline(always)]
     fn produce<V: Float>(
         &self,
@@ -143,14 +143,14 @@ impl Lanes {
         words.joined[1].store(&mut supply.words[3]);
     }
 
-    /// The camera rays of that number.
+    /// The camera rays with that number, one for each sample of the batch.
     #[inline(always)]
     fn camera_rays<V: Float>(&self, batch: &Batch<V>, number: V::Bits) -> Ray<V> {
         let film = self.sampler.pair::<V>(&batch.words, V::Bits::splat(0), number, Purpose::Film);
         self.view.rays(batch.pixel, batch.subpixel, film)
     }
 
-    /// What samples see by their other camera rays, as [`crate::estimator::seen_besides`] has it.
+    /// The radiance that the samples' other camera rays see, as in [`crate::estimator::seen_besides`].
     #[inline(always)]
     fn seen_besides<V: Float>(&self, batch: &Batch<V>, scratch: &mut Scratch<'_, V>, counts: &mut Counts) -> Rgb<V> {
         let wanted = u32::MAX >> (MOST_LANES - batch.count);
@@ -172,7 +172,7 @@ impl Lanes {
         seen * V::splat(camera_share(self.rules.camera_rays))
     }
 
-    /// Puts rays that wait into free lanes, the first into the lowest. The lanes that got one.
+    /// Moves waiting rays into free lanes, the first ray into the lowest lane. Returns the filled lanes.
     #[inline(always)]
     fn take<V: Float>(&self, packet: &mut Packet<'_, V>, supply: &mut Supply<V>, free: u32) -> u32 {
         let mut taken = free;
@@ -180,7 +180,7 @@ impl Lanes {
             taken &= !(1 << (u32::BITS - 1 - taken.leading_zeros()));
         }
         let mask = V::Mask::from_bits(taken);
-        // There are no more than that; said again, what is read below needs no check.
+        // `first` is never larger; with this explicit bound the loads below need no check.
         let first = supply.first.min(MOST_LANES);
         let Ray { origin, direction } = packet.rays.ray;
         let rays = &supply.rays;
@@ -208,7 +208,7 @@ impl Lanes {
             packet.slots[lane] = supply.slot;
             supply.slot += 1;
         }
-        // What is on nothing has no use for `own_root`.
+        // A camera ray starts on no primitive, so `own_root` is not read.
         packet.rays.from = V::select(mask, V::splat(-1.0), packet.rays.from);
         packet.throughput = Rgb::select(mask, Rgb::splat(Rgb::WHITE), packet.throughput);
         packet.collected = Rgb::select(mask, Rgb::splat(Rgb::BLACK), packet.collected);

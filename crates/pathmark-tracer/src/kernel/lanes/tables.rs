@@ -1,17 +1,17 @@
-//! What lanes look up of the primitives they meet: rows of four numbers, one a primitive or an object.
+//! Tables in which lanes look up primitives and objects: rows of four numbers.
 
 use crate::material::{Fresnel, Material};
 use crate::math::{Curved, Rgb, Vec3};
 use crate::scene::{AllEffects, Bounds, Object, Scene};
 use crate::simd::{Column, Float, Precision, Table};
 
-/// Surfaces by how lanes shade them, as a number in a table.
+/// Surfaces by the code with which lanes shade them, as a number in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Diffuse = 0,
     Mirror = 1,
     Dielectric = 2,
-    /// One lane after the other, by the material itself.
+    /// Shaded one lane after the other, by the material's own code.
     Other = 3,
 }
 
@@ -31,7 +31,7 @@ impl Kind {
     }
 }
 
-/// What the number of a [`Kind`] is raised by where the surface gives off light.
+/// Added to the number of a [`Kind`] if the surface emits light.
 pub(super) const GIVES_OFF: f64 = 8.0;
 
 /// Rows of [`Tables::surfaces`].
@@ -56,28 +56,29 @@ pub(in crate::kernel) fn surfaces(scene: &Scene, precision: Precision) -> impl I
     }))
 }
 
-/// Up to so many primitives have rows of their own for what is known of their objects, of their corners or of the lights that they are, which takes
-/// less time.
+/// Up to this many primitives, each has its own rows for its object, its corners and its light, which takes less time.
 pub(super) const MOST_ROWS: usize = 1 << 14;
 
 /// The tables of a scene.
 pub(super) struct Tables {
-    /// The centre of a sphere and its radius, in single precision the normal and the curvature of [`Curved`]; the normal and 0 of a plane; the normal of
-    /// a triangle and its largest coordinate, below 0.
+    /// A sphere's centre and radius, in single precision its normal and its curvature of [`Curved`]; a plane's normal
+    /// and 0; a triangle's normal and its largest coordinate, negated.
     pub(super) surfaces: Table,
-    /// The lowest and the highest coordinates of triangles, in double precision and up to [`MOST_ROWS`] primitives.
+    /// The lowest and highest coordinates of triangles, in double precision and up to [`MOST_ROWS`] primitives.
     pub(super) boxes: Option<[Table; 2]>,
-    /// The object of each primitive, where the tables below are of objects because there are too many primitives for rows of their own.
+    /// The object of each primitive, if there are too many primitives for rows of their own. The tables below then have
+    /// a row for each object.
     owners: Option<Column>,
-    /// The radiance.
+    /// The emitted radiance.
     pub(super) emissions: Table,
-    /// The albedo, and the [`Kind`], by [`GIVES_OFF`] more for what gives off light.
+    /// The albedo and the [`Kind`], plus [`GIVES_OFF`] if the surface emits light.
     pub(super) materials: Table,
-    /// Of dielectrics: index of refraction and its inverse, Schlick's reflectance at normal incidence, 1 for the exact formula.
+    /// For dielectrics: index of refraction, its inverse, Schlick's reflectance at normal incidence, 1 for the exact
+    /// formula.
     pub(super) interfaces: Table,
     /// Whether any surface is of [`Kind::Other`].
     pub(super) has_others: bool,
-    /// Whether everything is a sphere.
+    /// Whether all primitives are spheres.
     pub(super) is_round: bool,
 }
 

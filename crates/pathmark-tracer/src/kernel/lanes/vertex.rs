@@ -1,4 +1,4 @@
-//! What happens where paths arrive: the steps of [`crate::estimator::Path`], with a mask for each of its branches.
+//! Path vertices in lanes: the steps of [`crate::estimator::Path`], with a mask in place of each branch.
 
 use super::Lanes;
 use super::light::ArrivedAtLight;
@@ -13,47 +13,47 @@ use crate::sampling::{Purpose, cosine_hemisphere};
 use crate::scene::{AllEffects, Scene};
 use crate::simd::{Apart, Float, MOST_LANES, Mask, Number, Words};
 
-/// Where rays arrived.
+/// Intersection points of a packet of rays.
 #[derive(Clone, Copy)]
 pub(super) struct Arrival<V: Float> {
-    /// The lanes that the rest is of.
+    /// The lanes for which the other fields hold.
     pub(super) lanes: V::Mask,
     pub(super) t: V,
     pub(super) primitive: V,
     pub(super) point: Vec3<V>,
-    /// The point seen from the centre of a sphere; of no use where the surface is flat.
+    /// The point relative to the centre of a sphere; meaningless on a flat surface.
     pub(super) from_center: Vec3<V>,
     pub(super) is_round: V::Mask,
     /// The outward normal.
     pub(super) normal: Vec3<V>,
     /// Whether the ray comes from the inside.
     pub(super) inside: V::Mask,
-    /// Its normal is on the ray's side.
+    /// Frame whose normal is on the ray's side.
     pub(super) frame: Frame<V>,
 }
 
-/// What is known of the vertices before their points are.
+/// Properties of vertices that are known before their points.
 #[derive(Clone, Copy)]
 pub(super) struct Vertex<V: Float> {
-    /// How many there are up to this one.
+    /// Number of vertices up to and including this one.
     pub(super) number: V::Bits,
     pub(super) albedo: Rgb<V>,
     /// The [`Kind`] of surface.
     pub(super) kind: V,
 }
 
-/// Directions that surfaces scatter to.
+/// Sampled directions of scattering.
 struct Scattered<V: Float> {
     wi: Vec3<V>,
     weight: Rgb<V>,
     is_delta: V::Mask,
-    /// The directions' densities where they are not deltas.
+    /// Densities of the directions that are not deltas.
     density: V,
-    /// The lanes whose surface swallowed the light.
+    /// The lanes whose surface absorbed the path.
     absorbed: u32,
 }
 
-/// The other way of lanes that split.
+/// The second directions of lanes whose paths split.
 struct Split<V: Float> {
     lanes: u32,
     wi: Vec3<V>,
@@ -61,7 +61,7 @@ struct Split<V: Float> {
 }
 
 impl Lanes {
-    /// Traces each path to its next vertex and on from there. The lanes whose part of a path has ended.
+    /// Traces each path to its next vertex and starts its next ray. Returns the lanes whose part of a path has ended.
     #[inline(always)]
     pub(super) fn advance<V: Float, const AIMS: bool, const DIFFUSE_ONLY: bool>(
         &self,
@@ -87,7 +87,7 @@ impl Lanes {
         let gives_off = V::splat(GIVES_OFF);
         let is_lamp = gives_off.le(kind);
         let vertex = Vertex { number, albedo: Rgb { r, g, b }, kind: V::select(is_lamp, kind - gives_off, kind) };
-        // Where nothing is aimed at, the point is worked out after what needs none: so less waits in registers.
+        // Without next-event estimation the point is computed last, so that fewer values occupy registers.
         let early = if AIMS { Some(self.arrive(packet, met, t, primitive)) } else { None };
         let lit = met & is_lamp;
         if lit.any() {
@@ -97,7 +97,7 @@ impl Lanes {
                 emission = emission * V::apart(ArrivedAtLight { kernel: self, packet, at, lit });
             }
             emission = self.counted(packet, emission);
-            // A ray that met nothing has looked up some surface or other.
+            // For a ray that met nothing, an arbitrary surface was looked up.
             let found = packet.collected + packet.throughput * emission;
             packet.collected = Rgb::select(lit, found, packet.collected);
         }
@@ -118,7 +118,7 @@ impl Lanes {
         ended
     }
 
-    /// Rays that meet nothing find the background.
+    /// Adds the background to paths whose rays meet nothing.
     #[inline(always)]
     fn escape<V: Float>(&self, packet: &mut Packet<'_, V>, escaped: u32, counts: &mut Counts) {
         counts.escaped += u64::from(escaped.count_ones());
@@ -148,7 +148,7 @@ impl Lanes {
         Arrival { lanes, t, primitive, point, from_center, is_round, normal, inside, frame }
     }
 
-    /// The lanes that chance ends.
+    /// Russian roulette. Returns the lanes whose paths it ends.
     #[inline(always)]
     fn roulette<V: Float>(&self, packet: &mut Packet<'_, V>, lanes: V::Mask, vertex: &Vertex<V>) -> u32 {
         let begun = lanes & V::Bits::splat(u64::from(self.rules.roulette.after())).less(vertex.number);
@@ -162,7 +162,7 @@ impl Lanes {
         (begun & survival.le(number)).bits()
     }
 
-    /// The directions in which paths go on.
+    /// Samples the directions in which paths continue.
     #[inline(always)]
     fn scatter<V: Float, const AIMS: bool, const DIFFUSE_ONLY: bool>(
         &self,
@@ -201,7 +201,7 @@ impl Lanes {
         (scattered, split)
     }
 
-    /// Glass: reflected or refracted, or both.
+    /// Samples reflection or refraction at dielectrics; a path that splits takes both.
     #[inline(always)]
     fn refract<V: Float, const AIMS: bool>(
         &self,
@@ -230,7 +230,7 @@ impl Lanes {
 
         let (chance, reflects, weight);
         if AIMS {
-            // Each lobe as often as its share of the light.
+            // Each lobe is chosen in proportion to its share of the light.
             let (first, second) = ((tint * reflectance).largest(), (tint * transmittance).largest());
             let both = first + second;
             chance = V::select(zero.lt(both), first / both, V::splat(0.5));
@@ -253,12 +253,12 @@ impl Lanes {
     }
 }
 
-/// Surfaces that lanes have no code for. A function of its own for the sake of compilation, see [`super::supply`]; it is handed copies, because what a
-/// function is given the address of can be in no register, not even where it is not called.
+/// Materials that lanes have no code for. A separate function to limit compile time, see [`super::supply`]. It takes
+/// copies: a value whose address is passed to a function cannot stay in a register, called or not.
 struct OneByOne<'a, V: Float> {
     kernel: &'a Lanes,
     primitive: V,
-    /// Local directions to where the paths come from.
+    /// Local directions to the paths' previous vertices.
     wo: Vec3<V>,
     numbers: [V; 2],
     lanes: V::Mask,
@@ -290,8 +290,8 @@ impl<V: Float> Apart for OneByOne<'_, V> {
     }
 }
 
-/// What happens at surfaces out of their registers: primitives, local directions to where the path comes from and two random numbers; then what is
-/// found: directions, weights and densities.
+/// Scattering in memory instead of registers. Input: primitives, local directions to the previous vertices, and two
+/// random numbers. Output: directions, weights and densities.
 struct AllScattered<T> {
     numbers: [[T; MOST_LANES]; 13],
     deltas: u32,
@@ -299,7 +299,7 @@ struct AllScattered<T> {
 }
 
 impl<T: Number> AllScattered<T> {
-    /// Finds it for some lanes. It has no need of a level's instructions, and stays out of what does.
+    /// Samples the materials of some lanes. It needs no SIMD instructions and is compiled apart from code with them.
     #[inline(never)]
     fn scatter(&mut self, scene: &Scene, lanes: u32, inside: u32, one: fn(f64) -> T) {
         for lane in LanesOf(lanes) {
@@ -324,7 +324,7 @@ impl<T: Number> AllScattered<T> {
     }
 }
 
-/// Sets out in the new directions.
+/// Starts the next ray segment of each path in its sampled direction.
 #[inline(always)]
 fn leave<V: Float, const DIFFUSE_ONLY: bool>(
     packet: &mut Packet<'_, V>,
@@ -349,14 +349,14 @@ fn leave<V: Float, const DIFFUSE_ONLY: bool>(
     packet.throughput = packet.throughput * scattered.weight;
     packet.vertices = vertices;
     packet.density = V::select(scattered.is_delta, V::splat(-1.0), scattered.density);
-    // Parts of a split are looked at when they have been traced.
+    // Paths that have just split are checked when their parts have been traced.
     let smallest = V::splat(V::SMALLEST);
     let Rgb { r, g, b } = packet.throughput;
     let spent = r.lt(smallest) & g.lt(smallest) & b.lt(smallest);
     *ended |= (at.lanes & spent).bits() & !splits;
 }
 
-/// The refracted parts of paths that split, which are put aside.
+/// The refracted parts of paths that split, to be put aside.
 struct PutAside<'a, 'w, V: Float> {
     packet: &'a mut Packet<'w, V>,
     at: &'a Arrival<V>,
@@ -390,7 +390,7 @@ impl<V: Float> Apart for PutAside<'_, '_, V> {
     }
 }
 
-/// Where rays that leave along the local direction `wi` meet the surface again; NaN if they do not.
+/// Distance at which rays along the local direction `wi` meet their surface again; NaN if they do not.
 #[inline(always)]
 pub(super) fn own_root<V: Float>(at: &Arrival<V>, wi: Vec3<V>, direction: Vec3<V>) -> V {
     let to_inside = differ(wi.z.lt(V::splat(0.0)), at.inside);

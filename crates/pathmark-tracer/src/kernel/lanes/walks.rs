@@ -1,4 +1,4 @@
-//! Rays to compare searches by: those of random walks through a scene, and those that hardly miss one thing or another.
+//! Rays for comparisons of searches: rays of random walks through a scene, and rays close to edges.
 
 use super::packet::Rays;
 use super::search::{in_packets, packet};
@@ -21,13 +21,14 @@ impl Random {
     }
 }
 
-/// What the scalar search finds: a distance and a number, -1 for nothing.
+/// The result of the scalar search: a distance and a number, -1 for nothing.
 pub(super) fn nearest(scene: &Scene, (ray, from): &Start) -> (f64, f64) {
     let found = scene.nearest(ray, *from, f64::MANTISSA_DIGITS, &mut Tests::default());
     (found.t, if found.primitive == u32::MAX { -1.0 } else { found.primitive.into() })
 }
 
-/// Rays of walks through the scene from the camera, and, where two of them meet different things, those between them down to the edge.
+/// Rays of random walks through the scene from the camera. If two of them meet different primitives, the second list
+/// gets rays between them that approach the edge.
 pub(super) fn walks(scene: &Scene, count: usize) -> (Vec<Start>, Vec<Start>) {
     let (mut walks, mut edges) = (Vec::new(), Vec::new());
     let mut random = Random(1);
@@ -53,14 +54,14 @@ pub(super) fn walks(scene: &Scene, count: usize) -> (Vec<Start>, Vec<Start>) {
                 *(if met == a { &mut one } else { &mut two }) = ray.direction;
             }
         }
-        // Back to the camera now and then, and where nothing is met.
+        // Back to the camera now and then, and after a ray that meets nothing.
         let is_lost = a < 0.0 || random.unit() < 0.1;
         start = (!is_lost).then(|| (rays[0].0.at(t), Standpoint { primitive: a as u32, inside: false }));
     }
     (walks, edges)
 }
 
-/// As many rays as there are lanes.
+/// A packet of as many rays as there are lanes.
 #[inline(always)]
 pub(super) fn side_by_side<V: Float>(scene: &Scene, starts: &[Start]) -> Rays<V> {
     let numbers: Vec<V::One> = in_packets(scene, starts, V::LANES).into_iter().map(V::one).collect();

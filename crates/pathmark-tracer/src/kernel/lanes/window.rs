@@ -1,14 +1,14 @@
-//! The samples of a piece, handed out to lanes in order and taken back in order, however late a lane is done with its own. So a pixel's
-//! samples are added as one path at a time would add them.
+//! The samples of a piece. They are handed out to lanes in order and taken back in order, however late a lane ends its
+//! path. So a pixel's samples are added in the same order as with one path at a time.
 
 use crate::film::{Bounds, Piece, PixelSum, SampleSum, TileBuffer};
 use crate::kernel::Counts;
 use crate::math::Rgb;
 
-/// Samples that may be handed out and not yet taken back. A path that goes on and on lets the others run this far ahead.
+/// Most samples that are handed out and not yet taken back. While one path is long, other lanes can get this far ahead.
 const SIZE: usize = 512;
 
-/// A place in the piece: a pixel, and one of its samples.
+/// A sample of the piece: its pixel and its number.
 #[derive(Clone, Copy)]
 pub(super) struct Place {
     pub(super) x: u32,
@@ -16,7 +16,7 @@ pub(super) struct Place {
     pub(super) sample: u32,
 }
 
-/// Samples of a pixel that were handed out.
+/// Consecutive samples of a pixel that were handed out.
 pub(super) struct Handed {
     pub(super) first: Place,
     pub(super) count: usize,
@@ -27,22 +27,22 @@ pub(super) struct Window<'a> {
     bounds: Bounds,
     samples: std::ops::Range<u32>,
     out: &'a mut TileBuffer,
-    /// Where the next sample to be handed out is; its row is below the last one when there are none.
+    /// The next sample to be handed out; its row is below the last row if there are none.
     next: Place,
     handed: u64,
-    /// Where the next sample to be taken back is.
+    /// The next sample to be taken back.
     first: Place,
     taken: u64,
     /// A bit for each slot that was given back.
     done: [u64; SIZE / 64],
     radiances: [Rgb; SIZE],
-    /// Whether light that other camera rays saw is added to each sample.
+    /// Whether the radiance of other camera rays is added to each sample.
     has_seen_light: bool,
     sum: SampleSum,
 }
 
 impl Place {
-    /// Goes on by no more samples than the pixel has left.
+    /// Advances by `count` samples, at most as many as the pixel has left.
     #[inline(always)]
     fn advance(&mut self, count: u32, bounds: &Bounds, samples: &std::ops::Range<u32>) {
         self.sample += count;
@@ -83,7 +83,8 @@ impl<'a> Window<'a> {
         }
     }
 
-    /// The next samples, at most so many, which are all of one pixel; `None` if there are none, or none until others have been given back.
+    /// Hands out the next samples, at most `most`, all of one pixel. `None` if there are none, or none before others
+    /// have been given back.
     #[inline(always)]
     pub(super) fn hand_out(&mut self, most: usize) -> Option<Handed> {
         let room = SIZE as u64 - (self.handed - self.taken);
@@ -98,7 +99,7 @@ impl<'a> Window<'a> {
         Some(Handed { first, count: count as usize })
     }
 
-    /// Stores what is added to a sample when it is given back.
+    /// Stores radiance that is added to a sample when it is given back.
     #[inline(always)]
     pub(super) fn add_beforehand(&mut self, slot: u64, radiance: Rgb) {
         self.radiances[slot as usize % SIZE] = radiance;
@@ -112,7 +113,7 @@ impl<'a> Window<'a> {
         self.done[slot / 64] |= 1 << (slot % 64);
     }
 
-    /// Adds what was given back, as far as nothing before it is still out.
+    /// Adds the samples that were given back, up to the first one that is still missing.
     #[inline(always)]
     pub(super) fn settle(&mut self, counts: &mut Counts) {
         loop {
@@ -122,7 +123,7 @@ impl<'a> Window<'a> {
             if ready == 0 {
                 return;
             }
-            // As many ones as are ready, from the slot on.
+            // A mask of `ready` ones, from the slot on.
             *word &= !((u64::MAX >> (64 - ready)) << (slot % 64));
             self.taken += u64::from(ready);
             for k in slot..slot + ready as usize {

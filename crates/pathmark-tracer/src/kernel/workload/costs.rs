@@ -1,33 +1,34 @@
-//! Costs drawn from a distribution: an item spins for a number of steps that its seed and number say. Steps are counted, not timed, so every
-//! machine and every run does the same work.
+//! Costs drawn from a distribution: an item's seed and number determine the number of steps that it spins for. Steps
+//! are counted, not timed, so every machine and every run executes the same work.
 
 use super::{Item, Workload};
 use crate::sampling::{mix, unit};
 
-/// Steps of an item in the mean. A step is a multiplication and an addition that wait for the step before, about a nanosecond today.
+/// Mean number of steps of an item. A step is a multiplication and an addition that wait for the previous step: about a
+/// nanosecond today.
 const MEAN_STEPS: f64 = 4096.0;
 
-/// How costs are spread over the items; the mean is the same for all.
+/// Distributions of costs over the items, all with the same mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Distribution {
-    /// Anything from nothing to twice the mean.
+    /// Any cost from zero to twice the mean.
     Uniform,
-    /// Many cheap items, few dear ones.
+    /// Many cheap items, few expensive ones.
     Exponential,
-    /// Nine of ten items cost a fifth of the mean, the tenth 8.2 times as much as the mean.
+    /// Nine of ten items cost a fifth of the mean; the tenth costs 8.2 times the mean.
     Bimodal,
     /// The middle item costs as much as all others together.
     Giant,
-    /// The dearest item first, falling to nothing.
+    /// The most expensive item first, then falling to zero.
     Sorted,
 }
 
-/// Items that cost what a distribution says.
+/// Items whose costs follow a distribution.
 #[derive(Debug, Clone, Copy)]
 pub struct Costs(pub Distribution);
 
 impl Costs {
-    /// The item's cost in means, from its number and a random number in [0, 1).
+    /// The item's cost in units of the mean, from its number and a random number in [0, 1).
     fn cost(self, index: u64, count: u64, u: f64) -> f64 {
         let place = index as f64 / count as f64;
         match self.0 {
@@ -63,7 +64,7 @@ impl Workload for Costs {
         let steps = (MEAN_STEPS * self.cost(item.index(), item.count(), unit(word))) as u64;
         let mut state = word;
         for _ in 0..steps {
-            // Knuth's MMIX generator: the compiler cannot take a short cut through it.
+            // Knuth's MMIX generator: the compiler cannot shorten it.
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         }
         [unit(state), unit(mix(state)), steps as f64 / MEAN_STEPS]
@@ -74,7 +75,8 @@ impl Workload for Costs {
 mod tests {
     use super::*;
 
-    /// Every distribution costs the mean in the mean. The exponential's mean over 4096 midpoints misses its tail by less than 1e-3.
+    /// Every distribution has the same mean cost. The exponential's mean over 4096 midpoints misses its tail by less
+    /// than 1e-3.
     #[test]
     fn costs_have_the_mean() {
         for kind in [

@@ -2,14 +2,14 @@
 
 use super::{Item, Workload};
 
-/// How often z² + c is tried before a point counts as inside.
+/// Iterations of z² + c after which a point counts as inside.
 const LIMIT: u32 = 1000;
-/// What is seen: the whole set, with its middle line in the middle.
+/// The section: the whole set, with its axis of symmetry in the middle.
 const LEFT: f64 = -2.0;
 const WIDTH: f64 = 2.75;
 const HALF_HEIGHT: f64 = 1.25;
 
-/// z² + c until |z| > 2; each sample looks at another quarter of its pixel.
+/// Iterates z² + c until |z| > 2. Each sample takes another quarter of its pixel.
 #[derive(Debug, Clone, Copy)]
 pub struct Mandelbrot;
 
@@ -44,7 +44,7 @@ fn steps(x: f64, y: f64) -> u32 {
 mod tests {
     use super::*;
 
-    /// 0, -1 and the tip at -2 are in the set; from 1 the way is 0, 1, 2, 5, from 3 it is 0, 3.
+    /// 0, -1 and the tip at -2 are in the set. The orbit of 1 is 0, 1, 2, 5, and the orbit of 3 is 0, 3.
     #[test]
     fn steps_are_those_of_known_points() {
         assert_eq!([steps(0.0, 0.0), steps(-1.0, 0.0), steps(-2.0, 0.0)], [LIMIT; 3]);

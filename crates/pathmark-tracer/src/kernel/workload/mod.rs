@@ -1,9 +1,10 @@
-//! Workloads: work of unequal cost, cut into jobs, with a result that can be checked. The path tracer is one; this folder has others, so that
-//! strategies can be compared on more than one program.
+//! Workloads: work of unequal cost, cut into jobs, with a result that can be checked. The path tracer is one workload;
+//! this folder has others, so that strategies can be compared on more than one program.
 //!
-//! A workload fills a film: each pixel and sample is an item with a value. So decompositions, outputs, traces, checksums and the simulator serve
-//! it as they serve a scene, and `pathmark render mandelbrot`, `scene = ["mandelbrot"]` in an experiment and `--size 1x1000 --decomposition rows`
-//! (a thousand jobs of one item) mean what they say. A workload has no estimator and no sampler.
+//! A workload fills a film: each pixel and sample is an item with a value. Decompositions, outputs, traces, checksums
+//! and the simulator therefore work as for a scene. So do `pathmark render mandelbrot`, `scene = ["mandelbrot"]` in an
+//! experiment and `--size 1x1000 --decomposition rows` (a thousand jobs of one item). A workload has no estimator and
+//! no sampler.
 //!
 //! To add one: write its file with a type that implements [`Workload`], and give it a line in [`WORKLOADS`].
 
@@ -21,7 +22,7 @@ pub use costs::{Costs, Distribution};
 pub use mandelbrot::Mandelbrot;
 pub use sum::Sum;
 
-/// What records say of the kernel of a workload.
+/// Name of the kernel in records of a workload.
 pub const WORKLOAD: &str = "workload";
 
 /// One item of work.
@@ -42,12 +43,12 @@ pub struct Item {
 }
 
 impl Item {
-    /// Its number, row by row.
+    /// Number of the item, row by row.
     pub fn index(&self) -> u64 {
         u64::from(self.y) * u64::from(self.width) + u64::from(self.x)
     }
 
-    /// How many there are of each sample.
+    /// Number of items per sample.
     pub fn count(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
@@ -55,23 +56,23 @@ impl Item {
 
 /// Work of unequal cost with a result.
 pub trait Workload: Send + Sync + 'static {
-    /// What it is, in a line of `pathmark list workloads`.
+    /// A description in one line, for `pathmark list workloads`.
     fn about(&self) -> &'static str {
         "a workload from outside"
     }
 
-    /// Makes what all items share, before the clock runs.
+    /// Prepares the data that all items share, before the clock starts.
     fn prepare(&self) {}
 
-    /// Does the item's work and gives its result: three finite numbers that are not negative and follow from the item alone, whoever asks and
-    /// however often.
+    /// Runs the item and returns its result: three finite numbers that are not negative. They depend on the item alone,
+    /// not on the caller or the number of calls.
     fn run(&self, item: &Item) -> [f64; 3];
 }
 
-/// A workload under a name.
+/// A named workload.
 #[derive(Clone)]
 pub struct Entry {
-    /// Its name where a scene's name may stand.
+    /// The name, valid wherever a scene's name is.
     pub name: &'static str,
     workload: Made,
 }
@@ -89,7 +90,7 @@ impl fmt::Debug for Entry {
 }
 
 impl Entry {
-    /// A workload of one's own.
+    /// A user-defined workload.
     pub fn own(name: &'static str, workload: impl Workload) -> Self {
         Self { name, workload: Made::Own(Arc::new(workload)) }
     }
@@ -105,12 +106,12 @@ impl Entry {
         }
     }
 
-    /// What it is, in a line.
+    /// A description in one line.
     pub fn about(&self) -> &'static str {
         self.workload().about()
     }
 
-    /// The kernel that does its work.
+    /// The kernel that runs the items.
     pub fn kernel(&self, width: u32, height: u32, seed: u64) -> Box<dyn Kernel> {
         self.workload().prepare();
         Box::new(OfWorkload { entry: self.clone(), width, height, seed })
@@ -161,7 +162,7 @@ impl Kernel for OfWorkload {
 mod tests {
     use super::*;
 
-    /// Every item has a valid result that follows from the item alone.
+    /// Every item has a valid result that depends on the item alone.
     #[test]
     fn results_are_valid_and_repeat() {
         for entry in WORKLOADS {

@@ -1,4 +1,5 @@
-//! A parallel sum: every item adds up numbers from memory. All cost the same, and little: what a scheduler costs shows at once.
+//! A parallel sum: every item adds up numbers from memory. All items are cheap and cost the same, so a scheduler's
+//! overhead shows at once.
 
 use super::{Item, Workload};
 use crate::sampling::{mix, unit};

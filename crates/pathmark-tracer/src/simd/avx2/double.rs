@@ -40,7 +40,7 @@ register! {
         }
         #[inline(always)]
         fn number(bits: U64x4) -> Self {
-            // Halves as the lowest digits of 2^84 and of 2^52; what is then taken away was added by that.
+            // The halves become the lowest digits of 2^84 and of 2^52; these powers are then subtracted again.
             op!({
                 let [of_high, of_low] = [Self::splat(TWO_84).0, Self::splat(TWO_52).0];
                 let high = x86::_mm256_srli_epi64::<32>(bits.0);

@@ -16,12 +16,12 @@ use single::F32x8;
 use std::arch::x86_64 as x86;
 use std::ops::Not;
 
-/// Whether this processor has what is used here.
+/// Whether this processor has the instructions used here.
 pub(super) fn is_available() -> bool {
     is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") && has_bit_counts()
 }
 
-/// Does the work.
+/// Runs `work` with this instruction set.
 pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
     unsafe {
@@ -50,7 +50,7 @@ pub(super) struct U64x4(x86::__m256i);
 #[derive(Clone, Copy)]
 pub(super) struct Mask4(x86::__m256d);
 
-/// Likewise, of a register of single precision.
+/// All ones or all zeros in each lane of a register of single precision.
 #[derive(Clone, Copy)]
 pub(super) struct Mask8(x86::__m256);
 
@@ -66,7 +66,7 @@ impl Not for Mask4 {
     }
 }
 
-/// Sixteen bytes, in every half of a register.
+/// Sixteen bytes, repeated in every half of a register.
 #[inline(always)]
 fn table(entries: &[i8; 16]) -> x86::__m256i {
     op!(x86::_mm256_broadcastsi128_si256(x86::_mm_loadu_si128(entries.as_ptr().cast())))
@@ -83,7 +83,7 @@ impl Bits for U64x4 {
     }
     #[inline(always)]
     fn times(self, other: Self) -> Self {
-        // By halves, as on paper; the product of the higher ones is beyond 64 bits.
+        // Long multiplication by halves; the product of the higher halves is beyond 64 bits.
         op!({
             let low = x86::_mm256_mul_epu32(self.0, other.0);
             let first = x86::_mm256_mul_epu32(x86::_mm256_srli_epi64::<32>(self.0), other.0);
@@ -110,7 +110,7 @@ impl Bits for U64x4 {
     }
     #[inline(always)]
     fn reversed(self) -> Self {
-        // Half bytes by table, then bytes by shuffle.
+        // Reverses half bytes by table, then bytes by shuffle.
         let [low, high, swap] = [table(&REVERSED[0]), table(&REVERSED[1]), table(&REVERSED[2])];
         let nibble = Self::splat(0x0F0F_0F0F_0F0F_0F0F);
         let (a, b) = ((self & nibble).0, (self.down::<4>() & nibble).0);
@@ -189,7 +189,7 @@ fn narrowed(lower: x86::__m256i, upper: x86::__m256i) -> x86::__m256i {
     op!({
         let halves =
             x86::_mm256_shuffle_ps::<0b10_00_10_00>(x86::_mm256_castsi256_ps(lower), x86::_mm256_castsi256_ps(upper));
-        // The quarters are of the lower, the upper, the lower, the upper.
+        // The quarters are in the order lower, upper, lower, upper.
         x86::_mm256_permute4x64_epi64::<0b11_01_10_00>(x86::_mm256_castps_si256(halves))
     })
 }
@@ -236,7 +236,7 @@ impl Words<Mask4> for U64x4 {
     }
 }
 
-/// For each mask, the halves of words that its lanes take: the first lane that it holds the first word, and so on.
+/// For each mask, the halves of words for its lanes: the first lane in the mask takes the first word, and so on.
 const SPREAD: [[i32; 8]; 16] = {
     let (mut table, mut mask) = ([[0; 8]; 16], 0);
     while mask < 16 {

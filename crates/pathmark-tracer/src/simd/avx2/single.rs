@@ -89,10 +89,10 @@ fn pair(table: &Table, lower: i32, upper: i32) -> x86::__m256 {
     })
 }
 
-/// For each mask, the lanes that it holds, in order.
+/// For each mask, its lanes in order.
 static PACKED: [[i32; 8]; 256] = orders(true);
 
-/// For each mask, the numbers that its lanes take: the first lane that it holds the first number, and so on.
+/// For each mask, the indices of the numbers for its lanes: 0 for the first lane in the mask, and so on.
 static SPREAD: [[i32; 8]; 256] = orders(false);
 
 const fn orders(are_packed: bool) -> [[i32; 8]; 256] {

@@ -13,7 +13,7 @@ register! {
     sqrt _mm512_sqrt_pd, min _mm512_min_pd, max _mm512_max_pd;
     abs(x) = x86::_mm512_abs_pd(x);
     copysign(x, sign) = {
-        // Bit by bit: the sign's where the first is set, else the magnitude's.
+        // Bit by bit: the sign's bit where `first` is set, else the magnitude's.
         let first = x86::_mm512_castpd_si512(x86::_mm512_set1_pd(-0.0));
         let (x, sign) = (x86::_mm512_castpd_si512(x), x86::_mm512_castpd_si512(sign));
         x86::_mm512_castsi512_pd(x86::_mm512_ternarylogic_epi64::<0xCA>(first, sign, x))
@@ -32,7 +32,7 @@ register! {
         fn least(self) -> f64 {
             op!(x86::_mm512_reduce_min_pd(self.0))
         }
-        // As words without a sign, distances have the same order, and negative ones and NaN come behind infinity.
+        // As unsigned words, distances keep their order, and negative numbers and NaN come after infinity.
         #[inline(always)]
         fn ahead(near: Self, far: Self) -> Self {
             near.sooner(far)

@@ -1,4 +1,4 @@
-//! AVX-512: registers of 512 bits, masks in registers of their own.
+//! AVX-512: registers of 512 bits, with masks in separate registers.
 
 #![expect(
     unsafe_code,
@@ -16,7 +16,7 @@ use single::F32x16;
 use std::arch::x86_64 as x86;
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Whether this processor has what is used here.
+/// Whether this processor has the instructions used here.
 pub(super) fn is_available() -> bool {
     is_x86_feature_detected!("avx512f")
         && is_x86_feature_detected!("avx512dq")
@@ -25,7 +25,7 @@ pub(super) fn is_available() -> bool {
         && has_bit_counts()
 }
 
-/// Does the work.
+/// Runs `work` with this instruction set.
 pub(super) fn run<W: Work>(precision: Precision, work: W) -> W::Output {
     // SAFETY: `on_level` alone comes here, with a level that has been found on this processor.
     unsafe {
@@ -50,17 +50,17 @@ fn apart<W: Apart>(work: W) -> W::Output {
 #[derive(Clone, Copy)]
 pub(super) struct U64x8(x86::__m512i);
 
-/// One bit a number.
+/// One bit per number.
 #[derive(Clone, Copy)]
 pub(super) struct Mask8(x86::__mmask8);
 
-/// Likewise, of a register of single precision.
+/// One bit per number of a register of single precision.
 #[derive(Clone, Copy)]
 pub(super) struct Mask16(x86::__mmask16);
 
 operator!(U64x8: BitAnd bitand _mm512_and_si512, BitOr bitor _mm512_or_si512, BitXor bitxor _mm512_xor_si512);
 
-/// Sixteen bytes, in every quarter of a register.
+/// Sixteen bytes, repeated in every quarter of a register.
 #[inline(always)]
 fn table(entries: &[i8; 16]) -> x86::__m512i {
     op!(x86::_mm512_broadcast_i32x4(x86::_mm_loadu_si128(entries.as_ptr().cast())))
@@ -97,7 +97,7 @@ impl Bits for U64x8 {
     }
     #[inline(always)]
     fn reversed(self) -> Self {
-        // Half bytes by table, then bytes by shuffle.
+        // Reverses half bytes by table, then bytes by shuffle.
         let [low, high, swap] = [table(&REVERSED[0]), table(&REVERSED[1]), table(&REVERSED[2])];
         let nibble = Self::splat(0x0F0F_0F0F_0F0F_0F0F);
         let (a, b) = ((self & nibble).0, (self.down::<4>() & nibble).0);

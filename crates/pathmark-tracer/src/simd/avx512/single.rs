@@ -13,7 +13,7 @@ register! {
     sqrt _mm512_sqrt_ps, min _mm512_min_ps, max _mm512_max_ps;
     abs(x) = x86::_mm512_abs_ps(x);
     copysign(x, sign) = {
-        // Bit by bit: the sign's where the first is set, else the magnitude's.
+        // Bit by bit: the sign's bit where `first` is set, else the magnitude's.
         let first = x86::_mm512_castps_si512(x86::_mm512_set1_ps(-0.0));
         let (x, sign) = (x86::_mm512_castps_si512(x), x86::_mm512_castps_si512(sign));
         x86::_mm512_castsi512_ps(x86::_mm512_ternarylogic_epi32::<0xCA>(first, sign, x))
@@ -26,7 +26,7 @@ register! {
         }
         #[inline(always)]
         fn pack(self, mask: Mask16, to: &mut [f32]) {
-            // Stored as a whole: some processors take a hundred cycles to store what a mask holds.
+            // Stores the whole register: some processors take a hundred cycles for a masked store.
             Self(op!(x86::_mm512_maskz_compress_ps(mask.0, self.0))).store(to);
         }
         #[inline(always)]

@@ -1,4 +1,5 @@
-//! Lights to aim at: the choices of [`Lights`] with a mask for each, and the same bits.
+//! Lights for next-event estimation in lanes: the choices of [`Lights`] with a mask in place of each branch, and the
+//! same bits.
 
 mod sphere;
 mod triangle;
@@ -14,9 +15,9 @@ use triangle::Triangles;
 pub(super) struct Targets {
     spheres: Option<Spheres>,
     triangles: Option<Triangles>,
-    /// Number of the primitive, how often it is chosen, the area of what is aimed at, 1 for triangles.
+    /// For each light: number of the primitive, probability of its choice, area that is aimed at, 1 for triangles.
     all: Table,
-    /// How often each light or one before it is chosen.
+    /// For each light the probability that it or one before it is chosen.
     up_to: Vec<f64>,
     of_primitive: OfPrimitive,
 }
@@ -24,7 +25,7 @@ pub(super) struct Targets {
 /// The light of each primitive, or -1.
 enum OfPrimitive {
     Rows(Box<Table>),
-    /// Of many: 4 bytes each instead of 16 or 32, and a little slower.
+    /// For many primitives: 4 bytes each instead of 16 or 32, and slightly slower.
     Column(Column),
 }
 
@@ -49,41 +50,41 @@ impl OfPrimitive {
     }
 }
 
-/// Directions towards lights.
+/// Sampled directions towards lights.
 pub(super) struct Aims<V: Float> {
-    /// Where there is one.
+    /// The lanes with a direction.
     pub(super) lanes: V::Mask,
     /// The direction, of length 1.
     pub(super) direction: Vec3<V>,
-    /// The primitive that it is to arrive at.
+    /// The primitive that the direction aims at.
     pub(super) primitive: V,
-    /// How likely the light and the direction were, per steradian.
+    /// Density of the light and the direction, per steradian.
     pub(super) density: V,
 }
 
-/// Where a ray or an aim starts: the number of the primitive that it is on, and whether on its inside.
+/// Start of a ray or an aim.
 #[derive(Clone, Copy)]
 pub(super) struct Start<V: Float> {
     /// The point.
     pub(super) point: Vec3<V>,
-    /// The primitive, -1 if none.
+    /// The primitive that it is on; -1 if none.
     pub(super) primitive: V,
-    /// The side.
+    /// Whether it is on the primitive's inside.
     pub(super) inside: V::Mask,
 }
 
-/// Where rays arrive.
+/// Intersection points of rays.
 #[derive(Clone, Copy)]
 pub(super) struct Met<V> {
     /// The primitive.
     pub(super) primitive: V,
-    /// How far away.
+    /// Its distance along the ray.
     pub(super) t: V,
-    /// Its outward normal there.
+    /// Its outward normal at the point.
     pub(super) normal: Vec3<V>,
 }
 
-/// A light for each lane.
+/// A chosen light for each lane.
 struct Chosen<V: Float> {
     /// Its number.
     light: V,
@@ -93,7 +94,7 @@ struct Chosen<V: Float> {
     is_triangle: V::Mask,
 }
 
-/// Directions, where there are any, and their densities per steradian.
+/// Sampled directions, the lanes that have one, and the densities per steradian.
 #[derive(Clone, Copy)]
 struct Directions<V: Float> {
     lanes: V::Mask,
@@ -137,12 +138,12 @@ impl Targets {
         Chosen { light, primitive, chance, area, is_triangle: V::splat(0.5).lt(kind) }
     }
 
-    /// Whether a number is needed to choose one.
+    /// Whether the choice of a light needs a random number.
     pub(super) fn are_several(&self) -> bool {
         self.up_to.len() > 1
     }
 
-    /// The number of a light for each lane.
+    /// Chooses a light for each lane and returns its number.
     #[inline(always)]
     fn choose<V: Float>(&self, number: V) -> V {
         let mut light = V::splat(0.0);
@@ -161,7 +162,7 @@ impl Targets {
         light
     }
 
-    /// Directions towards lights. `choice` is looked at only where there are several.
+    /// Samples directions towards lights. `choice` is read only if there are several lights.
     #[inline(always)]
     pub(super) fn aim<V: Float>(&self, start: &Start<V>, choice: V, place: [V; 2]) -> Aims<V> {
         let light = self.chosen::<V>(self.choose(choice));
@@ -180,7 +181,7 @@ impl Targets {
         Aims { lanes, direction: found.direction, primitive: light.primitive, density }
     }
 
-    /// How likely [`Targets::aim`] was to choose the directions of rays; 0 where nothing is aimed at.
+    /// The density with which [`Targets::aim`] chooses the directions of rays; 0 if they meet no light.
     #[inline(always)]
     pub(super) fn density<V: Float>(&self, start: &Start<V>, ray: &Ray<V>, met: &Met<V>) -> V {
         let zero = V::splat(0.0);

@@ -1,4 +1,4 @@
-//! Spheres as targets, as `SphereTarget` has them.
+//! Spherical lights in lanes, as in `SphereTarget`.
 
 use super::{Chosen, Directions, Met, Start};
 use crate::math::{Ray, Vec3, dot};
@@ -7,11 +7,11 @@ use crate::scene::{AnyTarget, Lights, Sphere, one_minus_cos, towards_cap};
 use crate::simd::{Float, Mask, Precision, Table};
 use std::f64::consts::PI;
 
-/// Spheres among lights.
+/// The spheres among the lights.
 pub(super) struct Spheres {
     /// Centre and radius.
     spheres: Table,
-    /// Axis and height of the part that can be reached; the height has no end where that is all.
+    /// Axis and height of the cap that can be reached; the height is infinite if the whole sphere can.
     caps: Table,
 }
 
@@ -23,7 +23,7 @@ struct Target<V> {
     height: V,
 }
 
-/// How directions are chosen from a point, as `SphereTarget` has it; by a cone where neither mask holds.
+/// Method to choose directions from a point, as in `SphereTarget`: by a cone if neither mask holds.
 struct Way<V: Float> {
     exists: V::Mask,
     everywhere: V::Mask,
@@ -33,7 +33,7 @@ struct Way<V: Float> {
 }
 
 impl Spheres {
-    /// Those among the lights, in tables with a row for each light; `None` if there are none.
+    /// The spheres among the lights, in tables with a row for each light; `None` if there are none.
     pub(super) fn of(lights: &Lights, precision: Precision) -> Option<Self> {
         let rows = lights.lights.iter().map(|light| {
             let AnyTarget::Sphere(target) = &light.target else { return None };

@@ -1,11 +1,11 @@
-//! Triangles as targets, as [`TriangleTarget`] has them.
+//! Triangular lights in lanes, as in [`TriangleTarget`].
 
 use super::{Chosen, Directions, Met, Start};
 use crate::math::{Ray, Vec3, dot};
 use crate::scene::{AnyTarget, Lights, TriangleTarget, per_steradian, point_of};
 use crate::simd::{Float, Precision, Table};
 
-/// Triangles among lights.
+/// The triangles among the lights.
 pub(super) struct Triangles {
     corners: Table,
     edges: [Table; 2],
@@ -20,7 +20,7 @@ fn vector<V: Float>(table: &Table, row: V) -> Vec3<V> {
 }
 
 impl Triangles {
-    /// Those among the lights, in tables with a row for each light; `None` if there are none.
+    /// The triangles among the lights, in tables with a row for each light; `None` if there are none.
     pub(super) fn of(lights: &Lights, precision: Precision) -> Option<Self> {
         let table = |part: fn(&TriangleTarget) -> Vec3| {
             let rows = lights.lights.iter().map(|light| match &light.target {

@@ -1,5 +1,5 @@
-//! Every primitive against the rays of all lanes at a time: for scenes with too few primitives for a hierarchy. One ray at a time would have a
-//! branch for each primitive that it meets; here a primitive has one for all rays together.
+//! Each primitive against the rays of all lanes at a time: for scenes with too few primitives for a hierarchy. With one
+//! ray at a time, each primitive that the ray meets would cost a branch; here it costs one branch for all rays.
 
 use super::bundle::{AllTurned, three};
 use crate::kernel::lanes::nearest::Found;
@@ -9,26 +9,26 @@ use crate::math::{Crossing, Vec3, first_root};
 use crate::scene::Primitives;
 use crate::simd::{Float, Mask};
 
-/// The corners that triangles of a group share at most: those of a box.
+/// Most corners that the triangles of a group share: the corners of a box.
 const MOST_CORNERS: usize = 8;
 
-/// The primitives of a scene, but for planes and for what is tested elsewhere.
+/// The primitives of a scene, except for planes and for spheres that are tested elsewhere.
 pub(super) struct All {
     /// Numbers, centres and radii.
     spheres: Vec<(f64, Vec3, f64)>,
     groups: Vec<Group>,
 }
 
-/// Triangles that stand one after the other and have few corners between them, each of which is turned to the rays once.
+/// Consecutive triangles with few corners between them. Each corner is transformed to the rays' axes once.
 #[derive(Default)]
 struct Group {
     corners: Vec<Vec3>,
-    /// The places of a triangle's corners, and its number.
+    /// Indices of a triangle's corners, and its number.
     triangles: Vec<([usize; 3], f64)>,
 }
 
 impl Group {
-    /// The places of a triangle's corners, which are added where they are new; `None` if there is no room.
+    /// The indices of a triangle's corners. New corners are added; `None` if there is no room.
     fn places(&mut self, triangle: &[Vec3; 3]) -> Option<[usize; 3]> {
         let bits = |corner: &Vec3| [corner.x, corner.y, corner.z].map(f64::to_bits);
         let mut corners = self.corners.clone();
@@ -66,7 +66,7 @@ impl All {
         Self { spheres, groups }
     }
 
-    /// Takes what comes before what has been found so far, which must be of spheres and planes.
+    /// Takes nearer hits than the hits found so far, which must be on spheres and planes.
     #[inline(always)]
     pub(super) fn nearest<V: Float>(&self, rays: &Rays<V>, found: &mut Found<V>) {
         let never = V::splat(f64::NAN);
@@ -88,7 +88,8 @@ impl All {
                     Crossing::of([corners[a % MOST_CORNERS], corners[b % MOST_CORNERS], corners[c % MOST_CORNERS]]);
                 let is_met = crossing.is_met & !rays.from.equal(number);
                 if is_met.any() {
-                    // Numbers rise, and those of spheres and planes are lower: the first of equally near triangles has the lowest.
+                    // Numbers rise, and spheres and planes have lower ones: the first of equally near triangles has the
+                    // lowest number.
                     found.take_from_anywhere(number, V::select(is_met, crossing.root(), never));
                 }
             }

@@ -1,5 +1,5 @@
-//! Primitives of a kind side by side: as many spheres as a register has numbers in single precision, as many triangles as one has
-//! numbers in the precision of the lanes.
+//! Blocks of primitives of one kind: as many spheres as a register holds numbers of single precision, or as many
+//! triangles as it holds numbers of the lanes' precision.
 
 use super::Best;
 use super::all::All;
@@ -11,23 +11,23 @@ use crate::math::{Crossing, Real, Vec3, first_root, sheared};
 use crate::scene::{Bounds, Primitive, Primitives};
 use crate::simd::{Aligned, Float, Mask, Number, Numbers, Precision, Table, prefetch};
 
-/// Numbers of a sphere: its centre, a radius and its number.
+/// Numbers of a sphere: its centre, a padded radius and its number.
 const OF_SPHERE: usize = 5;
-/// Numbers of it as it is: its centre and its radius.
+/// Exact numbers of a sphere: its centre and its radius.
 const OF_EXACT: usize = 4;
 /// Numbers of a triangle: its three corners and its number.
 const OF_TRIANGLE: usize = 10;
-/// The number of a place without a primitive; others are not below -1.
+/// The number in a place without a primitive; all others are at least -1.
 const NO_NUMBER: f64 = -2.0;
-/// What stands where a block has no more spheres: so far away that hardly a ray comes near, and none meets it.
+/// Values in a place without a sphere: so far away that hardly any ray comes near, and none meets it.
 const NO_SPHERE: ([f64; 4], [f64; 4]) = ([1e30, 1e30, 1e30, 0.0], [f64::NAN; 4]);
 
-/// Blocks: of each the first number of all its primitives, then the second, and so on.
+/// Blocks. Each stores the first number of all its primitives, then the second, and so on.
 pub(super) struct Blocks {
-    /// As [`super::coarse`] has them.
+    /// Scaled and padded as in [`super::coarse`].
     spheres: Aligned<f32>,
-    /// In single precision the same in the same order: centres and radii as they are, block by block, first the x of all, then y, z and the radii. In
-    /// double precision, which tests them one by one, they are in the table of surfaces.
+    /// The same spheres in the same order, with exact centres and radii: block by block, first all x, then y, z and the
+    /// radii. Only in single precision. Double precision reads single spheres from the table of surfaces.
     exact: Aligned<f32>,
     triangles: Numbers,
     /// Spheres in a block, and triangles in one.
@@ -36,17 +36,17 @@ pub(super) struct Blocks {
     pub(super) scale: Scale,
 }
 
-/// Some of the blocks.
+/// The blocks of a leaf.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Leaf {
-    /// From the first block of spheres to behind the last, likewise of triangles.
+    /// The first block of spheres and the block behind the last; likewise of triangles.
     pub(super) spheres: [u32; 2],
     triangles: [u32; 2],
-    /// The primitives that are in them.
+    /// Number of primitives in them.
     pub(super) primitives: u32,
 }
 
-/// Blocks that are being made.
+/// Blocks under construction.
 pub(super) struct Making<'a> {
     primitives: &'a Primitives,
     scale: Scale,
@@ -72,7 +72,7 @@ impl<'a> Making<'a> {
         Self { primitives, scale, large, widths, spheres: none(), exact: none(), triangles }
     }
 
-    /// Makes room for the primitives of leaves with so many primitives: growing by and by would take half as much memory again.
+    /// Reserves room for leaves with these numbers of primitives. Gradual growth would take half as much memory again.
     pub(super) fn make_room(&mut self, leaves: impl Iterator<Item = usize>) {
         let precision = self.triangles.precision();
         let [of_spheres, of_triangles] = self.widths;
@@ -81,7 +81,7 @@ impl<'a> Making<'a> {
             spheres += primitives.next_multiple_of(of_spheres);
             triangles += primitives.next_multiple_of(of_triangles);
         }
-        // Where both kinds are there, each leaf counts for both, and what is not used is never touched.
+        // If there are both kinds, each leaf counts for both, and memory that is not used is never touched.
         if !self.primitives.spheres.is_empty() {
             self.spheres = Aligned::with_capacity(OF_SPHERE * spheres);
             self.exact = Aligned::with_capacity(if precision == Precision::F32 { OF_EXACT * spheres } else { 0 });
@@ -91,7 +91,7 @@ impl<'a> Making<'a> {
         }
     }
 
-    /// Puts the primitives with these numbers into blocks of their own, but for planes and for what is tested elsewhere.
+    /// Puts the primitives with these numbers into new blocks, without planes and spheres that are tested elsewhere.
     pub(super) fn add(&mut self, numbers: impl IntoIterator<Item = u32>) -> Leaf {
         let first_flat = self.primitives.spheres.len();
         let first_triangle = first_flat + self.primitives.planes.len();
@@ -114,7 +114,7 @@ impl<'a> Making<'a> {
         }
     }
 
-    /// Appends spheres in blocks, the last of which is filled up. The first block, and the one behind the last.
+    /// Appends spheres in blocks and fills up the last block. Returns the first block and the block behind the last.
     fn add_spheres(&mut self, numbers: &[u32]) -> [u32; 2] {
         let width = self.widths[0];
         let count = |spheres: &[f32]| (spheres.len() / (OF_SPHERE * width)) as u32;
@@ -136,7 +136,7 @@ impl<'a> Making<'a> {
         [first, count(&self.spheres)]
     }
 
-    /// A sphere as single precision has it, and as it is.
+    /// A sphere for the coarse test, and its exact numbers.
     fn sphere(&self, number: u32) -> ([f64; 4], [f64; 4]) {
         let sphere = &self.primitives.spheres[number as usize];
         let Vec3 { x, y, z } = sphere.center;
@@ -144,7 +144,7 @@ impl<'a> Making<'a> {
         (self.scale.sphere(&bounds, sphere.center, sphere.radius), [x, y, z, sphere.radius])
     }
 
-    /// Likewise, triangles.
+    /// Appends triangles likewise.
     fn add_triangles(&mut self, triangles: &[[f64; OF_TRIANGLE]]) -> [u32; 2] {
         let width = self.widths[1];
         let count = |blocks: &Numbers| (blocks.len() / (OF_TRIANGLE * width)) as u32;
@@ -158,7 +158,7 @@ impl<'a> Making<'a> {
         [first, count(&self.triangles)]
     }
 
-    /// All of the primitives, to be tested without blocks.
+    /// All primitives, for tests without blocks.
     pub(super) fn all(&self) -> All {
         All::of(self.primitives, self.large)
     }
@@ -175,16 +175,16 @@ impl<'a> Making<'a> {
     }
 }
 
-/// What the triangles of a block have in one place.
+/// The numbers of all triangles of a block in one place.
 #[inline(always)]
 fn column<V: Float>(block: &[V::One], place: usize) -> &[V::One] {
     &block[place * V::LANES..][..V::LANES]
 }
 
-/// Corners as the ray sees them, the first of whose coordinates is in that place.
+/// Corners in the ray's axes. Their first coordinate is in the place `first`.
 #[inline(always)]
 fn corner<V: Float>(block: &[V::One], first: usize, ray: &Turned<V>) -> [V; 3] {
-    // None is above 2; said again, places in a block need no check.
+    // No axis is above 2; with this explicit bound, places in a block need no check.
     let [x, y, z] = ray.shear.axes.map(|axis| axis.min(2));
     let [ox, oy, oz] = ray.origin;
     let x = V::load(column::<V>(block, first + x)) - ox;
@@ -194,7 +194,7 @@ fn corner<V: Float>(block: &[V::One], first: usize, ray: &Turned<V>) -> [V; 3] {
 }
 
 impl Leaf {
-    /// Whether it holds more than a block of spheres.
+    /// Whether it holds more than one block of spheres.
     #[inline(always)]
     pub(super) fn has_rest(&self) -> bool {
         self.spheres[0] + 1 < self.spheres[1] || self.triangles[0] < self.triangles[1]
@@ -202,7 +202,7 @@ impl Leaf {
 }
 
 impl Blocks {
-    /// Distances to the spheres of a block, by the formula of [`Singles`] and with its bits.
+    /// Distances to the spheres of a block, by the formula of [`Singles`] and with the same bits.
     #[inline(always)]
     fn roots_in_block<W: Float<One = f32>>(&self, block: usize, origin: Vec3, direction: Vec3) -> W {
         let exact = &self.exact[block * OF_EXACT * W::LANES..];
@@ -228,20 +228,20 @@ impl Blocks {
         spheres.chain(triangles).filter(|number| *number >= 0.0).map(|number| number as u32)
     }
 
-    /// How large they are.
+    /// Their size in bytes.
     #[inline(always)]
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&*self.spheres) + size_of_val(&*self.exact) + self.triangles.bytes()
     }
 
-    /// Asks for the first triangles of a leaf.
+    /// Prefetches the first triangles of a leaf.
     #[inline(always)]
     pub(super) fn prefetch<V: Float>(&self, leaf: &Leaf) {
         let of_block = OF_TRIANGLE * V::Register::LANES;
         prefetch::<V, _>(V::One::all(&self.triangles), leaf.triangles[0] as usize * of_block, of_block);
     }
 
-    /// The spheres of a block that a ray comes near not beyond `limit`, in sizes of the scene, as bits.
+    /// The spheres of a block that a ray comes near, no farther than `limit` in sizes of the scene, as bits.
     #[inline(always)]
     pub(super) fn near<V: Float>(&self, block: u32, ray: &Single<V>, limit: f32) -> u32 {
         let lanes = V::Single::LANES;
@@ -251,7 +251,7 @@ impl Blocks {
         (!(ray.coarse.passes(spheres, limit) | is_own)).bits()
     }
 
-    /// Tests a ray against those spheres of a block.
+    /// Tests a ray against the spheres `near` of a block.
     #[inline(always)]
     pub(super) fn test_near<V: Float>(
         &self,
@@ -265,7 +265,7 @@ impl Blocks {
         let block = block as usize;
         let numbers = &self.spheres[(block * OF_SPHERE + OF_SPHERE - 1) * lanes..][..lanes];
         if V::IS_DOUBLE {
-            // Of a block most rays come near one sphere or none.
+            // Most rays come near one sphere of a block, or none.
             for lane in LanesOf(near) {
                 let [x, y, z, radius] = *surfaces.row(numbers[lane] as i32);
                 let root = first_root(ray.origin - Vec3::new(x, y, z), ray.direction, 1.0, radius);
@@ -278,7 +278,7 @@ impl Blocks {
         }
     }
 
-    /// Tests a ray against all primitives of a leaf but for the first block of spheres.
+    /// Tests a ray against all primitives of a leaf except its first block of spheres.
     #[inline(always)]
     pub(super) fn test_rest<V: Float>(&self, leaf: &Leaf, surfaces: &Table, ray: &Single<V>, best: &mut Best) {
         for block in leaf.spheres[0] + 1..leaf.spheres[1] {

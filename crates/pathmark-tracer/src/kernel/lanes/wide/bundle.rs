@@ -1,4 +1,4 @@
-//! The rays of all lanes for searches of one ray at a time, and rays by their own axes, which triangles are tested by.
+//! The rays of all lanes for searches of one ray at a time, and rays in their own axes for triangle tests.
 
 use super::coarse::{AllCoarse, Coarse, Scale};
 use crate::kernel::lanes::nearest::Found;
@@ -6,22 +6,23 @@ use crate::kernel::lanes::packet::Rays;
 use crate::math::{Ray, Shear, Vec3, sheared};
 use crate::simd::{Float, MOST_LANES, Mask};
 
-/// The rays of all lanes, out of their registers. Page by page, as [`super::Stacks`] are: a processor takes a load for one of what was just stored where both
-/// stand at the same place of a page, so how fast searches were depended on where memory happened to be.
+/// The rays of all lanes, in memory instead of registers. Aligned to pages, like [`super::Stacks`]: a processor takes a
+/// load for one of data just stored if both have the same offset in a page, so the speed of searches depended on the
+/// addresses in memory.
 #[repr(align(4096))]
 pub(super) struct Bundle<V: Float> {
     /// Origins, directions, and the primitives that rays start on.
     rows: [[V::One; MOST_LANES]; 7],
     pub(super) coarse: AllCoarse,
-    /// By the rays' own axes, origins and [`Shear::by`]; of no use in a scene without triangles.
+    /// Origins in the rays' own axes and [`Shear::by`]; meaningless in a scene without triangles.
     turned: [[V::One; MOST_LANES]; 6],
     /// [`Shear::axes`].
     axes: [[usize; 3]; MOST_LANES],
     has_triangles: bool,
-    /// Distances and numbers of the first primitives so far.
+    /// Distances and numbers of the nearest primitives so far.
     pub(super) nearest: [V::One; MOST_LANES],
     pub(super) primitive: [V::One; MOST_LANES],
-    /// The distances in sizes of the scene: how far boxes may begin that are still of interest.
+    /// The distances in sizes of the scene: boxes that begin farther away need no test.
     pub(super) limits: [f32; MOST_LANES],
 }
 
@@ -90,14 +91,14 @@ const AXES: [[usize; 3]; 3] = [[0, 1, 2], [1, 2, 0], [2, 0, 1]];
 pub(super) struct Single<V: Float> {
     pub(super) origin: Vec3,
     pub(super) direction: Vec3,
-    /// Number of the primitive that it starts on, as in [`Rays`].
+    /// Number of the primitive that the ray starts on, as in [`Rays`].
     pub(super) from: f64,
     pub(super) coarse: Coarse<V::Single>,
     /// `None` in a scene without triangles.
     pub(super) turned: Option<Turned<V::Register>>,
 }
 
-/// A ray by its own axes, the same in every lane.
+/// A ray in its own axes, repeated in all lanes.
 pub(super) struct Turned<V> {
     pub(super) origin: [V; 3],
     pub(super) shear: Shear<V>,
@@ -108,7 +109,7 @@ pub(super) fn three<V: Float>([x, y, z]: [f64; 3]) -> [V; 3] {
     [V::splat(x), V::splat(y), V::splat(z)]
 }
 
-/// Rays by their own axes: [`crate::math::Shear`] in lanes.
+/// Rays in their own axes: [`crate::math::Shear`] in lanes.
 pub(super) struct AllTurned<V: Float> {
     origin: Vec3<V>,
     /// Whether the direction's longest component is x, or y.
@@ -133,7 +134,7 @@ impl<V: Float> AllTurned<V> {
         turned
     }
 
-    /// The components of a vector by the ray's axes.
+    /// The components of a vector in the ray's axes.
     #[inline(always)]
     pub(super) fn axes(&self, Vec3 { x, y, z }: Vec3<V>) -> [V; 3] {
         let [is_x, is_y] = self.is_long;
@@ -150,7 +151,7 @@ impl<V: Float> AllTurned<V> {
     }
 }
 
-/// [`crate::math::Shear::by`] of directions by their own axes, rounded to single precision once, as it is for one ray.
+/// [`crate::math::Shear::by`] of directions in their own axes, rounded to single precision once, as for a single ray.
 #[inline(always)]
 fn in_double<V: Float>(direction: [V; 3]) -> [V; 3] {
     let mut rows = [[V::One::default(); MOST_LANES]; 3];

@@ -1,45 +1,50 @@
-//! Rays in single precision, for tests that may let in too much but never too little: against boxes, and whether a ray's line comes near a sphere.
-//! Twice as many fit a register as in double precision, and what they let in is tested exactly.
+//! Conservative tests of rays in single precision: against boxes, and whether a ray's line comes near a sphere. They
+//! may accept too much but never too little. A register holds twice as many numbers as in double precision, and
+//! accepted primitives are tested exactly.
 //!
-//! Lengths are divided by the scene's size, a power of two, so that nothing is ever out of range. Below, u = 2^-24, and |o| and |b| are the largest
-//! coordinates of the ray's origin and of a box. Rounding a face, the origin, a direction's inverse, their products and the distance to what has been
-//! found moves a face by less than 10 u (|o| + |b|). Rounding the terms of a ray's closest approach to a sphere's centre moves it by less than
-//! 23 u (|o| + |b|), and the comparison of both squares counts for 6 u of the radius, which is no longer than |b|. Boxes, radii and rays have a
-//! [`padding`] of 64 u |b| and 64 u |o|.
+//! Lengths are divided by the scene's size, a power of two, so that no value is out of range. Below, u = 2^-24, and |o|
+//! and |b| are the largest coordinates of the ray's origin and of a box. The rounding of a face, the origin, a
+//! direction's inverse, their products and the distance of the nearest hit so far moves a face by less than 10 u (|o| +
+//! |b|). The rounding of the terms of a ray's closest approach to a sphere's centre moves it by less than 23 u (|o| +
+//! |b|). The comparison of both squares counts for 6 u of the radius, which is at most |b|. Boxes, radii and rays have
+//! a [`padding`] of 64 u |b| and 64 u |o|.
 //!
-//! In single precision the test of a sphere that is let in rounds as much as the quick one: both together less than
-//! 2 (23 + 6) u = 58 u. So what it meets is let in, and a tree finds what a test of all spheres finds.
+//! In single precision the exact test of an accepted sphere has the same rounding error as the quick test: together
+//! less than 2 (23 + 6) u = 58 u. So every sphere that the exact test meets is accepted, and a tree finds the same as a
+//! test of all spheres.
 //!
-//! A sphere is met no nearer than its radius before the ray's closest approach to its centre, and no farther than its radius behind it. How far along
-//! the ray that approach is comes out within 11 u (|o| + |b|), which with the rounding of the radius and of the distance to what has been found is 16 u.
-//! In single precision a sphere that lies beyond another hit has its root at c/q, with c off by 8 u (|f|² + r²) and q no less than the closest approach,
-//! which is no less than r: the root is off by less than 35 u (|o| + |b|). Both are less than the padding together, so what is left out as behind the
+//! A ray meets a sphere at most one radius before, and at most one radius behind, its closest approach to the centre.
+//! The computed distance of this approach is off by at most 11 u (|o| + |b|), and by 16 u with the rounding of the
+//! radius and of the distance of the nearest hit so far. In single precision a sphere beyond another hit has its root
+//! at c/q, with c off by 8 u (|f|² + r²), and q at least the closest approach, which is at least r: the root is off by
+//! less than 35 u (|o| + |b|). Both together are less than the padding. So a sphere that is rejected as behind the
 //! ray's start or beyond the distance is not met there.
 //!
-//! The padding also covers what triangles are tested with in single precision, slivers included. A corner as the ray sees it is off by at most 5 u (|o| + |b|).
-//! Of such corners the edge functions are right within 2 u of themselves, whatever cancels, so their signs are right, and the weights that they give
-//! the corners' distances, none of which is negative, within 4 u: the point at the distance that comes out is within 16 u (|o| + |b|) of the triangle,
-//! and the ray enters the box of the triangle no farther than there.
+//! The padding also covers triangle tests in single precision, slivers included. A corner in the ray's axes is off by
+//! at most 5 u (|o| + |b|). The edge functions of such corners have a relative error of at most 2 u, whatever cancels,
+//! so their signs are right. The resulting weights of the corners' distances, none of which is negative, have a
+//! relative error of at most 4 u. So the point at the computed distance is within 16 u (|o| + |b|) of the triangle, and
+//! the ray enters the triangle's box no farther than there.
 
 use crate::math::{Ray, Vec3};
 use crate::scene::{Bounds, padding};
 use crate::simd::{Float, MOST_LANES};
 
-/// The smallest coordinate that a box is taken to have: squares of what it is padded by must not underflow.
+/// The smallest coordinate that is assumed for a box: squares of its padding must not underflow.
 const SMALLEST: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// The inverse of the size of a scene: a power of two that takes its largest coordinate to about 1.
+/// The inverse of the size of a scene: a power of two that scales its largest coordinate to about 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale(pub(super) f64);
 
 impl Scale {
     pub(super) fn of(bounds: &Bounds) -> Self {
-        // Nothing at all has an infinite box, and any exponent.
+        // An empty scene has an infinite box, and any exponent will do.
         let (_, exponent) = libm::frexp(bounds.largest());
         Self(libm::ldexp(1.0, -exponent.clamp(-1000, 1000)))
     }
 
-    /// A distance in sizes of the scene. What begins farther along the ray than the nearest hit so far is of no interest.
+    /// A distance in sizes of the scene. Boxes that begin beyond the nearest hit so far need no test.
     #[inline(always)]
     pub(super) fn limit(self, distance: f64) -> f32 {
         (distance * self.0) as f32
@@ -49,13 +54,13 @@ impl Scale {
         padding(f32::MANTISSA_DIGITS) * bounds.largest().max(SMALLEST)
     }
 
-    /// A box to test rays against.
+    /// The padded box that rays are tested against.
     pub(super) fn padded(self, bounds: &Bounds) -> Bounds {
         let bounds = self.scaled(bounds);
         bounds.grown(Self::padding(&bounds))
     }
 
-    /// The centre of a sphere with this box, and a radius to test rays against.
+    /// The centre of a sphere with this box, and the padded radius that rays are tested against.
     pub(super) fn sphere(self, bounds: &Bounds, center: Vec3, radius: f64) -> [f64; 4] {
         let padding = Self::padding(&self.scaled(bounds));
         let Vec3 { x, y, z } = center * self.0;
@@ -72,7 +77,7 @@ pub(super) struct AllCoarse {
     rows: [[f32; MOST_LANES]; ROWS],
 }
 
-/// Numbers of a ray: its direction, one over that, where distances to near and to far faces are taken from, its origin, and its padding.
+/// Numbers of a ray: direction, its inverse, the offsets of distances to near and to far faces, origin, and padding.
 const ROWS: usize = 16;
 
 impl AllCoarse {
@@ -88,7 +93,7 @@ impl AllCoarse {
         let axes = [(x, ray.direction.x), (y, ray.direction.y), (z, ray.direction.z)];
         for (axis, &(origin, direction)) in axes.iter().enumerate() {
             let outwards = V::select(direction.lt(V::splat(0.0)), -padding, padding);
-            // Adding zero turns minus zero into zero, or the near and far faces would change places.
+            // Adding zero turns minus zero into zero; otherwise the near and far faces would change places.
             let inverse = V::splat(1.0) / (direction + V::splat(0.0));
             self.put(axis, direction);
             self.put(3 + axis, inverse);
@@ -115,7 +120,7 @@ impl AllCoarse {
         [W::splat(x.into()), W::splat(y.into()), W::splat(z.into())]
     }
 
-    /// One of the rays, the same in every lane.
+    /// The ray of one lane, repeated in all lanes.
     #[inline(always)]
     pub(super) fn of_lane<W: Float<One = f32>>(&self, lane: usize) -> Coarse<W> {
         Coarse {
@@ -138,18 +143,19 @@ pub(super) struct Coarse<W> {
     far: [W; 3],
     origin: [W; 3],
     padding: W,
-    /// Whether it goes towards smaller coordinates, so that it meets the high face of a box first.
+    /// For each axis, whether the ray goes towards smaller coordinates and so meets the high face of a box first.
     backward: [bool; 3],
 }
 
 impl<W: Float<One = f32>> Coarse<W> {
-    /// Where the ray enters each of the boxes with these faces, and whether it does so not beyond `limit`.
+    /// Distances at which the ray enters the boxes with these faces, and whether it does so no farther than `limit`.
     ///
-    /// A ray along a face gives NaN for that axis, and the comparisons then keep what the other axes say: it is let in.
+    /// A ray along a face gives NaN for that axis. The comparisons then keep the result of the other axes, so the box
+    /// is accepted.
     #[inline(always)]
     pub(super) fn enter(&self, faces: &[f32], limit: f32) -> (W, W::Mask) {
         let (mut enter, mut leave) = (W::splat(0.0), W::splat(limit.into()));
-        // Of that length and in places that are constants, nothing is checked again at each load.
+        // With this length and constant offsets, the loads need no further checks.
         let faces = &faces[..6 * W::LANES];
         for axis in 0..3 {
             let (low, high) = (&faces[axis * W::LANES..], &faces[(3 + axis) * W::LANES..]);
@@ -161,8 +167,9 @@ impl<W: Float<One = f32>> Coarse<W> {
         (enter, enter.le(leave))
     }
 
-    /// Whether the ray passes the spheres with these centres and radii, one row of numbers after the other: its line passes them, or they are behind its
-    /// start, or beyond `limit`. `false` for a sphere where NaN came up.
+    /// Whether the ray misses the spheres with these centres and radii, stored as one row of numbers after the other.
+    /// It does if its line misses them, if they are behind its start, or if they are beyond `limit`. `false` for a
+    /// sphere that leads to NaN.
     #[inline(always)]
     pub(super) fn passes(&self, spheres: &[f32], limit: f32) -> W::Mask {
         let [dx, dy, dz] = self.direction;
@@ -184,7 +191,7 @@ mod tests {
     use crate::sampling::{mix, uniform_sphere};
     use crate::simd::{Mask, Precision, Work, levels, on_level};
 
-    /// A ray, a sphere that its line meets, and how far along it a point of the sphere's box is.
+    /// A ray, a sphere that its line meets, and the distance along the ray of a point of the sphere's box.
     struct Meeting {
         ray: Ray,
         center: Vec3,
@@ -192,7 +199,8 @@ mod tests {
         distance: f64,
     }
 
-    /// Rays at spheres of all sizes from near and far, most of them along edges: of spheres seen from the ray's origin, and of boxes.
+    /// Rays towards spheres of all sizes from near and far. Most go along edges: of spheres seen from the ray's origin,
+    /// and of boxes.
     fn meetings() -> Vec<Meeting> {
         let mut count = 0;
         let mut random = || {
@@ -203,7 +211,7 @@ mod tests {
         while all.len() < 40_000 {
             let [size, away] = [random(), random()].map(|x| libm::exp2(20.0 * x - 10.0));
             let radius = size.min(1.0);
-            // Where one of both is near the origin of the scene, the other's padding has to do for it.
+            // If one of the two is near the scene's origin, the other's padding has to suffice.
             let one = uniform_sphere([random(), random()]) * libm::exp2(-20.0 * random());
             let other = one + uniform_sphere([random(), random()]) * (radius + away);
             let (center, origin) = if all.len() % 2 == 0 { (one, other) } else { (other, one) };
@@ -219,7 +227,7 @@ mod tests {
         all
     }
 
-    /// Counts the rays that pass their box and their sphere.
+    /// Counts the boxes and spheres that are wrongly rejected.
     struct Try<'a>(&'a [Meeting], f64);
 
     impl Work for Try<'_> {
@@ -236,7 +244,7 @@ mod tests {
                     low: [center.x - radius, center.y - radius, center.z - radius],
                     high: [center.x + radius, center.y + radius, center.z + radius],
                 };
-                // A scene has the origin in it.
+                // Every scene contains the origin.
                 let scale = Scale::of(&bounds.and(&Bounds { low: [-factor; 3], high: [factor; 3] }));
                 let mut all = AllCoarse::empty();
                 let side_by_side = Ray::<V> { origin: Vec3::splat(ray.origin), direction: Vec3::splat(ray.direction) };
@@ -249,7 +257,7 @@ mod tests {
                 let (_, met) = coarse.enter(&rows(&[padded.low, padded.high].concat()), scale.limit(distance));
                 wrong += usize::from(!met.any());
                 let sphere = scale.sphere(&bounds, center, radius);
-                // Where it is met: what is found at that very distance must not be left out.
+                // A hit at exactly the limit must not be rejected.
                 let root = first_root(ray.origin - center, ray.direction, 1.0, radius);
                 wrong += usize::from(root > 0.0 && coarse.passes(&rows(&sphere), scale.limit(root)).any());
             }

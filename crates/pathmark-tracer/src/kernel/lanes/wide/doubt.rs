@@ -1,4 +1,5 @@
-//! Which hits of triangles may not be sure: what [`crate::scene::nearness`] and the padding of boxes say of one ray, of many.
+//! Triangle hits that may not be sure: the checks by [`crate::scene::nearness`] and by the padding of boxes, for many
+//! rays at a time.
 
 use crate::kernel::lanes::nearest::Found;
 use crate::kernel::lanes::packet::LanesOf;
@@ -7,9 +8,10 @@ use crate::math::{Ray, Vec3, dot};
 use crate::scene::{Scene, Triangle, nearness, padding};
 use crate::simd::{Float, MOST_LANES, Mask};
 
-/// The `wanted` lanes whose hits are to be looked at again.
+/// The `wanted` lanes whose hits have to be searched again.
 ///
-/// In single precision only those that start near the plane of what they meet: the padding of its boxes covers the rest.
+/// In single precision these are only the rays that start near the plane of their triangle: the padding of boxes covers
+/// the rest.
 #[inline(always)]
 pub(super) fn are_doubtful<V: Float>(
     scene: &Scene,
@@ -40,8 +42,8 @@ pub(super) fn are_doubtful<V: Float>(
     wanted & (is_near | below | above).bits()
 }
 
-/// The `wanted` lanes whose points are not in the boxes of their triangles, by the corners of each. Scenes of many primitives have no tables of boxes:
-/// two rows would take 64 bytes, nearly as much as the corners.
+/// The `wanted` lanes whose points are outside the boxes of their triangles, by the corners of each. Scenes of many
+/// primitives have no tables of boxes, because two rows would take 64 bytes, nearly as much as the corners.
 #[inline(always)]
 fn outside<V: Float>(scene: &Scene, point: Vec3<V>, slack: V, triangles: V, wanted: u32) -> u32 {
     let mut rows = [[V::One::default(); MOST_LANES]; 5];
@@ -60,7 +62,7 @@ fn outside<V: Float>(scene: &Scene, point: Vec3<V>, slack: V, triangles: V, want
     outside
 }
 
-/// Whether a coordinate is not between three others, give or take some slack.
+/// Whether a coordinate is outside the range of three others, widened by some slack.
 #[inline(always)]
 fn is_beside(x: f64, [a, b, c]: [f64; 3], slack: f64) -> bool {
     let (low, high) = if a < b { (a, b) } else { (b, a) };
@@ -76,7 +78,7 @@ mod tests {
     use crate::scene::load;
     use crate::simd::{Level, Precision, Work, levels, on_level};
 
-    /// How many lanes are in doubt about another triangle as far away as the one that their ray meets.
+    /// Counts the lanes in doubt, with another triangle at the same distance in every other lane.
     struct InDoubt<'a>(&'a Scene, &'a [Tables; 2], &'a [Start]);
 
     impl Work for InDoubt<'_> {
@@ -92,7 +94,7 @@ mod tests {
                 for (lane, start) in starts.iter().enumerate() {
                     let (t, primitive) = nearest(scene, start);
                     found.nearest.set_lane(lane, t);
-                    // Every other lane has the triangle itself.
+                    // Every other lane has the right triangle.
                     found.primitive.set_lane(lane, (primitive + 7.0 * (lane % 2) as f64) % scene.owners.len() as f64);
                 }
                 let wanted = u32::MAX >> (MOST_LANES - V::LANES);
@@ -105,7 +107,7 @@ mod tests {
         }
     }
 
-    /// Boxes by the corners say what boxes out of tables say.
+    /// Boxes from corners give the same answers as boxes from tables.
     #[test]
     fn boxes_are_the_same_by_corners() {
         let scene = load("bumpy-ball").unwrap().accelerated("sah").unwrap();

@@ -1,9 +1,11 @@
-//! One ray against many boxes or primitives at a time: for scenes with triangles, and for large ones. Rays of a packet go anywhere, so one that looks
-//! into a hierarchy by itself tests fewer boxes than all of them together (Wald, Benthin and Boulos, "Getting Rid of Packets", 2008).
+//! One ray against many boxes or primitives at a time: for scenes with triangles, and for large scenes. The rays of a
+//! packet go in all directions. So a ray that traverses a hierarchy alone tests fewer boxes than the whole packet
+//! together (Wald, Benthin and Boulos, "Getting Rid of Packets", 2008).
 //!
-//! What it finds does not depend on how many are tested at a time: what is tested in single precision first has a padding that covers all rounding,
-//! and among equally near primitives the lowest number wins. In double precision it is what the scalar search finds, to the bit; in single precision
-//! each primitive is tested by one formula, in a tree and without one: spheres by those of [`Singles`].
+//! The result does not depend on how many are tested at a time. Preceding tests in single precision have a padding that
+//! covers all rounding errors, and among equally near primitives the lowest number wins. In double precision the result
+//! equals the scalar search's, to the bit. In single precision one formula tests each primitive, with and without a
+//! tree; spheres have the formulas of [`Singles`].
 
 mod all;
 mod blocks;
@@ -31,23 +33,24 @@ pub(in crate::kernel::lanes) use tree::{Stack, Stacks};
 
 /// The primitives of a scene.
 pub(in crate::kernel::lanes) struct Wide {
-    /// Spheres that single precision has by their curvature: all rays at a time.
+    /// Spheres that single precision stores by curvature: each is tested against all rays at a time.
     large: Option<Singles>,
-    /// Likewise, with the numbers of their primitives.
+    /// Planes and the numbers of their primitives, tested likewise.
     planes: Vec<(f64, Plane)>,
     blocks: Blocks,
     search: Search,
 }
 
-/// How primitives are searched that are no planes and are not large.
+/// Search among the primitives that are neither planes nor large spheres.
 enum Search {
     All(All),
     Tree(Tree),
 }
 
 impl Search {
-    /// A search of so many primitives by a tree of these nodes. One so deep that a ray may leave more for later than there is place for is not used:
-    /// to ask for place at each node costs every search a tenth of its time, and such trees are of scenes made for it.
+    /// Searches by a tree of these nodes, or without one if it is so deep that more children of a ray may wait than
+    /// there is room for. A check for room at each node would cost every search a tenth of its time, and only scenes
+    /// made for the purpose have such trees.
     fn of(gathered: Option<&Gathered>, width: usize, scale: Scale, making: &mut Making<'_>) -> Self {
         match gathered.filter(|gathered| is_shallow(gathered)) {
             Some(gathered) => Self::Tree(Tree::of(gathered, width, scale, making)),
@@ -56,7 +59,7 @@ impl Search {
     }
 }
 
-/// A search, which takes so long that it need not be part of the loop over vertices.
+/// A search. It takes so long that it need not be part of the loop over vertices.
 pub(in crate::kernel::lanes) struct Nearest<'a, 's, V: Float> {
     pub(in crate::kernel::lanes) scene: &'a Scene,
     pub(in crate::kernel::lanes) wide: &'a Wide,
@@ -68,7 +71,7 @@ pub(in crate::kernel::lanes) struct Nearest<'a, 's, V: Float> {
 }
 
 impl<V: Float> Apart for Nearest<'_, '_, V> {
-    /// And the lanes that are to be searched again, because they may not surely meet what was found.
+    /// The hits, and the lanes to be searched again, because their hits may not be sure.
     type Output = (Found<V>, u32);
 
     #[inline(always)]
@@ -82,7 +85,7 @@ impl<V: Float> Apart for Nearest<'_, '_, V> {
 }
 
 impl Wide {
-    /// The primitives of a scene, in a tree that is made of the hierarchy, if there is one.
+    /// The primitives of a scene, in a tree made from the hierarchy, if there is one.
     pub(in crate::kernel::lanes) fn of(
         scene: &Scene,
         hierarchy: Option<Hierarchy>,
@@ -108,7 +111,7 @@ impl Wide {
         matches!(self.search, Search::Tree(_))
     }
 
-    /// The first thing along each of the `wanted` rays.
+    /// The nearest primitive along each of the `wanted` rays.
     #[inline(always)]
     fn nearest<V: Float>(
         &self,
@@ -122,7 +125,8 @@ impl Wide {
             Some(large) => large.scan(rays),
             None => Found::nothing(),
         };
-        // What a ray starts on is not tested: where it will be met again is known. A ray that starts on nothing has any `own_root`.
+        // The primitive that a ray starts on is not tested, because its other root is known. A ray that starts on none
+        // may have any `own_root`.
         let nowhere = V::splat(f64::NAN);
         found.take_in_any_order(rays.from, V::select(V::splat(0.0).le(rays.from), rays.own_root, nowhere));
         for (number, plane) in &self.planes {
@@ -147,9 +151,9 @@ impl Wide {
     }
 }
 
-/// What searches write to and leave behind.
+/// Working memory of searches, which also holds their results.
 pub(in crate::kernel::lanes) struct Scratch<'a, V: Float> {
-    /// As many as there are lanes, where there is a tree.
+    /// One for each lane, if there is a tree.
     stacks: &'a mut [Stack],
     bundle: Bundle<V>,
 }
@@ -161,14 +165,14 @@ impl<'a, V: Float> Scratch<'a, V> {
     }
 }
 
-/// What a ray met so far: a distance and a number, -1 for nothing.
+/// A ray's nearest hit so far: distance and number of the primitive, -1 for none.
 struct Best {
     nearest: f64,
     primitive: f64,
 }
 
 impl Best {
-    /// A distance to the primitive with this number.
+    /// Takes a distance to the primitive with this number.
     #[inline(always)]
     fn take_one(&mut self, distance: f64, primitive: f64) {
         let is_lower = distance == self.nearest && primitive < self.primitive;
@@ -177,7 +181,7 @@ impl Best {
         self.primitive = if is_first { primitive } else { self.primitive };
     }
 
-    /// Distances to the primitives with these numbers, in the order of the lanes, where most rays meet one of them or none.
+    /// Takes distances to the primitives with these numbers, lane by lane, for rays that mostly meet one or none.
     #[inline(always)]
     fn take_few<V: Float>(&mut self, numbers: &[V::One], distance: V) {
         let ahead = V::splat(0.0).lt(distance) & distance.le(V::splat(self.nearest));
@@ -186,7 +190,7 @@ impl Best {
         }
     }
 
-    /// Likewise, where many rays meet several.
+    /// Takes distances likewise, for rays that often meet several.
     #[inline(always)]
     fn take<V: Float>(&mut self, numbers: &[V::One], distance: V) {
         let ahead = V::splat(0.0).lt(distance) & distance.le(V::splat(self.nearest));
@@ -213,7 +217,7 @@ mod tests {
     use crate::scene::{SCENES, load};
     use crate::simd::{MOST_LANES, Work, levels, on_level};
 
-    /// Compares with the scalar search, and returns how many rays are left to it.
+    /// Compares with the scalar search, and returns the number of rays that are left to it.
     struct Compare<'a>(&'a Scene, &'a Wide, &'a [Start]);
 
     impl Work for Compare<'_> {
@@ -243,7 +247,7 @@ mod tests {
         }
     }
 
-    /// The scene with everything in it twice, so that every hit is a tie.
+    /// The scene with every primitive twice, so that every hit is a tie.
     pub(super) fn twice(scene: &Scene) -> Scene {
         let mut twice = scene.clone();
         let primitives = &mut twice.primitives;
@@ -257,8 +261,8 @@ mod tests {
         twice
     }
 
-    /// In double precision it is the scalar search to the bit, for rays of walks and rays down to the edges between things, in a tree and without one,
-    /// where all are there once and where all are there twice.
+    /// In double precision the result equals the scalar search's, to the bit: for rays of walks and rays close to
+    /// edges, with and without a tree, with every primitive once and with every primitive twice.
     #[test]
     fn what_is_found_is_what_the_scalar_search_finds() {
         let [mut compared, mut left] = [0, 0];
@@ -267,7 +271,7 @@ mod tests {
             for scene in
                 [scene.accelerated("sah").unwrap(), twice(&scene), twice(&scene).accelerated("median").unwrap(), scene]
             {
-                // What is found without a tree takes long for many, and is no other.
+                // Without a tree a search among many primitives takes long, and its result is the same.
                 if scene.hierarchy.is_none() && scene.owners.len() > 100 {
                     continue;
                 }
@@ -281,11 +285,11 @@ mod tests {
                 }
             }
         }
-        // Of what is there twice every other ray seems to meet the twin of what it starts on.
+        // With every primitive twice, about every other ray seems to meet the twin of the primitive that it starts on.
         assert!(compared > 1_000_000 && left < compared / 3, "{compared} rays, {left} left");
     }
 
-    /// Scenes so large and so small that single precision has no numbers for them.
+    /// Scenes so large and so small that their coordinates are out of range in single precision.
     #[test]
     fn size_does_not_matter() {
         for name in ["spheres:300", "cornell-mesh", "imbalance:40"] {
@@ -303,7 +307,7 @@ mod tests {
         }
     }
 
-    /// Rays that leave spheres inwards, so flat that their lines pass them for all that rounding says.
+    /// Rays that leave spheres inwards, so flat that rounding errors may let their lines miss the spheres.
     fn grazing(scene: &Scene) -> Vec<Start> {
         let of_sphere = |(number, sphere): (u32, &crate::scene::Sphere)| {
             let k = f64::from(number);
@@ -315,7 +319,7 @@ mod tests {
         (0..).zip(&scene.primitives.spheres).map(of_sphere).collect()
     }
 
-    /// Where a ray leaves a sphere inwards it meets it again, whether its line does or not.
+    /// A ray that leaves a sphere inwards meets it again, even if its computed line misses the sphere.
     #[test]
     fn what_leaves_inwards_meets_its_own_sphere() {
         let scene = load("spheres:2048").unwrap().accelerated("sah").unwrap();

@@ -1,4 +1,4 @@
-//! The search for hits that are sure, along one ray by itself: where what the rays of a packet found may be rounding alone.
+//! The search for sure hits along a single ray, for rays whose hits in a packet may be due to rounding alone.
 
 use super::tree::{IS_LEAF, PLACES, Tree};
 use super::{Search, Wide};
@@ -7,8 +7,8 @@ use crate::math::Ray;
 use crate::scene::{Nearest, Scene, Slabs, Standpoint, Tests};
 
 impl Wide {
-    /// What [`Scene::nearest`] finds for rays in double precision: boxes with the padding of single precision, tested in double precision, leave out
-    /// nothing that is surely met. Without a tree the scene is asked.
+    /// Finds the same as [`Scene::nearest`] for rays in double precision: boxes with the padding of single precision,
+    /// tested in double precision, exclude no sure hit. Without a tree the scene itself is searched.
     #[cold]
     #[inline(never)]
     pub(in crate::kernel::lanes) fn surely_nearest(
@@ -46,7 +46,7 @@ impl Wide {
 }
 
 impl Tree {
-    /// The children of a node that a ray enters no farther than `limit`, and where.
+    /// The children of a node whose boxes a ray enters no farther than `limit`, and the distances of entry.
     fn entered(&self, node: usize, slabs: &Slabs, limit: f64) -> impl Iterator<Item = (f64, u32)> {
         let width = self.children.len() / self.counts.len();
         let faces = &self.faces[node * 6 * width..][..6 * width];
@@ -58,14 +58,14 @@ impl Tree {
     }
 }
 
-/// Children to come back to, and where the ray enters their boxes.
+/// Waiting children, and the distances at which the ray enters their boxes.
 struct Waiting {
     children: [(f64, u32); PLACES],
     count: usize,
 }
 
 impl Waiting {
-    /// Keeps children, the nearest of them last.
+    /// Adds children, the nearest of them last.
     fn push(&mut self, children: impl Iterator<Item = (f64, u32)>) {
         let before = self.count;
         for child in children {
@@ -75,7 +75,8 @@ impl Waiting {
         self.children[before..self.count].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
     }
 
-    /// The last one whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
+    /// Removes the last child whose box begins no farther than `limit`. At exactly the nearest distance so far, a lower
+    /// number may win the tie.
     fn pop(&mut self, limit: f64) -> Option<u32> {
         while self.count > 0 {
             self.count -= 1;
@@ -96,8 +97,8 @@ mod tests {
     use crate::scene::{SCENES, load};
     use crate::simd::{Precision, levels};
 
-    /// Compares with the scene's own search for rays of walks and rays down to the edges between things, in both precisions. How many rays there were,
-    /// and how many primitives they were tested against.
+    /// Compares with the scene's own search, for rays of walks and rays close to edges, in both precisions. Returns the
+    /// number of rays, and the number of primitives that they were tested against.
     fn compare(scene: &Scene) -> [u64; 2] {
         let view = scene.camera.view(8, 6);
         let (walks, edges) = walks(scene, 1000);
@@ -137,7 +138,7 @@ mod tests {
         }
     }
 
-    /// Where there are many, most are left out.
+    /// Among many primitives, most are not tested.
     #[test]
     fn few_primitives_are_tested() {
         for name in ["spheres:5000", "bumpy-ball:20000"] {
@@ -146,7 +147,7 @@ mod tests {
         }
     }
 
-    /// Primitives in all leaves whose boxes a ray enters, however far away.
+    /// Number of primitives in all leaves whose boxes a ray enters, at any distance.
     fn in_entered_leaves(wide: &Wide, ray: &Ray) -> u64 {
         let Search::Tree(tree) = &wide.search else { return 0 };
         let slabs = Slabs::new(&Ray { origin: ray.origin * wide.blocks.scale.0, ..*ray });
@@ -161,7 +162,8 @@ mod tests {
         primitives
     }
 
-    /// Boxes beyond the nearest hit so far are not looked into: of spheres in space a ray enters more of those than others.
+    /// Boxes beyond the nearest hit so far are not visited. Among scattered spheres, a ray enters more of these boxes
+    /// than others.
     #[test]
     fn what_is_behind_the_nearest_is_not_tested() {
         let scene = load("spheres:5000").unwrap().accelerated("sah").unwrap();

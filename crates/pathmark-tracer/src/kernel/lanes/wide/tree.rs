@@ -1,4 +1,5 @@
-//! A hierarchy whose nodes have as many children as a register has numbers in single precision, all of whose boxes are tested at a time.
+//! A hierarchy whose nodes have as many children as a register holds numbers of single precision. All boxes of a node
+//! are tested at a time.
 
 use super::Best;
 use super::blocks::{Blocks, Leaf, Making};
@@ -10,16 +11,16 @@ use crate::simd::{Aligned, Apart, Float, MOST_LANES, Mask, Table, prefetch};
 
 /// The tree; its root is the first node.
 pub(super) struct Tree {
-    /// Of each node the lowest x, y and z of all children, then the highest.
+    /// For each node the lowest x, y and z of all children, then the highest.
     pub(super) faces: Aligned<f32>,
-    /// Of each node as many as there are lanes, as bits of a number: numbers of nodes, or with [`IS_LEAF`] of leaves.
+    /// For each node one entry per lane, as bits of a number: a node's number, or with [`IS_LEAF`] a leaf's.
     pub(super) children: Aligned<f32>,
-    /// How many of them there are.
+    /// Number of children of each node.
     pub(super) counts: Vec<u32>,
     pub(super) leaves: Vec<Leaf>,
 }
 
-/// Bytes of primitives that a processor keeps near: where there are no more, to ask for the next ones costs more than to wait for them.
+/// Bytes of primitives that fit a processor's caches. Up to this size, prefetches cost more than waiting for memory.
 const CACHED: usize = 16 << 20;
 
 pub(super) const IS_LEAF: u32 = 1 << 31;
@@ -42,7 +43,7 @@ impl Tree {
             let mut bounds = [Bounds::EMPTY; MOST_LANES];
             bounds.iter_mut().zip(node).for_each(|(bounds, child)| *bounds = scale.padded(&child.bounds));
             for k in 0..6 {
-                // What has its sides exchanged is met by no ray.
+                // A missing child has a box with exchanged sides, which no ray meets.
                 let face = |bounds: &Bounds| if k < 3 { bounds.low[k] } else { bounds.high[k - 3] };
                 faces.extend(bounds[..width].iter().map(|bounds| face(bounds) as f32));
             }
@@ -62,11 +63,11 @@ impl Tree {
     }
 }
 
-/// The search along all rays of a packet. A function of its own, because it needs all registers for itself.
+/// The search along all rays of a packet. A separate function, because it needs all registers for itself.
 ///
-/// The rays go down the tree in turns. Which boxes a ray meets takes as long to compute as it would take to compute it for some others, too, and no
-/// processor foresees which way a ray goes on: so the boxes of all rays are tested first, and then all rays go on. What one ray waits for in memory,
-/// the others wait for meanwhile.
+/// The rays go down the tree in turns. While a ray's box test is computed, there is time to compute some other rays'
+/// tests, too, and no processor predicts where a ray continues. So the boxes of all rays are tested first, and then all
+/// rays continue. Waits for memory overlap in this way.
 pub(super) struct Descent<'a, V: Float> {
     pub(super) tree: &'a Tree,
     pub(super) blocks: &'a Blocks,
@@ -131,7 +132,7 @@ impl<V: Float> Descent<'_, V> {
         self.rays.limits[lane] = self.blocks.scale.limit(self.rays.nearest[lane].into());
     }
 
-    /// Tests rays against the boxes of the nodes that they are at, and keeps the children that they meet.
+    /// Tests rays against the boxes of their current nodes, and keeps the children that they meet.
     #[inline(always)]
     fn enter_nodes(&mut self, at_nodes: u32) {
         let (tree, lanes) = (self.tree, V::Single::LANES);
@@ -146,7 +147,7 @@ impl<V: Float> Descent<'_, V> {
         self.tests.boxes += boxes;
     }
 
-    /// A ray goes on to what comes next.
+    /// Moves a ray to its next node or leaf.
     #[inline(always)]
     fn go_on(&mut self, lane: usize, is_large: bool) {
         self.stacks[lane].pop(self.rays.limits[lane]);
@@ -155,7 +156,8 @@ impl<V: Float> Descent<'_, V> {
         }
     }
 
-    /// Tests rays against the first spheres of the leaves that they are at: quickly along all rays, and then those that they come near.
+    /// Tests rays against the first spheres of their current leaves: a quick test along all rays, then exact tests of
+    /// the spheres that they come near.
     #[inline(always)]
     fn meet_spheres(&mut self, at_leaves: u32) {
         let mut near = 0_u32;
@@ -182,7 +184,7 @@ impl<V: Float> Descent<'_, V> {
         }
     }
 
-    /// Tests a ray against what else is in the leaf that it is at.
+    /// Tests a ray against the other primitives of its current leaf.
     #[inline(always)]
     fn meet_rest(&mut self, lane: usize) {
         let leaf = *self.leaf(lane);
@@ -196,7 +198,7 @@ impl<V: Float> Descent<'_, V> {
 }
 
 impl Tree {
-    /// Asks for what a ray comes to next.
+    /// Prefetches the next node or leaf of a ray.
     #[inline(always)]
     fn prefetch<V: Float>(&self, stack: &Stack) {
         let (lanes, next) = (V::Single::LANES, stack.next as usize);
@@ -209,10 +211,11 @@ impl Tree {
     }
 }
 
-/// Children that may wait for a ray: some 15 a level of a tree that is ten levels deep on the widest registers.
+/// Most children that may wait for a ray: about 15 per level of a tree of ten levels, on the widest registers.
 const MOST_WAITING: usize = 160;
 
-/// Whether there is place for all children that may wait for a ray at a time in a tree of these nodes, each of which stands behind its parent.
+/// Whether there is room for all children that may wait for a ray at a time, in a tree of these nodes. Each node comes
+/// after its parent.
 pub(super) fn is_shallow(gathered: &Gathered) -> bool {
     let mut below = vec![0; gathered.nodes().len()];
     for (index, node) in gathered.nodes().enumerate().rev() {
@@ -225,20 +228,20 @@ pub(super) fn is_shallow(gathered: &Gathered) -> bool {
     below[0] <= MOST_WAITING
 }
 
-/// What a ray has before it.
+/// The nodes and leaves that a ray has yet to visit.
 #[derive(Clone)]
 pub(in crate::kernel::lanes) struct Stack {
-    /// What comes next: the number of a node, of a leaf with [`IS_LEAF`], or [`NOTHING`].
+    /// The next one: the number of a node, of a leaf with [`IS_LEAF`], or [`NOTHING`].
     next: u32,
-    /// Children to come back to, as bits of numbers, and where the ray enters their boxes.
+    /// Waiting children, as bits of numbers, and the distances at which the ray enters their boxes.
     children: [f32; PLACES],
     distances: [f32; PLACES],
     count: usize,
-    /// The spheres of a block that the ray comes near, as bits.
+    /// The spheres of the current block that the ray comes near, as bits.
     near: u32,
 }
 
-/// Those of all lanes, from the beginning of a page on.
+/// The stacks of all lanes, aligned to a page.
 #[derive(Clone)]
 #[repr(align(4096))]
 pub(in crate::kernel::lanes) struct Stacks(pub(in crate::kernel::lanes) [Stack; MOST_LANES]);
@@ -249,17 +252,17 @@ impl Stacks {
         Box::new(EMPTY.clone())
     }
 
-    /// Each of them; none where there is no tree.
+    /// The stack of each lane; none if there is no tree.
     pub(in crate::kernel::lanes) fn of_lanes(stacks: &mut Option<Box<Self>>) -> &mut [Stack] {
         stacks.as_mut().map_or(&mut [], |stacks| &mut stacks.0)
     }
 }
 
-/// The children of one node come on top of those that wait, all together.
+/// Room for the waiting children, and for the children of one node, which are pushed all together.
 pub(super) const PLACES: usize = MOST_WAITING + 2 * MOST_LANES;
 
 impl Stack {
-    /// Nothing.
+    /// An empty stack.
     pub(in crate::kernel::lanes) const EMPTY: Self =
         Self { next: NOTHING, children: [0.0; PLACES], distances: [0.0; PLACES], count: 0, near: 0 };
 
@@ -273,10 +276,11 @@ impl Stack {
         self.next >= IS_LEAF && self.next != NOTHING
     }
 
-    /// Keeps a node's children that are met, the nearest of them last. The others are not sorted: to look at them in the wrong order costs less.
+    /// Keeps a node's children that are met, the nearest of them last. The others are not sorted: visits in the wrong
+    /// order cost less.
     #[inline(always)]
     fn push<W: Float<One = f32>>(&mut self, children: W, enter: W, met: W::Mask) {
-        // There is place for more than can wait (`is_shallow`); said again, nothing below is checked.
+        // There is always room (`is_shallow`); with this explicit bound nothing below is checked.
         let count = self.count.min(PLACES - MOST_LANES - 1);
         children.pack(met, &mut self.children[count..]);
         enter.pack(met, &mut self.distances[count..]);
@@ -291,7 +295,8 @@ impl Stack {
         self.count = count + met.count_ones() as usize;
     }
 
-    /// Goes on with the last child whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
+    /// Continues with the last child whose box begins no farther than `limit`. At exactly the nearest distance so far,
+    /// a lower number may win the tie.
     #[inline(always)]
     fn pop(&mut self, limit: f32) {
         while self.count > 0 {
@@ -317,8 +322,9 @@ mod tests {
 
     const DEPTH: usize = 200;
 
-    /// A row of spheres whose boxes are all on the x axis, though the axis meets the last one alone. Each node holds the last of its spheres and a
-    /// node with those before, so a ray along the axis comes to the last one when everything else has been looked at.
+    /// A row of spheres whose boxes are all on the x axis, although the axis meets only the last sphere. Each node
+    /// holds the last of its spheres and a node with the spheres before. So a ray along the axis visits the last sphere
+    /// after everything else.
     fn row(width: usize) -> (Vec<Sphere>, Vec<Vec<Child>>) {
         let count = DEPTH * (width - 1);
         let sphere = |k: usize| {
@@ -354,14 +360,14 @@ mod tests {
             let ray =
                 Ray { origin: Vec3::splat(Vec3::new(0.0, 0.0, 0.0)), direction: Vec3::splat(Vec3::new(1.0, 0.0, 0.0)) };
             let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
-            // Without a tree nobody looks at surfaces.
+            // Without a tree the table of surfaces is not read.
             let surfaces = Table::new([[0.0; 4]], Precision::F64);
             let found = self.0.nearest(&rays, 1, &surfaces, &mut Scratch::new(&mut []), &mut Counts::default());
             (found.nearest.lane(0), found.primitive.lane(0))
         }
     }
 
-    /// Trees may be so deep that more is left to look at than there is place for; then everything is looked at.
+    /// If a tree is so deep that more children may wait than there is room for, all primitives are tested.
     #[test]
     fn what_there_is_no_place_for_is_looked_at() {
         for level in levels() {
