@@ -1,33 +1,33 @@
-//! Axes: from values to shares of the axis, and the ticks a reader expects.
+//! Axes: positions of values, and ticks that readers expect.
 
 use super::number;
 
 /// How values are spread along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
-    /// Equal differences, equal distances.
+    /// Equal differences take equal distances.
     Linear,
-    /// Equal ratios, equal distances. Values that are not positive have no place.
+    /// Equal ratios take equal distances. Values that are not positive have no position.
     Log,
 }
 
-/// Where an axis is labelled.
+/// The labelled values of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ticks {
-    /// At round numbers.
+    /// Round numbers.
     Auto,
-    /// At exactly these values: the thread counts or spp of an experiment.
+    /// Exactly these values, such as the thread counts or spp of an experiment.
     At(Vec<f64>),
 }
 
-/// What an axis shows.
+/// The quantity, scale and labels of an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
     /// Linear or logarithmic.
     pub scale: Scale,
-    /// Where its labels stand.
+    /// The labelled values.
     pub ticks: Ticks,
     /// Values that the axis must reach even if no point does, such as 0 or 1.
     pub include: Vec<f64>,
@@ -44,7 +44,7 @@ impl Axis {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
 
-    /// Labels exactly these values, in any order and each as often as it occurs.
+    /// Labels exactly these values, which may be unsorted and repeated.
     #[must_use]
     pub fn ticks_at(mut self, values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();
@@ -54,7 +54,7 @@ impl Axis {
         self
     }
 
-    /// Reaches these values whatever the data.
+    /// Extends the axis to these values, whatever the data.
     #[must_use]
     pub fn including(mut self, values: impl IntoIterator<Item = f64>) -> Self {
         self.include.extend(values);
@@ -62,7 +62,7 @@ impl Axis {
     }
 }
 
-/// Larger values have no place: differences of them would overflow.
+/// Larger values have no position: their differences would overflow.
 const LARGEST: f64 = 1e300;
 /// Free space at either end of the data, as a share of its extent.
 const PADDING: f64 = 0.05;
@@ -78,14 +78,15 @@ pub struct Range {
 /// A mark on an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tick {
-    /// Where: 0 is the low end, 1 the high end.
+    /// Its position: 0 is the low end, 1 the high end.
     pub place: f64,
-    /// What it says; empty for a minor tick.
+    /// Its text; empty for a minor tick.
     pub label: String,
 }
 
 impl Range {
-    /// The range that shows all `values` that have a place, and those the axis includes. `None` if there is no value to show.
+    /// The range of all `values` that have a position, and of the values to include. `None` if none of `values` has
+    /// one.
     pub fn of(axis: &Axis, values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let scale = axis.scale;
         let mut data = values.into_iter().filter_map(|value| scaled(scale, value)).peekable();
@@ -96,7 +97,7 @@ impl Range {
         let extent = high - low;
         let pad = match scale {
             _ if extent > size * 1e-9 && extent > 1.0 / LARGEST => PADDING * extent,
-            // One value, or values that differ in rounding only: half a decade, or a tenth to either side.
+            // One value, or values that differ only by rounding: pad by a quarter of a decade, or by a tenth.
             Scale::Log => 0.25,
             Scale::Linear if size > 1.0 / LARGEST => 0.1 * size,
             Scale::Linear => 1.0,
@@ -106,18 +107,18 @@ impl Range {
         Some(Self { scale, low: if from_zero { 0.0 } else { low - pad }, high: high + pad })
     }
 
-    /// Where `value` stands: 0 is the low end, 1 the high end. `None` if it has no place on such an axis.
+    /// The position of `value`: 0 is the low end, 1 the high end. `None` if it has no position on such an axis.
     pub fn place(&self, value: f64) -> Option<f64> {
         Some((scaled(self.scale, value)? - self.low) / (self.high - self.low))
     }
 
-    /// The value at a place.
+    /// The value at a position.
     pub fn value(&self, place: f64) -> f64 {
         let at = self.low + place * (self.high - self.low);
         if self.scale == Scale::Log { libm::pow(10.0, at) } else { at }
     }
 
-    /// Ticks in ascending order, about `most` of them labelled at most.
+    /// Ticks in ascending order; of automatic ones, about `most` at most have labels.
     pub fn ticks(&self, ticks: &Ticks, most: usize) -> Vec<Tick> {
         match (ticks, self.scale) {
             (Ticks::At(values), _) => {
@@ -131,7 +132,7 @@ impl Range {
         }
     }
 
-    /// A tick at `value` if that lies on the axis.
+    /// A tick at `value`, if that is on the axis.
     fn tick(&self, value: f64, label: String) -> Option<Tick> {
         let place = self.place(value)?;
         (-1e-9..=1.0 + 1e-9).contains(&place).then_some(Tick { place, label })
@@ -159,8 +160,8 @@ impl Range {
         (0..=count).filter_map(|i| Some((first + i as f64) * step).and_then(|v| self.tick(v, label(v)))).collect()
     }
 
-    /// The first of the usual sets of mantissas that gives four labels and not too many, with the other mantissas as minor ticks; for less than about
-    /// half a decade, round numbers as on a linear axis.
+    /// Labels the first of the usual sets of mantissas that gives at least four and at most `most` labels; the others
+    /// become minor ticks. Less than about half a decade has round numbers, as on a linear axis.
     fn log_ticks(&self, most: usize) -> Vec<Tick> {
         const SETS: [&[u32]; 5] = [&[1], &[1, 2, 5], &[1, 3], &[1, 2, 3, 5], &[1, 2, 3, 4, 5, 6, 7, 8, 9]];
         let (first, last) = (libm::floor(self.low) as i32, libm::ceil(self.high) as i32);
@@ -171,7 +172,7 @@ impl Range {
         let count = |set: &[u32]| (first..=last).map(|e| set.iter().filter(|&&m| inside(e, m)).count()).sum::<usize>();
         let powers = count(&[1]);
         if powers > most {
-            // Too many decades even for powers of ten alone: every second, fifth, tenth ...
+            // Too many decades to label each power of ten: label every second, fifth, tenth ...
             let fits = |stride: &i32| powers <= most * stride.unsigned_abs() as usize;
             let stride = [2, 5, 10, 20, 50, 100, 200].into_iter().find(fits).unwrap_or(500);
             let shown = (first..=last).filter(|e| e.rem_euclid(stride) == 0);
@@ -198,7 +199,7 @@ impl Range {
     }
 }
 
-/// `value` in the unit in which the axis is even; `None` if it has no place.
+/// `value`, or its logarithm on a logarithmic axis; `None` if it has no position.
 fn scaled(scale: Scale, value: f64) -> Option<f64> {
     match scale {
         Scale::Linear => (value.abs() <= LARGEST).then_some(value),
@@ -206,7 +207,7 @@ fn scaled(scale: Scale, value: f64) -> Option<f64> {
     }
 }
 
-/// Ten to a whole power, as the nearest number to it, so that ticks print as short as they look.
+/// The number nearest to a power of ten, so that ticks print with few digits.
 fn power_of_ten(exponent: i32) -> f64 {
     libm::exp10(f64::from(exponent))
 }

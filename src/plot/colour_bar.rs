@@ -1,4 +1,4 @@
-//! Numbers as colours, and the bar that says which is which.
+//! The colour bar, which shows the values of colours.
 
 use super::drawing::{Align, Drawing, Place};
 use super::style::{GRID, HAIRLINE, INK, LEADING, SMALL_SIZE, TEXT_SIZE};
@@ -6,12 +6,13 @@ use crate::metric::heat_colour;
 
 /// Height of a bar.
 const HEIGHT: f64 = 14.0;
-/// Colours in a bar.
+/// Number of colours in a bar.
 const STEPS: u32 = 128;
 
-/// Draws a bar with its name above and labels at its quarters below, the upper left corner at a place; returns where it ends.
+/// Draws a bar with its name above and labels at its quarters below, the upper left corner at a position; returns the y
+/// below it.
 ///
-/// Its ends have the colours that `ends`, in [0, 1], have on the whole scale.
+/// `ends`, in [0, 1], are the positions of the bar's ends on the whole colour scale.
 pub(super) fn draw(
     drawing: &mut Drawing,
     (left, y): Place,

@@ -1,6 +1,6 @@
-//! Images beside each other: renders at growing spp beside their reference, with maps of their error below.
+//! Contact sheets: renders at growing spp beside their reference, with maps of their error below.
 //!
-//! PNG only: the pixels are what is looked at.
+//! PNG only, because readers look at the pixels.
 
 use std::path::Path;
 
@@ -15,9 +15,9 @@ use crate::error::{Error, Result};
 use crate::image_io::Image;
 use crate::image_io::tone_map::quantise_image;
 
-/// About how wide each image is shown.
+/// Approximate width of an image on the sheet.
 const SHOWN: u32 = 240;
-/// About how wide larger images are shown: every fifth pixel of 1024, so that a page with all sheets stays below 8 MB.
+/// Approximate width of larger images: every fifth pixel of 1024, so that a page with all sheets stays below 8 MB.
 const REDUCED: u32 = 224;
 /// Space between images.
 const GAP: f64 = 16.0;
@@ -45,11 +45,11 @@ impl Cell {
 /// The scale of heat maps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColourBar {
-    /// What the colours mean, with the unit.
+    /// Meaning of the colours, with the unit.
     pub label: String,
     /// The value of the lightest colour; the darkest is 0.
     pub full: f64,
-    /// Whether no value can be larger; otherwise larger ones have the lightest colour too.
+    /// Whether `full` is the largest possible value; otherwise larger values also have the lightest colour.
     pub is_largest: bool,
 }
 
@@ -57,15 +57,15 @@ pub struct ColourBar {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Comparison {
-    /// Columns are steps of a slider.
+    /// The columns are steps of a slider.
     Steps,
-    /// Any two lie over each other, with an edge to move.
+    /// Any two images lie on top of each other, with an edge to move.
     Wipe,
-    /// Each by itself.
+    /// Each image is shown alone.
     Single,
 }
 
-/// Where an image lies on the sheet, in pixels, for a page that shows parts of it.
+/// The area of an image on the sheet, in pixels, for a page that shows parts of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Placed {
     /// Its row, from the top.
@@ -81,11 +81,11 @@ pub struct Placed {
 /// The sheet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSheet {
-    /// What is shown, in one line.
+    /// The subject, in one line.
     pub title: String,
     /// Scene, size, exposure; may be empty.
     pub subtitle: String,
-    /// Rows of images. `None` leaves a place empty, as below a reference that has no error.
+    /// Rows of images. `None` leaves a cell empty, as below a reference that has no error.
     pub rows: Vec<Vec<Option<Cell>>>,
     /// The scales of the heat maps, if there are any.
     pub bars: Vec<ColourBar>,
@@ -94,7 +94,7 @@ pub struct ContactSheet {
 }
 
 impl ContactSheet {
-    /// The sheet as pixels, and where its images lie.
+    /// The sheet as pixels, and the areas of its images.
     pub fn pixels(&self) -> Result<(RgbImage, Vec<Placed>)> {
         let rows = self.rows.iter().map(|row| row.iter().map(|cell| cell.as_ref().map(shown).transpose()).collect());
         let images: Vec<Vec<Option<RgbImage>>> = rows.collect::<Result<_>>()?;
@@ -146,26 +146,26 @@ impl ContactSheet {
         Ok((sheet, placed.into_iter().map(|(_, place)| place).collect()))
     }
 
-    /// The bytes of a PNG file, and where its images lie.
+    /// The bytes of a PNG file, and the areas of its images.
     pub fn png(&self) -> Result<(Vec<u8>, Vec<Placed>)> {
         let (sheet, placed) = self.pixels()?;
         Ok((paint::png(&sheet)?, placed))
     }
 
-    /// Writes `stem.png` into `dir`, which is made if need be.
+    /// Writes `stem.png` into `dir`, which is created if needed.
     pub fn save(&self, dir: &Path, stem: &str) -> Result<()> {
         save_bytes(dir, &format!("{stem}.png"), &self.png()?.0)
     }
 }
 
-/// The lines of a caption, broken to a column's width, each with the number of the line it came from.
+/// The lines of a caption, broken to a column's width, each with the index of its original line.
 fn caption(cell: Option<&Cell>, column: f64) -> Vec<(String, usize)> {
     let lines = cell.map_or(&[][..], |cell| &cell.caption).iter().enumerate();
     lines.flat_map(|(i, line)| font::wrap(line, TEXT_SIZE, column).into_iter().map(move |part| (part, i))).collect()
 }
 
-/// The image at about the usual width, by whole factors: a pixel becomes a square, or one of each square is kept. Averaging would hide
-/// the very noise that is to be seen.
+/// Scales an image to about the usual width, by whole factors: repeats each pixel as a square, or keeps one pixel of
+/// each square. Averaging would hide the noise that readers look for.
 fn shown(cell: &Cell) -> Result<RgbImage> {
     let Some(image) = RgbImage::from_raw(cell.width, cell.height, cell.rgb.clone()).filter(|i| i.width() > 0) else {
         let problem = format!("{} bytes for {} x {} pixels", cell.rgb.len(), cell.width, cell.height);

@@ -12,7 +12,7 @@ use super::ruler::{self, GAP, TICK};
 use super::style::{DASHES, FAINT, HAIRLINE, INK, LEADING, Look, MARGIN, MUTED, SMALL_SIZE, TEXT_SIZE};
 use super::{font, heading, marker};
 
-/// The widest name of a row before it is broken.
+/// Largest width of a row's name; longer ones are broken.
 const WIDEST: f64 = 260.0;
 /// Height of a row with one group.
 const ROW: f64 = 25.0;
@@ -21,19 +21,19 @@ const GROUP: f64 = 11.0;
 /// Width of a guide's line.
 const GUIDE: f64 = 1.5;
 
-/// A value and how far it can be trusted.
+/// A value and its interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dot {
     /// The value, in the axis' unit.
     pub value: f64,
     /// Its low and high end.
     pub interval: Option<(f64, f64)>,
-    /// How many values it is of, where they were counted.
+    /// The number of values that it was computed from, if counted.
     pub count: Option<usize>,
 }
 
 impl Dot {
-    /// A value of nobody knows how many.
+    /// A value that was computed from an unknown number of values.
     pub fn new(value: f64, interval: Option<(f64, f64)>) -> Self {
         Self { value, interval, count: None }
     }
@@ -42,9 +42,9 @@ impl Dot {
 /// A row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
-    /// What stands to its left.
+    /// Its name, at its left.
     pub name: String,
-    /// Its dots, in the order of the groups; `None` where nothing was measured.
+    /// Its dots, in the order of the groups; `None` if nothing was measured.
     pub dots: Vec<Option<Dot>>,
 }
 
@@ -55,31 +55,31 @@ impl Row {
     }
 }
 
-/// What tells the dots of a row apart.
+/// A group of dots, one in each row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
-    /// What the legend calls it.
+    /// Its name in the legend.
     pub name: String,
     /// Colour and marker.
     pub look: Look,
 }
 
-/// The plot. Dots without a place on its axis are left out, and it says so.
+/// The plot. Leaves out dots without a position on its axis, and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotPlot {
-    /// What is shown, in one line.
+    /// The subject, in one line.
     pub title: String,
-    /// Workload, machine, what the bars are; may be empty.
+    /// Workload, machine, meaning of the bars; may be empty.
     pub subtitle: String,
     /// Remarks below the plot; may be empty.
     pub caption: String,
     /// The horizontal axis.
     pub axis: Axis,
-    /// The groups. A single one needs no legend and gets none.
+    /// The groups. A single one has no entry in the legend.
     pub groups: Vec<Group>,
     /// The rows, the first at the top.
     pub rows: Vec<Row>,
-    /// Upright lines, such as one at a ratio of 1, with what the legend calls each.
+    /// Vertical lines, such as one at a ratio of 1, each with its name in the legend.
     pub guides: Vec<(f64, String)>,
 }
 
@@ -91,7 +91,7 @@ impl DotPlot {
         Self { title: title.into(), subtitle, caption, axis, groups, rows, guides: Vec::new() }
     }
 
-    /// The same with a group for each name; each row has a dot for each.
+    /// The same plot with a group for each name; each row has a dot for each group.
     #[must_use]
     pub fn grouped(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
         let group = |(index, name): (usize, _)| Group { name: Into::into(name), look: Look::nth(index) };
@@ -99,7 +99,7 @@ impl DotPlot {
         self
     }
 
-    /// The dots that belong to a group.
+    /// The dots of a row, each with the index of its group.
     fn dots<'a>(&self, row: &'a Row) -> impl Iterator<Item = (usize, &'a Dot)> + use<'a> {
         row.dots.iter().take(self.groups.len()).enumerate().filter_map(|(group, dot)| Some((group, dot.as_ref()?)))
     }
@@ -123,7 +123,7 @@ impl DotPlot {
         dots.chain(guides).collect()
     }
 
-    /// Draws a row around `middle`; returns how many of its dots have no place.
+    /// Draws a row around `middle`; returns the number of dots without a position.
     fn draw_row(
         &self,
         drawing: &mut Drawing,
@@ -135,7 +135,7 @@ impl DotPlot {
         let x = |place: f64| left + place * (right - left);
         let mut lost = 0;
         let last = self.dots(row).count().saturating_sub(1) as f64;
-        // Dots stand around the row's own line whichever groups have one, or those of two rows would mix.
+        // Dots are centred on the row's line, whichever groups have one, so that dots of two rows do not mix.
         for (index, (group, dot)) in self.dots(row).enumerate() {
             let look = self.groups[group].look;
             let y = middle + GROUP * (index as f64 - 0.5 * last);
@@ -143,7 +143,7 @@ impl DotPlot {
                 lost += 1;
                 continue;
             };
-            // An end that has no place because it is too low stands at the edge.
+            // An end that is too low for a logarithmic axis is drawn at the edge.
             let end = |value: f64| Some(x(range.place(value).or((value <= 0.0).then_some(0.0))?.clamp(0.0, 1.0)));
             let name = &self.groups[group].name;
             drawing.part(PartKind::Series, name, |drawing| {

@@ -1,13 +1,13 @@
-//! A drawing: marks in pixels, x to the right and y down, painted in order.
+//! Drawings: marks in pixels, x to the right and y down, painted in order.
 
 use super::font;
 use super::style::{Colour, Dash, HAIRLINE};
 use std::ops::Range;
 
-/// A place in a drawing, in pixels.
+/// A position in a drawing, in pixels.
 pub type Place = (f64, f64);
 
-/// Which part of a text stands at its place.
+/// The part of a text that is at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// The left end.
@@ -18,25 +18,25 @@ pub enum Align {
     Right,
 }
 
-/// Text of one line. Vertically the middle of its capital letters stands at the place.
+/// One line of text. The middle of its capital letters is vertically at its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Text {
-    /// Where it stands.
+    /// Its position.
     pub at: Place,
-    /// What it says.
+    /// Its words.
     pub text: String,
-    /// Pixels an em.
+    /// Size in pixels per em.
     pub size: f64,
     /// Its colour.
     pub colour: Colour,
-    /// What of it stands at `at`.
+    /// The part of it that is at `at`.
     pub align: Align,
-    /// Reading upwards, as the title of a vertical axis does.
+    /// Whether it reads upwards, as the title of a vertical axis does.
     pub upwards: bool,
 }
 
 impl Text {
-    /// Left, top, right and bottom of the space it takes.
+    /// Left, top, right and bottom of its bounding box.
     pub fn bounds(&self) -> [f64; 4] {
         let (width, half) = (font::width(&self.text, self.size), 0.5 * self.size);
         let before = match self.align {
@@ -53,12 +53,12 @@ impl Text {
     }
 }
 
-/// One thing to paint.
+/// One element to paint.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Mark {
-    /// A line through places.
+    /// A line through points.
     Path {
-        /// Where it goes.
+        /// Its points.
         places: Vec<Place>,
         /// Its colour.
         colour: Colour,
@@ -71,10 +71,11 @@ pub enum Mark {
         places: Vec<Place>,
         /// Its colour.
         colour: Colour,
-        /// 0 is invisible, 1 covers what is below.
+        /// From 0, invisible, to 1, opaque.
         opacity: f64,
     },
-    /// A filled rectangle with upright sides. Neighbours that share a side neither overlap nor leave a gap.
+    /// A filled rectangle with horizontal and vertical sides. Neighbours that share a side neither overlap nor leave a
+    /// gap.
     Rectangle {
         /// Left, top, right and bottom.
         sides: [f64; 4],
@@ -94,7 +95,7 @@ pub enum Mark {
     Text(Text),
 }
 
-/// What a part of a drawing is.
+/// The kind of a part of a drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PartKind {
     /// Data of a series.
@@ -110,26 +111,26 @@ pub struct Part {
     pub series: String,
     /// Data or legend.
     pub kind: PartKind,
-    /// Which of the drawing's marks.
+    /// The indices of its marks in the drawing.
     pub marks: Range<usize>,
 }
 
-/// A value that was drawn, as a page shows it when a reader points at it.
+/// A drawn value, which a page shows when a reader points at it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
-    /// Where it was drawn.
+    /// Its position.
     pub at: Place,
-    /// The name of its series; empty if there is one only.
+    /// The name of its series; empty if there is only one.
     pub series: String,
-    /// What the value belongs to: a place on the other axis, or the name of a row.
+    /// The value's x, or the name of its row.
     pub of: String,
     /// The value.
     pub value: f64,
     /// Its low and high end.
     pub interval: Option<(f64, f64)>,
-    /// How many values it is of, where they were counted.
+    /// The number of values that it was computed from, if counted.
     pub count: Option<usize>,
-    /// All of it in words.
+    /// The whole note in words.
     pub text: String,
 }
 
@@ -140,13 +141,13 @@ pub struct Drawing {
     pub width: f64,
     /// Height in pixels.
     pub height: f64,
-    /// What it shows, for readers who can't see it.
+    /// Its subject, for readers who cannot see it.
     pub title: String,
-    /// What to paint, the lowest first.
+    /// The marks in painting order, lowest first.
     pub marks: Vec<Mark>,
-    /// Marks that belong together, in order, none in two parts.
+    /// Groups of marks, in order; no mark is in two parts.
     pub parts: Vec<Part>,
-    /// The values that the marks stand for.
+    /// The values that the marks show.
     pub notes: Vec<Note>,
 }
 
@@ -157,7 +158,7 @@ impl Drawing {
         Self { width, height, title: title.to_string(), marks, parts, notes }
     }
 
-    /// Draws marks of a series; parts do not contain parts.
+    /// Draws marks as a part; parts are not nested.
     pub fn part<T>(&mut self, kind: PartKind, series: &str, draw: impl FnOnce(&mut Self) -> T) -> T {
         let from = self.marks.len();
         let drawn = draw(self);
@@ -165,31 +166,31 @@ impl Drawing {
         drawn
     }
 
-    /// A line; nothing for fewer than two places.
+    /// Adds a line; nothing for fewer than two points.
     pub fn path(&mut self, places: Vec<Place>, colour: Colour, width: f64) {
         if places.len() > 1 {
             self.marks.push(Mark::Path { places, colour, width });
         }
     }
 
-    /// A broken line.
+    /// Adds a dashed line.
     pub fn dashed(&mut self, places: &[Place], colour: Colour, width: f64, dash: Dash) {
         for stroke in strokes(places, dash) {
             self.path(stroke, colour, width);
         }
     }
 
-    /// A filled polygon.
+    /// Adds a filled polygon.
     pub fn area(&mut self, places: Vec<Place>, colour: Colour, opacity: f64) {
         self.marks.push(Mark::Area { places, colour, opacity });
     }
 
-    /// A filled rectangle, given by its left, top, right and bottom.
+    /// Adds a filled rectangle, given by its left, top, right and bottom.
     pub fn rectangle(&mut self, sides: [f64; 4], colour: Colour) {
         self.marks.push(Mark::Rectangle { sides, colour });
     }
 
-    /// The hairline around a rectangle.
+    /// Adds the outline of a rectangle, as a hairline.
     pub fn outline(&mut self, [left, top, right, bottom]: [f64; 4], colour: Colour) {
         let corners = [(left, bottom), (right, bottom), (right, top), (left, top), (left, bottom)];
         for pair in corners.windows(2) {
@@ -197,29 +198,29 @@ impl Drawing {
         }
     }
 
-    /// A filled circle.
+    /// Adds a filled circle.
     pub fn disc(&mut self, at: Place, radius: f64, colour: Colour) {
         self.marks.push(Mark::Disc { at, radius, colour });
     }
 
-    /// A line of text.
+    /// Adds a line of text.
     pub fn text(&mut self, at: Place, text: &str, size: f64, colour: Colour, align: Align) {
         self.marks.push(Mark::Text(Text { at, text: text.to_string(), size, colour, align, upwards: false }));
     }
 
-    /// A line of text that reads upwards, centred at its place.
+    /// Adds a line of text that reads upwards, centred at its position.
     pub fn text_upwards(&mut self, at: Place, text: &str, size: f64, colour: Colour) {
         let align = Align::Centre;
         self.marks.push(Mark::Text(Text { at, text: text.to_string(), size, colour, align, upwards: true }));
     }
 
-    /// Adds a value that was drawn. An interval with an end that is no number is left out.
+    /// Adds a drawn value. Leaves out an interval with an end that is not finite.
     pub fn note(&mut self, note: Note) {
         let is_finite = |ends: &(f64, f64)| ends.0.is_finite() && ends.1.is_finite();
         self.notes.push(Note { interval: note.interval.filter(is_finite), ..note });
     }
 
-    /// All text in it.
+    /// All texts of the drawing.
     pub fn texts(&self) -> impl Iterator<Item = &Text> {
         self.marks.iter().filter_map(|mark| if let Mark::Text(text) = mark { Some(text) } else { None })
     }

@@ -1,6 +1,6 @@
 //! The embedded font: `DejaVu` Sans, cut down to Latin, Greek, super- and subscripts, arrows and mathematical signs.
 //!
-//! The licence stands beside it in `assets/`. Sizes are in pixels of the em square, as CSS counts them.
+//! The licence is beside it in `assets/`. Sizes are in pixels per em, as in CSS.
 
 use std::sync::OnceLock;
 
@@ -9,12 +9,12 @@ use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 
 use crate::error::{Error, Result};
 
-/// What an SVG asks for: a viewer without `DejaVu` takes its own sans-serif, which is narrower.
+/// The font family in an SVG. A viewer without `DejaVu` takes its own sans-serif, which is narrower.
 const FAMILY: &str = "DejaVu Sans, sans-serif";
 static BYTES: &[u8] = include_bytes!("../../assets/DejaVuSans-subset.ttf");
 static FACE: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
 
-/// The font. It is registered with plotters too, which draws no text without one, not even in an SVG.
+/// The font. Also registers it with plotters, which draws no text without a font, not even in an SVG.
 pub(super) fn face() -> Result<&'static FontRef<'static>> {
     let load = || {
         register_font(FAMILY, FontStyle::Normal, BYTES).ok()?;
@@ -29,7 +29,7 @@ pub(super) fn describe(size: f64) -> FontDesc<'static> {
     FontDesc::new(FontFamily::Name(FAMILY), size, FontStyle::Normal)
 }
 
-/// Each glyph of `text` with the place of its origin in ems from the start, and the width of the whole.
+/// Each glyph of `text` with the position of its origin in ems from the start, and the width of the whole.
 pub(super) fn set(face: &FontRef<'static>, text: &str) -> (Vec<(GlyphId, f64)>, f64) {
     let ems = |units: f32| f64::from(units / face.units_per_em().unwrap_or(1.0));
     let (mut glyphs, mut pen) = (Vec::new(), 0.0);
@@ -43,13 +43,13 @@ pub(super) fn set(face: &FontRef<'static>, text: &str) -> (Vec<(GlyphId, f64)>, 
     (glyphs, pen)
 }
 
-/// Width of `text` in pixels at `size` pixels an em.
+/// Width of `text` in pixels at `size` pixels per em.
 pub fn width(text: &str, size: f64) -> f64 {
-    // Without a font nothing can be painted either, and painting reports it.
+    // Without a font, painting fails too and reports it.
     face().map_or(0.0, |face| set(face, text).1 * size)
 }
 
-/// Breaks `text` at spaces into lines no wider than `limit` pixels, where that can be done. Line breaks in it are kept.
+/// Breaks `text` at spaces into lines of at most `limit` pixels, where possible. Keeps its line breaks.
 pub fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for paragraph in text.lines() {

@@ -1,4 +1,4 @@
-//! The frame of a chart: where title, axes, legend and data go, and the grid.
+//! The frame of a chart: positions of title, axes, legend and data, and the grid.
 
 use super::axis::{Axis, Range, Tick};
 use super::drawing::{Align, Drawing, Place};
@@ -10,7 +10,7 @@ use super::{font, heading, ruler};
 pub(super) const WIDTH: f64 = 960.0;
 /// Height of the area in which data is drawn, if the legend does not need more.
 const DATA_HEIGHT: f64 = 400.0;
-/// What is written around a chart.
+/// The texts around a chart.
 pub(super) struct Words<'a> {
     pub(super) title: &'a str,
     pub(super) subtitle: &'a str,
@@ -27,7 +27,7 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Lays a chart out and draws all of it but data and legend.
+    /// Lays out a chart and draws all of it except data and legend.
     pub(super) fn begin(
         words: &Words<'_>,
         axes: (&Axis, &Axis),
@@ -61,25 +61,25 @@ impl Frame {
         (drawing, frame)
     }
 
-    /// Where a point stands.
+    /// The position of a point, if it has one.
     pub(super) fn spot(&self, x: f64, y: f64) -> Option<Place> {
         let (x_range, y_range) = self.ranges?;
         Some(self.at(x_range.place(x)?, y_range.place(y)?))
     }
 
-    /// The height at which the end of an interval of y stands. What has no place because it is too low stands at the frame.
+    /// The height of an end of an interval of y. An end that is too low for a logarithmic axis is at the frame.
     pub(super) fn upright(&self, y: f64) -> Option<f64> {
         let place = self.ranges?.1.place(y).or((y <= 0.0).then_some(0.0))?;
         Some(self.at(0.0, place.clamp(0.0, 1.0)).1)
     }
 
-    /// Where the end of an interval of x stands, from the left.
+    /// The horizontal position of an end of an interval of x.
     pub(super) fn across(&self, x: f64) -> Option<f64> {
         let place = self.ranges?.0.place(x).or((x <= 0.0).then_some(0.0))?;
         Some(self.at(place.clamp(0.0, 1.0), 0.0).0)
     }
 
-    /// Lines given as shares of the axes, in pixels.
+    /// Converts lines from shares of the axes to pixels.
     pub(super) fn curve(&self, parts: impl FnOnce(&Range, &Range) -> Vec<Vec<Place>>) -> Vec<Vec<Place>> {
         let Some((x, y)) = self.ranges else { return Vec::new() };
         parts(&x, &y).iter().map(|part| part.iter().map(|place| self.at(place.0, place.1)).collect()).collect()
@@ -95,7 +95,7 @@ impl Frame {
         (self.right + 20.0, self.top)
     }
 
-    /// Pixels of shares of the axes.
+    /// Converts shares of the axes to pixels.
     fn at(&self, x: f64, y: f64) -> Place {
         (self.left + x * (self.right - self.left), self.bottom - y * (self.bottom - self.top))
     }

@@ -1,8 +1,10 @@
-//! Schedules as they were: a lane for each worker, a box for each job, time to the right (H. L. Gantt, "Work, Wages and Profits", 1913).
+//! Gantt charts of schedules: a lane for each worker, a box for each job, time to the right (H. L. Gantt, "Work, Wages
+//! and Profits", 1913).
 //!
-//! Several schedules stand below each other on one time axis, so that their lengths can be compared. What is white inside a schedule's frame
-//! is idle; the frame ends at the makespan. Jobs thinner than half a pixel are drawn together with their neighbours, in the mean of their
-//! colours, and never vanish; of very many lanes a part is shown, and it says which.
+//! Several schedules are drawn below each other on one time axis, so that their lengths can be compared. White inside a
+//! schedule's frame is idle time; the frame ends at the makespan. Jobs thinner than a pixel are merged with their
+//! neighbours, in the mean of their colours, so none vanishes. Of very many lanes a part is shown, and the title says
+//! which.
 
 mod lane;
 
@@ -16,21 +18,22 @@ use super::{colour_bar, font, heading, number};
 use crate::metric::heat_colour;
 use serde::Serialize;
 
-/// The tallest schedule.
+/// Largest height of a schedule.
 const TALLEST: f64 = 260.0;
-/// The tallest lane.
+/// Largest height of a lane.
 const LANE: f64 = 18.0;
-/// The most lanes of one schedule: three pixels each.
+/// The most lanes of one schedule; each then takes three pixels.
 const MOST_LANES: usize = 86;
 /// Space between schedules.
 const SPACE: f64 = 14.0;
-/// Distance of the numbers of workers, at least.
+/// Smallest distance between the numbers of workers.
 const NUMBERS: f64 = 15.0;
 /// Width of the colour bar.
 const BAR: f64 = 480.0;
-/// The ends of the colours used, as shares of the scale: lighter ones look idle, and darker ones hide where a job begins.
+/// The ends of the colours used, as shares of the scale: lighter colours look idle, and darker ones hide the start of a
+/// job.
 const COLOURS: (f64, f64) = (0.15, 0.85);
-/// Boxes from this width on have an edge where the job begins.
+/// Boxes of at least this width have an edge at the start of the job.
 const EDGED: f64 = 4.0;
 /// Width of that edge.
 const EDGE: f64 = 0.5;
@@ -42,20 +45,20 @@ pub struct JobBar {
     pub job: usize,
     /// Its worker, from 0.
     pub worker: usize,
-    /// Seconds from the schedule's start to the job's.
+    /// Seconds from the schedule's start to the job's start.
     pub start_s: f64,
     /// Seconds from the schedule's start to the job's end.
     pub stop_s: f64,
-    /// What its colour says, in the unit of the chart's label.
+    /// The value that its colour shows, in the unit of the chart's label.
     pub value: f64,
 }
 
 /// One schedule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Schedule {
-    /// Strategy, threads, seconds and whatever else stands above it.
+    /// Strategy, threads, seconds and other text above it.
     pub title: String,
-    /// How many workers there were, with or without a job.
+    /// Number of workers, with or without a job.
     pub workers: usize,
     /// Seconds from start to end.
     pub makespan_s: f64,
@@ -68,20 +71,20 @@ pub struct Schedule {
 pub enum Shade {
     /// In proportion.
     Value,
-    /// By their rank among all jobs of the chart, which shows structure where a few jobs cost far more than the rest.
+    /// By rank among all jobs of the chart, which shows structure if a few jobs cost far more than the rest.
     Quantile,
 }
 
-/// The chart. Jobs that can't be (of no worker, or with times or values that make no sense) are left out, and it says so.
+/// The chart. Leaves out impossible jobs (without a worker, or with invalid times or values), and reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GanttChart {
-    /// What is shown, in one line.
+    /// The subject, in one line.
     pub title: String,
     /// Workload, machine; may be empty.
     pub subtitle: String,
     /// Remarks below the chart; may be empty.
     pub caption: String,
-    /// What the colours mean, with the unit.
+    /// Meaning of the colours, with the unit.
     pub label: String,
     /// How values become colours.
     pub shade: Shade,
@@ -95,14 +98,14 @@ impl Schedule {
         job.worker < self.workers && timed && job.value.is_finite()
     }
 
-    /// The workers whose lanes are shown, and each how many-th of all they are.
+    /// The workers whose lanes are shown, and the step between them.
     fn shown(&self) -> (Vec<usize>, usize) {
         let stride = self.workers.div_ceil(MOST_LANES).max(1);
         ((0..self.workers).step_by(stride).collect(), stride)
     }
 }
 
-/// The values of all jobs in ascending order, which is what colours are given by.
+/// The values of all jobs in ascending order, from which the colours are computed.
 struct Palette {
     shade: Shade,
     values: Vec<f64>,
@@ -116,7 +119,7 @@ impl Palette {
         Self { shade: chart.shade, values }
     }
 
-    /// Where a value stands on the colour bar, in [0, 1].
+    /// The position of a value on the colour bar, in [0, 1].
     fn share(&self, value: f64) -> f64 {
         let (Some(low), Some(high)) = (self.values.first(), self.values.last()) else { return 0.5 };
         let count = |below: &dyn Fn(f64) -> bool| self.values.partition_point(|&other| below(other)) as f64;
@@ -130,7 +133,7 @@ impl Palette {
         }
     }
 
-    /// The value at a place of the colour bar; `None` without jobs.
+    /// The value at a position of the colour bar; `None` without jobs.
     fn value(&self, share: f64) -> Option<f64> {
         let (low, high) = (self.values.first()?, self.values.last()?);
         let rank = (share * (self.values.len() - 1) as f64).round() as usize;
@@ -139,7 +142,7 @@ impl Palette {
 }
 
 impl GanttChart {
-    /// The unit of the time axis, its seconds, and the range of times; `None` if no schedule has an end.
+    /// The time axis, its unit in seconds, and the range of times; `None` if no makespan is positive and finite.
     fn time(&self) -> Option<(Axis, f64, Range)> {
         let ends =
             self.schedules.iter().map(|schedule| schedule.makespan_s).filter(|end| *end > 0.0 && end.is_finite());
@@ -152,7 +155,7 @@ impl GanttChart {
     }
 }
 
-/// The numbers of the workers beside their lanes, as many as fit.
+/// Writes the numbers of the workers beside their lanes, as many as fit.
 fn number_lanes(drawing: &mut Drawing, shown: &[usize], left: f64, top: f64, lane: f64) {
     let every = (NUMBERS / lane).ceil().max(1.0) as usize;
     for (i, worker) in shown.iter().enumerate().step_by(every) {
@@ -161,13 +164,13 @@ fn number_lanes(drawing: &mut Drawing, shown: &[usize], left: f64, top: f64, lan
     }
 }
 
-/// A page of which each schedule has so many jobs is still read in a second.
+/// With this many jobs in each schedule, a page is still read in a second.
 const MOST_JOBS: usize = 2000;
 
-/// A job as a page reads it: its number, its worker, and start and stop in microseconds.
+/// A job in the page's data: its number, its worker, and start and stop in microseconds.
 type JobData = (usize, usize, f64, f64);
 
-/// A schedule as a page reads it.
+/// A schedule in the page's data.
 #[derive(Serialize)]
 struct ScheduleData {
     title: String,
@@ -178,7 +181,7 @@ struct ScheduleData {
 
 impl ScheduleData {
     fn of(schedule: &Schedule) -> Self {
-        // A nanosecond is less than any clock resolves.
+        // Rounding to a nanosecond loses nothing: no clock resolves less.
         let microseconds = |seconds: f64| (seconds * 1e9).round() / 1e3;
         let job = |job: &JobBar| (job.job, job.worker, microseconds(job.start_s), microseconds(job.stop_s));
         let jobs: Vec<JobData> = schedule.jobs.iter().filter(|job| schedule.holds(job)).map(job).collect();

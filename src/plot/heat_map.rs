@@ -1,4 +1,4 @@
-//! Where in an image a number is large: its pieces as rectangles, coloured by a value such as milliseconds a tile.
+//! Heat maps: the pieces of an image as rectangles, coloured by a value such as milliseconds per tile.
 //!
 //! The colours are those of the error maps, whose lightness rises evenly with the value. All panels share one scale.
 
@@ -11,11 +11,11 @@ use crate::metric::heat_colour;
 
 /// Space between panels.
 const SPACE: f64 = 18.0;
-/// The tallest panel.
+/// Largest height of a panel.
 const TALLEST: f64 = 420.0;
-/// Panels beside each other at most.
+/// Most panels in a row.
 const COLUMNS: usize = 3;
-/// The widest colour bar.
+/// Width of the colour bar.
 const BAR: f64 = 480.0;
 
 /// A rectangle of an image, from its first pixel to the one after its last.
@@ -29,35 +29,35 @@ pub struct Tile {
     pub x1: u32,
     /// One past the last row.
     pub y1: u32,
-    /// What its colour says.
+    /// The value that its colour shows.
     pub value: f64,
 }
 
 /// One image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatPanel {
-    /// What stands above it.
+    /// Its title, above it.
     pub title: String,
     /// Width of the image in pixels.
     pub width: u32,
     /// Height of the image in pixels.
     pub height: u32,
-    /// Its rectangles. What none covers stays white; what reaches beyond the image is cut.
+    /// Its rectangles. Uncovered parts stay white; parts beyond the image are cut.
     pub tiles: Vec<Tile>,
 }
 
-/// The figure. Tiles whose value is not finite are grey, and it says so.
+/// The figure. Tiles whose value is not finite are grey, and it reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
-    /// What is shown, in one line.
+    /// The subject, in one line.
     pub title: String,
     /// Scene, decomposition, machine; may be empty.
     pub subtitle: String,
     /// Remarks below the figure; may be empty.
     pub caption: String,
-    /// What the colours mean, with the unit.
+    /// Meaning of the colours, with the unit.
     pub label: String,
-    /// Values of the darkest and the lightest colour; `None` for the smallest and the largest there are.
+    /// Values of the darkest and the lightest colour; `None` for the smallest and the largest value.
     pub scale: Option<(f64, f64)>,
     /// The images.
     pub panels: Vec<HeatPanel>,
@@ -74,7 +74,7 @@ impl HeatMap {
     }
 }
 
-/// Draws a panel with its corner at a place and `factor` pixels to one of the image's.
+/// Draws a panel with its upper left corner at a position and `factor` pixels per image pixel.
 fn draw_panel(drawing: &mut Drawing, panel: &HeatPanel, (left, top): (f64, f64), factor: f64, ends: (f64, f64)) {
     let (low, high) = ends;
     for tile in &panel.tiles {

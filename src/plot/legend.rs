@@ -1,22 +1,22 @@
-//! The column beside a chart that says what its lines are. It never lies over data.
+//! Legends: a column beside a chart that names its lines. It never covers data.
 
 use super::drawing::{Align, Drawing, PartKind, Place};
 use super::font;
 use super::marker;
 use super::style::{Colour, Dash, INK, LEADING, LINE, Look, SMALL_SIZE};
 
-/// Width of the piece of line that stands before each text.
+/// Width of the line sample before each text.
 const SAMPLE: f64 = 30.0;
 /// Space between sample and text.
 const GAP: f64 = 8.0;
-/// The widest text before it is broken.
+/// Largest width of a text; longer ones are broken.
 const WIDEST: f64 = 190.0;
-/// Viewers' fonts differ, so the column is wider than measured by this factor.
+/// The column is wider than its measured text by this factor, because viewers' fonts differ.
 const SLACK: f64 = 1.06;
 /// Free space between entries.
 const SPACING: f64 = 5.0;
 
-/// What stands before a text.
+/// The sample before a text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sample {
     /// A series: its marker, and its line if it has one.
@@ -51,13 +51,13 @@ impl Entry {
         Self::of(sample, text, text)
     }
 
-    /// Likewise, for the part of the figure called `name`.
+    /// An entry for the part of the figure called `name`.
     pub fn of(sample: Sample, name: &str, text: &str) -> Self {
         Self { sample, name: name.to_string(), lines: font::wrap(text, SMALL_SIZE, WIDEST) }
     }
 }
 
-/// Width and height of the column; nothing at all for no entries.
+/// Width and height of the column; zero for no entries.
 pub fn size(entries: &[Entry]) -> (f64, f64) {
     let widest = entries.iter().flat_map(|entry| &entry.lines).map(|line| font::width(line, SMALL_SIZE));
     let Some(text) = widest.reduce(f64::max) else { return (0.0, 0.0) };
@@ -68,7 +68,7 @@ fn entry_height(entry: &Entry) -> f64 {
     entry.lines.len() as f64 * SMALL_SIZE * LEADING + SPACING
 }
 
-/// Draws the column with its upper left corner at a place.
+/// Draws the column with its upper left corner at a position.
 pub fn draw(drawing: &mut Drawing, entries: &[Entry], (x, mut y): Place) {
     for entry in entries {
         let middle = y + 0.5 * SMALL_SIZE * LEADING;

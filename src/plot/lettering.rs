@@ -1,7 +1,7 @@
-//! Text onto pixels.
+//! Lettering: draws text on pixels.
 //!
-//! plotters' own text drops the space that belongs to the left of each letter and rounds every letter to a whole pixel, which makes
-//! words look torn. Here letters stand at fractions of a pixel.
+//! plotters' own text drops the space at the left of each letter and rounds every letter to a whole pixel, so words
+//! look torn. Here letters have fractional positions.
 
 use ab_glyph::{Font, PxScale, point};
 use image::{Rgb, RgbImage};
@@ -13,7 +13,7 @@ use crate::error::Result;
 /// Half the height of a capital letter of `DejaVu` Sans, in ems.
 pub(super) const HALF_CAPITAL: f64 = 0.3645;
 
-/// Writes `text` at `scale` pixels to one of its own.
+/// Writes `text` with `scale` pixels per pixel of the drawing.
 pub(super) fn write(image: &mut RgbImage, text: &Text, scale: f64) -> Result<()> {
     let face = font::face()?;
     let em = text.size * scale;
@@ -23,7 +23,7 @@ pub(super) fn write(image: &mut RgbImage, text: &Text, scale: f64) -> Result<()>
         Align::Centre => -0.5 * width,
         Align::Right => -width,
     };
-    // ab_glyph's size is the height of a line; this is the one whose em has the wanted size.
+    // ab_glyph's size is the height of a line; this is the size whose em is as wanted.
     let size = PxScale::from(em as f32 * face.height_unscaled() / face.units_per_em().unwrap_or(1.0));
     let base_line = (HALF_CAPITAL * em).round() as f32;
     let (x, y) = ((text.at.0 * scale).round() as i64, (text.at.1 * scale).round() as i64);
@@ -40,7 +40,7 @@ pub(super) fn write(image: &mut RgbImage, text: &Text, scale: f64) -> Result<()>
     Ok(())
 }
 
-/// Mixes a colour into a pixel, if there is one at that place.
+/// Mixes a colour into a pixel, if the image contains that position.
 fn blend(image: &mut RgbImage, x: i64, y: i64, colour: [u8; 3], cover: f32) {
     let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return };
     let Some(Rgb(below)) = image.get_pixel_mut_checked(x, y) else { return };
@@ -54,7 +54,7 @@ mod tests {
     use super::*;
     use crate::plot::drawing::Drawing;
 
-    /// Left, top, right and bottom of what is not white.
+    /// Left, top, right and bottom of the dark pixels.
     fn inked(image: &RgbImage) -> [u32; 4] {
         let dark = image.enumerate_pixels().filter(|(_, _, pixel)| pixel.0[0] < 128);
         dark.fold([u32::MAX, u32::MAX, 0, 0], |[l, t, r, b], (x, y, _)| [l.min(x), t.min(y), r.max(x), b.max(y)])

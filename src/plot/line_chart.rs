@@ -1,4 +1,4 @@
-//! Lines and points over two axes: error against samples, speedup against threads, time against samples.
+//! Line charts: lines and points over two axes, such as error against samples, or speedup against threads.
 
 use super::Figure;
 use super::axis::{Axis, Range, Scale, Ticks};
@@ -13,7 +13,7 @@ use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
 /// Width of a fitted line: thinner than the data it belongs to.
 const FIT_LINE: f64 = 1.5;
 
-/// One value over another, and how far each can be trusted.
+/// A point, with the intervals of its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// Along the horizontal axis.
@@ -24,7 +24,7 @@ pub struct Point {
     pub x_interval: Option<(f64, f64)>,
     /// Low and high end of y.
     pub y_interval: Option<(f64, f64)>,
-    /// How many values y is of, where they were counted.
+    /// The number of values that y was computed from, if counted.
     pub count: Option<usize>,
 }
 
@@ -34,14 +34,14 @@ impl Point {
         Self { x, y, x_interval: None, y_interval: None, count: None }
     }
 
-    /// Adds the interval of y; `None` leaves the point bare.
+    /// Adds the interval of y; `None` leaves the point without one.
     #[must_use]
     pub fn with_y(mut self, interval: Option<(f64, f64)>) -> Self {
         self.y_interval = interval;
         self
     }
 
-    /// Adds the interval of x; `None` leaves the point bare.
+    /// Adds the interval of x; `None` leaves the point without one.
     #[must_use]
     pub fn with_x(mut self, interval: Option<(f64, f64)>) -> Self {
         self.x_interval = interval;
@@ -61,7 +61,7 @@ pub enum Spread {
 /// Points that belong together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// What the legend calls it.
+    /// Its name in the legend.
     pub name: String,
     /// Its points, in the order in which a line joins them.
     pub points: Vec<Point>,
@@ -79,7 +79,7 @@ impl Series {
         Self { name: name.into(), points, look, spread: Spread::Bars, line: true }
     }
 
-    /// A series for each name, its points from left to right.
+    /// A series for each name; its points are sorted from left to right.
     pub fn by_name(lines: impl IntoIterator<Item = (impl Into<String>, Vec<Point>)>) -> Vec<Self> {
         let series = |(index, (name, mut points)): (usize, (_, Vec<Point>))| {
             points.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -103,12 +103,13 @@ impl Series {
     }
 }
 
-/// The chart. Points without a place on its axes (not finite, or not positive on a logarithmic axis) are left out, and it says so.
+/// The chart. Leaves out points without a position on its axes (not finite, or not positive on a logarithmic axis), and
+/// reports their number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineChart {
-    /// What is shown, in one line.
+    /// The subject, in one line.
     pub title: String,
-    /// Workload, machine, what the bars are; may be empty.
+    /// Workload, machine, meaning of the bars; may be empty.
     pub subtitle: String,
     /// Remarks below the chart; may be empty.
     pub caption: String,
@@ -125,7 +126,8 @@ pub struct LineChart {
 }
 
 impl LineChart {
-    /// The chart on linear axes if one is logarithmic, else on logarithmic ones; `None` if a value would have no place on those.
+    /// The chart on linear axes if one is logarithmic, else on logarithmic ones; `None` without points, or if a value
+    /// would have no position on those.
     fn toggled(&self) -> Option<Self> {
         let is_log = [&self.x, &self.y].iter().any(|axis| axis.scale == Scale::Log);
         let values = || self.series.iter().flat_map(|series| &series.points).flat_map(|point| [point.x, point.y]);
@@ -134,7 +136,7 @@ impl LineChart {
         }
         let toggled = |axis: &Axis| Axis {
             scale: if is_log { Scale::Linear } else { Scale::Log },
-            // Labels that stand apart on one scale run into each other on the other.
+            // Labels that fit on a logarithmic axis may overlap on a linear one.
             ticks: if is_log { Ticks::Auto } else { axis.ticks.clone() },
             include: axis.include.iter().copied().filter(|value| is_log || *value > 0.0).collect(),
             label: axis.label.clone(),
@@ -150,7 +152,7 @@ impl LineChart {
 
     /// The ranges of both axes; `None` if no point can be drawn.
     fn ranges(&self) -> Option<(Range, Range)> {
-        // Each axis must know of a value to judge its partner by; points that lack one of them count for neither.
+        // A point needs a position on both axes; otherwise it counts for neither.
         let alone = |axis: &Axis, value: f64| Range::of(axis, [value]).is_some();
         let drawable = |point: &&Point| alone(&self.x, point.x) && alone(&self.y, point.y);
         let points: Vec<&Point> = self.series.iter().flat_map(|series| &series.points).filter(drawable).collect();
@@ -160,7 +162,8 @@ impl LineChart {
         Some((x, y))
     }
 
-    /// For each series the first one that has the same points: the second would hide it, so that both are drawn as one.
+    /// For each series the index of the first one with the same points. The later one would hide it, so both are drawn
+    /// as one.
     fn first_alike(&self) -> Vec<usize> {
         let first = |(index, series): (usize, &Series)| {
             let alike = |other: &Series| !series.points.is_empty() && other.points == series.points;
@@ -169,7 +172,7 @@ impl LineChart {
         self.series.iter().enumerate().map(first).collect()
     }
 
-    /// The series that are drawn as number `index`, itself first.
+    /// The series that are drawn as number `index`, which comes first.
     fn alike<'a>(&'a self, first_alike: &'a [usize], index: usize) -> impl Iterator<Item = &'a Series> {
         self.series.iter().zip(first_alike).filter(move |(_, first)| **first == index).map(|(series, _)| series)
     }
@@ -197,14 +200,14 @@ impl LineChart {
         }
     }
 
-    /// Draws a series, and those alike, into the frame; returns how many of its points have no place.
+    /// Draws a series, and those with the same points, into the frame; returns the number of points without a position.
     fn draw_series(&self, drawing: &mut Drawing, frame: &Frame, first_alike: &[usize], index: usize) -> usize {
         let series = &self.series[index];
         let shift = self.dodge * (index as f64 - 0.5 * (self.series.len() as f64 - 1.0));
         let moved = |place: Place| (place.0 + shift, place.1);
         let spots: Vec<Option<Place>> = series.points.iter().map(|p| frame.spot(p.x, p.y).map(moved)).collect();
         if series.line {
-            // A point without a place is a gap: nothing is known there.
+            // A point without a position leaves a gap in the line.
             for run in spots.split(Option::is_none) {
                 let places: Vec<Place> = run.iter().flatten().copied().collect();
                 drawing.dashed(&places, series.look.colour, LINE, series.look.dash);
@@ -245,7 +248,7 @@ impl LineChart {
         Note { at, series: series.name.clone(), of, value, interval, count: point.count, text }
     }
 
-    /// The band of a series, which lies below every line.
+    /// Draws the band of a series. Bands are drawn first, so they are below all lines.
     fn draw_band(drawing: &mut Drawing, frame: &Frame, series: &Series) {
         let edge = |point: &Point| {
             let (low, high) = point.y_interval?;

@@ -5,10 +5,10 @@ use super::style::{Colour, HAIRLINE, LINE, Marker, PAPER};
 
 /// Half the size of a marker in pixels.
 const RADIUS: f64 = 4.5;
-/// Half the width of the end of an error bar.
+/// Half the width of an error bar's cap.
 const CAP: f64 = 3.0;
 
-/// Draws a marker, with a thin rim of paper around it that parts it from lines below.
+/// Draws a marker, with a thin rim in the colour of the paper to separate it from lines below.
 pub(super) fn draw(drawing: &mut Drawing, at: Place, marker: Marker, colour: Colour) {
     match marker {
         Marker::Disc => {
@@ -44,7 +44,7 @@ fn cross(drawing: &mut Drawing, at: Place, colour: Colour, arms: &[(Place, Place
     }
 }
 
-/// Draws an error bar from `a` to `b`, which lie one above or beside the other, with an end across each.
+/// Draws a horizontal or vertical error bar from `a` to `b`, with a cap at each end.
 pub(super) fn bar(drawing: &mut Drawing, a: Place, b: Place, colour: Colour) {
     let upright = (a.0 - b.0).abs() < (a.1 - b.1).abs();
     let (dx, dy) = if upright { (CAP, 0.0) } else { (0.0, CAP) };

@@ -1,8 +1,8 @@
 //! Figures: plain data in, SVG and PNG out.
 //!
-//! A chart is turned into a [`Drawing`], a list of marks in pixels, by code that can't fail and that tests can look into. One generic
-//! function then paints the marks on either of plotters' backends. Text is set in an embedded font, so no font has to be
-//! installed, and equal data gives equal bytes.
+//! Code that cannot fail turns a chart into a [`Drawing`], a list of marks in pixels that tests can inspect. One
+//! generic function then paints the marks on either of plotters' backends. Text is set in an embedded font. So no font
+//! has to be installed, and equal data gives equal bytes.
 
 pub mod axis;
 mod colour_bar;
@@ -43,22 +43,22 @@ pub use heat_map::{HeatMap, HeatPanel, Tile};
 pub use line_chart::{LineChart, Point, Series, Spread};
 pub use overlay::{Curve, Overlay, OverlayKind};
 
-/// Something that can be drawn as vectors and as pixels.
+/// A figure that can be drawn as vectors and as pixels.
 pub trait Figure {
-    /// The marks it consists of.
+    /// The marks that it consists of.
     fn drawing(&self) -> Drawing;
 
-    /// The same on other axes, and how those are called, for a page to switch to.
+    /// The same figure on other axes, and the name of those axes, for a page to switch to.
     fn other_axes(&self) -> Option<(&'static str, Drawing)> {
         None
     }
 
-    /// What a page needs to show single jobs, as JSON.
+    /// Data of single jobs for a page, as JSON.
     fn data(&self) -> Option<String> {
         None
     }
 
-    /// The figure as a complete SVG document, which can stand in an HTML page as it is.
+    /// The figure as a complete SVG document, which can be embedded in an HTML page unchanged.
     fn svg(&self) -> Result<String> {
         paint::svg(&self.drawing())
     }
@@ -68,12 +68,12 @@ pub trait Figure {
         self.other_axes().map(|(name, drawing)| Ok((name, paint::svg(&drawing)?))).transpose()
     }
 
-    /// The figure as a PNG file, at twice the pixels that the SVG asks for.
+    /// The figure as a PNG file, with twice the width and height of the SVG.
     fn png(&self) -> Result<Vec<u8>> {
         paint::png(&paint::pixels(&self.drawing(), paint::SCALE)?)
     }
 
-    /// Writes `stem.svg` and `stem.png` into `dir`, which is made if need be.
+    /// Writes `stem.svg` and `stem.png` into `dir`, which is created if needed.
     fn save(&self, dir: &Path, stem: &str) -> Result<()> {
         let (svg, png) = (self.svg()?, self.png()?);
         save_bytes(dir, &format!("{stem}.svg"), svg.as_bytes())?;
@@ -81,7 +81,7 @@ pub trait Figure {
     }
 }
 
-/// Writes a file that appears whole or not at all.
+/// Writes a file atomically: it appears whole or not at all. Creates `dir` if needed.
 fn save_bytes(dir: &Path, name: &str, bytes: &[u8]) -> Result<()> {
     std::fs::create_dir_all(dir).map_err(|error| Error::system("creating", dir, error))?;
     atomic_file::write(&dir.join(name), |file: &mut dyn Write| file.write_all(bytes))

@@ -1,4 +1,4 @@
-//! Numbers as people read them on an axis: plain where short, else with a power of ten in superscript.
+//! Numbers as text for readers: plain if short, else with a power of ten in superscript.
 
 /// Values of this size and above are written with a power of ten.
 const LARGE: f64 = 1e6;
@@ -18,7 +18,7 @@ pub fn short(value: f64, digits: usize) -> String {
     if is_plain(rounded) { minus(format!("{rounded}")) } else { scientific(rounded, digits.saturating_sub(1)) }
 }
 
-/// An interval in brackets behind a value, with a space before it; nothing where there is none.
+/// An interval in brackets, to follow a value: begins with a space, and is empty for `None`.
 pub fn between(interval: Option<(f64, f64)>, digits: usize) -> String {
     interval.map_or_else(String::new, |(low, high)| format!(" ({} to {})", short(low, digits), short(high, digits)))
 }
@@ -33,7 +33,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     minus(format!("{value:.decimals$}"))
 }
 
-/// `value` as mantissa × 10ⁿ, the mantissa with at most `decimals` decimals and left out when it is 1.
+/// `value` as mantissa × 10ⁿ. The mantissa has at most `decimals` decimals and is left out if it is 1.
 pub fn scientific(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$e}");
     let Some((mantissa, exponent)) = text.split_once('e') else { return text };

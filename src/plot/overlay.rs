@@ -1,4 +1,4 @@
-//! Lines that are formulas: what would be ideal, and what was fitted.
+//! Overlays: lines given by formulas, ideal or fitted.
 
 use super::axis::Range;
 
@@ -9,14 +9,14 @@ pub enum Curve {
     Line {
         /// y at x = 0.
         intercept: f64,
-        /// Rise a unit of x.
+        /// Rise per unit of x.
         slope: f64,
     },
     /// y = scale x^exponent: straight on two logarithmic axes.
     Power {
         /// y at x = 1.
         scale: f64,
-        /// Its slope there.
+        /// Its slope on those axes.
         exponent: f64,
     },
     /// y = x / (1 + contention (x - 1) + coherence x (x - 1)): speedup over workers by the Universal Scalability Law, and by Amdahl's law
@@ -30,7 +30,7 @@ pub enum Curve {
 }
 
 impl Curve {
-    /// The power law of this exponent through a point; `None` if there is none, as for x = 0.
+    /// The power law with this exponent through a point; `None` if there is none, as for x = 0.
     pub fn power_through((x, y): (f64, f64), exponent: f64) -> Option<Self> {
         let scale = y / libm::pow(x, exponent);
         (x > 0.0 && scale.is_finite()).then_some(Self::Power { scale, exponent })
@@ -46,7 +46,7 @@ impl Curve {
     }
 }
 
-/// What an overlay means, which decides how it looks.
+/// The meaning of an overlay, which decides its look.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OverlayKind {
     /// A theoretical line to compare with: dashed grey.
@@ -55,10 +55,10 @@ pub enum OverlayKind {
     Fit(usize),
 }
 
-/// A curve over the points, with its line in the legend.
+/// A curve over the points, with its entry in the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
-    /// What the legend says; may have several lines.
+    /// Its text in the legend; may have several lines.
     pub label: String,
     /// Its formula.
     pub curve: Curve,
@@ -78,7 +78,7 @@ impl Overlay {
     }
 }
 
-/// The parts of a curve that lie inside the ranges, as places (0 to 1 each way, y up).
+/// The parts of a curve inside the ranges, as shares of the axes (0 to 1 each way, y up).
 pub(super) fn inside(curve: &Curve, x: &Range, y: &Range) -> Vec<Vec<(f64, f64)>> {
     const STEPS: u32 = 128;
     let places = (0..=STEPS).map(|i| {
@@ -90,7 +90,7 @@ pub(super) fn inside(curve: &Curve, x: &Range, y: &Range) -> Vec<Vec<(f64, f64)>
     for place in places {
         let piece = before.zip(place).and_then(|(a, b)| clip(a, b));
         if let (Some((a, b)), Some(part)) = (piece, parts.last_mut()) {
-            // Cut again from the other side, the shared end can differ in its last bit.
+            // The shared end is now cut from the other side, so it can differ in its last bit.
             if part.last().is_some_and(|end| (end.0 - a.0).abs() + (end.1 - a.1).abs() < 1e-12) {
                 part.push(b);
             } else {
@@ -103,7 +103,7 @@ pub(super) fn inside(curve: &Curve, x: &Range, y: &Range) -> Vec<Vec<(f64, f64)>
     parts.iter().map(|part| corners(part)).collect()
 }
 
-/// A line without the places that lie on the straight way between their neighbours: rounded to pixels they would make it wobble.
+/// Leaves out points on the straight line between their neighbours: rounded to pixels, they would make the line wobble.
 fn corners(places: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
     for (i, &here) in places.iter().enumerate() {
@@ -118,7 +118,7 @@ fn corners(places: &[(f64, f64)]) -> Vec<(f64, f64)> {
     kept
 }
 
-/// The part of a straight piece whose heights are in 0 to 1.
+/// The part of a straight segment with heights from 0 to 1; `None` if there is none.
 fn clip(a: (f64, f64), b: (f64, f64)) -> Option<((f64, f64), (f64, f64))> {
     if a.1.max(b.1) < 0.0 || a.1.min(b.1) > 1.0 {
         return None;

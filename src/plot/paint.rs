@@ -1,4 +1,4 @@
-//! Marks onto plotters' backends, which is where fonts and file formats come in.
+//! Painting: marks on plotters' backends, fonts and file formats.
 
 use std::io::{Cursor, Error as IoError};
 
@@ -17,12 +17,13 @@ use super::style::{Colour, PAPER};
 use super::{font, lettering};
 use crate::error::{Error, Result};
 
-/// Backends have whole pixels only; twice as many of them keep lines and letters in place.
+/// Backends have whole pixels only; twice as many place lines and letters more accurately.
 pub(super) const SCALE: f64 = 2.0;
 
 /// plotters' SVG backend writes font-size = size / 1.24.
 const SVG_SIZE: f64 = 1.24;
-/// It puts the base line half the height of a small x below the place, in ems: 0.27 for `DejaVu` Sans and much the same elsewhere.
+/// It puts the base line half the height of a small x below the position, in ems: 0.27 for `DejaVu` Sans and about the
+/// same for other fonts.
 const SVG_BASE_LINE: f64 = 0.27;
 
 /// A complete SVG document.
@@ -55,10 +56,10 @@ pub(super) fn svg(drawing: &Drawing) -> Result<String> {
     Ok(text + "</svg>\n")
 }
 
-/// How far from a value a pointer still finds it, in pixels of the drawing.
+/// Distance from a value within which a pointer finds it, in pixels of the drawing.
 const REACH: f64 = 9.0;
 
-/// An invisible circle over a value, which shows the value to a reader who points at it.
+/// An invisible circle over a value; it shows the value to a reader who points at it.
 fn circle(note: &Note) -> String {
     let (low, high) = note.interval.map_or_else(Default::default, |(low, high)| (low.to_string(), high.to_string()));
     let count = note.count.map_or_else(String::new, |count| count.to_string());
@@ -74,26 +75,26 @@ fn circle(note: &Note) -> String {
     )
 }
 
-/// The elements of some marks, on paper if they are the first.
+/// The SVG elements of some marks, with the paper if they are the first.
 fn elements(marks: &[Mark], size: (u32, u32), with_paper: bool) -> Result<String> {
     if marks.is_empty() && !with_paper {
         return Ok(String::new());
     }
     let mut text = String::new();
     paint(marks, with_paper, &SVGBackend::with_string(&mut text, size).into_drawing_area(), SCALE, true)?;
-    // plotters' own first tag fixes the size at the finer pixels and says nothing to a reader who can't see.
+    // plotters' own first tag gives the size in the finer pixels and has no title for readers who cannot see.
     let body = text.split_once('>').map_or(text.as_str(), |(_, body)| body);
     let body = body.trim_end().trim_end_matches("</svg>");
-    // What is so anyway takes a quarter of the text.
+    // Default values of attributes take a quarter of the text.
     Ok(body.replace(" opacity=\"1\"", "").replace(" stroke=\"none\"", ""))
 }
 
-/// Text between tags, or between quotes in a tag.
+/// Escapes text between tags, or between quotes in a tag.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The drawing as pixels, `scale` of them to one of its own.
+/// The drawing as pixels, `scale` per pixel of the drawing.
 pub(super) fn pixels(drawing: &Drawing, scale: f64) -> Result<RgbImage> {
     let (width, height) = device_size(drawing, scale);
     let mut image = RgbImage::new(width, height);
@@ -109,8 +110,8 @@ pub(super) fn pixels(drawing: &Drawing, scale: f64) -> Result<RgbImage> {
 /// The bytes of a PNG file.
 pub(super) fn png(image: &RgbImage) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
-    // Large even areas pack best without a filter; noise does not pack at all. The best compression makes files 1 % smaller, and `report` of the
-    // authors' results takes 4.5 s instead of 2.7 s.
+    // Large even areas compress best without a filter; noise does not compress at all. The best compression makes files
+    // 1 % smaller, but `report` of the authors' results takes 4.5 s instead of 2.7 s.
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::NoFilter);
     image.write_with_encoder(encoder).map_err(|error| failure(&error))?;
     Ok(bytes.into_inner())
@@ -124,7 +125,7 @@ fn failure(error: &dyn std::error::Error) -> Error {
     Error::system("drawing", "a figure", IoError::other(error.to_string()))
 }
 
-/// Paints marks; text only if the backend is to set it.
+/// Paints marks; text only if the backend sets it.
 fn paint<B: DrawingBackend>(
     marks: &[Mark],
     with_paper: bool,
@@ -167,7 +168,7 @@ fn paint<B: DrawingBackend>(
 fn label<'a>(text: &Text, colour: &'a RGBColor, scale: f64) -> Label<'a, (i32, i32), String> {
     let drop = (lettering::HALF_CAPITAL - SVG_BASE_LINE) * text.size;
     let (x, y) = text.at;
-    // Turned upwards, what was below is to the right.
+    // In text that reads upwards, down becomes right.
     let at = if text.upwards { (x + drop, y) } else { (x, y + drop) };
     let horizontal = match text.align {
         Align::Left => HPos::Left,

@@ -9,10 +9,10 @@ use super::style::{FAINT, GRID, HAIRLINE, INK, SMALL_SIZE};
 pub(super) const TICK: f64 = 5.0;
 /// Space between an axis and its labels.
 pub(super) const GAP: f64 = 8.0;
-/// Labels nearer than this to each other are left out.
+/// Smallest distance between labels; nearer ones are left out.
 const APART: f64 = 6.0;
 
-/// Grid lines, ticks and labels of an area, given by its left, top, right and bottom.
+/// Draws grid lines, ticks and labels of an area, given by its left, top, right and bottom.
 pub(super) fn below(drawing: &mut Drawing, ticks: &[Tick], area: [f64; 4]) {
     let [left, top, right, foot] = area;
     let mut free_from = f64::MIN;
@@ -28,7 +28,7 @@ pub(super) fn below(drawing: &mut Drawing, ticks: &[Tick], area: [f64; 4]) {
     }
 }
 
-/// The grid lines alone, for an area whose axis is further below.
+/// Draws only the grid lines, for an area whose axis is further below.
 pub(super) fn grid(drawing: &mut Drawing, ticks: &[Tick], [left, top, right, foot]: [f64; 4]) {
     for tick in ticks {
         let x = left + tick.place * (right - left);
@@ -36,7 +36,7 @@ pub(super) fn grid(drawing: &mut Drawing, ticks: &[Tick], [left, top, right, foo
     }
 }
 
-/// A line through the data area and the tick outside it; minor ticks have a fainter line and no tick.
+/// Draws a line through the data area and the tick outside it; minor ticks have a fainter line and no tick.
 pub(super) fn grid_line(drawing: &mut Drawing, tick: &Tick, foot: Place, end: Place, outside: Place) {
     if tick.label.is_empty() {
         drawing.path(vec![foot, end], FAINT, HAIRLINE);

@@ -1,4 +1,4 @@
-//! Schedules, maps and dot plots as a whole: nothing clipped, nothing overlapping, nothing lost without a word.
+//! Tests of whole schedules, maps and dot plots: nothing is clipped, overlaps or is lost silently.
 
 use super::drawing::Mark;
 use super::style::Look;
@@ -8,7 +8,7 @@ use super::{
     paint,
 };
 
-/// Equal jobs, one after the other, handed to the workers in turn.
+/// Equal jobs, one after the other, assigned to the workers in turn.
 fn schedule(workers: usize, jobs: usize) -> Schedule {
     let rounds = jobs.div_ceil(workers.max(1)).max(1) as f64;
     let job = |i: usize| {
@@ -75,7 +75,7 @@ fn every_job_has_its_box_while_there_is_room() {
     let chart = gantt(vec![schedule(2, 20), schedule(4, 21)]);
     let drawing = chart.drawing();
     assert_legible(&drawing);
-    // A box and an edge each, a ground for each schedule, and the 128 steps of the colour bar.
+    // A box and an edge for each job, a background for each schedule, and the 128 steps of the colour bar.
     assert_eq!(rectangles(&drawing), 2 * (20 + 21) + 2 + 128);
     assert!(says(&drawing, "time from start, s") && says(&drawing, "a quarter of the jobs between labels"));
     assert_eq!(chart.svg().unwrap(), gantt(vec![schedule(2, 20), schedule(4, 21)]).svg().unwrap());

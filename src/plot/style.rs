@@ -1,8 +1,9 @@
-//! What figures look like: colours, markers, dashes, sizes.
+//! The look of figures: colours, markers, dashes, sizes.
 //!
-//! The hues are those of M. Okabe and K. Ito, "Color universal design" (2008), which people with any of the common colour
-//! deficiencies can tell apart; the light ones are darkened, and yellow is replaced by grey, until each stands out from white by 3:1
-//! (WCAG 2.1, 1.4.11). The marker repeats what the colour says, so a figure can be read without colour.
+//! The hues are from M. Okabe and K. Ito, "Color universal design" (2008); people with any of the common colour
+//! deficiencies can distinguish them. Light ones are darkened, and yellow is replaced by grey, so that each has a
+//! contrast of 3:1 to white (WCAG 2.1, 1.4.11). The marker repeats the information of the colour, so a figure can be
+//! read without colour.
 
 /// Red, green, blue, 0 to 255.
 pub type Colour = [u8; 3];
@@ -15,7 +16,7 @@ pub const MUTED: Colour = [89, 89, 89];
 pub const GRID: Colour = [225, 225, 225];
 /// Minor grid lines.
 pub const FAINT: Colour = [241, 241, 241];
-/// The ground.
+/// The background.
 pub const PAPER: Colour = [255, 255, 255];
 
 /// Colours of series: blue, vermillion, green, orange, purple, sky, black, grey.
@@ -30,13 +31,13 @@ pub const SERIES: [Colour; 8] = [
     [128, 128, 128],
 ];
 
-/// Size of the title in pixels an em.
+/// Size of the title in pixels per em.
 pub const TITLE_SIZE: f64 = 17.0;
 /// Size of axis titles, legends and subtitles.
 pub const TEXT_SIZE: f64 = 12.5;
 /// Size of tick labels and captions.
 pub const SMALL_SIZE: f64 = 11.5;
-/// Distance of lines of text in ems.
+/// Distance between lines of text in ems.
 pub const LEADING: f64 = 1.45;
 /// Space left free at every edge, in pixels.
 pub const MARGIN: f64 = 24.0;
@@ -78,13 +79,13 @@ pub const MARKERS: [Marker; 8] = [
     Marker::Ring,
 ];
 
-/// How a line is broken up: lengths of stroke and gap in turn, in pixels. Empty means solid.
+/// The dash pattern of a line: lengths of stroke and gap in turn, in pixels. Empty means solid.
 pub type Dash = &'static [f64];
 
 /// Dashes, in the order in which they are used.
 pub const DASHES: [Dash; 4] = [&[], &[8.0, 4.0], &[2.0, 3.0], &[10.0, 3.0, 2.0, 3.0]];
 
-/// How a series is told from the others.
+/// The properties that distinguish a series from the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
     /// Colour of line, markers and error bars.
@@ -96,13 +97,14 @@ pub struct Look {
 }
 
 impl Look {
-    /// The look of series number `index`: colour and marker change first; after each eight the colours meet other markers and other dashes.
+    /// The look of series number `index`: colour and marker change first; after each eight, the colours get other
+    /// markers and dashes.
     pub fn nth(index: usize) -> Self {
         Self::of(index, index / SERIES.len())
     }
 
-    /// Colour from one property of a series, such as its strategy, and the dashes from another, such as its threads. The marker is of both, so
-    /// that points can be told apart without their lines.
+    /// The colour stands for one property of a series, such as its strategy, and the dashes for another, such as its
+    /// threads. The marker depends on both, so that points can be distinguished without their lines.
     pub fn of(colour: usize, dash: usize) -> Self {
         Self {
             colour: SERIES[colour % SERIES.len()],
@@ -142,7 +144,7 @@ mod tests {
             let same = |other: &Look| (other.colour, other.marker) == (look.colour, look.marker);
             assert!(!looks[..i].iter().any(same), "{i}");
         }
-        // Within the first eight, colour alone and marker alone tell them apart.
+        // Among the first eight, colour alone and marker alone distinguish them.
         for (i, look) in looks[..8].iter().enumerate() {
             assert!(looks[..i].iter().all(|other| other.marker != look.marker && other.colour != look.colour));
         }

@@ -1,4 +1,4 @@
-//! Figures as a whole: nothing clipped, nothing overlapping, nothing that fails, the same bytes each time.
+//! Tests of whole figures: nothing is clipped, overlaps or fails, and the bytes are the same each time.
 
 use super::drawing::{Mark, Text};
 use super::style::{GRID, Look};
@@ -34,7 +34,7 @@ pub(super) fn says(drawing: &Drawing, what: &str) -> bool {
     drawing.texts().any(|text| text.text.contains(what))
 }
 
-/// Every text lies inside the drawing, and no two lie over each other.
+/// Asserts that every text is inside the drawing, and that no two overlap.
 pub(super) fn assert_legible(drawing: &Drawing) {
     let bounds: Vec<(&Text, [f64; 4])> = drawing.texts().map(|text| (text, text.bounds())).collect();
     for (i, (text, [left, top, right, bottom])) in bounds.iter().enumerate() {
@@ -64,7 +64,7 @@ fn equal_lines_are_one_with_both_names() {
         chart.series.iter_mut().for_each(|series| series.spread = spread);
         let drawing = chart.drawing();
         assert!(says(&drawing, "strategy-number-0 ="), "both names");
-        // As many marks as for two series; the values of all three can still be asked for.
+        // As many marks as for two series, but a note for each value of all three.
         let two = LineChart { series: chart.series[..2].to_vec(), ..chart.clone() }.drawing();
         assert_eq!(marks(&drawing), marks(&two), "{spread:?}");
         assert_eq!(chart.svg().unwrap().matches("strategy-number-2: ").count(), 4);
@@ -179,7 +179,7 @@ fn sheets_enlarge_small_images_and_thin_out_large_ones() {
         .pixels()
         .unwrap()
         .0;
-    // 96 pixels are shown as 288, 1024 as 256: two columns of the wider, a gap and two margins.
+    // 96 pixels are shown as 288, and 1024 as 256: two columns of the wider, a gap and two margins.
     assert_eq!(pixels.width(), 2 * 288 + 16 + 48);
     let source = image(96, 64).rgb;
     let first = pixels.enumerate_pixels().filter(|(x, _, _)| (24..27).contains(x));

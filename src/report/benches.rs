@@ -1,4 +1,5 @@
-//! What `cargo bench --bench scheduling` measured: `benches/benches.csv`, which it writes into the folder that `PATHMARK_BENCH_OUT` names.
+//! Results of `cargo bench --bench scheduling`: it writes `benches/benches.csv` into the folder that
+//! `PATHMARK_BENCH_OUT` names.
 
 use super::block::Block;
 use super::page::Section;
@@ -12,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The folder of results that has the file.
+/// Name of the file's folder within the results.
 const FOLDER: &str = "benches";
 /// The file.
 const FILE: &str = "benches.csv";
@@ -45,13 +46,14 @@ pub struct BenchRow {
 }
 
 impl BenchRow {
-    /// How many times as fast as another: the ratio of medians, and the widest one that the two intervals allow.
+    /// Speedup over another case: the ratio of medians, then the smallest and the largest ratio that the two intervals
+    /// allow.
     pub fn speedup_over(&self, other: &Self) -> [f64; 3] {
         [other.median_s / self.median_s, other.low_s / self.high_s, other.high_s / self.low_s]
     }
 }
 
-/// Writes the cases, and what they were measured on, into a folder of results.
+/// Writes the cases and a description of the machine into a folder of results.
 pub fn write_benches(out: &Path, command: String, rows: &[BenchRow]) -> Result<()> {
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("making", &folder, e))?;
@@ -70,7 +72,7 @@ fn read(path: &Path) -> Result<Vec<BenchRow>> {
     rows.map_err(|e| InputError::new("benches", "", e.to_string()).in_file(path.display().to_string(), None).into())
 }
 
-/// The section, if a folder has such a file. Its figure and tables are written beside it.
+/// The section, if a folder has such a file. Writes its figure and tables beside the file.
 pub(super) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
@@ -110,7 +112,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
     }))
 }
 
-/// The cases of the group `scheduling` with their speedups over `serial`, the fastest first.
+/// The cases of the group `scheduling` with their speedups over `serial`, fastest first.
 fn speedups(rows: &[BenchRow]) -> Vec<(&BenchRow, [f64; 3])> {
     let own = || rows.iter().filter(|row| row.group == "scheduling");
     let Some(serial) = own().find(|row| row.case == "serial") else { return Vec::new() };
@@ -119,7 +121,7 @@ fn speedups(rows: &[BenchRow]) -> Vec<(&BenchRow, [f64; 3])> {
     found
 }
 
-/// A strategy and its bare mechanism on as many threads.
+/// Pairs each strategy with its bare mechanism on the same number of threads.
 fn pairs(rows: &[BenchRow]) -> Vec<(&BenchRow, &BenchRow)> {
     let own = || rows.iter().filter(|row| row.group == "seam");
     let bare: BTreeMap<_, _> =
@@ -205,7 +207,7 @@ mod tests {
         assert_eq!(speedup, 2.0);
         assert!((low - 1.8 / 1.1).abs() < 1e-12 && (high - 2.2 / 0.9).abs() < 1e-12, "{low} to {high}");
         let seam = seam_table(&pairs(&rows));
-        // 1 us more for 1000 jobs is 1 ns a job; from 2.7 - 2.2 to 3.3 - 1.8.
+        // 1 us more for 1000 jobs is 1 ns per job; the interval is from 2.7 - 2.2 to 3.3 - 1.8.
         let Block::Table { table: seam, .. } = seam else { panic!("a table") };
         assert_eq!(seam.rows().collect::<Vec<_>>(), [["rayon", "2", "2.0", "3.0", "1.0", "0.5", "1.5"]]);
         assert!(section(folder.path()).unwrap().is_some());

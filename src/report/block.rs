@@ -1,4 +1,4 @@
-//! What a page is made of.
+//! Blocks: the parts that a page is made of.
 
 use super::table::{Columns, Table};
 use crate::atomic_file;
@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// One part of an experiment's section.
 pub enum Block {
-    /// What the numbers say, in a sentence or two.
+    /// The result in a sentence or two.
     Finding(String),
     /// A figure as SVG and PNG.
     Figure {
@@ -17,17 +17,17 @@ pub enum Block {
         /// The drawing.
         figure: Box<dyn Figure>,
     },
-    /// A picture made of pixels.
+    /// A PNG image.
     Picture {
         /// File name without its ending.
         stem: &'static str,
-        /// What it shows, for who cannot see it.
+        /// Its subject, for readers who cannot see it.
         title: String,
         /// The PNG file.
         png: Vec<u8>,
-        /// How its images are compared.
+        /// How the page compares its images.
         comparison: Comparison,
-        /// Where they lie.
+        /// Their positions in the picture.
         images: Vec<Placed>,
     },
     /// A table.
@@ -53,13 +53,13 @@ impl Block {
         Self::Figure { stem, figure: Box::new(figure) }
     }
 
-    /// A sheet of pictures.
+    /// A sheet of images.
     pub(super) fn sheet(stem: &'static str, sheet: &ContactSheet) -> Result<Self> {
         let (png, images) = sheet.png()?;
         Ok(Self::Picture { stem, title: sheet.title.clone(), png, comparison: sheet.comparison, images })
     }
 
-    /// A table with a row for each thing; its columns follow.
+    /// Starts a table with a row for each item; its columns follow.
     pub(super) fn table<T>(
         stem: &'static str,
         title: impl Into<String>,
@@ -68,7 +68,7 @@ impl Block {
         Columns::of(stem, title, things)
     }
 
-    /// Writes figure, picture or table (as CSV) into the folder.
+    /// Writes the figure, picture or table (as CSV) into the folder.
     pub(super) fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
         match self {

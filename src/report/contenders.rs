@@ -1,4 +1,5 @@
-//! The ways to render a scene that an experiment compares, as prices see them: error curves over seeds, and seconds per sample.
+//! Contenders: the ways to render a scene that an experiment compares by price. Each has error curves over seeds, and
+//! seconds per sample.
 
 use super::block::Block;
 use super::naming::{Part, needed};
@@ -18,22 +19,22 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// An estimator with a sampler and a schedule, on a scene.
 pub(super) struct Contender {
-    /// What tells it from the others.
+    /// Distinguishes it from the others.
     pub(super) name: String,
-    /// What it renders, samples and seed aside.
+    /// The image that it renders, without samples and seed.
     pub(super) image: ImageKey,
     pub(super) schedule: ScheduleKey,
     /// Its kernel, in words.
     pub(super) kernel: String,
     /// Its points, by samples per pixel.
     pub(super) points: Vec<CostPoint>,
-    /// What its prices are made from.
+    /// Its prices are computed from this.
     pub(super) renderer: Renderer,
-    /// Each seed's own curve and seconds per sample and pixel.
+    /// The error curve of each seed, and its seconds per sample in every pixel.
     seeds: Vec<(Curve, f64)>,
 }
 
-/// Error and time after so many samples.
+/// Error and time at some number of samples.
 pub(super) struct CostPoint {
     pub(super) spp: u32,
     /// Mean seconds over seeds.
@@ -41,17 +42,17 @@ pub(super) struct CostPoint {
     /// Root of the mean squared error.
     pub(super) rmse: f64,
     pub(super) interval: Option<Interval>,
-    /// Standard deviation of the seeds' squared errors over their mean.
+    /// Standard deviation of the seeds' squared errors, relative to their mean.
     pub(super) variation: Option<f64>,
 }
 
-/// What a part of the seeds and samples predicts for the rest.
+/// Measured values beside those that a part of the seeds and samples predicts.
 pub(super) struct Check {
-    /// Samples per pixel that were predicted for.
+    /// Samples per pixel of the prediction.
     pub(super) spp: u32,
-    /// RMSE of the other seeds over the predicted one.
+    /// RMSE of the other seeds over the predicted RMSE.
     pub(super) rmse: f64,
-    /// Their seconds over the predicted ones.
+    /// Their seconds over the predicted seconds.
     pub(super) seconds: f64,
 }
 
@@ -83,7 +84,8 @@ impl Contender {
         })
     }
 
-    /// The first half of the seeds, up to a quarter of the samples, predicts the rest. `None` below six seeds or two points in that quarter.
+    /// Predicts the other seeds from the first half of the seeds and up to a quarter of the samples. `None` below six
+    /// seeds or two points in that quarter.
     pub(super) fn check(&self) -> Option<Check> {
         let half = self.seeds.len() / 2;
         let (pilot, paid) = self.seeds.split_at_checked(half).filter(|_| half >= 3)?;
@@ -112,8 +114,9 @@ fn renderer(seeds: &[(Curve, f64)], law: Law) -> Option<Renderer> {
     })
 }
 
-/// (spp, squared error) of each seed, and its seconds for a sample in every pixel, from its longest render. An spp at which some seed's
-/// squared error is not positive, or not there, is left out for all: leaving out that seed alone would bias the rest upwards.
+/// The curve (spp, squared error) of each seed, and its seconds for a sample in every pixel, from its longest render.
+/// If a seed has no positive squared error at some spp, that spp is left out for all seeds: leaving it out for that
+/// seed alone would bias the rest upwards.
 pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
     let mut seeds: BTreeMap<u64, BTreeMap<u32, &Row>> = BTreeMap::new();
     for row in rows {
@@ -132,18 +135,20 @@ pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
     seeds.values().filter_map(of_seed).collect()
 }
 
-/// A value of each seed: every schedule and repetition of a seed has the same image, so counting them again would narrow intervals falsely.
+/// One value per seed. All schedules and repetitions of a seed render the same image; counting them again would make
+/// intervals falsely narrow.
 pub(super) fn one_per_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
     let by_seed: BTreeMap<u64, f64> = rows.iter().filter_map(|row| Some((row.seed, value(row)?))).collect();
     by_seed.into_values().collect()
 }
 
-/// The mean first and the root last, as the cross form asks; NaN, which charts leave out, if the mean is below zero.
+/// The root of the mean, not the mean of roots, as the cross form requires. NaN, which charts leave out, if the mean is
+/// negative.
 pub(super) fn root_of_mean(mse: &[f64]) -> f64 {
     (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
 }
 
-/// What is said of other programs that were not there.
+/// A finding that names the other programs that were not found.
 pub(super) fn missing(results: &Results) -> Option<Block> {
     let warning = Warning::NoProgram.to_string();
     let absent = results.rows().filter(|row| row.warnings.contains(&warning));
@@ -154,8 +159,8 @@ pub(super) fn missing(results: &Results) -> Option<Block> {
     (!list.is_empty()).then_some(Block::finding(text))
 }
 
-/// The contenders of each scene, scenes by name and contenders in the order in which the estimators are listed. What cannot be priced, such as a single seed,
-/// is left out.
+/// The contenders of each scene: scenes by name, contenders in the order of the estimators in the definition. Leaves
+/// out contenders without a price, such as those with a single seed.
 pub(super) fn contenders(results: &Results) -> Result<BTreeMap<String, Vec<Contender>>> {
     let priced = results.rows().filter(|row| row.mse.is_some());
     let groups = group(priced, |row| {
@@ -183,7 +188,8 @@ pub(super) fn contenders(results: &Results) -> Result<BTreeMap<String, Vec<Conte
     Ok(scenes)
 }
 
-/// The names of contenders, each by a row: the estimator and what differs, or what else is needed to tell them apart.
+/// Names the contenders, each given by a row: the estimator, the properties that differ, and any others needed to
+/// distinguish them.
 fn names(rows: &[&Row]) -> Vec<String> {
     let main: [Part<Row>; 6] = [
         |row| row.estimator.clone(),
@@ -206,11 +212,11 @@ fn names(rows: &[&Row]) -> Vec<String> {
         |row| row.accelerator.clone(),
         |row| if row.adaptive { "adaptive".to_string() } else { String::new() },
     ];
-    // Of another program there is nothing but its name.
+    // Another program has only a name.
     let own: Vec<&Row> = rows.iter().copied().filter(|row| row.strategy != EXTERNAL).collect();
     let differs = |part: &Part<Row>| own.iter().map(|row| part(row)).collect::<BTreeSet<_>>().len() > 1;
     let mut parts: Vec<Part<Row>> = main[1..].iter().copied().filter(differs).collect();
-    // A sampler that lanes have no code for makes kernels differ that nobody compares.
+    // A sampler without lane code makes kernels differ that nobody compares, so kernels are named only where needed.
     let who = |row: &Row| (row.estimator.clone(), row.sampler.clone(), row.threads);
     parts.extend(needed(&own, who, &[|row: &Row| row.kernel_name()]));
     let told = |row: &Row| (row.scene.clone(), main[0](row), parts.iter().map(|part| part(row)).collect::<Vec<_>>());

@@ -12,8 +12,8 @@ use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::simulate::{Contender, DISTURBED, Forecast, Observed, Prediction, agreement, predict};
 use std::collections::HashMap;
 
-/// The makespans of rows whose workers had a processor each, or that have a thread for each job, predicted from the serial run of the same
-/// pieces in the same repetition.
+/// Predicts makespans from the serial run of the same pieces in the same repetition. Leaves out rows with more threads
+/// than processors, unless they have a thread for each job.
 pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Prediction>> {
     let serial = results.serial()?;
     let processors = results.processors();
@@ -33,7 +33,7 @@ pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Pr
     Ok(predict(runs, contenders, processors))
 }
 
-/// What each job of the serial runs cost, by cell and repetition.
+/// The cost of each job of the serial runs, by cell and repetition.
 pub(super) fn serial_costs(results: &Results) -> Result<HashMap<(&str, u32), Vec<f64>>> {
     let mut costs = HashMap::new();
     for row in results.rows().filter(|row| row.schedule.is_serial()) {
@@ -44,12 +44,12 @@ pub(super) fn serial_costs(results: &Results) -> Result<HashMap<(&str, u32), Vec
     Ok(costs)
 }
 
-/// CPU time over that of the serial run beside it; 1 where the system told none.
+/// CPU time divided by that of the serial run beside it; 1 if the system reported none.
 pub fn inflation(own_s: Option<f64>, serial_s: Option<f64>) -> f64 {
     own_s.zip(serial_s).filter(|(own, serial)| *own > 0.0 && *serial > 0.0).map_or(1.0, |(own, serial)| own / serial)
 }
 
-/// Predicted against measured, and the errors in a sentence.
+/// A finding about the errors, and a table of predicted and measured makespans.
 pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
     let errors = |ratio: fn(&Prediction) -> Option<f64>| {
         let ratios = predictions.iter().filter_map(ratio);
@@ -93,7 +93,7 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
     vec![Block::Finding(finding), table]
 }
 
-/// The files that [`forecast_blocks`] are saved in.
+/// The files that the blocks of [`forecast_blocks`] are saved in.
 pub const FORECAST_FILES: &[&str] = &[
     "forecast-speedup.svg",
     "forecast-speedup.png",
@@ -104,9 +104,9 @@ pub const FORECAST_FILES: &[&str] = &[
     "forecast.csv",
 ];
 
-/// Speedup and efficiency against cores, and all numbers as a table.
+/// Charts of speedup, efficiency and makespan against cores, and a table of all values.
 ///
-/// Graham's bound is drawn for equal cores, for which alone it holds.
+/// Graham's bound is drawn only for equal cores, because it holds only for them.
 pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> Vec<Block> {
     let mut blocks = Vec::new();
     let shown = representatives(rows);
@@ -119,7 +119,7 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
         Series::by_name(shown.iter().map(|name| (name, points(name))))
     };
     let most = rows.iter().map(|row| row.workers).max().unwrap_or(1);
-    // Every number of cores would leave no room for some powers of two.
+    // A tick at every number of cores would leave no room for the labels of some powers of two.
     let doubled = std::iter::successors(Some(1), |cores| Some(2 * cores)).take_while(|cores| *cores <= most);
     let ticks: Vec<f64> = doubled.chain([most]).map(|cores| cores as f64).collect();
     let axis = || Axis::log("cores").ticks_at(ticks.clone());
@@ -156,17 +156,17 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
     blocks
 }
 
-/// What a line of a chart shows of a row.
+/// The value of a row that a line of a chart shows.
 type Value = fn(&Forecast) -> f64;
 
-/// What no schedule can beat, and what every greedy one keeps to, as lines without intervals.
+/// Lower bounds of every makespan, and the upper bound of greedy schedules, as lines without intervals.
 fn bounds(rows: &[Forecast], first: usize, equal_cores: bool) -> Vec<Series> {
     let values: [(&str, Value); 3] = [
         ("bound: work / cores", |row| row.share_s),
         ("bound: longest job", |row| row.longest_s),
         ("Graham: any greedy schedule", |row| row.greedy_s),
     ];
-    // They are the same for every strategy, so one that ran on all numbers of workers lends its rows.
+    // The bounds are the same for every strategy, so the rows of one that ran on all numbers of workers suffice.
     let most = rows.iter().map(|row| row.workers).max();
     let name = rows.iter().find(|row| Some(row.workers) == most).map(|row| row.strategy.as_str());
     let own: Vec<&Forecast> = rows.iter().filter(|row| Some(row.strategy.as_str()) == name).collect();
@@ -177,7 +177,7 @@ fn bounds(rows: &[Forecast], first: usize, equal_cores: bool) -> Vec<Series> {
     values.into_iter().take(if equal_cores { 3 } else { 2 }).enumerate().map(line).collect()
 }
 
-/// The strategies that a chart shows: the first of those whose speedups are alike everywhere, to within a quarter.
+/// The strategies that a chart shows: of those whose speedups are within a quarter of each other everywhere, the first.
 fn representatives(rows: &[Forecast]) -> Vec<String> {
     let mut names: Vec<&str> = rows.iter().map(|row| row.strategy.as_str()).collect();
     names.dedup();
@@ -188,7 +188,7 @@ fn representatives(rows: &[Forecast]) -> Vec<String> {
     for name in names {
         let own = speedups(name);
         let alike = |other: &Vec<f64>| other.iter().zip(&own).all(|(a, b)| (a / b - 1.0).abs() < 0.25);
-        // A strategy that has one number of workers whatever is asked, as serial has, is no line.
+        // A strategy with a fixed number of workers, such as serial, has no line.
         if own.len() == most && !shown.iter().any(|(_, other)| alike(other)) {
             shown.push((name.to_string(), own));
         }

@@ -18,7 +18,7 @@ const ANALYSIS: &str = "A guard is extra work that keeps hard inputs correct; on
 A ratio above 1 is what the guard costs in the operation that it guards; in an image it is far less, because an image does much besides. Where the ratio is below 1, being right is also faster.\n\n\
 The simpler variants are not options of the program: a table of hard cases (`pathmark check`) insists that the program passes where they fail.";
 
-/// The section, if a folder has such a list. Its figure and table are written beside it.
+/// The section, if a folder has a price list. Writes its figure and tables beside the list.
 pub(super) fn section(out: &Path) -> Result<Option<Section>> {
     let folder = out.join(FOLDER);
     let path = folder.join(FILE);
@@ -64,7 +64,7 @@ fn plot(rows: &[PriceRow], machine: String) -> DotPlot {
 
 fn prices(rows: &[PriceRow]) -> Block {
     let told = |value: f64, low: f64, high: f64| {
-        // What is no estimate has no interval.
+        // A value that is not estimated has no interval.
         Told::of(value, (low < high).then_some(Interval { low, high, level: LEVEL }))
     };
     let ratio = |row: &PriceRow| Some(told(row.time_ratio?, row.time_ratio_low?, row.time_ratio_high?));

@@ -1,4 +1,4 @@
-//! From records to figures, tables, findings and one self-contained page.
+//! The report: turns records into figures, tables, findings and one self-contained page.
 
 mod benches;
 mod block;
@@ -37,8 +37,8 @@ use std::sync::Arc;
 /// The page's name in a folder of results.
 const PAGE: &str = "report.html";
 
-/// Enters the page of a folder into the files of a command that will write it. `option` is what the user gave the folder with. Refuses a folder
-/// with another file of that name.
+/// Enters the page of a folder into the files of a command that will write it. `option` is the option that named the
+/// folder. Refuses a folder that has another file of that name.
 pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
     files.renews(option, &out.join(PAGE), page::is_page)?;
     claims::enter(option, out, files)
@@ -75,7 +75,7 @@ pub fn save(block: &Block, folder: &Path) -> Result<()> {
     block.save(folder)
 }
 
-/// The folders with records, by name.
+/// The folders that have records, sorted by name.
 fn experiment_folders(out: &Path) -> Result<Vec<PathBuf>> {
     let entries = std::fs::read_dir(out).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {

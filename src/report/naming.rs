@@ -1,12 +1,13 @@
-//! Which properties a name needs: those without which two things that differ would have the same name.
+//! Names: the properties that a name needs so that different items have different names.
 
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// A property of a thing, in words.
+/// A property of an item, in words.
 pub(super) type Part<T> = fn(&T) -> String;
 
-/// Of the parts, those that tell apart what everything before them leaves together; `told` is what names say anyway.
+/// Returns the parts that distinguish items which are equal in `told` and in all earlier parts. `told` is in every name
+/// anyway.
 pub(super) fn needed<T, K: Hash + Eq>(things: &[&T], told: impl Fn(&T) -> K, parts: &[Part<T>]) -> Vec<Part<T>> {
     let mut groups = numbered(things.iter().map(|thing| told(thing)));
     let mut count = distinct(&groups);
@@ -22,12 +23,12 @@ pub(super) fn needed<T, K: Hash + Eq>(things: &[&T], told: impl Fn(&T) -> K, par
     needed
 }
 
-/// The words that are not empty, between commas.
+/// The words that are not empty, separated by commas.
 pub(super) fn joined(words: impl IntoIterator<Item = String>) -> String {
     words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
-/// Equal keys get equal numbers, from 0 in the order in which they come.
+/// Numbers the keys from 0 in order of appearance; equal keys get equal numbers.
 fn numbered<K: Hash + Eq>(keys: impl Iterator<Item = K>) -> Vec<usize> {
     let mut numbers = HashMap::new();
     keys.map(|key| {

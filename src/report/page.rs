@@ -1,4 +1,4 @@
-//! `report.html`: one file with everything in it, readable without a network.
+//! `report.html`: the whole report in one file, readable without a network.
 
 use super::block::Block;
 use super::results::Results;
@@ -24,37 +24,37 @@ const SCRIPTS: [&str; 3] = [
 
 const TITLE: &str = "Pathmark: report";
 
-/// The title stands among the first bytes of a page.
+/// The title is within this many bytes from the beginning of a page.
 const HEAD_BYTES: u64 = 1024;
 
-/// Whether a file is such a page, and may be replaced by a new one.
+/// Whether a file is a report page, which a new one may replace.
 pub(super) fn is_page(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = File::open(path).and_then(|file| file.take(HEAD_BYTES).read_to_end(&mut head));
     read.is_ok() && String::from_utf8_lossy(&head).contains(&format!("<title>{TITLE}</title>"))
 }
 
-/// Longer tables start closed.
+/// Tables with more rows start closed.
 const OPEN_ROWS: usize = 12;
 
 /// A part of the page: an experiment, the guards, the benches or the claims.
 pub(super) struct Section {
-    /// What links point at.
+    /// Its anchor, the target of links.
     pub(super) name: String,
     pub(super) title: String,
     pub(super) question: String,
     pub(super) analysis: String,
-    /// The chapter that it is in; none for the claims, which are a chapter of their own.
+    /// Its chapter; `None` for the claims, which are a chapter by themselves.
     pub(super) chapter: Option<Chapter>,
     /// Its place in the chapter.
     pub(super) place: u32,
-    /// What the beginning of the page says of it.
+    /// Its finding at the beginning of the page.
     pub(super) in_short: Option<String>,
-    /// The axis of each value that the rows have, for commands that run a part again; none where there is no such command.
+    /// The axis of each value of the rows, for commands that run a part again; `None` if there is no such command.
     pub(super) axes: Option<BTreeMap<String, &'static str>>,
     /// Rows that failed.
     pub(super) failed: Vec<Record>,
-    /// How many rows did not.
+    /// Number of rows that did not fail.
     pub(super) rows: usize,
     /// Rows whose times are in doubt.
     pub(super) doubts: Doubts,
@@ -64,7 +64,7 @@ pub(super) struct Section {
 }
 
 impl Section {
-    /// An experiment's.
+    /// The section of an experiment.
     pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = results.doubts();
@@ -77,7 +77,7 @@ impl Section {
     }
 }
 
-/// Values that are names, with the axis of each.
+/// The names that the rows have as values, with the axis of each.
 fn axes(results: &Results) -> BTreeMap<String, &'static str> {
     let mut axes = BTreeMap::new();
     for row in results.rows() {
@@ -96,7 +96,7 @@ fn axes(results: &Results) -> BTreeMap<String, &'static str> {
     axes
 }
 
-/// Longer cells are prose and may be broken.
+/// Longer cells are prose and may be broken into lines.
 const LONGEST_CELL: usize = 56;
 
 /// The page.
@@ -167,7 +167,7 @@ const IN_SHORT: &str = "in-short";
 const SOURCES: &str = "sources";
 const SOURCES_TITLE: &str = "Machine, method, raw data";
 
-/// The findings that a reader should know first, each with a link to its section.
+/// The most important findings, each with a link to its section.
 fn in_short(sections: &[Section], chapters: &[(Chapter, Vec<&Section>)]) -> Markup {
     let claims = sections.iter().filter(|section| section.chapter.is_none());
     let ordered = claims.chain(chapters.iter().flat_map(|(_, sections)| sections.iter().copied()));
@@ -191,7 +191,7 @@ fn chapter(chapter: Chapter, sections: &[&Section]) -> Result<Markup> {
     })
 }
 
-/// Where the rows of each section are, and of what program and machine.
+/// The folder of each section's rows, with the program and the machine that measured them.
 fn sources(sections: &[Section]) -> Markup {
     let mut runs: Vec<&Section> = sections.iter().filter(|section| section.chapter.is_some()).collect();
     runs.sort_by(|a, b| a.name.cmp(&b.name));
@@ -226,7 +226,7 @@ fn sources(sections: &[Section]) -> Markup {
     }
 }
 
-/// A section; its heading is that of a chapter if it is one.
+/// A section. Its heading has the rank of a chapter's if it is a chapter itself.
 fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
     let parts = section.blocks.iter().map(|block| part(&section.name, block)).collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
@@ -277,13 +277,13 @@ fn json(data: &impl Serialize) -> String {
     serde_json::to_string(data).unwrap_or_default()
 }
 
-/// JSON between the tags of a script, which a name with a tag in it must not end.
+/// JSON for a script element: a tag within a name must not end the element.
 fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
 fn table_markup(table: &Table) -> Markup {
-    // A column reads as text where one of its cells does.
+    // A column is set as text if one of its cells is long.
     let mut is_text = vec![false; table.heads().count()];
     for row in table.rows() {
         is_text.iter_mut().zip(&row).for_each(|(is_text, cell)| *is_text |= cell.len() > LONGEST_CELL);
@@ -307,7 +307,7 @@ fn table_markup(table: &Table) -> Markup {
     }
 }
 
-/// The text of a cell. A narrow column breaks a number, its interval and its confidence from each other, and nothing else.
+/// The text of a cell. Lines break only between a number, its interval and its confidence, also in a narrow column.
 fn broken(cell: &str, is_text: bool) -> Markup {
     if is_text || !cell.starts_with(|first: char| first.is_ascii_digit() || first == '-') {
         return html! { (cell) };
@@ -343,7 +343,7 @@ fn provenance(section: &Section) -> Markup {
     }
 }
 
-/// What definitions write between backticks is code.
+/// Text from definitions; parts between backticks are code.
 fn prose(text: &str) -> Markup {
     html! {
         @for (index, part) in text.split('`').enumerate() {

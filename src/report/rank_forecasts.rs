@@ -1,4 +1,5 @@
-//! Simulated and predicted runs of several processes as tables and a chart: for the figure of an experiment and for `simulate --ranks`.
+//! Simulated and predicted runs of several processes as tables and a chart: for an experiment's figure and for
+//! `simulate --ranks`.
 
 use super::block::Block;
 use super::forecasts::serial_costs;
@@ -13,10 +14,10 @@ use crate::lab::{LOOK, Lab, RankRule};
 use crate::plot::{Axis, Curve, LineChart, Overlay, Point, Series};
 use crate::simulate::{Cluster, Contender, Crew, Hardware, Messages, agreement};
 
-/// Bytes of a pixel on its way to rank 0: three sums, three sums of squares, and the number of samples.
+/// Bytes sent to rank 0 for a pixel: three sums, three sums of squares, and the number of samples.
 const PIXEL_BYTES: f64 = 56.0;
 
-/// Messages that cost what was measured.
+/// Messages with the measured costs, for the simulation.
 pub fn messages(costs: &MessageCosts) -> Messages {
     let needs_rank_0 = (costs.fetch_while_rendering_s() - costs.fetch_s()) / LOOK.as_secs_f64();
     Messages {
@@ -27,7 +28,7 @@ pub fn messages(costs: &MessageCosts) -> Messages {
     }
 }
 
-/// The runs of one rule on some ranks, predicted.
+/// The prediction for all runs of a rule on the same numbers of ranks and threads.
 pub struct RankPrediction {
     rule: String,
     strategy: String,
@@ -48,14 +49,15 @@ pub struct RankForecast {
     gather_s: f64,
 }
 
-/// What the threads of a rank do: nothing but its jobs in order, if there is one.
+/// The schedule within a rank: `strategy`, or `serial` if the rank has one thread. `None` if no contender has that
+/// name.
 fn within<'a>(contenders: &'a [Contender], strategy: &str, threads: usize) -> Option<&'a Contender> {
     let name = if threads == 1 { crate::measure::SERIAL } else { strategy };
     contenders.iter().find(|contender| contender.name == name)
 }
 
-/// The runs of several processes that had a processor for each of their threads, predicted from the serial run of the same pieces in the same
-/// repetition.
+/// Predicts the runs of several processes from the serial run of the same pieces in the same repetition. Leaves out
+/// runs with more threads than processors.
 pub fn rank_predictions(
     results: &Results,
     contenders: &[Contender],
@@ -91,7 +93,7 @@ pub fn rank_predictions(
     Ok(predictions)
 }
 
-/// Predicted against measured, and the errors in a sentence.
+/// A finding about the errors, and a table of predicted and measured makespans.
 pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
     let pairs: Vec<(f64, f64)> = predictions.iter().map(|prediction| (prediction.ratio, 1.0)).collect();
     let Some(found) = agreement(&pairs) else { return Vec::new() };
@@ -116,7 +118,7 @@ pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
     vec![Block::Finding(finding), table]
 }
 
-/// What a forecast of ranks is of.
+/// The cases of a forecast of ranks.
 pub struct RankPlan<'a> {
     /// Rules between ranks.
     pub rules: &'a [RankRule],
@@ -124,15 +126,15 @@ pub struct RankPlan<'a> {
     pub strategy: &'a str,
     /// Numbers of ranks.
     pub ranks: &'a [usize],
-    /// Numbers of threads of each.
+    /// Numbers of threads of a rank.
     pub threads: &'a [usize],
-    /// What messages cost.
+    /// Costs of messages.
     pub messages: Messages,
     /// The processors of each rank.
     pub hardware: Hardware,
 }
 
-/// Replays jobs of these costs, which make an image of so many pixels, by every rule on all numbers of ranks and threads.
+/// Replays jobs of these costs by every rule on all numbers of ranks and threads. `pixels` is the size of their image.
 pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64], pixels: f64) -> Vec<RankForecast> {
     let serial_s: f64 = costs.iter().sum();
     let mut rows = Vec::new();
@@ -152,10 +154,10 @@ pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64
     rows
 }
 
-/// The files that [`rank_forecast_blocks`] are saved in.
+/// The files that the blocks of [`rank_forecast_blocks`] are saved in.
 pub const RANK_FORECAST_FILES: &[&str] = &["ranks-forecast.svg", "ranks-forecast.png", "ranks-forecast.csv"];
 
-/// Speedup against cores, and all numbers as a table.
+/// A chart of speedup against cores, and a table of all values.
 pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str) -> Vec<Block> {
     let name = |row: &RankForecast| format!("{}, {}", row.rule, counted(row.crew.threads, "thread"));
     let cores = |row: &RankForecast| (row.crew.ranks * row.crew.threads) as f64;

@@ -1,4 +1,4 @@
-//! What the errors of an experiment were measured against, as a picture.
+//! The reference image that the errors of an experiment are measured against.
 
 use super::results::Results;
 use crate::error::Result;
@@ -6,7 +6,8 @@ use crate::experiment::wanted_references;
 use crate::film_file::read_film;
 use crate::image_io::Image;
 
-/// The mean of the two half-references of a scene, or of the first scene; `None` if they are not there, as in a copied folder.
+/// The mean of the two half-references of a scene, or of the first scene; `None` if their files are missing, as in a
+/// copied folder.
 pub(super) fn reference_image(results: &Results, scene: Option<&str>) -> Result<Option<Image>> {
     let profile = results.profile();
     let cells = results.definition.cells(profile)?;

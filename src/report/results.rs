@@ -1,4 +1,4 @@
-//! What an experiment left in its folder.
+//! Results of an experiment, read from its folder.
 
 use super::naming::{Part, joined, needed};
 use super::rows::{Row, group};
@@ -29,7 +29,7 @@ pub struct Results {
     /// The folder that holds all experiments and the references.
     pub out: PathBuf,
     rows: Vec<Row>,
-    /// What tells series of images apart, beside samples and seed.
+    /// The properties that distinguish series of images, beside samples and seed.
     image_parts: Vec<Part<ImageKey>>,
 }
 
@@ -49,13 +49,14 @@ impl Results {
         Ok(Self { definition, run, failed, folder: folder.to_path_buf(), out: out.to_path_buf(), rows, image_parts })
     }
 
-    /// Reads an experiment's folder by itself.
+    /// Reads an experiment's folder; its parent is the folder of all experiments.
     pub fn open(lab: &Arc<Lab>, folder: &Path) -> Result<Self> {
         let out = folder.parent().unwrap_or(Path::new(""));
         Self::read(lab, out, folder)
     }
 
-    /// The rows that did not fail. Whoever goes through them once for each of many groups takes a square of time: [`Results::by`] goes once.
+    /// The rows that did not fail. To call this once for each of many groups takes quadratic time; [`Results::by`]
+    /// takes one pass.
     pub(super) fn rows(&self) -> impl Iterator<Item = &Row> + Clone {
         #[cfg(test)]
         super::tests::count_pass();
@@ -72,7 +73,7 @@ impl Results {
         self.by(|row| &row.schedule)
     }
 
-    /// The schedules beside the serial program.
+    /// The schedules paired with the serial runs.
     pub(super) fn serial(&self) -> Result<Serial<'_>> {
         Serial::of(self)
     }
@@ -82,7 +83,7 @@ impl Results {
         self.rows.iter().map(|row| row.warnings.as_str())
     }
 
-    /// How it was decided how many repetitions there are.
+    /// The rule that set the number of repetitions: fixed, or sequential with a goal.
     pub(super) fn stopping(&self) -> Stopping {
         if self.run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed }
     }
@@ -102,12 +103,13 @@ impl Results {
         self.rows.len()
     }
 
-    /// The first row, which stands for what all have in common.
+    /// The first row, for properties that all rows share.
     pub(super) fn first(&self) -> Option<&Row> {
         self.rows.first()
     }
 
-    /// Of the serial runs whose trace was kept, the one of the most jobs, and of its repetitions the one with the median time.
+    /// Of the serial runs with the most jobs, the trace of the one with the median time; `None` if that trace was not
+    /// kept.
     pub fn largest_serial_trace(&self) -> Result<Option<TraceFile>> {
         let serial: Vec<&Row> = self.rows().filter(|row| row.schedule.is_serial()).collect();
         let most = serial.iter().map(|row| row.jobs).max();
@@ -120,7 +122,8 @@ impl Results {
         Profile::from_name(&self.run.profile).unwrap_or(Profile::Quick)
     }
 
-    /// Scene, size and machine in a line, for below a figure's title. A scene that not all rows have is left out, and so are more than three sizes.
+    /// Scene, size and machine in a line, as the subtitle of a figure. Leaves out the scene if there are several, and
+    /// the sizes if there are more than three.
     pub(super) fn workload(&self) -> String {
         let scenes: BTreeSet<&str> = self.rows().map(|row| row.scene.as_str()).collect();
         let sizes: BTreeSet<(u32, u32)> = self.rows().map(|row| (row.width, row.height)).collect();
@@ -130,12 +133,12 @@ impl Results {
         format!("{}{}{}", scene.unwrap_or_default(), size.unwrap_or_default(), self.machine_line())
     }
 
-    /// Columns and rows of the images.
+    /// Width and height of the images.
     pub(super) fn size(&self) -> String {
         self.first().map_or_else(String::new, |row| format!("{}x{}", row.width, row.height))
     }
 
-    /// The machine alone, where the figure's rows differ in scene or size.
+    /// The machine alone, for figures whose rows differ in scene or size.
     pub(super) fn machine_line(&self) -> String {
         self.run.machine.line()
     }
@@ -145,12 +148,13 @@ impl Results {
         self.run.machine.processors
     }
 
-    /// What is rendered, apart from samples and seed, where the experiment compares several; empty where there is only one.
+    /// The properties in which the experiment's images differ, apart from samples and seed; empty if they do not
+    /// differ.
     pub(super) fn series_name(&self, row: &Row) -> String {
         joined(self.image_parts.iter().map(|part| part(&row.image)))
     }
 
-    /// The estimator, and whatever else differs among the images.
+    /// The properties in which the images differ, or the estimator if they do not.
     pub(super) fn image_name(&self, row: &Row) -> String {
         let series = self.series_name(row);
         if series.is_empty() { row.estimator.clone() } else { series }
@@ -162,7 +166,7 @@ impl Results {
         if path.is_file() { TraceFile::read(&path).map(Some) } else { Ok(None) }
     }
 
-    /// The images that were kept of the rows that are wanted, in the order of the rows.
+    /// The kept images of the rows that `is_wanted` selects, in the order of the rows.
     pub(super) fn kept_images(&self, is_wanted: impl Fn(&Row) -> bool) -> Result<Vec<(&Row, Image)>> {
         let cells = self.definition.cells(self.profile())?;
         let points = cells.iter().flat_map(|cell| &cell.points);
@@ -177,7 +181,7 @@ impl Results {
         Ok(images)
     }
 
-    /// The row with the median time, the lower one of two.
+    /// The row with the median time; of two middle ones, the faster.
     pub(super) fn typical<'a>(rows: &[&'a Row]) -> Option<&'a Row> {
         let mut timed: Vec<(f64, &Row)> = rows.iter().filter_map(|row| Some((row.makespan_s?, *row))).collect();
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -185,7 +189,7 @@ impl Results {
     }
 }
 
-/// Refuses rows that nothing tells apart: in figures one would take the other's place without a word.
+/// Refuses rows that no axis distinguishes: in figures, one would silently replace the other.
 fn check_identities(records: &[Record], path: &Path) -> Result<()> {
     let mut known = HashMap::new();
     for (index, record) in records.iter().enumerate().filter(|(_, record)| record.error.is_empty()) {
@@ -201,7 +205,8 @@ fn check_identities(records: &[Record], path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The rows with their schedules' names: the strategy, and beside it what else tells schedules of the same image apart.
+/// Names the schedules of the rows: the strategy, and the other properties that distinguish schedules of the same
+/// image.
 fn named(records: Vec<Record>) -> Vec<Row> {
     let parts: [Part<Record>; 5] = [
         |record| record.output.clone(),
@@ -237,7 +242,8 @@ pub(super) fn prefixed(name: &str, value: &str) -> String {
     if value.is_empty() { String::new() } else { format!("{name}{value}") }
 }
 
-/// What differs among the images. Scene, estimator and sampler are told wherever they do, the rest where nothing else tells two images apart.
+/// The properties to name images by. Scene, estimator and sampler are named wherever they differ, the others only where
+/// nothing else distinguishes two images.
 fn image_parts(rows: &[Row]) -> Vec<Part<ImageKey>> {
     let main: [Part<ImageKey>; 3] =
         [|image| image.scene.clone(), |image| image.estimator.clone(), |image| image.sampler.clone()];

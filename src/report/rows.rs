@@ -1,4 +1,5 @@
-//! The rows of an experiment and the questions that figures ask of them: groups by a key, pairs by what they share, ratios.
+//! The rows of an experiment and the operations of figures on them: groups by a key, pairs by shared properties,
+//! ratios.
 
 use super::schedule::Schedule;
 use super::words::Told;
@@ -10,10 +11,10 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::ops::Deref;
 
-/// A row that did not fail, with what tells it from others.
+/// A row that did not fail, with the keys that identify it.
 pub(super) struct Row {
     record: Record,
-    /// As it stands in the file, where that says it in another way.
+    /// The row as it is in the file, if that differs from `record`.
     as_written: Option<Box<Record>>,
     pub(super) image: ImageKey,
     pub(super) schedule: Schedule,
@@ -24,12 +25,12 @@ impl Row {
         Self { image: record.image_key(), record, as_written, schedule }
     }
 
-    /// Its columns as they stand in the file.
+    /// Its columns as they are in the file.
     pub(super) fn as_written(&self) -> &Record {
         self.as_written.as_deref().unwrap_or(&self.record)
     }
 
-    /// What it is paired by: image, schedule and repetition, but for the axes that `forget` clears.
+    /// The key that rows are paired by: image, schedule and repetition, without the axes that `forget` clears.
     pub(super) fn key(&self, forget: impl Fn(&mut ImageKey, &mut ScheduleKey)) -> (ImageKey, ScheduleKey, u32) {
         let (mut image, mut schedule) = (self.image.clone(), self.schedule.key.clone());
         forget(&mut image, &mut schedule);
@@ -52,7 +53,7 @@ pub(super) fn group<'a, K: Ord>(
     gathered(rows.into_iter().map(|row| (key(row), row)))
 }
 
-/// Pairs by their first part, in its order.
+/// Groups pairs by their first part, in its order.
 pub(super) fn gathered<K: Ord, V>(pairs: impl IntoIterator<Item = (K, V)>) -> BTreeMap<K, Vec<V>> {
     let mut groups: BTreeMap<K, Vec<V>> = BTreeMap::new();
     for (key, value) in pairs {
@@ -61,7 +62,7 @@ pub(super) fn gathered<K: Ord, V>(pairs: impl IntoIterator<Item = (K, V)>) -> BT
     groups
 }
 
-/// Rows by a key that tells them apart. Two rows with one key are an error: one of them would be lost without a word.
+/// Rows by a key that identifies them. Two rows with one key are an error: one of them would be lost silently.
 pub(super) fn unique<'a, K: Ord>(
     rows: impl IntoIterator<Item = &'a Row>,
     key: impl Fn(&'a Row) -> K,
@@ -82,7 +83,7 @@ pub(super) fn unique<'a, K: Ord>(
     Ok(found)
 }
 
-/// A value of rows of one kind over that of the rows of another with the same key.
+/// Ratios of a value between rows of one kind and rows of another with the same key.
 pub(super) fn ratios<'a, K: Ord>(
     above: impl IntoIterator<Item = &'a Row>,
     below: impl IntoIterator<Item = &'a Row>,
@@ -94,7 +95,7 @@ pub(super) fn ratios<'a, K: Ord>(
     Ok(pairs.filter_map(|(above, below)| Some(value(above)? / value(below)?)).collect())
 }
 
-/// How many times as long rows of one kind take as those of another with the same key: the median of the ratios.
+/// How many times as long rows of one kind take as rows of another with the same key: the median of the ratios.
 pub(super) fn time_ratio<'a, K: Ord>(
     above: impl IntoIterator<Item = &'a Row>,
     below: impl IntoIterator<Item = &'a Row>,

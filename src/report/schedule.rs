@@ -1,4 +1,4 @@
-//! A schedule as figures name it.
+//! Schedules and their names in figures.
 
 use super::words::counted;
 use crate::measure::{Record, SERIAL, ScheduleKey, THREAD_PER_ROW, schedule_name};
@@ -6,7 +6,8 @@ use crate::measure::{Record, SERIAL, ScheduleKey, THREAD_PER_ROW, schedule_name}
 /// A schedule with its name. Schedules are listed by name, then by pieces, then by threads.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Schedule {
-    /// The strategy, `thread-per-row` as report A names it, and what else tells it from others of the experiment.
+    /// The strategy (`thread-per-row` is report A's name), and the other properties that distinguish it within the
+    /// experiment.
     pub(super) name: String,
     pub(super) key: ScheduleKey,
 }
@@ -26,22 +27,23 @@ impl Schedule {
     }
 }
 
-/// Who renders, with how many threads or, over processes, workers.
+/// A strategy and its number of threads (of workers, if they are processes), in words.
 pub(super) fn crew(strategy: &str, threads: usize) -> String {
     let workers = if is_of_ranks(strategy) { "worker" } else { "thread" };
     format!("{strategy}, {}", counted(threads, workers))
 }
 
-/// What the names of strategies over processes begin with.
+/// Prefix of the names of strategies over processes.
 const OF_RANKS: &str = "mpi-";
 
-/// Whether the workers of what has that name are processes.
+/// Whether the strategy of that name runs on processes.
 pub(super) fn is_of_ranks(name: &str) -> bool {
     name.starts_with(OF_RANKS)
 }
 
-/// The row of processes with their rule in the place of the strategy, and with all workers over all of them, because figures compare them with
-/// threads; `None` for a row of one process. Threads within processes are part of the name.
+/// Rewrites the row of several processes so that figures can compare it with threads: the rank rule takes the place of
+/// the strategy, and the threads of all processes are added up. The name includes the threads within a process. `None`
+/// for a row of one process.
 pub(super) fn over_ranks(record: &Record) -> Option<Record> {
     let ranks = record.ranks?;
     let within = match (record.threads, record.strategy.as_str()) {
@@ -53,7 +55,7 @@ pub(super) fn over_ranks(record: &Record) -> Option<Record> {
     Some(Record { strategy, threads, ranks: None, rank_rule: String::new(), ..record.clone() })
 }
 
-/// The strategy of a row as report A names it.
+/// The strategy of a row, with report A's name where it has one.
 pub(super) fn strategy(record: &Record) -> &str {
     schedule_name(&record.strategy, &record.decomposition)
 }

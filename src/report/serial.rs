@@ -1,4 +1,4 @@
-//! Schedules beside the serial program on the same image in the same repetition.
+//! Schedules paired with the serial runs of the same image in the same repetition.
 
 use super::results::Results;
 use super::rows::{Row, unique};
@@ -16,19 +16,19 @@ type Key = (ImageKey, ScheduleKey, u32);
 /// The schedules of an experiment, and the serial runs that they are compared with.
 pub(super) struct Serial<'a> {
     schedules: BTreeMap<&'a Schedule, Vec<&'a Row>>,
-    /// By image, pieces and repetition.
+    /// The serial runs, by image, pieces and repetition.
     on_pieces: BTreeMap<Key, &'a Row>,
-    /// The fastest over all pieces, by image and repetition.
+    /// The fastest time over all pieces, by image and repetition.
     fastest: BTreeMap<Key, f64>,
     stopping: Stopping,
 }
 
-/// What a row shares with the serial run on the same pieces.
+/// The key that a row shares with the serial run on the same pieces.
 fn with_pieces(row: &Row) -> Key {
     row.key(|_, schedule| schedule.forget_workers())
 }
 
-/// What it shares with every serial run of its image.
+/// The key that a row shares with all serial runs of its image.
 fn without_pieces(row: &Row) -> Key {
     let mut key = with_pieces(row);
     key.1.decomposition.clear();
@@ -52,7 +52,7 @@ impl<'a> Serial<'a> {
         Ok(Self { on_pieces: unique(serial, with_pieces)?, fastest, schedules, stopping: results.stopping() })
     }
 
-    /// The schedules that are not serial.
+    /// All schedules except the serial ones.
     pub(super) fn others(&self) -> impl Iterator<Item = &'a Schedule> {
         self.schedules.keys().copied().filter(|schedule| !schedule.is_serial())
     }
@@ -62,18 +62,18 @@ impl<'a> Serial<'a> {
         self.schedules.get(schedule).map_or(&[], Vec::as_slice)
     }
 
-    /// Each run of a schedule with the serial run on the same pieces.
+    /// Pairs each run of a schedule with the serial run on the same pieces.
     pub(super) fn pairs(&self, schedule: &Schedule) -> impl Iterator<Item = (&'a Row, &'a Row)> {
         self.rows(schedule).iter().filter_map(|row| Some((*row, *self.on_pieces.get(&with_pieces(row))?)))
     }
 
-    /// Each run of any other schedule with the serial run on the same pieces, in the order of the rows.
+    /// Pairs each run that is not serial with the serial run on the same pieces, in the order of the rows.
     pub(super) fn in_order(&self, results: &'a Results) -> impl Iterator<Item = (&'a Row, &'a Row)> {
         let others = results.rows().filter(|row| !row.schedule.is_serial());
         others.filter_map(|row| Some((row, *self.on_pieces.get(&with_pieces(row))?)))
     }
 
-    /// The serial runs beside those of a schedule.
+    /// The serial runs that are paired with the runs of a schedule.
     pub(super) fn on_pieces_of(&self, schedule: &Schedule) -> Vec<&'a Row> {
         self.pairs(schedule).map(|(_, serial)| serial).collect()
     }
@@ -83,10 +83,10 @@ impl<'a> Serial<'a> {
         self.pairs(schedule).filter_map(|(own, serial)| Some(serial.makespan_s? / own.makespan_s?)).collect()
     }
 
-    /// How much faster each schedule is than `serial`: the median of the ratios of runs of the same image in the same repetition.
+    /// The speedup of each schedule: the median of the ratios to `serial` for the same image in the same repetition.
     pub(super) fn speedups(&self) -> Vec<(&'a Schedule, Estimate)> {
         let speedup = |schedule: &'a Schedule| {
-            // On its own pieces where serial ran on them: other pieces change the caches, if nothing else.
+            // Prefer the serial run on the same pieces: other pieces change at least the caches.
             let mut ratios = self.paired_speedups(schedule);
             if ratios.is_empty() {
                 let to_fastest = |row: &&Row| Some(self.fastest.get(&without_pieces(row))? / row.makespan_s?);
@@ -97,8 +97,8 @@ impl<'a> Serial<'a> {
         self.others().filter_map(speedup).collect()
     }
 
-    /// CPU time of a schedule over that of `serial` on the same pieces, in the same repetition: what the same work costs more when several
-    /// processors do it, and what the schedule itself costs. The median of the ratios.
+    /// CPU time of a schedule over that of `serial` on the same pieces in the same repetition: the median of the
+    /// ratios. It shows how much more the same work costs on several processors, plus the cost of the schedule itself.
     pub(super) fn work_inflation(&self, schedule: &Schedule) -> Option<f64> {
         let ratios = self.pairs(schedule).filter_map(|(own, serial)| Some(own.cpu_s()? / serial.cpu_s()?));
         median(&ratios.collect::<Vec<f64>>())

@@ -1,4 +1,4 @@
-//! Tables: read on the page with as many digits as make sense, and written to CSV files with all of them.
+//! Tables: rounded on the page, and with all digits in CSV files.
 
 use super::block::Block;
 use super::words::Told;
@@ -6,12 +6,12 @@ use crate::error::{Error, Result};
 use crate::{atomic_file, plot};
 use std::path::Path;
 
-/// How many digits the page shows of a number.
+/// The number of digits that the page shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Digits {
-    /// So many behind the point.
+    /// This many decimals.
     Decimals(usize),
-    /// So many that count.
+    /// This many significant digits.
     Significant(usize),
 }
 
@@ -24,7 +24,7 @@ impl Digits {
     }
 }
 
-/// What stands in a place of a table.
+/// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 enum Entry {
     Text(String),
@@ -32,7 +32,7 @@ enum Entry {
     Told(Option<Told>, Digits),
 }
 
-/// What the page shows where there is no number.
+/// The page's text for a missing number.
 const NONE: &str = "-";
 
 impl Entry {
@@ -51,7 +51,7 @@ impl Entry {
         }
     }
 
-    /// Its places in a CSV file, as many as [`Column::heads`] has.
+    /// Its cells in a CSV file, as many as [`Column::heads`] returns.
     fn written(&self) -> Vec<String> {
         let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
         match self {
@@ -73,7 +73,7 @@ struct Column {
 }
 
 impl Column {
-    /// Its heads in a CSV file: a value with an interval has four.
+    /// Its heads in a CSV file; a value with an interval has four.
     fn heads(&self) -> Vec<String> {
         let head = &self.head;
         if self.entries.iter().any(|entry| matches!(entry, Entry::Told(..))) {
@@ -86,14 +86,14 @@ impl Column {
 /// A table.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
-    /// What it shows.
+    /// Its heading.
     pub title: String,
     length: usize,
     columns: Vec<Column>,
 }
 
 impl Table {
-    /// One of text alone, whose rows are as wide as its heads.
+    /// A table of text alone; each row has a cell for each head.
     pub(super) fn of_text(title: impl Into<String>, heads: &[&str], rows: &[Vec<String>]) -> Self {
         let column = |(index, head): (usize, &&str)| Column {
             head: (*head).to_string(),
@@ -145,7 +145,7 @@ pub(super) struct Columns<T> {
 }
 
 impl<T> Columns<T> {
-    /// A table with a row for each thing; `stem` is its file's name without the ending.
+    /// A table with a row for each item; `stem` is its file's name without the ending.
     pub(super) fn of(stem: &'static str, title: impl Into<String>, things: impl IntoIterator<Item = T>) -> Self {
         let things: Vec<T> = things.into_iter().collect();
         Self { stem, table: Table { title: title.into(), length: things.len(), columns: Vec::new() }, things }
@@ -156,12 +156,12 @@ impl<T> Columns<T> {
         self
     }
 
-    /// A column of text: its head, and what it says of a thing.
+    /// Adds a column of text: its head, and the text for an item.
     pub(super) fn column(self, head: impl Into<String>, text: impl Fn(&T) -> String) -> Self {
         self.add(head, |thing| Entry::Text(text(thing)))
     }
 
-    /// A column of numbers.
+    /// Adds a column of numbers.
     pub(super) fn number<N: Into<Option<f64>>>(
         self,
         head: impl Into<String>,
@@ -171,7 +171,7 @@ impl<T> Columns<T> {
         self.add(head, |thing| Entry::Number(value(thing).into(), digits))
     }
 
-    /// A column of values with their intervals.
+    /// Adds a column of values with their intervals.
     pub(super) fn told<N: Into<Option<Told>>>(
         self,
         head: impl Into<String>,
@@ -192,7 +192,8 @@ mod tests {
     use super::*;
     use crate::analysis::Interval;
 
-    /// The page rounds, the file does not; an interval takes four columns there, and a value without one leaves three empty.
+    /// The page rounds, the file does not. In the file a value with an interval takes four columns; without an interval
+    /// three of them are empty.
     #[test]
     fn files_have_all_digits_and_ends_of_intervals() {
         let third = 1.0 / 3.0;

@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 thread_local!(static PASSES: Cell<usize> = const { Cell::new(0) });
 
-/// Called whenever a figure begins to go through the rows.
+/// Called at the beginning of each pass of a figure over the rows.
 pub(super) fn count_pass() {
     PASSES.set(PASSES.get() + 1);
 }
@@ -59,7 +59,7 @@ pub(super) fn row() -> Record {
     }
 }
 
-/// The rows of `an-experiment` as a sweep leaves them in a folder of results; each has a cell of its own.
+/// A folder of results with the rows of `an-experiment`, as a sweep leaves it; each row gets its own cell.
 pub(super) fn folder_of(figures: &[&str], more: &str, rows: Vec<Record>) -> TempDir {
     let out = tempfile::tempdir().unwrap();
     let folder = out.path().join("an-experiment");
@@ -83,7 +83,7 @@ fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Res
     Results::read(&Lab::built_in(), out.path(), &out.path().join("an-experiment"))
 }
 
-/// The text of everything that is shown.
+/// The text of all blocks.
 fn words(blocks: &[Block]) -> String {
     let of = |block: &Block| match block {
         Block::Finding(text) => text.clone(),
@@ -100,13 +100,13 @@ fn rows_that_nothing_tells_apart_are_refused() {
     let Err(Error::Input(error)) = results(&["speedup"], "", twice()).map(|_| ()) else { panic!("accepted") };
     assert_eq!((error.field.as_str(), error.value.as_str()), ("cell", "other"));
     assert!(error.problem.contains("one") && error.to_string().contains("records.csv:3"), "{error}");
-    // A row that failed says nothing, and takes nobody's place.
+    // A row that failed is ignored, so it does not conflict with another.
     let mut rows = twice();
     rows[1].error = "killed".to_string();
     assert!(results(&["speedup"], "", rows).is_ok());
 }
 
-/// One value in each axis of images that figures once forgot.
+/// One change for each axis of images that figures once ignored.
 const FORGOTTEN: [fn(&mut Record); 6] = [
     |row| row.max_depth = Some(3),
     |row| row.camera_rays = Some(4),
@@ -119,7 +119,7 @@ const FORGOTTEN: [fn(&mut Record); 6] = [
 #[test]
 fn speedups_compare_the_same_image_on_every_axis() {
     for (index, change) in FORGOTTEN.iter().enumerate() {
-        // Two images, one of which takes a hundred times as long; both are twice as fast on the pool.
+        // Two images, one of which takes a hundred times as long; the pool renders each twice as fast as serial.
         let mut rows = Vec::new();
         for (repetition, slow) in [(0, false), (1, false), (0, true), (1, true)] {
             for (strategy, threads, seconds) in [("serial", 1, 2.0), ("pool", 2, 1.0)] {
@@ -163,7 +163,7 @@ fn contenders_are_told_apart_on_every_axis() {
     }
 }
 
-/// What shares samples out costs as much as what renders them; the pilot of an order of pieces is another matter.
+/// The pilot that distributes adaptive samples counts as rendering time; the pilot that orders pieces does not.
 #[test]
 fn the_pilot_of_adaptive_samples_is_paid_for() {
     let even = Record { makespan_s: Some(2.0), pilot_s: Some(1.0), ..Record::default() };
@@ -173,7 +173,7 @@ fn the_pilot_of_adaptive_samples_is_paid_for() {
     assert_eq!(Record { makespan_s: None, ..adaptive }.rendering_s(), None);
 }
 
-/// Rows of so many strategies, scenes and samplers, under names that the program does not know.
+/// Rows of `each` strategies, scenes and samplers, with names that the program does not know.
 fn of_unknown_names(each: usize) -> Vec<Record> {
     let numbered = |name: &str, index: usize| format!("{name}-{index}");
     let mut rows = Vec::new();
@@ -221,7 +221,7 @@ fn what_the_program_does_not_know_is_drawn() {
     for (figure, names) in shown {
         let mut rows = of_unknown_names(2);
         if figure == "outputs" || figure == "acceleration" {
-            // One of them is compared at a time.
+            // The figure compares one axis at a time.
             rows.retain(|row| row.effects == "smallpt");
             let other = |row: &Record| match figure {
                 "outputs" => Record { output: "my-output".to_string(), ..row.clone() },
@@ -237,7 +237,7 @@ fn what_the_program_does_not_know_is_drawn() {
     }
 }
 
-/// An output that was tried on some pieces has no line for the others.
+/// An output that was tried on some pieces only has no rows for the others.
 #[test]
 fn outputs_are_told_only_where_they_were_tried() {
     let rows = Record { decomposition: "rows".to_string(), ..row() };
@@ -250,7 +250,7 @@ fn outputs_are_told_only_where_they_were_tried() {
     let expected = [
         ["slots", "rows", "1000.000", "1.000, no interval"],
         ["slots", "tiles:2x2", "1000.000", "1.000, no interval"],
-        // One repetition gives no ratio with an interval.
+        // One repetition has no interval, so its ratio is not shown.
         ["locked", "tiles:2x2", "2000.000", "-"],
     ];
     assert_eq!(told, expected);
@@ -341,13 +341,13 @@ fn the_page_begins_with_the_findings_that_experiments_name() {
     assert!(html[short..chapter].contains("href=\"#an-experiment\""));
     // Chapters without a section are left out.
     assert!(!html.contains("chapter-effects"));
-    // A number of a finding that there is not leaves the beginning out, not the page.
+    // If `in-short` names a finding that does not exist, the page is written without the section "In short".
     let out = folder_of(&["speedup"], "in-short = 99", speedup_rows());
     let html = std::fs::read_to_string(super::write(&Lab::built_in(), out.path()).unwrap()).unwrap();
     assert!(!html.contains("id=\"in-short\"") && html.contains("id=\"chapter-others\""));
 }
 
-/// A reader who points at a mark sees the number of the rows.
+/// A reader who points at a mark sees the row's value.
 #[test]
 fn figures_carry_the_values_that_they_draw() {
     let results = results(&["speedup"], "", speedup_rows()).unwrap();
@@ -364,7 +364,7 @@ fn figures_carry_the_values_that_they_draw() {
     };
     assert!(note("static-blocks").unwrap().contains("data-value=\"1.6\""), "{svg}");
     assert!(note("rayon").unwrap().contains("<title>rayon: 2 (2 to 2) at threads = 2</title>"), "{svg}");
-    // Each series can be switched off at its entry of the legend.
+    // Each series can be switched off at its legend entry.
     for series in ["rayon", "static-blocks"] {
         for class in ["series", "legend"] {
             assert!(svg.contains(&format!("<g class=\"{class}\" data-series=\"{series}\">")), "{class} {series}");

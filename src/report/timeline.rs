@@ -1,15 +1,15 @@
-//! One run drawn with a lane for each worker: for the figure of many runs and for the verb that shows one.
+//! The timeline of a run, with a lane for each worker: for the figure of many runs and for the verb that shows one.
 
 use crate::analysis::balance::{Balance, processors_in_use};
 use crate::measure::{TraceFile, TraceRow, available_threads, schedule_name};
 use crate::plot::gantt::{GanttChart, JobBar, Schedule, Shade};
 
-/// The balance of a traced run; `None` if its workers or times cannot be.
+/// The balance of a traced run; `None` if its workers or times are impossible.
 pub fn balance(trace: &TraceFile) -> Option<Balance> {
     trace.trace().balance(trace.header.makespan_s, trace.header.workers as usize)
 }
 
-/// What was run, in words.
+/// Strategy, threads and pieces of a run, in words.
 pub fn name(trace: &TraceFile) -> String {
     let settings = &trace.header.settings;
     let strategy = schedule_name(&settings.strategy, &settings.decomposition);
@@ -43,7 +43,7 @@ pub(super) fn lanes(trace: &TraceFile, balance: &Balance, processors: usize) -> 
     }
 }
 
-/// Some runs below each other.
+/// A chart of several runs below each other.
 pub(super) fn charts(schedules: Vec<Schedule>, subtitle: String) -> GanttChart {
     GanttChart {
         title: "Who did what when".to_string(),
@@ -55,7 +55,7 @@ pub(super) fn charts(schedules: Vec<Schedule>, subtitle: String) -> GanttChart {
     }
 }
 
-/// One run.
+/// A chart of one run.
 pub fn chart(trace: &TraceFile) -> GanttChart {
     let settings = &trace.header.settings;
     let spec = &settings.spec;

@@ -1,4 +1,4 @@
-//! Numbers and intervals as tables and sentences say them.
+//! Numbers and intervals as text, for tables and sentences.
 
 use super::rows::Row;
 use crate::analysis::confidence_sequence::Stopping;
@@ -11,17 +11,17 @@ use std::collections::BTreeSet;
 /// Confidence of every interval in the report.
 pub(super) const LEVEL: f64 = 0.95;
 
-/// A number of things: `1 thread`, `2 threads`.
+/// A count with its noun: `1 thread`, `2 threads`.
 pub(super) fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
-/// A value and its interval, if there were enough of them for one.
+/// A value and its interval, if there were enough values for one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Told {
     pub(super) value: f64,
     pub(super) interval: Option<Interval>,
-    /// How many values it is of, where they were counted.
+    /// The number of values that it was computed from, if counted.
     pub(super) count: Option<usize>,
 }
 
@@ -42,13 +42,13 @@ impl Told {
         Some(Self { value: median(values)?, interval, count: Some(values.len()) })
     }
 
-    /// The mean of values that scatter alike, with Student's interval.
+    /// The mean of values of equal variance, with Student's interval.
     pub(super) fn mean(values: &[f64]) -> Option<Self> {
         let interval = t_interval(values, LEVEL).map(|estimate| estimate.interval);
         Some(Self { value: Moments::of(values).mean()?, interval, count: Some(values.len()) })
     }
 
-    /// In another unit.
+    /// The same value in another unit.
     pub(super) fn times(&self, factor: f64) -> Self {
         let times = |i: Interval| Interval { low: factor * i.low, high: factor * i.high, level: i.level };
         Self { value: factor * self.value, interval: self.interval.map(times), count: self.count }
@@ -68,33 +68,33 @@ impl Told {
         Point { count: self.count, ..Point::new(x, self.value).with_y(self.bar()) }
     }
 
-    /// Whether it has an interval: an estimate.
+    /// The value as an estimate, if it has an interval.
     pub(super) fn estimate(&self) -> Option<Estimate> {
         Some(Estimate { value: self.value, interval: self.interval? })
     }
 }
 
-/// A value of the rows that have it.
+/// The values of those rows that have one.
 pub(super) fn values<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
     rows.into_iter().filter_map(value).collect()
 }
 
-/// The median of a value of some rows.
+/// The median of a value over rows.
 pub(super) fn typical<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Option<f64> {
     median(&values(rows, value))
 }
 
-/// A number, or a dash where there is none.
+/// A number, or a dash for `None`.
 pub(super) fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "-".to_string(), |value| format!("{value:.digits$}"))
 }
 
-/// An interval with the confidence that it really has: few values cannot reach 95 %.
+/// An interval with the confidence that it reaches: few values cannot reach 95 %.
 pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
     format!("{:.digits$} to {:.digits$} ({:.1} %)", interval.low, interval.high, interval.level * 100.0)
 }
 
-/// A value and its interval with its confidence.
+/// A value, its interval and the interval's confidence.
 pub(super) fn told(estimate: &Estimate, digits: usize) -> String {
     format!("{:.digits$}, {}", estimate.value, with_level(&estimate.interval, digits))
 }
@@ -111,13 +111,15 @@ pub(super) fn confidence(intervals: impl IntoIterator<Item = Interval>) -> Strin
     format!("distribution-free interval of the median, {levels} % confidence")
 }
 
-/// A confidence in percent with one decimal, never more than it is. A level that binomial sums give as .4999999 is a half.
+/// A confidence in percent, rounded down to one decimal. Binomial sums may give a half as .4999999, which still counts
+/// as a half.
 fn at_least_percent(level: f64) -> f64 {
     (level * 1000.0 + 1e-6).floor() / 10.0
 }
 
-/// Names with their places: those of a table in its order and at their places in it, then those that it does not know, by name. So a name of
-/// the table has the same colour in every experiment, and one that a user added always comes behind.
+/// Names with their places: names of the table in its order and at their places in it, then unknown names in
+/// alphabetical order. So a name of the table has the same colour in every experiment, and names that a user added come
+/// last.
 pub(super) fn in_table_order<'a>(
     names: impl Iterator<Item = &'a str>,
     table: impl Iterator<Item = &'static str>,

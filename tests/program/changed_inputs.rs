@@ -1,5 +1,5 @@
-//! What a sweep reads may be edited while it runs: a scene, its base, its mesh, references, the experiment itself. Rows of two versions are never
-//! mixed: each row is of what the sweep began with, or says that it failed.
+//! Inputs edited while a sweep runs: a scene, its base, its mesh, references, the experiment itself. Rows of two
+//! versions are never mixed: each row is of the inputs that the sweep began with, or reports a failure.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
@@ -26,8 +26,8 @@ shape = { mesh = { file = "mesh.obj" } }
 material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
 "#;
 
-/// A scene of three files, an experiment with references, and in it another program that does `deed` once, when the references are there and
-/// before the first row.
+/// Writes a scene of three files and an experiment with references and another program. That program runs `deed` once,
+/// after the references are rendered and before the first row.
 fn prepare(folder: &Path, deed: &str) {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     write("mesh.obj", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n");
@@ -68,7 +68,7 @@ fn what_changes_under_a_sweep_fails_its_rows() {
         let folder = folder.path();
         prepare(folder, deed);
         let files = ["scene.toml", "base.toml", "mesh.obj"].map(|name| (name, fs::read(folder.join(name)).unwrap()));
-        // Whole films of other samples.
+        // Valid films of other samples.
         let reference = ["reference", "scene.toml", "--size", "24x16", "--spp", "80", "--out", "out/references"];
         finish(pathmark(folder, &reference)).with_code(0);
         for (half, name) in [("half0", "other.film"), ("half1", "unused.film")] {
@@ -82,7 +82,7 @@ fn what_changes_under_a_sweep_fails_its_rows() {
         for row in failed {
             assert!(row["error"].contains("has changed since the experiment began"), "{what}: {}", row["error"]);
         }
-        // As it was before: the rows that failed are run again.
+        // With the old inputs back, the failed rows are run again.
         for (name, bytes) in files {
             fs::write(folder.join(name), bytes).unwrap();
         }
@@ -94,7 +94,7 @@ fn what_changes_under_a_sweep_fails_its_rows() {
     }
 }
 
-/// An edited definition changes nothing: the sweep goes on with what it has read, and keeps that beside its rows.
+/// Editing the definition has no effect: the sweep uses the text that it has read, and stores it beside its rows.
 #[test]
 fn an_experiment_edited_under_its_sweep_is_run_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
@@ -115,7 +115,7 @@ impl Progress for Silence {
     fn end(&self) {}
 }
 
-/// Between its checks and its references, nothing has been measured yet: the sweep ends.
+/// Between the sweep's checks and its references nothing has been measured yet, so the sweep ends.
 #[test]
 fn a_scene_edited_before_its_reference_ends_the_sweep() {
     for name in ["scene.toml", "base.toml", "mesh.obj"] {

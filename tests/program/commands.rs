@@ -1,18 +1,18 @@
-//! The commands that the documents show run as they stand there.
+//! The commands in the documents run as printed there.
 
 use crate::program::{finish, pathmark};
 use std::fs;
 use std::process::Command;
 
-/// The fenced blocks of a document in one language, in order with all others.
+/// The fenced blocks of a document in order, each with its language.
 fn blocks(text: &str) -> Vec<(&str, &str)> {
     let mut parts = text.split("\n```");
     parts.next();
-    // After each opening fence comes its language and the block; after each closing one the text between blocks.
+    // After each opening fence come the language and the block; after each closing fence, the text between blocks.
     parts.step_by(2).filter_map(|part| part.split_once('\n')).collect()
 }
 
-/// The README's commands in a small size: what takes an hour, what needs a feature, and what other tests run is left out.
+/// The README's commands in a small size, without those that take an hour, need a feature or run in other tests.
 #[test]
 fn the_commands_of_the_readme_run() {
     const ELSEWHERE: [&str; 5] = [
@@ -34,7 +34,7 @@ fn the_commands_of_the_readme_run() {
         let mut small = command.replace("256x192", "32x24");
         let more = match command.split_whitespace().nth(1) {
             Some("run") => " --set size=32x24 --repetitions 1",
-            // Predicting this machine first takes fifteen seconds of renders; other tests do it.
+            // The check predicts this machine first, which takes fifteen seconds of renders; other tests cover it.
             Some("simulate") => " --no-check",
             Some("price") => " --size 32x24",
             Some("render" | "replay") if !command.contains("--size") => " --size 128x201",
@@ -48,7 +48,7 @@ fn the_commands_of_the_readme_run() {
     assert!(commands > 10, "{commands} commands");
 }
 
-/// As they stand, but for experiments, which run in a small size, and for the simulation, which does not predict this machine first.
+/// As printed, except that experiments run in a small size and the simulation skips its check of this machine.
 #[test]
 fn every_command_of_the_tutorial_runs() {
     let text = include_str!("../../docs/tutorial.md");
@@ -85,7 +85,7 @@ fn every_command_of_the_tutorial_runs() {
     assert!(image("box.png") == image("one.png") && image("one.png") == image("four.png"));
 }
 
-/// The programs of docs/data.md draw a figure from rows: each where its language and the packages that it uses are installed.
+/// The programs of docs/data.md draw a figure from rows. Each runs if its language and packages are installed.
 #[test]
 fn the_programs_that_read_rows_draw_a_figure() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Rows of devices in a sweep: those of a GPU that is not there, and times of one that is.
+//! Device rows of a sweep: a GPU that is missing, and the times of a device that is there.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
@@ -7,20 +7,21 @@ use std::path::Path;
 
 type Row = BTreeMap<String, String>;
 
-/// Serial rows of the kernels, on a machine that shows no GPU.
+/// Runs a sweep of serial rows with these kernels, where no GPU is visible, and returns its rows.
 fn run(folder: &Path, kernels: &str) -> Vec<Row> {
     let text = TINY.replace("estimator = [\"smallpt\"]", &format!("estimator = [\"bsdf\"]\nkernel = [{kernels}]"));
     let text = text.replace("[\"speedup\", \"schedules\"]", "[\"kernels\"]");
     write_tiny(folder, &text.replace(", \"static-blocks\", \"work-stealing\"", ""));
     let mut command = pathmark(folder, &["run", "tiny.toml", "--out", "out"]);
-    // How drivers are told to show nothing.
+    // These variables make the drivers show no device.
     command.env("OCL_ICD_VENDORS", folder.join("none")).env("CUDA_VISIBLE_DEVICES", "");
     finish(command).with_code(0);
     let mut reader = csv::Reader::from_path(folder.join("out/tiny/records.csv")).unwrap();
     reader.deserialize().map(Result::unwrap).collect()
 }
 
-/// No failure: the other kernels are measured, the command succeeds, and the page says what is not there.
+/// A missing GPU is no failure: the other kernels are measured, the command succeeds, and the page reports the missing
+/// GPU.
 #[test]
 fn a_gpu_that_is_not_there_is_a_row() {
     let folder = tempfile::tempdir().unwrap();
@@ -38,7 +39,7 @@ fn a_gpu_that_is_not_there_is_a_row() {
     assert!(page.contains("was not measured: neither CUDA nor OpenCL finds a GPU"), "{page}");
 }
 
-/// Compilation and copying are told apart from each other, and are parts of the time to build.
+/// Compilation and copying are reported separately; both are part of the build time.
 #[test]
 fn rows_of_a_device_tell_how_long_it_took_to_compile_and_to_copy() {
     let folder = tempfile::tempdir().unwrap();

@@ -18,7 +18,7 @@ fn spec(estimator: &str, (width, height): (u32, u32), seed: u64) -> Spec {
     Spec { width, height, seed, estimator: estimator.into(), ..Spec::default() }
 }
 
-/// What the kernel that fits the scene gives a pixel for one of its samples.
+/// The bits of the radiance that the kernel for the scene gives one sample of a pixel.
 fn given(scene: &Arc<Scene>, spec: &Spec, (x, y): (u32, u32), sample: u32) -> [u64; 3] {
     let bounds = Bounds { x0: x, y0: y, x1: x + 1, y1: y + 1 };
     let mut buffer = TileBuffer::new(bounds);
@@ -27,7 +27,8 @@ fn given(scene: &Arc<Scene>, spec: &Spec, (x, y): (u32, u32), sample: u32) -> [u
     buffer.row_mut(y)[0].sum.map(f64::to_bits)
 }
 
-/// Every scene of a kind: split paths, chaotic mirrors, glass around the camera, fog, a lens, a hierarchy; samples of all subpixels.
+/// One scene of each kind: split paths, chaotic mirrors, glass around the camera, fog, a lens, a hierarchy; samples of
+/// all subpixels.
 #[test]
 fn a_sample_looked_into_is_the_image_s_own() {
     let (width, height) = (48, 36);
@@ -44,7 +45,7 @@ fn a_sample_looked_into_is_the_image_s_own() {
                     let bits = radiance.channels().map(f64::to_bits);
                     let place = format!("{name}, {estimator}, {pixel:?}, sample {sample}");
                     assert_eq!(bits, given(&scene, &spec, pixel, sample), "{place}");
-                    // The light lines add up to it, in the order in which they stand.
+                    // The light entries add up to the radiance, bit for bit, in the order of the log.
                     assert_eq!(log.light().channels().map(f64::to_bits), bits, "{place}");
                     lit += u32::from(!radiance.is_black());
                     let count = |is: fn(&Event) -> bool| log.events.iter().filter(|event| is(event)).count();
@@ -60,7 +61,7 @@ fn a_sample_looked_into_is_the_image_s_own() {
     }
 }
 
-/// The effect profile and the hierarchy that an image is rendered with change no sample, and a limit cuts it in both.
+/// The effect profile and the accelerator of an image change no sample; a depth limit cuts image and inspection alike.
 #[test]
 fn profile_and_hierarchy_do_not_matter() {
     let scene = Arc::new(load("cornell").unwrap());
@@ -82,7 +83,7 @@ fn profile_and_hierarchy_do_not_matter() {
     assert!(found[0] == found[1] && found[0] == found[2] && found[0] != found[3], "{found:?}");
 }
 
-/// One after another: what a path does is told in the order in which it happens, and the points are on the ray.
+/// The log has the events of a path in order, and each intersection point lies on its ray.
 #[test]
 fn a_path_is_told_in_order() {
     let scene = Arc::new(load("cornell").unwrap());
@@ -110,7 +111,7 @@ fn a_path_is_told_in_order() {
     assert!(longest > 5, "no path was long");
 }
 
-/// A sampler without addresses cannot give a sample again.
+/// A sampler whose random numbers have no addresses cannot repeat a sample.
 #[test]
 fn a_sampler_that_forgets_is_refused() {
     let scene = Arc::new(load("cornell").unwrap());
@@ -137,7 +138,7 @@ fn assert_close(found: [f64; 3], expected: [f64; 3], what: &str) {
     }
 }
 
-/// The rows sum to the image, and the first of them to the image whose paths are cut there.
+/// All rows sum to the image, and the first rows to the image whose paths are cut at that depth.
 #[test]
 fn light_by_bounces_is_the_image_taken_apart() {
     for (name, estimator) in
@@ -161,9 +162,9 @@ fn light_by_bounces_is_the_image_taken_apart() {
     }
 }
 
-/// In a closed sphere that gives off 1 and reflects rho, exactly rho^k arrives over k bounces. Up to the fifth there is no roulette, so
-/// each sample says so itself; behind it, k - 5 throws of roulette let a path live with chance rho^(k - 5), and the number of those that
-/// live is binomial.
+/// In a closed sphere with emission 1 and albedo rho, exactly rho^k arrives over k bounces. Up to the fifth bounce
+/// there is no Russian roulette, so each sample has this value. After it, a path survives k - 5 rounds of roulette with
+/// probability rho^(k - 5), and the number of survivors is binomial.
 #[test]
 fn a_closed_sphere_gives_each_bounce_its_power() {
     const ALBEDO: f64 = 0.75;
@@ -188,7 +189,7 @@ fn a_closed_sphere_gives_each_bounce_its_power() {
         let z = (found.mean(bounces)[1] / power(5) - alive) / (alive * (1.0 - alive) / n).sqrt();
         assert!(z.abs() < limit, "{bounces} bounces: z = {z:.2}");
     }
-    // 5 bounces, then as many as roulette allows: geometric, rho / (1 - rho) in the mean, rho / (1 - rho)^2 its variance.
+    // 5 bounces, then as many as roulette allows: geometric, with mean rho / (1 - rho) and variance rho / (1 - rho)^2.
     let (length, expected) = (found.mean_length().unwrap(), 5.0 + ALBEDO / (1.0 - ALBEDO));
     let z = (length - expected) / (ALBEDO / ((1.0 - ALBEDO) * (1.0 - ALBEDO)) / n).sqrt();
     assert!(z.abs() < critical_value(1e-3).unwrap(), "mean length {length} instead of {expected}");
@@ -266,7 +267,8 @@ fn what_cannot_be_replayed_is_refused() {
     assert!(error.contains("spp = 3"), "{error}");
 }
 
-/// Every kernel meets what the paths met; the file for other programs has the triangles and the rays, all of them finite.
+/// Every kernel finds the intersections that the paths found. The exported file has the triangles and the rays, all
+/// finite.
 #[test]
 fn rays_are_searched_alone_and_exported() {
     let folder = tempfile::tempdir().unwrap();
@@ -302,8 +304,8 @@ fn rays_are_searched_alone_and_exported() {
     assert!(!folder.path().join("spheres").exists());
 }
 
-/// A lamp too bright for f32, whose samples are invalid there. Whatever else the image is rendered with, the command that is told for one of them
-/// shows it again.
+/// A lamp too bright for f32 makes samples invalid there. For every combination of render options, the printed replay
+/// command shows such a sample again.
 #[test]
 fn a_told_command_shows_the_invalid_sample_on_every_axis() {
     let folder = tempfile::tempdir().unwrap();
@@ -336,7 +338,7 @@ fn a_told_command_shows_the_invalid_sample_on_every_axis() {
     }
 }
 
-/// In f32 a replay shows what the image is given, and nothing of its path; light by bounces is refused.
+/// In f32, a replay shows the radiance that the image gets, but not the path; light by bounces is refused.
 #[test]
 fn single_precision_is_looked_into_as_far_as_it_can_be() {
     let base = ["replay", "cornell", "--size", "64x48", "--pixel", "40,38", "--seed", "4", "--precision", "f32"];
@@ -357,13 +359,13 @@ fn single_precision_is_looked_into_as_far_as_it_can_be() {
     assert!(others > 0, "f64 gives the same samples");
     let refused = run(&["bounces", "cornell", "--size", "8x6", "--precision", "f32"], 2).1;
     assert!(refused.contains("precision = f32") && refused.contains("allowed: f64"), "{refused}");
-    // What lanes have no code for is rendered in f64, whatever was asked for.
+    // Scenes that lanes do not support are rendered in f64, whatever precision was requested.
     let fog = ["bounces", "cornell-fog", "--size", "8x6", "--precision", "f32", "--json"];
     let same = ["bounces", "cornell-fog", "--size", "8x6", "--json"];
     assert_eq!(run(&fog, 0).0, run(&same, 0).0);
 }
 
-/// Equal images have an infinite ratio of signal to noise, which JSON has no number for and which is not absent.
+/// Equal images have an infinite PSNR. JSON has no number for it, and it must differ from an absent value.
 #[test]
 fn infinity_is_told_from_nothing_in_json() {
     let folder = tempfile::tempdir().unwrap();
@@ -375,7 +377,7 @@ fn infinity_is_told_from_nothing_in_json() {
     assert_eq!((&compared["psnr"], &compared["mse"]), (&"inf".into(), &0.0.into()), "{compared}");
 }
 
-/// Doubts about a run go with its trace, to whoever looks at it on another day.
+/// A trace keeps the warnings about its run's times, for a reader on another day.
 #[test]
 fn a_trace_tells_doubts_about_its_times() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What the program `pathmark` does as a user runs it: one test program for all verbs.
+//! The program `pathmark` as a user runs it: one test program for all verbs.
 
 mod cache;
 mod changed_inputs;

@@ -1,4 +1,4 @@
-//! The report page in a browser: what its script adds works, and nothing is wider than the screen.
+//! The report page in a browser: its script works, and nothing is wider than the screen.
 //!
 //! Needs a Chromium on the path; without one the test says so and passes, because a browser is no part of Pathmark.
 
@@ -11,10 +11,10 @@ use std::process::Command;
 
 const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 
-/// Widths of the narrowest window that Chromium opens, a desk and a wide screen.
+/// Window widths in pixels: the narrowest that Chromium opens, a desktop screen and a wide screen.
 const WIDTHS: [u32; 3] = [500, 1300, 1900];
 
-/// Runs in the page after its own script, and leaves what it saw in a paragraph of the page.
+/// Runs in the page after its own script, and appends its findings to the page as JSON.
 const LOOK: &str = r##"
 window.addEventListener("load", () => {
   const all = (selector) => Array.from(document.querySelectorAll(selector));
@@ -84,7 +84,7 @@ fn browser() -> Option<&'static str> {
     BROWSERS.into_iter().find(answers)
 }
 
-/// What the page's elements are and do on a screen of that width.
+/// Opens the page in a window of `width` pixels and returns the findings of `LOOK`.
 fn looked_at(browser: &str, page: &Path, profile: &Path, width: u32, dark: bool) -> Value {
     let mut command = Command::new(browser);
     command.args(["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--hide-scrollbars"]);
@@ -112,7 +112,7 @@ fn the_page_works_in_a_browser() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    // Rows of an experiment of this name answer some of the claims, which are then on the page.
+    // The rows of an experiment of this name answer some of the claims, which then appear on the page.
     write_tiny(folder.path(), TINY);
     fs::rename(folder.path().join("tiny.toml"), folder.path().join("thread-scaling.toml")).unwrap();
     finish(pathmark(folder.path(), &["run", "thread-scaling.toml", "--out", "out"])).with_code(0);

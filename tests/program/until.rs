@@ -1,4 +1,4 @@
-//! `run --until`: as many repetitions as it takes.
+//! `run --until`: as many repetitions as a goal needs.
 
 use crate::diff::{json, run};
 use crate::experiment::{TINY, write_tiny};
@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// A limit that everything is within as soon as there is an interval at every look, which takes eight values.
+/// A limit that every result meets as soon as it has an interval at every look, which needs eight values.
 const HUGE: &str = "1000000000%";
 
-/// How many rows each cell has, by the end of its name.
+/// The number of rows of each cell, by the end of its name.
 fn counts(folder: &Path) -> BTreeMap<String, usize> {
     let mut reader = csv::Reader::from_path(folder.join("tiny/records.csv")).unwrap();
     let cell = reader.headers().unwrap().iter().position(|head| head == "cell").unwrap();
@@ -27,7 +27,7 @@ fn all(count: usize) -> BTreeMap<String, usize> {
     names.into_iter().map(|name| (name.to_string(), count)).collect()
 }
 
-/// Gives every row the time that `times` says.
+/// Replaces every row's time by `times` of its cell and repetition.
 fn retime(folder: &Path, times: impl Fn(&str, u32) -> f64) {
     let path = folder.join("tiny/records.csv");
     let mut reader = csv::Reader::from_path(&path).unwrap();
@@ -57,18 +57,18 @@ fn repetitions_go_on_until_speedups_are_known_also_after_a_stop() {
     let machine = fs::read_to_string(out.join("tiny/machine.toml")).unwrap();
     assert!(machine.contains("until = "), "{machine}");
     assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("Repetitions went on until the goal"));
-    // Stopped after 17 rows, and gone on with.
+    // Stopped after 17 rows, then resumed.
     let records = out.join("tiny/records.csv");
     let text = fs::read_to_string(&records).unwrap();
     fs::write(&records, text.split_inclusive('\n').take(18).collect::<String>()).unwrap();
     run(folder.path(), &[&sweep[..], &["--resume"]].concat(), 0);
     assert_eq!(counts(&out), all(8));
-    // Rows whose number depends on their times are no rows of a fixed number.
+    // A sweep whose number of rows depends on its times cannot be resumed with a fixed number of repetitions.
     let finished = run(folder.path(), &["run", "tiny.toml", "--resume"], 2);
     assert!(finished.err.contains("until"), "{}", finished.err);
 }
 
-/// One cell's times scatter, those of all others do not: it goes on, and the serial run with it.
+/// Only one cell's times scatter: that cell and the serial run continue, all others stop.
 #[test]
 fn what_is_known_is_left_out_and_what_it_is_compared_with_is_not() {
     let folder = tempfile::tempdir().unwrap();
@@ -86,8 +86,9 @@ fn what_is_known_is_left_out_and_what_it_is_compared_with_is_not() {
     assert_eq!(counts(&out), expected);
 }
 
-/// Five schedules need nine repetitions before one can be known to be slower than another: with four comparisons of the fastest, the stake
-/// 2^(n + 1) / (n + 1) must be 80, and it is 56.9 after eight and 102.4 after nine. Two of them take turns, and stay, and the serial run beside them.
+/// Five schedules need nine repetitions before one can be known to be slower than another: with four comparisons of the
+/// fastest, the stake 2^(n + 1) / (n + 1) must reach 80; it is 56.9 after eight and 102.4 after nine. Two schedules are
+/// the fastest in turns; they stay, and so does the serial run.
 #[test]
 fn who_is_slower_is_left_out() {
     let folder = tempfile::tempdir().unwrap();
@@ -123,7 +124,7 @@ fn who_is_slower_is_left_out() {
     let part = ["run", "tiny.toml", "--shard", "1/2", "--out", "part"];
     let refused = run(folder.path(), &[&part[..], &["--until", "fastest"]].concat(), 2);
     assert!(refused.err.contains("only some"), "{}", refused.err);
-    // A part of a sweep whose definition has such a goal is run as often as that allows.
+    // A shard of a sweep whose definition has such a goal runs the goal's largest number of repetitions.
     write_tiny(
         folder.path(),
         &TINY.replacen("repetitions = 3", "repetitions = { until = \"fastest\", at-most = 2 }", 1),
@@ -133,7 +134,7 @@ fn who_is_slower_is_left_out() {
     assert!(!machine.contains("until"), "{machine}");
 }
 
-/// What a matrix says holds where nobody says otherwise.
+/// A matrix's number of repetitions holds unless the command line gives another.
 #[test]
 fn a_matrix_has_fewer_repetitions_than_its_experiment() {
     let folder = tempfile::tempdir().unwrap();

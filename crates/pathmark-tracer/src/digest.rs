@@ -1,9 +1,9 @@
-//! Short names for contents: the first 64 bits of a SHA-256.
+//! Fingerprints: the first 64 bits of a SHA-256 as a short name of some content.
 
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// Collects bytes and names them.
+/// Collects bytes and computes their fingerprint.
 #[derive(Default)]
 pub struct Fingerprint(Sha256);
 
@@ -13,7 +13,7 @@ impl Fingerprint {
         self.0.update(bytes);
     }
 
-    /// The name: 16 hexadecimal digits.
+    /// Returns the fingerprint: 16 hexadecimal digits.
     pub fn finish(self) -> String {
         let mut text = String::with_capacity(16);
         for byte in self.0.finalize().iter().take(8) {
@@ -24,7 +24,7 @@ impl Fingerprint {
     }
 }
 
-/// The name of a text.
+/// Returns the fingerprint of `text`.
 pub fn of_text(text: &str) -> String {
     let mut fingerprint = Fingerprint::default();
     fingerprint.update(text.as_bytes());

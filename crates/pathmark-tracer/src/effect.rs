@@ -1,12 +1,13 @@
-//! What a scene can call for, as a set of bits. Kernels are compiled for such sets, so what a scene does not use costs it nothing.
+//! Effects: the materials, primitives and features that a scene uses, as a set of bits. Kernels are compiled for such
+//! sets, so a scene doesn't pay for effects it doesn't use.
 //!
-//! Materials, primitives and the scene's other features each have a range of bits; their tables hand them out in order.
+//! Materials, primitives and features each have a range of bits; their tables assign the bits in order.
 
 /// A set of effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Effects(u32);
 
-/// Bits of materials; those of primitives come next, then the features.
+/// Number of bits reserved for materials. Bits of primitives follow, then bits of features.
 const MATERIALS: u32 = 16;
 const PRIMITIVES: u32 = 6;
 
@@ -14,30 +15,30 @@ impl Effects {
     /// No effect.
     pub const NONE: Self = Self(0);
 
-    /// The effect of the material with this place in its table.
+    /// The effect of the material at this index of its table.
     pub const fn material(index: u32) -> Self {
         assert!(index < MATERIALS, "no bits are left for materials");
         Self(1 << index)
     }
 
-    /// The effect of the primitive with this place in its table.
+    /// The effect of the primitive at this index of its table.
     pub const fn primitive(index: u32) -> Self {
         assert!(index < PRIMITIVES, "no bits are left for primitives");
         Self(1 << (MATERIALS + index))
     }
 
-    /// The effect of the feature with this place in its table.
+    /// The effect of the feature at this index of its table.
     pub const fn feature(index: u32) -> Self {
         Self(1 << (MATERIALS + PRIMITIVES + index))
     }
 
-    /// The effects of both.
+    /// The union of both sets.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Whether both are the same; `==` is no constant.
+    /// Whether both sets are equal; `==` can't be called in a `const fn`.
     pub const fn is(self, other: Self) -> bool {
         self.0 == other.0
     }
@@ -48,7 +49,8 @@ impl Effects {
     }
 }
 
-/// The effects that a kernel is compiled for. What is not in it costs no branch: the test is on a constant.
+/// The effects that a kernel is compiled for. An effect outside the set costs no branch, because the test is on a
+/// constant.
 pub trait EffectSet: Send + Sync + 'static {
     /// The set.
     const EFFECTS: Effects;
@@ -58,13 +60,13 @@ pub trait EffectSet: Send + Sync + 'static {
 pub struct Entry {
     /// Its name in scene files and listings.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
     /// Its bit.
     pub effect: Effects,
 }
 
-/// Every effect of some tables. The tables are constants, so this is one too.
+/// The effects of all entries of `table`, as a constant expression.
 pub const fn all(table: &[Entry]) -> Effects {
     let (mut effects, mut index) = (Effects::NONE, 0);
     while index < table.len() {

@@ -1,12 +1,12 @@
-//! What can go wrong, and whose turn it is to act: the user's (exit code 2), the system's (3), or a check that failed (1).
+//! Errors, sorted by cause: the user's input (exit code 2), the system (3), or a failed check (1).
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// The result of everything that a user's input or the system can make fail.
+/// The result of an operation that the user's input or the system can make fail.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// A failure, sorted by who can mend it.
+/// A failure, sorted by who can fix it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The user's input is wrong. Nothing has been written.
@@ -15,14 +15,14 @@ pub enum Error {
     /// A self-check failed: a checksum, a coverage, a strict rule.
     #[error("check failed: {0}")]
     Check(String),
-    /// The system refused: disk, memory, threads, processes.
+    /// The system refused an operation: disk, memory, threads, processes.
     #[error("{action} {}: {source}", path.display())]
     System {
-        /// What was tried, as a gerund: "writing".
+        /// The attempted action, as a gerund: "writing".
         action: &'static str,
-        /// What it was tried on.
+        /// The file or other object of the action.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
 }
@@ -37,7 +37,7 @@ impl Error {
         }
     }
 
-    /// A refusal of the system while doing `action` on `path`.
+    /// Creates the error of a system that refused `action` on `path`.
     pub fn system(action: &'static str, path: impl AsRef<Path>, source: std::io::Error) -> Self {
         Self::System { action, path: path.as_ref().to_path_buf(), source }
     }
@@ -49,16 +49,16 @@ impl From<InputError> for Error {
     }
 }
 
-/// Where in a text file something stands; lines and columns count from 1.
+/// A position in a text file; lines and columns count from 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     /// The file's name as the user gave it, or the name of the embedded file.
     pub file: String,
-    /// Line and column, where they are known.
+    /// Line and column, if known.
     pub at: Option<(usize, usize)>,
 }
 
-/// What is wrong with something that the user gave.
+/// An error in a value that the user gave.
 ///
 /// ```
 /// # use pathmark_tracer as pathmark;
@@ -72,32 +72,32 @@ pub struct Place {
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputError {
-    /// Where it stands, when it came from a file.
+    /// Its position, if the value came from a file.
     pub place: Option<Place>,
     /// The field, option or column.
     pub field: String,
     /// The value as the user wrote it; empty when there is none.
     pub value: String,
-    /// What is wrong with it.
+    /// The problem with the value.
     pub problem: String,
-    /// What would be right; empty when `problem` says it.
+    /// The allowed values; empty when `problem` already names them.
     pub allowed: String,
 }
 
 impl InputError {
-    /// `field` has `value`, and `problem` says why that can't be.
+    /// Creates an error: `problem` says why `field` can't be `value`.
     pub fn new(field: impl Into<String>, value: impl Into<String>, problem: impl Into<String>) -> Self {
         Self { place: None, field: field.into(), value: value.into(), problem: problem.into(), allowed: String::new() }
     }
 
-    /// Adds what would be right.
+    /// Adds the allowed values.
     #[must_use]
     pub fn allowed(mut self, allowed: impl Into<String>) -> Self {
         self.allowed = allowed.into();
         self
     }
 
-    /// Adds the file and, where known, line and column.
+    /// Adds the file and, if known, line and column.
     #[must_use]
     pub fn in_file(mut self, file: impl Into<String>, at: Option<(usize, usize)>) -> Self {
         self.place = Some(Place { file: file.into(), at });
@@ -105,13 +105,13 @@ impl InputError {
     }
 }
 
-/// Names below this similarity, from 0 to 1, are not meant.
+/// Names below this similarity, from 0 to 1, are not suggested.
 const SIMILAR: f64 = 0.65;
-/// Shorter values are as similar to one name as to another.
+/// Shorter values are about equally similar to many names.
 const SHORTEST_NAME: usize = 3;
 
 impl InputError {
-    /// The allowed name that the value is most similar to, as after a slip of the finger.
+    /// The allowed name that is most similar to the value, as after a typing error.
     fn meant(&self) -> Option<&str> {
         let is_name = |text: &str| text.len() >= SHORTEST_NAME && text.starts_with(char::is_alphabetic);
         if !is_name(&self.value) {

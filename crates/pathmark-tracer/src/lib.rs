@@ -1,9 +1,10 @@
-//! The path tracer of `pathmark`: what is rendered, and how a piece of the film is.
+//! The path tracer of `pathmark`: scenes, and the rendering of a piece of the film.
 //!
-//! A crate of its own, because it is what has to be fast: it is optimised in every build, and built again only when it changes. Users find its
-//! modules in the package `pathmark`, which adds who renders which piece when, and measures that.
+//! It is a separate crate because it must be fast: it is optimised in every build and rebuilt only when it changes.
+//! Users find its modules in the package `pathmark`, which adds the scheduling (who renders which piece when) and its
+//! measurement.
 
-// A test may unwrap; the library tells its user what is wrong.
+// Tests may unwrap; the library returns errors to its user.
 #![cfg_attr(not(test), warn(clippy::unwrap_used))]
 
 #[doc(hidden)]

@@ -1,16 +1,16 @@
-//! The boxes of one lane: none too thin to see, and no more of them than pixels.
+//! The boxes of one lane: each is thick enough to see, and there are no more boxes than pixels.
 
-/// The thinnest box in pixels. Half of it could be painted, but pages would carry twice the boxes, and read job by job they
-/// have the times of all jobs besides.
+/// The thinnest box in pixels. Half a pixel could be painted, but would double the boxes of a page, which also contains
+/// the times of all jobs.
 const THINNEST: f64 = 1.0;
 
-/// Left and right end in pixels, and the place on the colour bar.
+/// Left and right end in pixels, and the position on the colour bar.
 pub(super) type Piece = (f64, f64, f64);
 
-/// The boxes from left to right. Neighbours that would together be thinner than what can be seen become one, with the mean of their
-/// colours by width.
+/// Returns the boxes from left to right. Merges a box into its left neighbour if they start less than `THINNEST` apart;
+/// the colour is the mean by width.
 pub(super) fn merged(mut pieces: Vec<Piece>) -> Vec<Piece> {
-    // Jobs of no width still count a little, or the mean of several would be 0 / 0.
+    // Jobs of no width get a small weight, or the mean of several would be 0 / 0.
     const LEAST: f64 = 1e-9;
     pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut done: Vec<(f64, f64, f64, f64)> = Vec::new();

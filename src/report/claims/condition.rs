@@ -1,4 +1,4 @@
-//! Conditions on rows: columns of `records.csv` and the values that are wanted in them.
+//! Conditions on rows: columns of `records.csv` and the values required in them.
 
 use crate::error::{InputError, Result};
 use crate::measure::Record;
@@ -74,7 +74,7 @@ impl fmt::Display for Value {
 }
 
 impl Value {
-    /// Whether a row's value is this one, or within the bound that it is: ">=2", "<=4".
+    /// Whether a row has this value or, for ">=2" and "<=4", keeps to this bound.
     fn admits(&self, row: &Columns, column: &str) -> bool {
         let wanted = self.to_string();
         let own = || number(row, column);
@@ -104,22 +104,22 @@ impl Conditions {
         self.0.keys().try_for_each(|column| check_column(field, column))
     }
 
-    /// Whether a row meets all of them.
+    /// Whether a row meets all conditions.
     pub(super) fn admit(&self, row: &Columns) -> bool {
         self.0.iter().all(|(column, wanted)| wanted.values().iter().any(|value| value.admits(row, column)))
     }
 
-    /// Whether they admit every row.
+    /// Whether every row meets the conditions.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The columns that they speak of.
+    /// The columns that the conditions name.
     pub(super) fn columns(&self) -> impl Iterator<Item = &str> {
         self.0.keys().map(String::as_str)
     }
 
-    /// Where a row does not meet them: column, its value, the value wanted.
+    /// The conditions that a row does not meet: column, its value, the required value.
     pub(super) fn differences(&self, row: &Columns) -> Vec<(String, String, String)> {
         let missed = |(column, wanted): (&String, &Wanted)| {
             let is_met = wanted.values().iter().any(|value| value.admits(row, column));
@@ -136,7 +136,7 @@ impl fmt::Display for Wanted {
     }
 }
 
-/// In words: "strategy = thread-per-row, spp = 8 or 20".
+/// Writes the conditions in words: "strategy = thread-per-row, spp = 8 or 20".
 impl fmt::Display for Conditions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let parts: Vec<String> = self.0.iter().map(|(column, wanted)| format!("{column} = {wanted}")).collect();

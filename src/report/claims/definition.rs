@@ -31,10 +31,10 @@ use crate::error::{Error, InputError, Result};
 use crate::input::{locate, parse};
 use serde::Deserialize;
 
-/// Name and text of the files that the binary carries.
+/// Names and texts of the files that the binary contains.
 const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/claims.rs"));
 
-/// A report and what it claims.
+/// A report and its claims.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Report {
@@ -42,7 +42,7 @@ pub struct Report {
     pub report: String,
     /// Its title.
     pub title: String,
-    /// Who wrote it and what it did.
+    /// Its authors and its measurements.
     pub about: String,
     /// Its claims.
     #[serde(rename = "claim")]
@@ -57,14 +57,14 @@ pub struct Claim {
     pub id: u32,
     /// The report's words.
     pub quote: String,
-    /// Where they stand.
+    /// Their place in the report.
     pub place: String,
     /// The report's numbers.
     pub reported: String,
     /// The sentence that is tested.
     pub claim: String,
-    /// The verdict of a run at the report's own size; two with ` or ` between them where the number lies so near the limit that the noise of a
-    /// run decides.
+    /// The expected verdict of a run at the report's own size. Two names with ` or ` between them mean that the value
+    /// is so near the limit that noise decides.
     pub expected: String,
     /// A remark for the reader.
     #[serde(default)]
@@ -97,14 +97,14 @@ pub struct Claim {
     test: Option<Test>,
 }
 
-/// How a claim is judged.
+/// The evidence that a claim is judged by.
 #[derive(Debug, Clone, Copy)]
 pub enum Evidence<'a> {
     /// There is nothing to measure, for this reason.
     Context(&'a str),
     /// No rows exist yet, for this reason.
     Missing(&'a str),
-    /// By numbers.
+    /// A statistic to compare with the prediction.
     Test(&'a Test),
 }
 
@@ -112,16 +112,16 @@ pub enum Evidence<'a> {
 #[derive(Debug)]
 pub struct Test {
     pub(super) statistic: Statistic,
-    /// The ends of the prediction; infinite if it has none on that side.
+    /// The ends of the prediction; a side without a limit is infinite.
     pub(super) predicted: [f64; 2],
-    /// Confidence of the interval.
+    /// Confidence level of the interval.
     pub(super) level: f64,
     pub(super) comparable_if: Conditions,
     pub(super) a_fortiori: bool,
 }
 
 impl Claim {
-    /// How it is judged.
+    /// Its evidence.
     pub fn evidence(&self) -> Evidence<'_> {
         match (&self.test, &self.context, &self.missing) {
             (Some(test), _, _) => Evidence::Test(test),
@@ -130,7 +130,7 @@ impl Claim {
         }
     }
 
-    /// The first field that no statistic has taken.
+    /// The first field that the statistic did not take.
     pub(super) fn unused_field(&self) -> Option<&'static str> {
         let fields = [
             ("experiment", self.experiment.is_some()),
@@ -150,7 +150,7 @@ impl Claim {
         fields.into_iter().find(|(_, is_left)| *is_left).map(|(name, _)| name)
     }
 
-    /// The names of the verdicts that are expected.
+    /// The names of the expected verdicts.
     pub(super) fn expected_verdicts(&self) -> impl Iterator<Item = &str> {
         self.expected.split(" or ")
     }
@@ -219,7 +219,7 @@ impl Report {
     }
 }
 
-/// Line and column of a field's value in the claim of that number.
+/// Line and column of a field's value in the claim with this number.
 fn place(text: &str, id: u32, field: &str, value: &str) -> Option<(usize, usize)> {
     const HEAD: &str = "[[claim]]";
     let own = format!("id = {id}\n");

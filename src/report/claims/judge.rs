@@ -1,4 +1,4 @@
-//! A claim beside the results of some folders.
+//! The judgement of claims by the results in some folders.
 
 use super::condition::{Columns, Conditions};
 use super::definition::{Claim, Evidence as Kind, Report, Test};
@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What the results say of a claim.
+/// The answer of the results to a claim.
 #[derive(Debug)]
 pub struct Answer<'a> {
     /// Its report.
@@ -24,22 +24,23 @@ pub struct Answer<'a> {
     pub claim: &'a Claim,
     /// The verdict.
     pub verdict: Verdict,
-    /// Why it is that one, where the numbers do not say it.
+    /// The reason for the verdict, beyond the measured values.
     pub why: String,
-    /// The file that the numbers come from, within the folders that were read.
+    /// The file that the values come from, within the folders that were read.
     pub source: Option<PathBuf>,
     pub(super) found: Option<Found>,
 }
 
 impl Answer<'_> {
-    /// Whether the verdict is another one than a run at the report's own size should give. A folder without the rows says nothing against it.
+    /// Whether the verdict differs from those expected of a run at the report's own size. A verdict without comparable
+    /// rows is never unexpected.
     pub fn is_unexpected(&self) -> bool {
         let is_silent = matches!(self.verdict, Verdict::NotAnswered | Verdict::NotComparable);
         !is_silent && !self.claim.expected_verdicts().any(|name| name == self.verdict.name())
     }
 }
 
-/// Results that have been read once for all claims.
+/// The results of a folder, read once for all claims.
 struct Library<'a> {
     lab: &'a Arc<Lab>,
     out: &'a Path,
@@ -48,8 +49,8 @@ struct Library<'a> {
     prices: Vec<PriceRow>,
 }
 
-/// Judges every claim by the results in some folders. Of several answers the first counts that says something about the claim itself; then one under other
-/// conditions.
+/// Judges every claim by the results in some folders. Of several answers the first with comparable rows counts, or else
+/// the first under other conditions.
 pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> Result<Vec<Answer<'a>>> {
     let mut libraries = folders.iter().map(|out| Library::open(lab, out)).collect::<Result<Vec<_>>>()?;
     let claims = reports.iter().flat_map(|report| report.claims.iter().map(move |claim| (report, claim)));
@@ -135,7 +136,7 @@ impl<'a> Library<'a> {
         Ok(self.experiments.get(name).and_then(Option::as_ref))
     }
 
-    /// How many of some hard cases failed, if all of them were tried.
+    /// The number of these hard cases that failed, if all of them were tried.
     fn failed_cases(&self, ids: &[String]) -> Option<Found> {
         let tried = ids.iter().map(|id| self.cases.iter().find(|case| case.id == *id && case.trials > 0));
         let tried = tried.collect::<Option<Vec<&CaseRow>>>()?;
@@ -154,7 +155,8 @@ impl<'a> Library<'a> {
     }
 }
 
-/// How the rows' conditions differ from those wanted, each difference once, with the factor in pixels if the size differs.
+/// The differences between the rows' conditions and the required ones, each once; if the size differs, also the ratio
+/// of pixels.
 fn differences(wanted: &Conditions, rows: &[&Columns]) -> Vec<String> {
     let missed: BTreeSet<(String, String, String)> = rows.iter().flat_map(|row| wanted.differences(row)).collect();
     let mut told: Vec<String> =

@@ -1,4 +1,4 @@
-//! Verdicts as files and on the page.
+//! Lists of verdicts: files, and a section of the page.
 
 use super::definition::{Evidence, Report};
 use super::judge::Answer;
@@ -13,17 +13,17 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// The folder of results that has the verdicts.
+/// Name of the verdicts' folder within the results.
 pub const FOLDER: &str = "claims";
 /// The verdicts as a table.
 pub(super) const CSV: &str = "claims.csv";
-/// The verdicts as a text. It stands beside the folders of the rows, so that its links lead there.
+/// The verdicts as a text. It is beside the folders of the rows, so that its links work.
 pub(super) const MARKDOWN: &str = "CLAIMS.md";
 
 const HEADING: &str = "# The claims of the four reports";
 
 impl Answer<'_> {
-    /// The number that was found, with its interval.
+    /// The measured value with its interval.
     pub fn measured(&self) -> String {
         let Some(found) = &self.found else { return "-".to_string() };
         let short = |value: f64| number::short(value, 3);
@@ -68,7 +68,7 @@ pub fn save(answers: &[Answer<'_>], out: &Path) -> Result<()> {
     atomic_file::write(&out.join(MARKDOWN), |file| file.write_all(text.as_bytes()))
 }
 
-/// The complete table.
+/// The complete table of claims.
 fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let of = |answer: &Answer<'_>| answer.found;
@@ -93,12 +93,12 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
         .end()
 }
 
-/// Whether a file is such a table, and may be replaced by a new one.
+/// Whether a file is such a table, which a new one may replace.
 pub(super) fn is_csv(path: &Path) -> bool {
     starts_with(path, "claim,report,verdict,")
 }
 
-/// Whether a file is such a text.
+/// Whether a file is such a text, which a new one may replace.
 pub(super) fn is_markdown(path: &Path) -> bool {
     starts_with(path, HEADING)
 }
@@ -108,7 +108,7 @@ fn starts_with(path: &Path, text: &str) -> bool {
     File::open(path).and_then(|mut file| file.read_exact(&mut head)).is_ok() && head == text.as_bytes()
 }
 
-/// How many claims of each report have each verdict.
+/// The number of claims of each report with each verdict.
 fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
     let mut reports: Vec<&str> = answers.iter().map(|answer| answer.report.report.as_str()).collect();
     reports.sort_unstable();
@@ -119,7 +119,7 @@ fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
     reports.iter().map(|report| ((*report).to_string(), NAMES.map(|name| of(report, name)).to_vec())).collect()
 }
 
-/// The verdicts as a page of text; sources are told relative to `base`.
+/// The verdicts as a text; paths of sources are relative to `base`.
 fn markdown(answers: &[Answer<'_>], base: &Path) -> String {
     let mut text = format!(
         "{HEADING}\n\n`pathmark claims` computed every verdict from the rows that it links to. A claim is *confirmed* if the whole interval lies within the values \
@@ -179,7 +179,7 @@ fn capital(verdict: Verdict) -> String {
     first.to_uppercase() + rest
 }
 
-/// How many claims have each verdict, in a sentence.
+/// The number of claims with each verdict, in a sentence.
 pub(super) fn in_short(answers: &[Answer<'_>]) -> String {
     let count = |name: &str| answers.iter().filter(|answer| answer.verdict.name() == name).count();
     let counts = NAMES.iter().map(|name| (count(name), name.replace('-', " "))).filter(|(count, _)| *count > 0);

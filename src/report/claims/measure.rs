@@ -20,7 +20,7 @@ use crate::report::rows::Row;
 use crate::simulate::{Contender, Hardware, contenders, forecast};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// A number, its interval if there were enough rows for one, and how many rows it was computed from.
+/// A value, its interval if there were enough rows for one, and the number of rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
     pub(super) value: f64,
@@ -34,12 +34,13 @@ impl Found {
         Some(Self { value, interval: Some(interval), rows })
     }
 
-    /// A number that was counted.
+    /// A counted value, which has no error.
     fn exact(value: f64, rows: usize) -> Option<Self> {
         (rows > 0).then(|| Self { value, interval: Interval::between(value, value, 1.0), rows })
     }
 
-    /// The median of some values. Too few of them for the level have the t interval of `of_few` instead, and one has none.
+    /// The median of some values. If they are too few for the level, `of_few` gives the interval; a single value has
+    /// none.
     fn typical(
         values: &[f64],
         stopping: Stopping,
@@ -52,7 +53,7 @@ impl Found {
     }
 }
 
-/// An experiment's rows beside their columns.
+/// An experiment's rows with their columns.
 pub(super) struct Evidence {
     results: Results,
     columns: Vec<Columns>,
@@ -60,7 +61,7 @@ pub(super) struct Evidence {
 
 type Pair<'a> = (&'a Row, &'a Columns);
 
-/// Columns that follow from another one: rows that differ in the one differ in these, too.
+/// Columns that may change with another one: rows that differ in it may differ in these, too.
 const FOLLOWERS: [(&str, &[&str]); 5] = [
     ("scene", &["scene_hash", "effects", "accelerator", "max_depth", "roulette"]),
     ("estimator", &["max_depth", "roulette", "effects", "kernel_fallback"]),
@@ -69,7 +70,7 @@ const FOLLOWERS: [(&str, &[&str]); 5] = [
     ("sampler", &["kernel", "kernel_fallback", "simd", "effects"]),
 ];
 
-/// The columns that tell rows apart.
+/// The columns that identify rows.
 const IDENTITY: [&str; 25] = [
     "scene",
     "scene_hash",
@@ -109,7 +110,7 @@ impl Evidence {
         self.results.rows().zip(&self.columns).filter(|(_, columns)| conditions.admit(columns)).collect()
     }
 
-    /// The statistic of the rows that meet the conditions; `None` if there are no such rows, or too few for any number.
+    /// The statistic of the rows that meet the conditions; `None` if there are no such rows, or too few to compute it.
     pub(super) fn measure(&self, conditions: &Conditions, kind: &Kind, level: f64) -> Result<Option<Found>> {
         let (rows, stopping) = (self.rows(conditions), self.results.stopping());
         let of = |column: &str| -> Vec<f64> { rows.iter().filter_map(|(_, row)| number(row, column)).collect() };
@@ -151,7 +152,8 @@ impl Evidence {
         })
     }
 
-    /// A column of rows over that of the rows beside them, which differ in what one of the conditions speaks of.
+    /// Ratios of a column between rows and their partners in `over`. Partners may differ only in columns that the
+    /// conditions name, and in those that change with them.
     fn ratios(&self, rows: &[Pair<'_>], own: &Conditions, over: &Conditions, column: &str) -> Result<Vec<f64>> {
         let named: BTreeSet<&str> = own.columns().chain(over.columns()).collect();
         let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
@@ -174,7 +176,7 @@ impl Evidence {
         Ok(rows.iter().filter_map(ratio).collect())
     }
 
-    /// Simulated schedules of the jobs of serial rows whose traces were kept.
+    /// The statistic of simulated schedules, from the traced jobs of serial rows.
     fn forecast(
         &self,
         rows: &[Pair<'_>],
@@ -204,7 +206,7 @@ impl Evidence {
     }
 }
 
-/// The mean of some shares; if all are alike, that share.
+/// The mean of some shares; if all are equal, that share exactly.
 fn share(shares: &[f64], level: f64) -> Option<Found> {
     let first = *shares.first()?;
     if shares.len() > 1 && shares.iter().all(|share| *share == first) {
@@ -215,7 +217,7 @@ fn share(shares: &[f64], level: f64) -> Option<Found> {
     Some(Found { value: mean, interval, rows: shares.len() })
 }
 
-/// The difference of two means over seeds in standard errors, give or take the quantile of the level.
+/// The difference of two means over seeds in standard errors, plus or minus the normal quantile of the level.
 fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<Found> {
     let moments = |pairs: &[Pair<'_>]| {
         let own: Vec<&Row> = pairs.iter().map(|(row, _)| *row).collect();
@@ -231,8 +233,8 @@ fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<F
     Some(Found { value: score, interval, rows: rows.len() + over.len() })
 }
 
-/// Spearman's coefficient over the means of groups; its interval is Fisher's, with the variance for ranks of E. C. Fieller, H. O. Hartley and
-/// E. S. Pearson, "Tests for rank correlation coefficients", Biometrika 44 (1957).
+/// Spearman's coefficient over the means of groups, with Fisher's interval. The variance for ranks is from E. C.
+/// Fieller, H. O. Hartley and E. S. Pearson, "Tests for rank correlation coefficients", Biometrika 44 (1957).
 fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) -> Option<Found> {
     let mut groups: BTreeMap<String, Vec<(f64, f64)>> = BTreeMap::new();
     for (_, row) in rows {
@@ -248,16 +250,16 @@ fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) 
     let rho = spearman(&points)?.rho;
     let spread = (points.len() > 3).then(|| (1.06 / (points.len() as f64 - 3.0)).sqrt())?;
     let half = spread * critical_value(1.0 - level)?;
-    // A perfect order has an infinite transform, and so no spread.
+    // A perfect order has an infinite transform, so rho is clamped.
     let centre = libm::atanh(rho.clamp(-0.999_999, 0.999_999));
     let interval = Interval::between(libm::tanh(centre - half), libm::tanh(centre + half), level);
     Some(Found { value: rho, interval, rows: rows.len() })
 }
 
-/// How many checksums the image with the most of them has; none if no image has two rows.
+/// The largest number of different checksums of one image; `None` if no image has two rows.
 fn checksums(rows: &[Pair<'_>]) -> Option<Found> {
     let mut images: BTreeMap<_, Vec<&str>> = BTreeMap::new();
-    // A sampler that gives other numbers in each run leaves none.
+    // A sampler that draws other random numbers in each run leaves no checksum.
     for (row, _) in rows.iter().filter(|(row, _)| !row.checksum.is_empty()) {
         images.entry(&row.image).or_default().push(&row.checksum);
     }

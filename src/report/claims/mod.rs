@@ -34,13 +34,14 @@ const ANALYSIS: &str = "Each claim names the rows that answer it, a statistic, a
 the measurement lies within the prediction, refuted if it lies wholly outside, and open otherwise. It is not comparable if the rows were measured under other conditions than the report's, \
 and not answered if there are no rows.";
 
-/// Enters the files of the verdicts into those of a command that will write them.
+/// Enters the files of the verdicts into the files of a command that will write them.
 pub fn enter(option: &str, out: &Path, files: &mut Files) -> Result<()> {
     files.renews(option, &out.join(FOLDER).join(CSV), is_csv)?;
     files.renews(option, &out.join(MARKDOWN), is_markdown)
 }
 
-/// The verdicts as the first section of the page, if the folder has rows for any of them. Writes them into the folder, too.
+/// The verdicts as the first section of the page, if the folder has rows for any of them. Also writes them into the
+/// folder.
 pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
     let reports = Report::all()?;
     let answers = judge(lab, &reports, &[out.to_path_buf()])?;

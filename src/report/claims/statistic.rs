@@ -1,4 +1,4 @@
-//! The statistics that a claim may ask for: a closed list.
+//! Statistics that a claim may ask for: a closed list.
 
 use super::condition::{Conditions, check_column};
 use super::definition::Claim;
@@ -9,11 +9,11 @@ use std::fmt;
 /// A number that is computed from results.
 #[derive(Debug)]
 pub(super) enum Statistic {
-    /// From the rows of an experiment.
+    /// A statistic of the rows of an experiment.
     OfRows { experiment: String, rows: Conditions, kind: Kind },
-    /// How many of these hard cases failed.
+    /// The number of these hard cases that failed.
     Case { ids: Vec<String> },
-    /// A number of the price list of the guards.
+    /// A value in the price list of the guards.
     Guard { guard: String, column: GuardColumn },
 }
 
@@ -22,13 +22,13 @@ pub(super) enum Statistic {
 pub(super) enum Kind {
     /// The median of a column, or of one column divided by another.
     Value { column: String, per: Option<String> },
-    /// The mean over rows of a part of a column.
+    /// The mean over rows of a column's share of another.
     Share { column: String, of: String },
     /// The sum of a column.
     Count { column: String },
-    /// The median ratio of paired rows.
+    /// The median ratio of a column between paired rows.
     PairedRatio { column: String, over: Conditions },
-    /// Likewise the baseline's time over the rows' own.
+    /// The median of the baseline's time over the rows' own, in pairs.
     Speedup { over: Conditions },
     /// The slope of log y against log x.
     Exponent { x: String, y: String },
@@ -36,15 +36,15 @@ pub(super) enum Kind {
     RmseSlope,
     /// The difference of two means over seeds, in standard errors.
     Z { column: String, over: Conditions },
-    /// Spearman's coefficient of two columns, averaged within groups.
+    /// Spearman's rank correlation of two columns, each averaged within groups.
     RankCorrelation { x: String, y: String, by: String },
-    /// The largest number of different checksums that one image has.
+    /// The largest number of different checksums of one image.
     Checksum,
     /// A simulated schedule on many cores.
     Forecast { strategy: String, cores: usize, column: ForecastColumn },
 }
 
-/// A number of a forecast.
+/// A column of a forecast.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum ForecastColumn {
     Speedup,
@@ -52,7 +52,7 @@ pub(super) enum ForecastColumn {
     SerialFraction,
 }
 
-/// A number of the price list.
+/// A column of the price list.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum GuardColumn {
     ErrorWith,
@@ -78,7 +78,8 @@ const NAMES: [&str; 13] = [
 ];
 
 impl Statistic {
-    /// The statistic of that name, with the claim's fields. Every field that the claim has must be one of the statistic's.
+    /// Builds the statistic of that name from the claim's fields. Refuses a claim with fields that the statistic does
+    /// not use.
     pub(super) fn taken_from(claim: &mut Claim, name: &str) -> Result<Self> {
         let needs = Needs { name, id: claim.id };
         let statistic = match name {
@@ -167,7 +168,7 @@ impl GuardColumn {
     }
 }
 
-/// In words, with the rows that it is of.
+/// Writes the statistic in words, with its rows.
 impl fmt::Display for Statistic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -210,7 +211,7 @@ impl ForecastColumn {
     }
 }
 
-/// What a statistic of that name asks of a claim.
+/// The name of a statistic and its claim, to take the required fields.
 struct Needs<'a> {
     name: &'a str,
     id: u32,

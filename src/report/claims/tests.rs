@@ -25,7 +25,7 @@ fn verdict(rows: &[Record], evidence: &str) -> (Verdict, String) {
     (answers[0].verdict, answers[0].why.clone())
 }
 
-/// Rows that differ in what `change` does with the number of the row.
+/// Rows that differ by `change`, which gets the index of the row.
 fn rows(count: u32, change: impl Fn(u32, &mut Record)) -> Vec<Record> {
     let changed = |index: u32| {
         let mut row = Record { repetition: index, ..row() };
@@ -35,12 +35,12 @@ fn rows(count: u32, change: impl Fn(u32, &mut Record)) -> Vec<Record> {
     (0..count).map(changed).collect()
 }
 
-/// A number a little beside `value`, another for each index.
+/// A value near `value` that depends on the index.
 fn about(value: f64, index: u32) -> f64 {
     value * (1.0 + 0.001 * (f64::from(index % 5) - 2.0))
 }
 
-/// A prediction from `low` to `high` is confirmed, and those beside it are refuted.
+/// A prediction from `low` to `high` is confirmed, and the ranges beside it are refuted.
 fn both_ways(rows: &[Record], evidence: &str, [low, high]: [f64; 2]) {
     let with = |a: f64, b: f64| verdict(rows, &format!("{evidence}\nwithin = [{a:?}, {b:?}]")).0;
     assert_eq!(with(low, high), Verdict::Confirmed, "{evidence}");
@@ -74,7 +74,8 @@ fn an_interval_across_the_end_of_the_prediction_is_open() {
 
 #[test]
 fn ratios_pair_rows_by_all_that_the_claim_does_not_name() {
-    // Each repetition has its own speed, and the pool is three times as fast in each: unpaired, nothing would be seen.
+    // The repetitions differ in speed, and the pool is three times as fast in each: without pairs the ratio would be
+    // hidden.
     let mut all = Vec::new();
     for repetition in 0..7 {
         let slow = f64::from(1 << repetition);
@@ -88,7 +89,7 @@ fn ratios_pair_rows_by_all_that_the_claim_does_not_name() {
     both_ways(&all, &format!("statistic = \"speedup\"\n{pool}"), [2.9, 3.1]);
     let ratio = format!("statistic = \"paired-ratio\"\ncolumn = \"makespan_s\"\n{pool}");
     both_ways(&all, &ratio, [0.32, 0.34]);
-    // Rows that differ in what nobody named are not compared.
+    // Rows that differ in a column that the claim does not name are not compared.
     for row in all.iter_mut().filter(|row| row.strategy == "serial") {
         row.decomposition = "rows".to_string();
     }
@@ -198,7 +199,7 @@ fn what_a_claim_asks_for_must_exist() {
     }
 }
 
-/// The excerpts of the reports, in which every quote stands.
+/// The excerpts of the reports that contain the quotes.
 const EXCERPTS: [(&str, &str); 4] = [
     ("A", include_str!("../../../experiments/claims/excerpts/A.txt")),
     ("B", include_str!("../../../experiments/claims/excerpts/B.txt")),
@@ -220,7 +221,7 @@ fn each_claim_appears_once_and_quotes_its_report() {
     }
 }
 
-/// Every query matches rows that a sweep of the quick or of the reports' profile will write.
+/// Every query matches rows that a sweep of the quick profile or of the reports' profile will write.
 #[test]
 fn each_query_asks_for_rows_of_an_experiment() {
     let lab = Lab::built_in();
@@ -232,7 +233,7 @@ fn each_query_asks_for_rows_of_an_experiment() {
         else {
             continue;
         };
-        // Without the feature that it needs, an experiment has no cells.
+        // An experiment has no cells if the program lacks the feature that it needs.
         if Definition::load(&lab, experiment).unwrap().missing_feature().is_some() {
             continue;
         }
@@ -262,7 +263,7 @@ fn cells(lab: &Arc<Lab>, experiment: &str) -> Vec<Columns> {
     cells.filter(|cell| cell.external.is_none()).flat_map(row).collect()
 }
 
-/// Where noise decides, two verdicts are expected; any other is still a surprise.
+/// Where noise decides, two verdicts are expected; any other is unexpected.
 #[test]
 fn a_number_near_the_limit_may_have_either_verdict() {
     let evidence =

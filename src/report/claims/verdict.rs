@@ -1,4 +1,4 @@
-//! Verdicts: an interval beside the prediction of a claim.
+//! Verdicts: the comparison of a measured interval with the prediction of a claim.
 
 use super::measure::Found;
 use std::fmt;
@@ -6,16 +6,16 @@ use std::fmt;
 /// The names of all verdicts.
 pub(super) const NAMES: [&str; 6] = ["confirmed", "refuted", "open", "not-comparable", "not-answered", "context"];
 
-/// What the measurements say of a claim.
+/// The result of the measurements for a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The whole interval lies within the prediction.
     Confirmed,
-    /// The interval and the prediction have nothing in common.
+    /// The interval and the prediction do not overlap.
     Refuted,
     /// The interval lies partly within the prediction, or there is none.
     Open,
-    /// The rows were measured under other conditions than the report's.
+    /// The rows were measured under conditions that differ from the report's.
     NotComparable,
     /// There are no rows.
     NotAnswered,
@@ -29,7 +29,7 @@ impl Verdict {
         NAMES[self as usize]
     }
 
-    /// Compares what was found with the ends of the prediction.
+    /// Compares a measurement with the ends of the prediction.
     pub(super) fn of(found: &Found, [low, high]: [f64; 2]) -> Self {
         match found.interval {
             Some(interval) if low <= interval.low && interval.high <= high => Self::Confirmed,

@@ -1,12 +1,12 @@
-//! What a hierarchy is worth: time per ray against the number of primitives, and the gain against samples per pixel.
+//! The gain of a hierarchy: time per ray against the number of primitives, and the gain against samples per pixel.
 
 use super::prelude::*;
 use crate::scene::ACCELERATORS;
 
-/// The rows at one number of something, by accelerator.
+/// Rows by a number (of primitives or samples), then by accelerator.
 type Places<'a> = BTreeMap<u64, BTreeMap<&'a str, Vec<&'a Row>>>;
 
-/// An accelerator's gains: how many times as long the yardstick takes, by the number of something.
+/// An accelerator's gains by that number: how many times as long the yardstick takes.
 type Gains = Vec<(u64, Estimate)>;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -14,11 +14,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let names = results.by(|row| row.accelerator.as_str()).into_keys();
     let accelerators = in_table_order(names, ACCELERATORS.iter().map(|entry| entry.name));
     let (generated, others): (Vec<&Row>, Vec<&Row>) = results.rows().partition(|row| primitives(row).is_some());
-    // Scenes of another generator are spread otherwise: their times do not belong on the same line.
+    // Other generators distribute their primitives differently, so their times do not belong on the same line.
     let generators = group(generated, |row| row.scene.split(':').next().unwrap_or_default());
     let sizes = generators.into_values().map(|rows| places(rows, |row| primitives(row).unwrap_or_default()));
     let sizes = sizes.max_by_key(BTreeMap::len).unwrap_or_default();
-    // One line, one image: of several sizes the one with the most numbers of samples.
+    // A line must be of one image; take the one with the most numbers of samples.
     let images = group(others.iter().copied(), |row| (&row.scene, row.width, row.height)).into_values();
     let spp_of = |rows: &Vec<&Row>| rows.iter().map(|row| row.spp).collect::<BTreeSet<_>>().len();
     let of_one_image = images.rev().max_by_key(spp_of).unwrap_or_default();
@@ -42,7 +42,7 @@ fn places(rows: Vec<&Row>, place: impl Fn(&Row) -> u64) -> Places<'_> {
     places.map(|(place, rows)| (place, group(rows, |row| row.accelerator.as_str()))).collect()
 }
 
-/// The number behind the name of a scene that is generated in many sizes.
+/// The number after the name of a scene that is generated in many sizes.
 fn primitives(row: &Row) -> Option<u64> {
     row.scene.split_once(':')?.1.parse().ok()
 }
@@ -85,7 +85,8 @@ fn gains(places: &Places<'_>, yardstick: &str, name: &str, stopping: Stopping) -
     Ok(gains)
 }
 
-/// From where on a hierarchy is faster, and by how much in the largest scene that was also rendered without.
+/// A finding: the number of primitives from which a hierarchy is faster, and its gain in the largest scene that was
+/// also rendered without it.
 fn crossover(name: &str, gains: &Gains) -> Option<Block> {
     let (most, largest) = gains.last()?;
     let slower = gains.iter().rev().find(|(_, gain)| gain.interval.low <= 1.0);
@@ -108,7 +109,8 @@ fn crossover(name: &str, gains: &Gains) -> Option<Block> {
     )))
 }
 
-/// The gain at each number of samples, in the scenes that are not generated. A factor that does not depend on it lies in every interval.
+/// The gain at each number of samples, in a scene that is not generated. A gain that does not depend on the samples
+/// lies in every interval.
 fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, Gains)]) -> Vec<Block> {
     if gains.iter().all(|(.., gains)| gains.is_empty()) {
         return Vec::new();
@@ -147,8 +149,8 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     [Block::figure("acceleration-spp", chart)].into_iter().chain(findings).collect()
 }
 
-/// How many times as long the yardstick takes for each further sample: what every render takes once is in no difference of two times, so it
-/// cannot bend this factor as it bends the gain at few samples.
+/// How many times as long the yardstick takes for each further sample. A difference of two times contains no fixed
+/// cost, so a fixed cost cannot bend this factor as it bends the gain at few samples.
 fn marginal(rows: &[&Row], yardstick: &str, name: &str, stopping: Stopping) -> Vec<Block> {
     let by_size = group(rows.iter().copied(), |row| (row.width, row.height));
     let finding = |((width, height), rows): ((u32, u32), Vec<&Row>)| {

@@ -3,7 +3,7 @@
 use super::prelude::*;
 use crate::analysis::speedup::{Oddity, oddity, serial_fraction_within};
 
-/// What tells the builds and schedules of an experiment apart: schedule and compiled-in effects.
+/// A schedule and the compiled-in effects, which distinguish the builds and schedules of an experiment.
 type Kind<'a> = (&'a Schedule, &'a str);
 
 /// A schedule on several threads against one baseline.

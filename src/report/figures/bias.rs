@@ -1,5 +1,5 @@
-//! What an approximation costs and what it gains: light lost, noise and doubtful pixels by the value of one axis, against rows in which the
-//! axis has its usual value.
+//! Cost and gain of an approximation: light lost, noise and doubtful pixels by the value of one axis, against rows in
+//! which the axis has its usual value.
 
 use super::prelude::*;
 
@@ -8,7 +8,7 @@ use super::prelude::*;
 pub(super) struct Options {
     /// The axis that is varied: `epsilon`, `filter` or `clamp`.
     axis: Option<Varied>,
-    /// How the usual value is called.
+    /// The name of the usual value.
     usual: Option<String>,
 }
 
@@ -46,12 +46,12 @@ impl Varied {
     }
 }
 
-/// One value on one scene at one number of samples.
+/// Results for one value on one scene at one number of samples.
 struct Cost {
     scene: String,
     value: String,
     spp: u32,
-    /// Mean radiance over that of the usual value, by seed.
+    /// Mean radiance over the usual value's, paired by seed.
     light: Told,
     rmse: Option<f64>,
     within: Option<f64>,
@@ -70,7 +70,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let values = in_order(costs.iter().map(|cost| cost.value.clone()), &usual);
     let place = |cost: &Cost| values.iter().position(|value| *value == cost.value);
     costs.sort_by(|a, b| (&a.scene, place(a), a.spp).cmp(&(&b.scene, place(b), b.spp)));
-    // The most samples show the bias with the least noise. The usual value may have been rendered with more, for its noise.
+    // The most samples show the bias with the least noise. The usual value does not count: it may have more samples.
     let mut most: BTreeMap<&str, u32> = BTreeMap::new();
     for cost in costs.iter().filter(|cost| cost.value != usual) {
         let spp = most.entry(&cost.scene).or_default();
@@ -134,7 +134,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The values in the order of the usual one, then numbers by size, then names.
+/// The values in order: the usual one, then by their numbers; a value without a number counts as 0.
 fn in_order(values: impl Iterator<Item = String>, usual: &str) -> Vec<String> {
     let mut values: Vec<String> = values.collect::<BTreeSet<_>>().into_iter().collect();
     let number = |value: &str| value.rsplit(':').next().and_then(|number| number.parse().ok()).unwrap_or(0.0_f64);
@@ -151,7 +151,7 @@ fn costs(results: &Results, axis: Varied, usual: &str) -> Vec<Cost> {
         axis.forget(&mut image);
         image
     };
-    // Kernels differ where an approximation is for one of them alone, and give the same image.
+    // The key ignores the kernel: an approximation may exist for one kernel only, and kernels give the same image.
     let plain = results.rows().filter(|row| axis.of(&row.image).is_empty());
     let plain: BTreeMap<ImageKey, f64> = plain.filter_map(|row| Some((forgotten(row), row.mean_radiance?))).collect();
     let cells = results.by(|row| (row.scene.as_str(), axis.of(&row.image), row.spp));

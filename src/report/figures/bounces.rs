@@ -1,5 +1,5 @@
-//! Light by the number of its bounces, and how long paths are: rows with growing bounce limits are the partial sums of the Neumann series,
-//! because a path that is cut has the same vertices up to the cut.
+//! Light by the number of its bounces, and the lengths of paths. Rows with growing bounce limits are the partial sums
+//! of the Neumann series, because a truncated path has the same vertices up to the limit.
 
 use super::prelude::*;
 
@@ -7,11 +7,11 @@ use super::prelude::*;
 struct Step {
     name: String,
     limit: u16,
-    /// Share of all light that makes exactly so many bounces, with its interval over seeds.
+    /// Share of all light that makes exactly this many bounces, with its interval over seeds.
     light: Told,
-    /// Share of all light that makes at most so many.
+    /// Share of all light that makes at most this many bounces.
     up_to: f64,
-    /// Share of paths that are cut at the limit.
+    /// Share of paths that are truncated at the limit.
     cut: f64,
 }
 
@@ -26,7 +26,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             "There is no light by bounce: it takes rows with bounce limits and rows without.",
         )]);
     }
-    // A share of nothing has no place on a logarithmic axis.
+    // A logarithmic axis cannot show a share of zero.
     let lines = |y: fn(&Step) -> Point| {
         let points = steps.iter().map(|step| (&step.name, y(step))).filter(|(_, point)| point.y > 0.0);
         Series::by_name(gathered(points))
@@ -72,7 +72,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The steps of the rows with a limit, against the rows of the same seed without one.
+/// The steps of the rows with a limit, relative to the rows of the same seed without one.
 fn steps(name: &str, rows: &[&Row]) -> Vec<Step> {
     let radiance = |limit: Option<u16>| -> BTreeMap<u64, f64> {
         let own = rows.iter().filter(|row| row.max_depth == limit);

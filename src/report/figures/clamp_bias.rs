@@ -1,4 +1,4 @@
-//! What it costs to clamp each subpixel before averaging: light, and the less of it the more samples there are.
+//! The cost of clamping each subpixel before averaging: it loses light, but less with more samples.
 
 use super::prelude::*;
 use crate::analysis::mean::Moments;
@@ -6,7 +6,7 @@ use crate::analysis::mean::Moments;
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
-    /// What another program lost: its name, and (spp, bias in per cent).
+    /// The loss of another program: its name, and (spp, bias in per cent).
     prototype: Option<Prototype>,
 }
 
@@ -17,7 +17,7 @@ struct Prototype {
     bias: Vec<(u32, f64)>,
 }
 
-/// What is lost at some number of samples, in per cent of the clamped limit.
+/// The loss at some number of samples, in per cent of the clamped limit.
 struct Loss {
     spp: u32,
     seeds: usize,
@@ -85,7 +85,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// What clamping every recursion loses, by samples.
+/// A finding about the light that clamping at every recursion loses, by samples.
 fn recursion(by_clamp: &BTreeMap<(&str, u32), Vec<&Row>>, truth: f64) -> Option<Block> {
     let own = by_clamp.iter().filter(|((clamp, _), _)| *clamp == "recursion");
     let losses: Vec<(u32, f64)> =

@@ -1,4 +1,5 @@
-//! What `clock()` would have claimed: it adds up the CPU time of all threads, so parallelism never shows in it.
+//! The speedups that `clock()` would show: it adds up the CPU time of all threads, so it never shows a gain by
+//! parallelism.
 
 use super::prelude::*;
 

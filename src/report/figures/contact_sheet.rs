@@ -1,4 +1,4 @@
-//! The renders at growing spp beside their reference, and where they are wrong: by how much, and by how much a person would see.
+//! Renders at growing spp beside their reference, with maps of their error and of its visibility.
 
 use super::prelude::*;
 use crate::image_io::Image;
@@ -14,7 +14,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     };
     let images = renders(results)?;
     let Some((_, noisiest)) = images.first() else { return Ok(Vec::new()) };
-    // One scale for all maps: a level at which the noisiest one is not yet saturated.
+    // All maps share one scale, at which almost no pixel of the noisiest one is saturated.
     let scale = heatmap(noisiest, &reference, None)?.scale;
     let (mut pictures, mut errors, mut flips) = (Vec::new(), Vec::new(), Vec::new());
     for (record, image) in &images {
@@ -46,8 +46,8 @@ fn map(map: &Heatmap, caption: &[String; 2]) -> Cell {
     Cell { caption: caption.to_vec(), width: map.width, height: map.height, rgb: map.pixels.concat() }
 }
 
-/// The kept image of each spp, of the first estimator and the lowest seed, with its record: all by one schedule, the one that rendered most of them,
-/// because the seconds under them are compared.
+/// The kept image of each spp, of the first estimator and the lowest seed, with its record. All are by the schedule
+/// that rendered most of them, because the sheet compares their seconds.
 fn renders(results: &Results) -> Result<Vec<(&Row, Image)>> {
     let first = results.definition.first_estimator();
     let of_first = results.rows().filter(|row| row.estimator == first && row.repetition == 0);

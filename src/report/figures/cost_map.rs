@@ -1,4 +1,4 @@
-//! What each tile costs, over the image: the unequal pieces that schedules have to deal with.
+//! The cost of each tile, over the image: the unequal pieces that schedules have to distribute.
 
 use super::prelude::*;
 use crate::plot::heat_map::{HeatMap, HeatPanel, Tile};

@@ -1,4 +1,5 @@
-//! What an effect costs: absent, compiled in but unused, used; and what all scenes gain from the profile that fits them.
+//! The price of an effect: absent, compiled in but unused, used; and the gain of each scene from the profile that fits
+//! it.
 
 use super::prelude::*;
 use crate::scene::PROFILES;
@@ -6,9 +7,9 @@ use crate::scene::PROFILES;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
-    /// The profile with everything in it.
+    /// The profile that contains every effect.
     largest: String,
-    /// The effects whose price is told.
+    /// The effects to price.
     price: Vec<Price>,
 }
 
@@ -18,7 +19,7 @@ impl Default for Options {
     }
 }
 
-/// An effect, and where it is absent, compiled in but unused, and used.
+/// An effect, and the rows in which it is absent, compiled in but unused, and used.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Price {
@@ -28,13 +29,13 @@ struct Price {
     used: Kind,
 }
 
-/// What tells the kernels of a row apart.
+/// The properties that distinguish the kernels of rows.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Kind {
     scene: String,
     profile: String,
-    /// Whether rays are tested against boxes first.
+    /// Whether rays are tested against bounding boxes first.
     #[serde(default)]
     hierarchy: bool,
 }
@@ -48,8 +49,8 @@ impl Kind {
 
 /// The rows of a kind.
 struct Times {
-    /// Processor seconds of a sample by repetition: others on the machine disturb them less than the time that passes. Several rows of one
-    /// repetition are averaged.
+    /// CPU seconds of a sample, by repetition. Other processes on the machine disturb them less than wall time. Several
+    /// rows of one repetition are averaged.
     by_repetition: BTreeMap<u32, f64>,
     rays: Option<f64>,
 }
@@ -87,7 +88,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// An effect's price, and what it is made of.
+/// An effect's price, and the times that it is computed from.
 struct Found<'a> {
     price: &'a Price,
     absent: &'a Times,
@@ -152,7 +153,7 @@ fn generality(found: &[Found<'_>]) -> Option<Block> {
     )))
 }
 
-/// A scene under the profile that fits it, and the time under the largest over that.
+/// A scene under the profile that fits it and under the largest, and the ratio of their times.
 struct Fit<'a> {
     scene: &'a str,
     profile: &'a str,
@@ -161,7 +162,7 @@ struct Fit<'a> {
     ratio: Estimate,
 }
 
-/// The rows of a scene in the largest profile, and in the smallest other one.
+/// Compares the rows of each scene in the largest profile with those in the smallest other one.
 fn fits<'a>(results: &'a Results, largest: &str) -> Vec<Fit<'a>> {
     let groups = results.by(|row| (row.scene.as_str(), row.accelerator.as_str()));
     let of_scene = |((scene, _), rows): ((&'a str, &str), Vec<&'a Row>)| {
@@ -174,7 +175,7 @@ fn fits<'a>(results: &'a Results, largest: &str) -> Vec<Fit<'a>> {
         Some(Fit { scene, profile, fitting, largest: all, ratio })
     };
     let mut fits: Vec<Fit<'_>> = groups.into_iter().filter_map(of_scene).collect();
-    // Once is enough; `none` comes before the hierarchies.
+    // One accelerator for each scene is enough: the first by name.
     fits.dedup_by(|later, first| later.scene == first.scene);
     fits.sort_by(|a, b| b.ratio.value.total_cmp(&a.ratio.value));
     fits

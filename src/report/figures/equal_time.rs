@@ -1,11 +1,11 @@
-//! What each way to render a scene shows after about the same time.
+//! Images of each estimator and sampler after about the same time.
 
 use super::prelude::*;
 use crate::experiment::EXTERNAL;
 use crate::image_io::Image;
 use crate::report::reference_image::reference_image;
 
-/// Images beside each other: so many fit the page.
+/// The most images in a row that fit on the page.
 const COLUMNS: usize = 4;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {

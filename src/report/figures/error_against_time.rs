@@ -1,4 +1,5 @@
-//! What accuracy costs with each estimator and sampler: error against seconds, a line for each, a band for its interval over seeds.
+//! The cost of accuracy by estimator and sampler: error against seconds, a line for each, with a band for its interval
+//! over seeds.
 
 use super::prelude::*;
 use crate::report::contenders::{Contender, CostPoint, contenders};

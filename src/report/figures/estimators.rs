@@ -1,4 +1,4 @@
-//! Which estimator suits which scene: seconds to the same error, against the estimator that is named first.
+//! The best estimator for each scene: seconds to the same error, relative to the estimator that is named first.
 
 use super::prelude::*;
 use crate::analysis::versus::equal_error;

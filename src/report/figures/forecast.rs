@@ -1,4 +1,4 @@
-//! What other machines would make of the jobs that were measured here, and how well this machine is predicted.
+//! Simulated schedules of the jobs measured here on other machines, and the errors of the predictions for this machine.
 
 use super::prelude::*;
 use crate::experiment::read_calibration;
@@ -10,9 +10,9 @@ use std::num::NonZeroUsize;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
-    /// Cores of the machines that are looked at.
+    /// Cores of the simulated machines.
     cores: Vec<NonZeroUsize>,
-    /// The pieces whose serial run is handed out.
+    /// The pieces whose serial run gives the jobs.
     decomposition: String,
 }
 
@@ -49,7 +49,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// Report A's "1/h times faster" in numbers.
+/// A finding about report A's "1/h times faster".
 fn claim(rows: &[Forecast], costs: &[f64]) -> Option<Block> {
     let largest = rows.iter().map(|row| row.workers).max()?;
     let at = |cores: usize| rows.iter().find(|row| row.strategy == "thread-per-job" && row.workers == cores);

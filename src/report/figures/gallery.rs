@@ -1,14 +1,14 @@
-//! What every scene looks like, and what it calls for.
+//! The gallery: an image of every scene, with the effects that the scene needs.
 
 use super::prelude::*;
 use crate::image_io::Image;
 use crate::scene::{effect_names, load};
 
-/// Images beside each other: so many fit the page.
+/// The most images in a row that fit on the page.
 const COLUMNS: usize = 4;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    // Where a scene was rendered more than once, the image with the most samples.
+    // If a scene was rendered more than once, take the image with the most samples.
     let mut scenes: BTreeMap<&str, (&Row, Image)> = BTreeMap::new();
     for (record, image) in results.kept_images(|_| true)? {
         if scenes.get(record.scene.as_str()).is_none_or(|(known, _)| record.spp > known.spp) {
@@ -34,7 +34,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 }
 
 fn cell(record: &Row, image: &Image) -> Result<Cell> {
-    // A scene of the user's own may have gone since.
+    // A user's scene file may have been deleted or changed since.
     let scene = load(&record.scene).ok().filter(|scene| scene.hash == record.scene_hash);
     let mut caption = vec![record.scene.clone()];
     caption.extend(scene.iter().map(|scene| scene.about.clone()));

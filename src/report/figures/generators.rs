@@ -1,24 +1,24 @@
-//! One generator for all threads against one for each, or none that is shared.
+//! Random number generators: one shared by all threads, one for each thread, or no shared state.
 
 use super::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
-    /// The generators whose collapse on a second thread is looked at.
+    /// The generators to compare, for the collapse of the shared one on a second thread.
     compare: Option<Compare>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Compare {
-    /// One that all threads share.
+    /// A generator that all threads share.
     shared: String,
-    /// One that nobody waits for.
+    /// A generator that no thread waits for.
     own: String,
 }
 
-/// Who renders, in words.
+/// The strategy and its threads, in words.
 fn crew(schedule: &Schedule) -> String {
     if schedule.is_thread_per_row() {
         format!("a thread for each of {} rows", schedule.key.threads)
@@ -31,7 +31,7 @@ fn switches_per_second(row: &Row) -> Option<f64> {
     Some((row.voluntary_switches? + row.involuntary_switches?) as f64 / row.makespan_s?)
 }
 
-/// The rows of a generator under a crew.
+/// The rows of a generator with one strategy and number of threads.
 struct Line<'a> {
     sampler: &'a str,
     spp: u32,
@@ -50,7 +50,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { compare } = options(results, "generators")?;
     let crews: BTreeSet<(usize, String)> =
         results.by_schedule().into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
-    // Times of different images are not to be thrown together.
+    // Times of different images must not be mixed.
     let by_sampler = results.by(|row| (row.sampler.as_str(), row.spp));
     let several = by_sampler.keys().map(|(_, spp)| spp).collect::<BTreeSet<_>>().len() > 1;
     let name = |row: &Row| {
@@ -87,7 +87,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok([Block::figure("generators", plot)].into_iter().chain(finding).chain([table]).collect())
 }
 
-/// Two threads against one, of the same strategy.
+/// Compares two threads with one thread of the same strategy, for both generators.
 fn finding(results: &Results, Compare { shared, own }: &Compare) -> Result<Option<Block>> {
     let of = |sampler: &str, threads: usize| -> Vec<&Row> {
         let rows = results.rows().filter(|row| row.sampler == sampler && row.threads == threads);

@@ -1,17 +1,18 @@
-//! Efficiency against the size of a job, the size at which half is lost (METG), and what handing out a job costs.
+//! Efficiency against the size of a job, the size at which half is lost (METG), and the overhead of a job.
 
 use super::prelude::*;
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
 
-/// What an experiment tells this figure.
+/// The options of this figure.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Options {
-    /// Two strategies whose times are compared piece by piece.
+    /// Two strategies whose times are compared on each decomposition.
     compare: Option<[String; 2]>,
 }
 
-/// The serial program on each image, in seconds: a job by decomposition, the fastest run by repetition, the work by decomposition and repetition.
+/// Seconds of the serial program on each image: per job by decomposition, of the fastest run by repetition, of all work
+/// by decomposition and repetition.
 struct Baseline<'a> {
     per_job: BTreeMap<(&'a ImageKey, &'a str), f64>,
     best: BTreeMap<(&'a ImageKey, u32), f64>,
@@ -34,7 +35,7 @@ impl<'a> Baseline<'a> {
         Self { per_job, best, work, processors: results.processors() }
     }
 
-    /// Seconds of the workers that can run at the same time.
+    /// The makespan times the number of workers that can run at the same time, in seconds.
     fn spent_s(&self, row: &Row) -> Option<f64> {
         Some(row.threads.min(self.processors).max(1) as f64 * row.makespan_s?)
     }
@@ -43,7 +44,7 @@ impl<'a> Baseline<'a> {
         Some(self.best.get(&(&row.image, row.repetition))? / self.spent_s(row)?)
     }
 
-    /// Processor seconds beyond the serial work on the same pieces, for each job, in nanoseconds.
+    /// Processor time per job beyond the serial work on the same pieces, in nanoseconds.
     fn extra_ns(&self, row: &Row) -> Option<f64> {
         let work_s = self.work.get(&(&row.image, row.decomposition.as_str(), row.repetition))?;
         Some((self.spent_s(row)? - work_s) / row.jobs as f64 * 1e9)
@@ -91,7 +92,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// One strategy against another on the same pieces in the same repetition, from the smallest jobs to the largest.
+/// Compares two strategies on the same pieces in the same repetition, from the smallest jobs to the largest.
 fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> {
     let groups = results.by(|row| (&row.image, row.decomposition.as_str(), row.threads));
     let mut lines: Vec<(&Row, Estimate)> = Vec::new();
@@ -129,12 +130,12 @@ fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> 
     Ok(vec![Block::finding(finding), table])
 }
 
-/// The strategy, and the image where there are several.
+/// The strategy, with the image if there are several.
 fn name(results: &Results, row: &Row) -> String {
     joined([results.series_name(row), row.schedule.name.clone()])
 }
 
-/// The size in microseconds, and how sure it is.
+/// The size in microseconds, and its uncertainty.
 fn in_words(found: &Metg) -> [String; 2] {
     let microseconds = |seconds: f64| format!("{:.3}", seconds * 1e6);
     match found {
@@ -153,7 +154,7 @@ fn in_words(found: &Metg) -> [String; 2] {
     }
 }
 
-/// What a job costs beside its work, where jobs are smallest.
+/// The overhead of a job, at the largest number of jobs.
 fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
     let extra = results.by(|row| name(results, row)).into_iter().filter_map(|(strategy, rows)| {
         let most = rows.iter().map(|row| row.jobs).max()?;

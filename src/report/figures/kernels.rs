@@ -1,4 +1,4 @@
-//! What SIMD lanes are worth: how many times as many samples per second as the scalar kernel, by scene, instruction set and precision.
+//! The gain of SIMD lanes: samples per second over those of the scalar kernel, by scene, instruction set and precision.
 
 use super::prelude::*;
 use crate::analysis::versus::equal_error;
@@ -11,7 +11,7 @@ use crate::report::contenders::{Contender, contenders};
 pub(super) struct Options {
     /// The kernel that the others are compared with.
     yardstick: String,
-    /// The RMSE at which everything together is compared, in linear radiance.
+    /// The RMSE at which the gain of all choices together is measured, in linear radiance.
     goal: Positive,
 }
 
@@ -21,7 +21,7 @@ impl Default for Options {
     }
 }
 
-/// What is rendered on how many threads, by one kernel.
+/// The rows of one kernel, for one workload and number of threads.
 struct Line<'a> {
     name: String,
     threads: usize,
@@ -31,7 +31,7 @@ struct Line<'a> {
     ratio: Option<Estimate>,
 }
 
-/// The lines of each work, those that are compared with nothing left out.
+/// The lines of each workload. Leaves out workloads in which no kernel can be compared with the yardstick.
 fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>> {
     let mut works = Vec::new();
     for ((scene, estimator, sampler, _, threads), rows) in
@@ -97,14 +97,14 @@ impl Line<'_> {
     }
 
     fn rate(&self, count: fn(&Row) -> Option<u64>) -> Option<f64> {
-        // Of a curve, its end: the longest of its renders.
+        // The rate is that of the longest renders, at the end of a curve.
         let spp = self.rows.iter().map(|row| row.spp).max();
         let longest = self.rows.iter().copied().filter(|row| Some(row.spp) == spp);
         median(&values(longest, |row| Some(count(row)? as f64 / row.makespan_s? / 1e6)))
     }
 }
 
-/// What everything together gains to the same error, on one thread and on all.
+/// The gain of all choices together at the same error, for each number of threads.
 fn finding(scene: &str, contenders: &[Contender], yardstick: &str, goal: f64) -> Option<Block> {
     let of = |threads: usize| contenders.iter().filter(move |contender| contender.schedule.threads == threads);
     let slowest = of(1).find(|contender| contender.kernel == yardstick)?;
@@ -125,7 +125,7 @@ fn finding(scene: &str, contenders: &[Contender], yardstick: &str, goal: f64) ->
     Some(Block::finding(format!("{scene}, to an RMSE of {goal}, against {of_slowest}: {}.", sentences.join(", "))))
 }
 
-/// Ratios on one thread: on more, schedules have their part in them.
+/// Ratios on one thread: on several, schedules would affect them.
 fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot {
     let kernels: BTreeSet<&str> = works.iter().flatten().map(|line| line.kernel.as_str()).collect();
     let kernels = || kernels.iter().copied().filter(|kernel| *kernel != yardstick);

@@ -1,4 +1,4 @@
-//! What messages between two processes cost here, and how long a fetch-and-op waits for rank 0.
+//! Costs of messages between two processes here, and the time for which a fetch-and-op waits for rank 0.
 
 use super::prelude::*;
 use crate::cluster::{MessageCost, MessageCosts};

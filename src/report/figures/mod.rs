@@ -1,7 +1,8 @@
-//! What a report can show: one figure a file; this file is their table.
+//! The table of all figures; each figure has a file of its own beside this one.
 //!
-//! To add one: write its file with a function from results to blocks, and give it its `mod` and its line below. An experiment names the figures
-//! that it wants, and may tell each something about itself in a table `[figure.NAME]`, which the figure's own type reads.
+//! To add a figure: write its file with a function from results to blocks, and add its `mod` and its line below. An
+//! experiment names its figures, and may give each options in a table `[figure.NAME]`, which the figure's own type
+//! reads.
 
 mod acceleration;
 mod baselines;
@@ -49,16 +50,16 @@ use crate::error::{InputError, Result};
 use crate::experiment::Definition;
 use options::{NoOptions, Yardstick};
 
-/// One line of the table of figures.
+/// An entry of the table of figures.
 pub struct FigureEntry {
     /// Its name in experiment files.
     pub name: &'static str,
-    /// What it shows, in a line.
+    /// Its subject, in a line.
     pub about: &'static str,
     make: fn(&Results) -> Result<Vec<Block>>,
     /// Whether it compares with serial runs.
     of_serial: bool,
-    /// Refuses options that it does not have.
+    /// Refuses options that the figure does not have.
     check: fn(&Definition, &str) -> Result<()>,
 }
 
@@ -74,8 +75,8 @@ macro_rules! entries {
     };
 }
 
-/// The figures, in the order in which they are listed: module, name, what the experiment may tell it, whether it needs serial runs to compare
-/// with, and what it shows.
+/// The figures, in the order of lists: module, name, type of its options, whether it needs serial runs to compare with,
+/// and its subject.
 pub const FIGURES: &[FigureEntry] = entries! {
     contact_sheet, "contact-sheet", NoOptions, "renders at growing spp beside the reference, with maps of their error";
     rmse_against_spp, "rmse-against-spp", NoOptions, "error against samples per pixel, with the fitted slope";
@@ -120,7 +121,8 @@ fn find(name: &str) -> Option<&'static FigureEntry> {
     FIGURES.iter().find(|entry| entry.name == name)
 }
 
-/// Refuses a definition that names a figure that there is not, or tells one what it does not know: better before a sweep than after it.
+/// Refuses a definition that names an unknown figure or gives one unknown options, so that a sweep does not run in
+/// vain.
 pub fn check_figures(definition: &Definition) -> Result<()> {
     if let Some(name) = definition.figures.iter().find(|name| find(name).is_none()) {
         let names: Vec<&str> = FIGURES.iter().map(|entry| entry.name).collect();
@@ -139,7 +141,7 @@ pub fn figure_of_serial(definition: &Definition) -> Option<&'static str> {
     figures.into_iter().find(|entry| entry.of_serial).map(|entry| entry.name)
 }
 
-/// Everything that the experiment's figures show.
+/// The blocks of all figures of the experiment.
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     check_figures(&results.definition)?;
     let mut blocks = Vec::new();

@@ -1,4 +1,5 @@
-//! Each strategy against one of them: OpenMP's dynamic schedule, the field's yardstick, unless another is named.
+//! Each strategy compared with one of them: OpenMP's dynamic schedule, the field's yardstick, unless the experiment
+//! names another.
 
 use super::prelude::*;
 
@@ -8,7 +9,7 @@ const OPENMP: &str = "openmp-dynamic";
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let yardstick = yardstick(results, "openmp", OPENMP)?;
     let schedules = results.by_schedule();
-    // With as many threads as there are processors for, where it was run with several numbers of them.
+    // If it ran with several numbers of threads, take the largest number that does not exceed the processors.
     let own = schedules.iter().filter(|(schedule, _)| schedule.key.strategy == yardstick);
     let place = |schedule: &Schedule| (schedule.key.threads <= results.processors(), schedule.key.threads);
     let Some((own, own_rows)) = own.max_by_key(|(schedule, _)| place(schedule)) else {

@@ -1,4 +1,4 @@
-//! What an experiment tells its figures: the table `[figure.NAME]` of its definition.
+//! Options of figures: the table `[figure.NAME]` in an experiment's definition.
 
 use super::FIGURES;
 use crate::error::{InputError, Result};
@@ -8,8 +8,8 @@ use crate::report::results::Results;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// The options of a figure. A folder whose definition has no such table, as those from before there were any, gets what the experiment
-/// of its name says that the program carries.
+/// The options of a figure. A definition without such a table, as in old folders, gets the options of the experiment of
+/// the same name that the program contains.
 pub(super) fn options<T: DeserializeOwned + Default>(results: &Results, figure: &str) -> Result<T> {
     read(&results.definition, figure)
 }
@@ -34,14 +34,14 @@ pub(super) fn check<T: DeserializeOwned + Default>(definition: &Definition, figu
 #[serde(deny_unknown_fields)]
 pub(super) struct NoOptions {}
 
-/// The options of a figure that compares the others with one.
+/// The options of a figure that compares all others with one.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Yardstick {
     yardstick: Option<String>,
 }
 
-/// The name of what the others are compared with.
+/// The name of the yardstick, which the others are compared with.
 pub(super) fn yardstick(results: &Results, figure: &str, default: &str) -> Result<String> {
     let found: Yardstick = options(results, figure)?;
     Ok(found.yardstick.unwrap_or_else(|| default.to_string()))
@@ -75,7 +75,7 @@ pub(super) fn check_tables(definition: &Definition) -> Result<()> {
     listed.try_for_each(|entry| (entry.check)(definition, entry.name))
 }
 
-/// The line of the table's head.
+/// The position of the table's head: line and column.
 fn place(text: &str, name: &str) -> Option<(usize, usize)> {
     let is_head = |line: &str| line.trim_start_matches('[').starts_with(&format!("figure.{name}"));
     text.lines().position(|line| line.starts_with('[') && is_head(line)).map(|index| (index + 1, 1))

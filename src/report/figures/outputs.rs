@@ -1,4 +1,4 @@
-//! What it costs to get pieces into the film, as a multiple of buffers that nobody waits for.
+//! The cost of writing pieces into the film, relative to an output whose threads never wait.
 
 use super::prelude::*;
 use crate::measure::OUTPUTS;

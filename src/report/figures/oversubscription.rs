@@ -1,11 +1,11 @@
-//! More threads than processors: by cutting the image into more sections with a thread each, and by raising the threads alone.
+//! More threads than processors: from more sections of the image with a thread each, and from more threads alone.
 
 use super::prelude::*;
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 pub(super) struct Options {
-    /// The claim that is looked at.
+    /// The claim to test.
     claim: Option<Claim>,
 }
 
@@ -15,15 +15,15 @@ pub(super) struct Options {
 struct Claim {
     /// The strategy that starts a thread for each section.
     per_section: String,
-    /// The one with a thread for each processor.
+    /// The strategy with a thread for each processor.
     few: String,
-    /// The numbers of sections that are said to be good, from and to.
+    /// The smallest and the largest number of sections that the claim calls good.
     sections: [usize; 2],
     /// The decomposition that they are compared with.
     against: String,
 }
 
-/// What ends in a number of sections of a grid.
+/// Prefix of decompositions into a number of sections of a grid.
 const GRID: &str = "grid:";
 
 type Lines = BTreeMap<String, Vec<Point>>;
@@ -66,7 +66,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok([grid, threads, finding].into_iter().flatten().collect())
 }
 
-/// Report D's "around 16 to 49 is a good number", against few sections, and against the same pieces with a thread for each processor.
+/// Compares report D's "around 16 to 49 is a good number" with few sections, and with the same pieces on a thread for
+/// each processor.
 fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
     let Claim { per_section, few, sections: [least, most], against } = claim;
     let key = |row: &Row, strategy: &str, decomposition: &str| {

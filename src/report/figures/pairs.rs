@@ -1,10 +1,10 @@
-//! Every two ways to render a scene against each other: seconds to the same error, error after the same seconds.
+//! Pairs of contenders: seconds to the same error, and error after the same seconds.
 
 use super::prelude::*;
 use crate::analysis::versus::{equal_error, equal_time};
 use crate::report::contenders::{Contender, contenders};
 
-/// Two contenders, and where they are compared.
+/// Two contenders, and the error and time at which they are compared.
 struct Pair<'a> {
     a: &'a Contender,
     b: &'a Contender,
@@ -46,7 +46,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// Where a scene's contenders are compared: the error that the least accurate one ends with, and the time at which the quickest one ends.
+/// The error and the time at which a scene's contenders are compared: the largest final error, and the shortest final
+/// time.
 #[derive(Clone, Copy)]
 struct Place {
     rmse: f64,
@@ -61,7 +62,7 @@ impl Place {
     }
 }
 
-/// The first contender, which is the yardstick, against the one that reaches the same error soonest.
+/// Compares the first contender, which is the yardstick, with the one that reaches the same error soonest.
 fn finding(scene: &str, contenders: &[Contender], place: &Place) -> Option<String> {
     let (first, others) = contenders.split_first()?;
     let against = |other: &Contender| equal_error(&first.renderer, &other.renderer, place.rmse);

@@ -1,4 +1,4 @@
-//! What single precision buys and costs: time, error, light, and what went wrong, beside double precision.
+//! Gains and costs of single precision: time, error, light and failures, beside double precision.
 
 use super::prelude::*;
 use crate::analysis::mean::t_interval;
@@ -15,7 +15,7 @@ struct Pair<'a> {
     double: Vec<&'a Row>,
     single: Vec<&'a Row>,
     time: Estimate,
-    /// How much lighter single precision is, relatively.
+    /// The light of single precision over that of double, less 1.
     light: Option<Estimate>,
 }
 
@@ -76,7 +76,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![Block::figure("precision", plot), table])
 }
 
-/// The mean over seeds of how much lighter single precision is, relatively.
+/// The mean over seeds of the light of single precision over that of double, less 1.
 fn lighter(light: &Light<'_>) -> Option<Estimate> {
     let single = light.iter().filter(|((_, precision), _)| *precision == SINGLE);
     let ratios = single.filter_map(|((seed, _), single)| Some(single / light.get(&(*seed, DOUBLE))? - 1.0));

@@ -1,4 +1,4 @@
-//! The words that figures are written in: what they ask of rows, how they say numbers, and what they draw.
+//! Imports that figures share: operations on rows, numbers as text, and charts.
 
 pub(super) use super::options::{Positive, options, yardstick};
 pub(super) use crate::analysis::confidence_sequence::Stopping;

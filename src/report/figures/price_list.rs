@@ -6,7 +6,7 @@ use crate::report::contenders::{Check, Contender, contenders, missing};
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Options {
-    /// The accuracies that are priced, in linear radiance.
+    /// The RMSEs to price, in linear radiance.
     goals: Vec<Positive>,
 }
 
@@ -59,12 +59,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The RMSE at the most samples that were measured.
+/// The RMSE at the largest number of samples.
 fn least_error(contender: &Contender) -> Option<f64> {
     contender.points.last().map(|point| point.rmse)
 }
 
-/// How many of the prices lie beyond what was measured, in words.
+/// The number of prices beyond the measured samples, in words.
 fn extrapolated(all: &[&Contender], goals: &[Positive]) -> String {
     let prices = || all.iter().flat_map(|contender| goals.iter().map(move |goal| (contender, goal.0)));
     let beyond = prices().filter(|(contender, goal)| least_error(contender).is_some_and(|least| *goal < least)).count();
@@ -82,7 +82,7 @@ fn variance(contender: &Contender) -> Option<f64> {
     Some(renderer.efficiency()?.times(&renderer.seconds_per_spp)?.inverse()?.value)
 }
 
-/// How far predictions are off at worst.
+/// A finding about the largest errors of the predictions.
 fn checked(checks: &[(&Contender, Option<Check>)]) -> Option<Block> {
     let worst = |of: &dyn Fn(&Check) -> f64| {
         let off = checks.iter().filter_map(|(c, check)| Some((&c.name, 100.0 * (of(check.as_ref()?) - 1.0))));

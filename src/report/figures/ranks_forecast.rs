@@ -1,4 +1,4 @@
-//! What several processes would make of the jobs that were measured here, and how well those of this machine are predicted.
+//! Simulated runs of several processes with the jobs measured here, and the errors of the predictions for this machine.
 
 use super::prelude::*;
 use crate::cluster::MessageCosts;
@@ -18,7 +18,7 @@ pub(super) struct Options {
     strategy: String,
     /// Numbers of processes.
     ranks: Vec<NonZeroUsize>,
-    /// Numbers of threads of each.
+    /// Numbers of threads of a process.
     threads: Vec<NonZeroUsize>,
 }
 

@@ -12,7 +12,7 @@ struct Line {
     spp: u32,
     seeds: usize,
     error: Told,
-    /// On display values.
+    /// RMSE of display values.
     shown: f64,
 }
 

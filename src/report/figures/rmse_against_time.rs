@@ -1,5 +1,5 @@
-//! What accuracy costs in time: error against seconds, a line for each schedule. All schedules of one spp have the same image and so the
-//! same error; a better schedule moves the curve to the left.
+//! The cost of accuracy in time: error against seconds, a line for each schedule. All schedules of one spp render the
+//! same image with the same error; a better schedule moves the curve to the left.
 
 use super::prelude::*;
 use crate::report::contenders::one_per_seed;
@@ -20,7 +20,7 @@ impl Default for Options {
 /// An image's series and its schedule.
 type Key<'a> = (String, &'a Schedule);
 
-/// A schedule at some number of samples.
+/// Time and error of a schedule at some number of samples.
 struct Place<'a> {
     key: Key<'a>,
     spp: u32,
@@ -78,7 +78,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok([Block::figure("rmse-against-time", chart)].into_iter().chain(price).chain([table]).collect())
 }
 
-/// If error times the root of time is the same along a line, one number prices every accuracy: MSE times seconds.
+/// If the RMSE times the root of the time is constant along a line, one value prices every accuracy: MSE times seconds.
 fn price_finding(prices: &BTreeMap<&Key<'_>, Vec<f64>>, goal: f64) -> Option<Block> {
     let spread = |values: &Vec<f64>| {
         let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -1,6 +1,6 @@
-//! Report B's microfacet material: directions by the cosine against directions by the facets that are seen, at equal samples.
+//! Report B's microfacet material: directions sampled by the cosine or by the visible facets, at equal samples.
 //!
-//! Scenes whose names differ in their ending alone are the same image with other directions.
+//! Scenes whose names differ only in their ending are the same image, with directions sampled in another way.
 
 use super::prelude::*;
 use crate::report::reference_image::reference_image;
@@ -8,7 +8,7 @@ use crate::report::reference_image::reference_image;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
 pub(super) struct Options {
-    /// What ends the name of a scene whose directions follow the facets.
+    /// The ending of the names of scenes whose directions follow the facets.
     by_facets: String,
 }
 
@@ -18,7 +18,7 @@ impl Default for Options {
     }
 }
 
-/// A scene both ways, and ratios of the facets over the cosine.
+/// A scene sampled both ways, and the ratios of facets over cosine.
 struct Pair<'a> {
     scene: &'a str,
     cosine: &'a [&'a Row],
@@ -62,7 +62,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The squared error, which is the variance, as the cross form against two references gives it: free of their own noise.
+/// The squared error, which is the variance. The cross form against two references removes their noise.
 fn variance(row: &Row) -> Option<f64> {
     row.mse.filter(|mse| *mse > 0.0)
 }
@@ -99,7 +99,7 @@ fn finding((scene, variance, time): &(&str, Told, Told)) -> Block {
 
 fn table(pairs: &[Pair<'_>]) -> Block {
     let ways = pairs.iter().flat_map(|pair| {
-        // A mirror has one direction, however one looks for it.
+        // A mirror reflects into one direction, however it is sampled.
         let cosine = if pair.facets.is_empty() { "the mirror's" } else { "cosine" };
         [(pair.scene, cosine, pair.cosine), (pair.scene, "facets", pair.facets)]
     });
@@ -108,7 +108,7 @@ fn table(pairs: &[Pair<'_>]) -> Block {
         let time = typical(&|row| Some(row.makespan_s? / row.paths? as f64 * 1e9))?;
         Some((scene, directions, rows.len(), typical(&variance), time))
     });
-    // Monte Carlo efficiency: 1/(variance x time), the time that of a sample, in microseconds.
+    // Monte Carlo efficiency: 1/(variance x time), with the time of a sample in microseconds.
     let efficiency = |variance: Option<f64>, time: f64| variance.map(|variance| 1.0 / (variance * time * 1e-3));
     Block::table("roughness-table", "Roughness: medians over seeds", lines)
         .column("scene", |(scene, ..)| (*scene).to_string())
@@ -120,7 +120,7 @@ fn table(pairs: &[Pair<'_>]) -> Block {
         .end()
 }
 
-/// The references, on which the material can be seen; the renders themselves are too short for that.
+/// A sheet of the references, which show the material; the renders have too few samples for that.
 fn sheet(results: &Results, pairs: &[Pair<'_>]) -> Result<Option<Block>> {
     let mut cells = Vec::new();
     for pair in pairs {

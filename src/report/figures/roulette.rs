@@ -1,4 +1,4 @@
-//! When chance ends paths, and by what: efficiency against the vertex behind which it begins.
+//! Rules of Russian roulette: efficiency against the vertex after which it begins.
 
 use super::prelude::*;
 use crate::report::contenders::{Contender, contenders};
@@ -12,7 +12,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             let image = ImageKey { roulette: yardstick.clone(), ..contender.image.clone() };
             let same = |other: &&Contender| other.image == image && other.schedule == contender.schedule;
             let other = contenders.iter().find(same)?;
-            // Against itself it is 1, and nothing is uncertain about that.
+            // The yardstick's ratio to itself is exactly 1.
             let gain =
                 if std::ptr::eq(contender, other) { Told::of(1.0, None) } else { Told::from(gain(contender, other)?) };
             Some((contender, gain))
@@ -25,7 +25,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         return Ok(vec![Block::finding(text)]);
     };
     let lines = gathered(compared.iter().filter_map(|(contender, gain)| {
-        // A constant chance begins at the first vertex: its number is no vertex.
+        // A rule with a constant probability begins at the first vertex; its number is not a vertex.
         let (rule, start) = contender.image.roulette.split_once(':').filter(|(rule, _)| *rule != "constant")?;
         let name = format!("{}, {}, by {rule}", contender.image.scene, contender.image.estimator);
         Some((name, gain.above(start.parse().ok()?)))
@@ -49,7 +49,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         ),
         None => format!("Of the rules that were tried, none was more efficient than {yardstick}."),
     };
-    // Over all schedules of the image.
+    // Totals over all schedules of the image.
     let totals = results.by(|row| (&row.scene, &row.estimator, &row.roulette));
     let rays = |contender: &Contender| {
         let image = &contender.image;
@@ -72,19 +72,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![Block::figure("roulette", chart), Block::finding(finding), table])
 }
 
-/// Scene, estimator and rule in the order of a reader, who counts 2 before 10.
+/// A sort key: scene, estimator, rule, and the start as a number, so that 2 comes before 10.
 fn place(contender: &Contender) -> (&str, &str, &str, f64) {
     let image = &contender.image;
     let (rule, start) = image.roulette.split_once(':').unwrap_or((&image.roulette, ""));
     (&image.scene, &image.estimator, rule, start.parse().unwrap_or(0.0))
 }
 
-/// The first of the largest gains.
+/// The contender with the largest gain; of equal ones, the first.
 fn first_largest<'a>(compared: &[(&'a Contender, Told)]) -> Option<(&'a Contender, Told)> {
     compared.iter().rev().max_by(|a, b| a.1.value.total_cmp(&b.1.value)).copied()
 }
 
-/// Both of independent seeds' errors and times.
+/// The ratio of two efficiencies, each from the errors and times of independent seeds.
 fn gain(contender: &Contender, yardstick: &Contender) -> Option<Estimate> {
     contender.renderer.efficiency()?.times(&yardstick.renderer.efficiency()?.inverse()?)
 }

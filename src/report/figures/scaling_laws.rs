@@ -1,4 +1,4 @@
-//! Laws of speedup fitted to what was measured; where the points can't tell, the table says why.
+//! Laws of speedup fitted to the measured speedups. If the points do not determine a law, the table says why.
 
 use super::prelude::*;
 use crate::analysis::scaling_law::{Fit, Law, Parameter, Point, fit};
@@ -8,7 +8,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![table(results, &[Law::Amdahl, Law::Universal], "scaling-laws")?])
 }
 
-/// The fits of each law to each strategy, over worker counts that have a processor each: beyond that, more workers are no more machine.
+/// A table of the fits of each law to each strategy, over numbers of workers that have a processor each. Beyond that,
+/// more workers do not use more of the machine.
 pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Result<Block> {
     let processors = results.processors();
     let points = points(results, &results.serial()?);
@@ -22,7 +23,7 @@ pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Resu
         .end())
 }
 
-/// The speedups of each strategy at worker counts that have a processor each.
+/// The speedups of each strategy at numbers of workers that have a processor each.
 pub(super) fn points<'a>(results: &Results, serial: &Serial<'a>) -> BTreeMap<&'a str, Vec<Point>> {
     let mut points: BTreeMap<&str, Vec<Point>> = BTreeMap::new();
     for schedule in serial.others().filter(|schedule| schedule.key.threads <= results.processors()) {

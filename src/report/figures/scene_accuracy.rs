@@ -1,5 +1,5 @@
-//! Error by scene at the same samples per pixel: report A's claim that scenes without reflections are more accurate, and the control that
-//! exchanges the materials of one scene.
+//! Error by scene at the same samples per pixel. It tests report A's claim that scenes without reflections are more
+//! accurate; a control exchanges the materials of one scene.
 
 use super::prelude::*;
 use crate::analysis::mean::t_interval;
@@ -21,7 +21,7 @@ impl Default for Options {
     }
 }
 
-/// Scenes that differ in the balls of one box and nothing else.
+/// Scenes that differ only in the balls of one box.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Control {
@@ -34,9 +34,9 @@ struct Control {
     mirrors: String,
 }
 
-/// What is known of a scene.
+/// Accuracy and cost of a scene.
 struct Accuracy {
-    /// The scene, and what else differs.
+    /// The scene, or the properties in which the images differ.
     name: String,
     scene: String,
     spp: u32,
@@ -47,13 +47,13 @@ struct Accuracy {
     /// Root of the mean of their squares.
     error: Told,
     rays: f64,
-    /// Processor seconds of a sample.
+    /// CPU seconds of a sample.
     sample_s: f64,
     pixels: f64,
 }
 
 impl Accuracy {
-    /// Processor seconds until the image has that error: it falls with the root of the samples.
+    /// CPU seconds until the image has this error, which falls with the root of the samples.
     fn price_s(&self, goal: f64) -> f64 {
         let spp = f64::from(self.spp) * (self.error.value / goal) * (self.error.value / goal);
         spp * self.pixels * self.sample_s
@@ -107,7 +107,7 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
     Ok(results.by(kind).into_iter().filter_map(of_scene).collect())
 }
 
-/// What is rendered, the seed aside.
+/// The image without its seed.
 fn kind(row: &Row) -> ImageKey {
     ImageKey { seed: 0, ..row.image.clone() }
 }
@@ -126,7 +126,8 @@ fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
     chart
 }
 
-/// Over scenes that differ in everything; the two variants of the control would count one scene three times.
+/// The rank correlation over different scenes. Leaves out the two variants of the control, which would count one scene
+/// three times.
 fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
     let is_variant =
         |scene: &&Accuracy| control.is_some_and(|control| [&control.diffuse, &control.mirrors].contains(&&scene.scene));
@@ -147,7 +148,7 @@ fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
     )))
 }
 
-/// The error of one scene over that of another, paired by seed: the mean of logarithms.
+/// The ratio of the errors of two scenes, paired by seed: the mean of logarithms.
 fn error_ratio(above: &Accuracy, below: &Accuracy) -> Option<Estimate> {
     let pairs = above.by_seed.iter().filter_map(|(seed, error)| Some(libm::log(error / below.by_seed.get(seed)?)));
     let found = t_interval(&pairs.collect::<Vec<f64>>(), LEVEL)?;

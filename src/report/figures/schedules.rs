@@ -1,4 +1,4 @@
-//! A table of what each schedule did: time, balance, switches.
+//! A table of schedules: time, balance, context switches.
 
 use super::prelude::*;
 
@@ -26,7 +26,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let times = values(rows.iter().copied(), |row| row.makespan_s);
         Some(Line { image, first, seconds: results.median(&times)?, times, rows })
     });
-    // A job's seconds include waiting for a processor: with more workers than processors they say nothing about balance.
+    // A job's seconds include waiting for a processor, so with more workers than processors they do not show balance.
     let alone = |row: &Row| (row.workers_used? as usize <= processors).then_some(());
     let imbalance =
         |row: &Row| alone(row).and(Some(row.busy_max_s? * f64::from(row.workers_used?) / row.busy_sum_s? - 1.0));

@@ -1,14 +1,15 @@
-//! A against A: the same cell in odd and in even repetitions, compared as the other experiments compare different cells.
+//! A against A: odd and even repetitions of the same cell, compared as other experiments compare different cells.
 
 use super::prelude::*;
 use crate::analysis::aa_test::{Comparison, calibration};
 
-/// Pairs in a comparison: the fewest whose interval of the median reaches 95 %.
+/// Pairs in a comparison: the smallest number whose interval of the median reaches 95 %.
 const PAIRS: usize = 6;
-/// Significance at which the number of misses is judged.
+/// Significance level for the number of misses.
 const ALPHA: f64 = 0.01;
 
-/// The median ratios of one cell's comparisons: successive repetitions are a pair, successive pairs a comparison.
+/// The median ratios of one cell's comparisons. Two successive repetitions form a pair, `PAIRS` successive pairs a
+/// comparison.
 fn compared(rows: &[&Row]) -> Vec<Told> {
     let mut timed: Vec<(u32, f64)> = rows.iter().filter_map(|row| Some((row.repetition, row.makespan_s?))).collect();
     timed.sort_by_key(|(repetition, _)| *repetition);
@@ -16,7 +17,7 @@ fn compared(rows: &[&Row]) -> Vec<Told> {
     ratios.chunks_exact(PAIRS).filter_map(|pairs| Told::median(pairs, Stopping::Fixed)).collect()
 }
 
-/// Whether the interval holds 1, which is the truth.
+/// Whether the interval contains 1, the true ratio.
 fn comparison(told: &Told) -> Option<Comparison> {
     told.interval.map(|interval| Comparison { level: interval.level, contains_truth: interval.contains(1.0) })
 }

@@ -1,4 +1,4 @@
-//! Speedup against `serial`, efficiency, and the serial fraction by which Karp and Flatt explain what is missing.
+//! Speedup against `serial`, efficiency, and the serial fraction by Karp and Flatt, which explains the missing speedup.
 
 use super::prelude::*;
 use super::scaling_laws;
@@ -9,21 +9,22 @@ use crate::measure::Doubts;
 use crate::report::schedule::is_of_ranks;
 use crate::report::serial::Serial;
 
-/// More lines than this cannot be told apart in one chart: strategies become named rows instead.
+/// A chart with more lines than this is unreadable, so strategies become named rows instead.
 const MOST_LINES: usize = 8;
 
-/// Up to so many threads have a linear axis.
+/// The threads axis is linear up to this many threads.
 const FEW_THREADS: f64 = 16.0;
 
-/// The speedups, and what is known beside them.
+/// The speedups and the data to explain them.
 struct Speedups<'a> {
     results: &'a Results,
     serial: Serial<'a>,
     all: Vec<(&'a Schedule, Estimate)>,
-    /// Numbers of threads that were asked for. A strategy with a thread for each job has its own, which is no place on an axis.
+    /// The requested numbers of threads. A strategy with a thread for each job ignores them, so it has no position on
+    /// the axis.
     asked: BTreeSet<usize>,
     processors: usize,
-    /// Columns and rows of most images.
+    /// Width and height of most images.
     usual_size: Option<(u32, u32)>,
 }
 
@@ -97,12 +98,12 @@ impl Speedups<'_> {
         }
     }
 
-    /// What is known beside a speedup that is too good.
+    /// The evidence for the cause of a superlinear speedup.
     fn evidence(&self, schedule: &Schedule) -> Evidence {
         let mut alone = schedule.clone();
         alone.key.threads = 1;
         let at_one_worker = || self.results.median(&self.serial.paired_speedups(&alone))?.interval;
-        // The baseline's doubts count as well: a serial run that was held up makes all others look fast.
+        // The baseline's doubts count as well: a serial run that was delayed makes all others look fast.
         let concerned = self.serial.rows(schedule).iter().copied().chain(self.serial.on_pieces_of(schedule));
         let machine = &self.results.run.machine;
         Evidence {
@@ -113,12 +114,13 @@ impl Speedups<'_> {
         }
     }
 
-    /// The confidence of the intervals that are drawn.
+    /// The confidence of the drawn intervals.
     fn confidence(&self) -> String {
         confidence(self.all.iter().map(|(_, speedup)| speedup.interval))
     }
 
-    /// The strategy; with its pieces where there are several, and with the image's size where it is not that of most rows.
+    /// The strategy, with its pieces if there are several decompositions, and with the image size if most rows have
+    /// another.
     fn line(&self, schedule: &Schedule) -> String {
         let name = self.with_pieces(schedule);
         let own: BTreeSet<(u32, u32)> = self.serial.rows(schedule).iter().map(|row| (row.width, row.height)).collect();
@@ -130,7 +132,7 @@ impl Speedups<'_> {
 
     fn with_pieces(&self, schedule: &Schedule) -> String {
         let pieces = self.all.iter().map(|(schedule, _)| &schedule.key.decomposition).collect::<BTreeSet<_>>();
-        // One decomposition, and the rows of report A beside it, need no name.
+        // One decomposition, with the rows of report A beside it, needs no name.
         if pieces.len() > 2 {
             format!("{}, {}", schedule.name, schedule.key.decomposition)
         } else {
@@ -138,7 +140,8 @@ impl Speedups<'_> {
         }
     }
 
-    /// A row for each strategy, a dot for each number of threads; strategies with a rule of their own have a single dot.
+    /// A row for each strategy with a dot for each number of threads. A strategy with a thread for each job has one
+    /// dot.
     fn dots(&self, [title, axis, guide]: [&str; 3], value: &dyn Fn(f64, usize) -> f64) -> DotPlot {
         let threads: BTreeSet<usize> =
             self.all.iter().filter(|(s, _)| !self.has_a_thread_per_job(s)).map(|(s, _)| s.key.threads).collect();
@@ -149,7 +152,7 @@ impl Speedups<'_> {
             dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)).dot());
         }
         let mut rows: Vec<PlotRow> = rows.into_iter().map(|(name, dots)| PlotRow::new(name, dots)).collect();
-        // By the most threads, which is what a reader looks for.
+        // Sorted by the value at the most threads, because readers look for it first.
         let at_most = |row: &PlotRow| row.dots.iter().flatten().next_back().map_or(0.0, |dot| dot.value);
         rows.sort_by(|a, b| at_most(b).total_cmp(&at_most(a)));
         let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
@@ -169,7 +172,7 @@ impl Speedups<'_> {
         plot
     }
 
-    /// One series a strategy, but for those with a thread for each job.
+    /// A series for each strategy, except those with a thread for each job.
     fn series(&self, value: &dyn Fn(f64, usize) -> f64) -> Vec<Series> {
         let mut lines: BTreeMap<String, Vec<_>> = BTreeMap::new();
         for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| !self.has_a_thread_per_job(schedule)) {
@@ -182,7 +185,7 @@ impl Speedups<'_> {
 
     fn chart(&self, title: &str, y: Axis, series: Vec<Series>, caption: &str) -> LineChart {
         let ticks: Vec<f64> = series.iter().flat_map(|series| &series.points).map(|point| point.x).collect();
-        // A speedup in proportion to the threads is a straight line on linear axes; many threads have no room there.
+        // On linear axes, a speedup in proportion to the threads is a straight line. Many threads do not fit on them.
         let few = ticks.iter().all(|threads| *threads <= FEW_THREADS);
         let x = if few { Axis::linear("threads") } else { Axis::log("threads") }.ticks_at(ticks);
         let mut chart = LineChart::new(title, x, y, series);
@@ -214,7 +217,7 @@ impl Speedups<'_> {
         chart
     }
 
-    /// Amdahl's law where the points bear it out, in the colours of the strategies' lines.
+    /// Amdahl's law where the fit passes its check, in the colours of the strategies' lines.
     fn fits(&self, series: &[Series]) -> Vec<Overlay> {
         let overlay = |(name, points): (&str, Vec<_>)| {
             let Fit::Found(Fitted { parameters, check: Check::Passed { .. }, .. }) = fit(Law::Amdahl, &points, LEVEL)
@@ -238,7 +241,7 @@ impl Speedups<'_> {
         chart
     }
 
-    /// The fastest with a thread for each processor, and which others are told apart from it.
+    /// The fastest strategy with a thread for each processor, and whether the others are slower beyond the noise.
     fn best(&self) -> Result<Option<Block>> {
         let processors = self.processors;
         let candidates = || self.all.iter().filter(|(s, _)| s.key.threads == processors && processors > 1);

@@ -1,11 +1,11 @@
-//! Seconds against samples per pixel: a line through the origin, if nothing but sampling takes time.
+//! Seconds against samples per pixel: a line through the origin if only sampling takes time.
 
 use super::prelude::*;
 use crate::analysis::fit::{line, log_log};
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let several = results.by(|row| row.schedule.label()).len() > 1;
-    // Times of different schedules are not to be thrown together.
+    // Times of different schedules must not be mixed.
     let lines = results.by(|row| {
         let image = results.image_name(row);
         if several { format!("{image}, {}", row.schedule.label()) } else { image }
@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
             continue;
         }
         let pairs: Vec<(f64, f64)> = points.iter().map(|point| (point.x, point.y)).collect();
-        // A line through two points fits whatever they are.
+        // A line fits any two points, so the fit would say nothing.
         if pairs.len() < 3 {
             series.push(Series::new(name, Look::nth(series.len()), points).scattered());
             continue;

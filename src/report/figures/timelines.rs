@@ -1,10 +1,10 @@
-//! Who did what when: a lane for each worker, and where workers times makespan went.
+//! Timelines: a lane for each worker, and the shares of workers times makespan.
 
 use super::prelude::*;
 use crate::analysis::balance::Balance;
 use crate::report::timeline;
 
-/// A run, its balance, and whether its workers had a processor each.
+/// A run, its balance, and whether it had a processor for each worker.
 type Run = (String, Balance, bool);
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
@@ -24,7 +24,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let share = |balance: &Balance, seconds: f64| {
         format!("{:.1} %", 100.0 * seconds / (balance.makespan_s * balance.workers.len() as f64))
     };
-    // With more workers than processors most of a job's time is waiting for one, which is no balance.
+    // With more workers than processors, a job mostly waits for a processor, so its time says nothing about balance.
     let table = Block::table("balance", "Where workers times makespan went", &runs)
         .column("schedule", |(name, ..)| name.clone())
         .column("jobs", |(_, balance, _)| balance.jobs().to_string())

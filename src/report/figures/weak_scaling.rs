@@ -1,4 +1,4 @@
-//! Scaled speedup: how many times as long the serial program would have taken for the larger problem.
+//! Scaled speedup: the serial program's time for the larger problem over the schedule's time.
 
 use super::prelude::*;
 use super::scaling_laws;

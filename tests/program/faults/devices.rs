@@ -1,5 +1,6 @@
-//! F12: devices that fail. No compiler, a compiler that refuses, a driver without memory, a device that is lost in the middle: the reason is told with
-//! exit code 3, a checkpoint is kept, and a processor goes on from it to the same image.
+//! F12: devices that fail: no compiler, a compiler that refuses, a driver without memory, a device lost during a
+//! render. The program gives the reason, with exit code 3 (2 if the compiler is missing). It keeps a checkpoint, from
+//! which a processor resumes to the same image.
 
 use super::skip;
 use crate::program::{Finished, finish, pathmark};
@@ -11,7 +12,7 @@ use std::process::Command;
 const RENDER: [&str; 10] =
     ["render", "cornell", "--size", "40x30", "--spp", "720", "--estimator", "bsdf", "--sampler", "hash"];
 
-/// The loader of this machine; `None` if it has none, or none that shows a device.
+/// The OpenCL loader of this machine; `None` if it has none, or none that shows a device.
 fn loader() -> Option<PathBuf> {
     let folder = tempfile::tempdir().unwrap();
     let listed = finish(pathmark(folder.path(), &["list", "devices"])).with_code(0);
@@ -20,7 +21,7 @@ fn loader() -> Option<PathBuf> {
     files.find(|file| file.exists()).filter(|_| listed.out.contains("opencl:0"))
 }
 
-/// Compiles a library that stands in for a driver's.
+/// Compiles a library that replaces a driver's library.
 fn make_library(folder: &Path, source: &str, name: &str) {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(source);
     let library = folder.join(name);
@@ -31,7 +32,7 @@ fn make_library(folder: &Path, source: &str, name: &str) {
     }
 }
 
-/// `pathmark ARGUMENTS` with a loader that fails on purpose.
+/// Runs `pathmark ARGUMENTS` with a loader that fails on purpose.
 fn with_failing_loader(folder: &Path, loader: &Path, failure: (&str, u64), arguments: &[&str]) -> Finished {
     make_library(folder, "failing-opencl.c", "libOpenCL.so.1");
     let mut command = pathmark(folder, arguments);
@@ -56,7 +57,7 @@ fn a_device_lost_in_the_middle_leaves_a_checkpoint_that_a_processor_goes_on_from
     let checkpoint = folder.path().join("lost.checkpoint");
     let on_device = ["--kernel", "device:opencl:0", "--decomposition", "bands:2", "--checkpoint", "lost.checkpoint"];
     let lost = [&RENDER[..], &on_device, &["-o", "lost.pfm"]].concat();
-    // The first launches are of the self-test. It is lost later and later, until something has been rendered before.
+    // The first launches belong to the self-test. Each try loses the device later, until a checkpoint exists.
     for launches in 14.. {
         assert!(launches < 1000, "the render ends before the device is lost");
         let refused = with_failing_loader(folder.path(), &loader, ("PATHMARK_TEST_LAUNCHES", launches), &lost);
@@ -71,7 +72,7 @@ fn a_device_lost_in_the_middle_leaves_a_checkpoint_that_a_processor_goes_on_from
     assert_eq!(checksum(&resumed), checksum(&whole));
 }
 
-/// Two devices and two workers make one image. Of two devices the one that is lost ends the program, unless the others left it no piece.
+/// Two devices and two workers make one image. Losing one device ends the program, unless the others left it no piece.
 #[test]
 fn two_devices_in_one_run_render_the_same_image_or_none() {
     let Some(loader) = loader() else { return skip("there is no OpenCL device") };
@@ -95,7 +96,7 @@ fn two_devices_in_one_run_render_the_same_image_or_none() {
 fn a_device_without_memory_is_the_systems_fault() {
     let Some(loader) = loader() else { return skip("there is no OpenCL device") };
     let folder = tempfile::tempdir().unwrap();
-    // Enough for the self-test, and not for a mesh.
+    // Enough memory for the self-test, too little for a mesh.
     let mut arguments = [&RENDER[..], &["--kernel", "device:opencl:0", "-o", "none.pfm"]].concat();
     arguments[1] = "bumpy-ball";
     let refused = with_failing_loader(folder.path(), &loader, ("PATHMARK_TEST_BYTES", 200_000), &arguments);
@@ -103,7 +104,7 @@ fn a_device_without_memory_is_the_systems_fault() {
     assert!(!folder.path().join("none.pfm").exists());
 }
 
-/// A driver that may not reach its device is the system's fault; a driver that is not there is a device that is not there.
+/// A driver that may not reach its device is the system's fault; a missing driver counts as a missing device.
 #[test]
 fn a_driver_that_refuses_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -123,7 +124,8 @@ fn a_driver_that_refuses_is_told() {
     assert!(listed.out.contains("none: cuInit: OS call failed"), "{}", listed.out);
 }
 
-/// A compiler that is not there is a device that is not there, which the user has named; one that refuses the program is the system's.
+/// A missing compiler counts as a missing device, which the user has named; a compiler that refuses the program is the
+/// system's fault.
 #[test]
 fn a_compiler_that_fails_is_told() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! F02: every step of every writer fails in every way: the exit code is the system's, the message names the file, and the old file is
-//! there as it was. A disk that takes a byte at a time, or is interrupted, gets the same bytes.
+//! F02: every step of every writer fails in every way. The exit code is the system's (3), the message names the file,
+//! and the old file stays unchanged. Short and interrupted writes give the same bytes.
 
 use pathmark::disk::{Step, with_faults};
 use pathmark::error::Result;
@@ -17,7 +17,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Something that makes or replaces the file whose name it is given.
+/// A function that creates or replaces the file at a path.
 type Writer = Box<dyn Fn(&Path) -> Result<()>>;
 
 fn setup() -> Setup {
@@ -26,12 +26,13 @@ fn setup() -> Setup {
 }
 
 fn record(repetition: u32) -> Record {
-    // The same whenever it is made.
+    // Fixed, so that equal calls give equal records.
     let started_utc = "2000-01-01T00:00:00Z".to_string();
     Record { cell: "a cell, quoted".into(), repetition, started_utc, ..measure::failure(&Settings::default(), "") }
 }
 
-/// A writer for every kind of file, by the name that the file has. Those that go on with an old file are in [`the_rows_of_a_sweep`].
+/// A writer for every kind of file, with a file name. [`the_rows_of_a_sweep`] tests the writers that append to an old
+/// file.
 fn writers() -> Vec<(String, Writer)> {
     let image = Image { width: 2, height: 2, pixels: vec![[0.25, 0.5, 1.0]; 4] };
     let mut writers: Vec<(String, Writer)> = Vec::new();
@@ -56,7 +57,7 @@ fn writers() -> Vec<(String, Writer)> {
     writers
 }
 
-/// The files of a folder. Lock files of a checkpoint come and go.
+/// The contents of a folder's files by path. A checkpoint's lock file exists only during the write.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     paths.map(|path| (path.clone(), fs::read(&path).unwrap())).collect()
@@ -74,7 +75,7 @@ fn steps_of(body: impl FnOnce() -> Result<()>) -> Vec<Step> {
     steps.take()
 }
 
-/// What the system says at one step: no space, no quota, a broken disk, a file system that has become read-only.
+/// Errors of the system at one step: no space, no quota, a broken disk, a read-only file system.
 const REFUSALS: [fn() -> io::Error; 4] = [
     || ErrorKind::StorageFull.into(),
     || ErrorKind::QuotaExceeded.into(),
@@ -82,7 +83,8 @@ const REFUSALS: [fn() -> io::Error; 4] = [
     || ErrorKind::ReadOnlyFilesystem.into(),
 ];
 
-/// A disk that is sound until step `at`, takes `taken` bytes of that one if it is a write, and refuses all that follows.
+/// A disk that works until step `at`. It takes `taken` bytes of that step if it is a write, and refuses all later
+/// steps.
 fn refuses_from(at: usize, taken: usize, refusal: fn() -> io::Error) -> impl FnMut(Step) -> io::Result<usize> {
     let mut steps = 0..;
     move |step| match steps.next().unwrap_or(at) {
@@ -92,7 +94,8 @@ fn refuses_from(at: usize, taken: usize, refusal: fn() -> io::Error) -> impl FnM
     }
 }
 
-/// Insists that `body` fails as the system's fault on the file `path`, wherever the disk fails, and that `folder` is as it was.
+/// Asserts that `body` fails as the system's fault on the file `path`, wherever the disk fails, and leaves `folder`
+/// unchanged.
 fn fails_everywhere(folder: &Path, path: &Path, steps: &[Step], body: impl Fn() -> Result<()>) {
     let before = files(folder);
     for (at, step) in steps.iter().enumerate() {
@@ -115,7 +118,7 @@ fn every_step_of_every_writer_may_fail() {
         let path = folder.path().join(&name);
         let steps = steps_of(|| write(&path));
         assert!(matches!(steps[..], [Step::Create, Step::Write(_), .., Step::Sync, Step::Rename]), "{name}: {steps:?}");
-        // Over the file that is there, and where there was none.
+        // Over an existing file, then without one.
         fails_everywhere(folder.path(), &path, &steps, || write(&path));
         fs::remove_file(&path).unwrap();
         fails_everywhere(folder.path(), &path, &steps, || write(&path));
@@ -144,7 +147,7 @@ fn short_and_interrupted_writes_change_no_byte() {
     }
 }
 
-/// Rows are appended: a row that could not be written leaves the rows before it, and the same row can follow when there is space again.
+/// Rows are appended: a failed write leaves the earlier rows, and the same row can follow when there is space again.
 #[test]
 fn the_rows_of_a_sweep() {
     let folder = tempfile::tempdir().unwrap();
@@ -153,7 +156,7 @@ fn the_rows_of_a_sweep() {
     for repetition in 0..3 {
         let row = record(repetition);
         let steps = {
-            // In a copy, whose rows do not count.
+            // In a copy, so that `path` does not get the row.
             let copy = folder.path().join("copy.csv");
             fs::copy(&path, &copy).unwrap();
             let (mut file, _) = RecordsFile::resume(&copy).unwrap();
@@ -170,7 +173,7 @@ fn the_rows_of_a_sweep() {
     }
     drop(file);
 
-    // A resumed sweep writes the file anew without its torn row; until that is done, the old one stands.
+    // A resumed sweep rewrites the file without its torn row; until then, the old file stays.
     let whole = fs::read(&path).unwrap();
     let torn = [&whole[..], &whole[whole.len() - 20..whole.len() - 1]].concat();
     fs::write(&path, &torn).unwrap();
@@ -184,8 +187,8 @@ fn the_rows_of_a_sweep() {
     fails_everywhere(folder.path(), &other, &[Step::Create], || RecordsFile::create(&other).map(|_| ()));
 }
 
-/// F01, the model of a power cut: the log of rows ends at any of its bytes. Every whole row before that is kept, nothing else is, and the rows
-/// that follow make the log what it was. Fields hold all that text can hold: a line end in one ends no row.
+/// F01, a model of a power cut: the log of rows ends at any of its bytes. Resuming keeps exactly the whole rows before
+/// that byte, and the following rows restore the log. Fields contain any text: a line end within a field ends no row.
 #[test]
 fn a_log_that_ends_at_any_byte_keeps_its_whole_rows() {
     let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
@@ -212,7 +215,7 @@ fn a_log_that_ends_at_any_byte_keeps_its_whole_rows() {
             }
             assert!(fs::read(&path).unwrap() == whole, "{cell:?}, {end} bytes: another log");
         }
-        // An open quote before whole rows is damage and no torn row: nothing behind it is dropped.
+        // An open quote before whole rows is damage, not a torn row: nothing after it is dropped.
         let mut damaged = whole.clone();
         damaged[ends[0] as usize] = b'"';
         fs::write(&path, &damaged).unwrap();
@@ -222,7 +225,7 @@ fn a_log_that_ends_at_any_byte_keeps_its_whole_rows() {
     }
 }
 
-/// What somebody else does to the file under a running sweep, whoever ignores its lock: no row is written any more.
+/// Another program ignores the lock and changes the file under a running sweep: no further row is written.
 #[test]
 fn a_log_that_was_replaced_or_changed_takes_no_row() {
     type Deed = fn(&Path);
@@ -261,7 +264,7 @@ fn a_log_that_was_replaced_or_changed_takes_no_row() {
     }
 }
 
-/// What is kept of a film is what a film has: the writers above write no empty files.
+/// The files written above can be read back, so the tested writers write real contents.
 #[test]
 fn what_was_written_can_be_read() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! F01: a checkpointed render that is ended by a signal at any instant, and goes on to the image that it would have given, bit for bit.
+//! F01: a checkpointed render that a signal ends at any instant resumes to the image of an undisturbed render, bit for
+//! bit.
 
 use super::{is_thorough, skip};
 use crate::program::{finish, pathmark};
@@ -13,19 +14,19 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How a program is ended: by the system or a batch queue, or by ^C, which every process of the group hears.
+/// A way to end a program: a signal from the system or a batch queue, or ^C, which reaches every process of the group.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Ending {
-    /// One process is told.
+    /// The signal goes to one process.
     One(Signal),
-    /// All processes of the group are.
+    /// The signal goes to all processes of the group.
     Group(Signal),
 }
 
 const ENDINGS: [Ending; 3] =
     [Ending::One(Signal::SIGKILL), Ending::One(Signal::SIGTERM), Ending::Group(Signal::SIGINT)];
 
-/// Those that end a program here: what this process was told to ignore, as shells tell jobs in the background, its children ignore too.
+/// The endings that work here. Children inherit ignored signals, and shells let background jobs ignore some.
 pub(crate) fn endings() -> Vec<Ending> {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -41,16 +42,16 @@ pub(crate) fn endings() -> Vec<Ending> {
     ENDINGS.into_iter().filter(works).collect()
 }
 
-/// Ends programs at instants that differ from run to run of the program, and not from run to run of the test.
+/// Ends programs at random instants, the same ones in every run of the test.
 pub(crate) struct Killer<'a> {
     folder: &'a Path,
     random: Pcg64,
-    /// What a run takes that nobody disturbs.
+    /// Duration of an undisturbed run.
     whole: Duration,
     watchdog: Watchdog,
 }
 
-/// How a run that was to be killed came to its end.
+/// The end of a run that was to be killed.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum End {
     Killed,
@@ -62,16 +63,17 @@ impl<'a> Killer<'a> {
         Self { folder, random: Pcg64::seed_from_u64(1), whole, watchdog: Watchdog::new(Duration::from_mins(2)) }
     }
 
-    /// How many kills there are to be for each ending.
+    /// Kills required for each ending.
     pub(crate) fn kills() -> usize {
         if is_thorough() { 200 } else { 4 }
     }
 
-    /// Starts the program and ends it at some instant of its life, unless it is faster. `is_new`: it has nothing to go on from.
+    /// Starts the program and ends it at a random instant, unless it finishes first. `is_new`: it has nothing to resume
+    /// from.
     pub(crate) fn run(&mut self, mut command: Command, ending: Ending, is_new: bool) -> End {
         let instant = self.random.random_range(0.0..1.1) * self.whole.as_secs_f64();
         self.watchdog.now(format!("after {ending:?} at {instant} s"));
-        // Into files: nobody reads while it runs, and a full pipe would block it.
+        // To files: nobody reads while the program runs, and a full pipe would block it.
         let said = self.folder.join("said.txt");
         command.process_group(0).stdout(Stdio::null()).stderr(File::create(&said).unwrap());
         let start = Instant::now();
@@ -80,11 +82,11 @@ impl<'a> Killer<'a> {
             std::thread::sleep(Duration::from_millis(1));
         }
         if is_new && child.try_wait().unwrap().is_some() {
-            // The machine is not as busy as it was: later kills would come too late.
+            // The machine is less busy than before, so later kills would come too late.
             self.whole = self.whole.min(start.elapsed());
         }
         let id = Pid::from_raw(child.id().try_into().unwrap());
-        // One that has ended was waited for, and its number may be another's by now.
+        // An ended process has been waited for, and its id may belong to another process by now.
         if child.try_wait().unwrap().is_none() {
             match ending {
                 Ending::One(signal) => kill(id, signal).unwrap(),
@@ -102,7 +104,7 @@ impl<'a> Killer<'a> {
     }
 }
 
-/// Files that a killed process was writing, and that the next one that wrote there did not remove.
+/// The number of files that killed processes left unfinished and later processes did not remove.
 pub(crate) fn leftovers(folder: &Path) -> usize {
     let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     names
@@ -127,7 +129,8 @@ const RENDER: [&str; 14] = [
     "image.exr",
 ];
 
-/// Runs the program again and again until nobody kills it; how many kills there were, and after how many it could go on from `file`.
+/// Runs the program until it is not killed. Returns the number of kills, and how many of them left `file` to resume
+/// from.
 fn in_spite_of_kills(killer: &mut Killer<'_>, ending: Ending, arguments: &[&str], file: &Path) -> (usize, usize) {
     let (mut kills, mut resumed) = (0, 0);
     while killer.run(pathmark(killer.folder, arguments), ending, !file.exists()) == End::Killed {
@@ -148,7 +151,7 @@ fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
     let mut killer = Killer::new(folder.path(), whole);
     for ending in endings() {
         let (mut kills, mut renders, mut resumed) = (0, 0, 0);
-        // Which instant a kill meets is chance: until one has met each thing to be met.
+        // Kills come at random instants, so the loop continues until one has left a checkpoint.
         while kills < Killer::kills() || resumed == 0 {
             fs::remove_file(&checkpoint).ok();
             fs::remove_file(&image).ok();
@@ -164,7 +167,7 @@ fn a_checkpointed_render_killed_at_any_instant_comes_to_the_same_image() {
     assert_eq!(leftovers(folder.path()), 0, "unfinished files that kills left");
 }
 
-/// Parts of an image likewise: together they have the bits of an image that nobody disturbed.
+/// The same for parts of an image: merged, they have the bits of an undisturbed image.
 #[test]
 fn parts_killed_at_any_instant_come_to_the_same_image() {
     let folder = tempfile::tempdir().unwrap();
@@ -193,7 +196,7 @@ fn parts_killed_at_any_instant_come_to_the_same_image() {
     assert_eq!(leftovers(folder.path()), 0, "unfinished files that kills left");
 }
 
-/// A kill that comes while the last bytes go to the disk leaves a whole file or none: what is torn by hand is refused.
+/// A kill during the last bytes of a write leaves a whole file or none. A file torn by hand is refused.
 #[test]
 fn a_torn_checkpoint_is_refused_and_kept() {
     let folder = tempfile::tempdir().unwrap();

@@ -14,14 +14,14 @@ use std::time::Duration;
 
 const RENDER: [&str; 6] = ["render", "cornell", "--size", "16x12", "--spp", "4"];
 
-/// `pathmark ARGUMENTS` with a limit of `prlimit` on it, or nothing if there is no such program.
+/// Runs `pathmark ARGUMENTS` under a limit of `prlimit`; `None` if there is no such program.
 fn limited(folder: &Path, limit: &str, arguments: &[impl AsRef<OsStr>]) -> Option<Finished> {
     if Command::new("prlimit").arg("--version").output().is_err() {
         skip("there is no program prlimit");
         return None;
     }
     let inner = pathmark(folder, arguments);
-    // A write beyond the limit sends a signal; where that is ignored, the write fails as on a full disk.
+    // A write beyond the limit sends a signal; if that is ignored, the write fails as on a full disk.
     let mut command = Command::new("sh");
     command.args(["-c", "trap '' XFSZ; exec prlimit \"$@\"", "sh", limit]).arg(inner.get_program());
     command.args(inner.get_args()).current_dir(folder);
@@ -29,7 +29,7 @@ fn limited(folder: &Path, limit: &str, arguments: &[impl AsRef<OsStr>]) -> Optio
     Some(finish(command))
 }
 
-/// The system takes so many bytes of a file and no more: real short writes, at every length.
+/// The system limits the size of a file: real short writes, at several lengths.
 #[test]
 fn a_file_that_may_not_grow_leaves_the_old_one() {
     let _watchdog = Watchdog::new(Duration::from_mins(3));
@@ -54,7 +54,7 @@ fn a_file_that_may_not_grow_leaves_the_old_one() {
     }
 }
 
-/// A small file system of its own; gone when this is dropped.
+/// A small file system, unmounted when this is dropped.
 struct Mounted<'a>(&'a Path);
 
 impl<'a> Mounted<'a> {
@@ -80,8 +80,8 @@ impl Drop for Mounted<'_> {
     }
 }
 
-/// A sweep onto disks of many sizes, all of them too small, says which file it could not write. With more space it goes on to the rows
-/// of one that had enough from the start.
+/// A sweep onto a disk that is too small names the file that it could not write. With more space, it resumes to the
+/// rows of a sweep that had enough from the start.
 #[test]
 fn a_sweep_onto_a_small_disk_goes_on_when_there_is_space() {
     let watchdog = Watchdog::new(Duration::from_mins(2));
@@ -101,14 +101,14 @@ fn a_sweep_onto_a_small_disk_goes_on_when_there_is_space() {
         let said = full.err.clone();
         if said.contains("No space left on device") {
             assert!(said.contains("out/"), "{size}: {said}");
-            // Rows that failed for want of space are rows, unless they find none either.
+            // A row that fails for lack of space is written as a failed row, unless that finds no space either.
             if said.contains("rows failed") {
                 full.with_code(1)
             } else {
                 full.with_code(3)
             };
         } else {
-            // How long rows are depends on times and warnings: the largest disk may have been large enough.
+            // The length of rows depends on times and warnings, so a larger disk may have been large enough.
             full.with_code(0);
             assert!(size != "4k", "{said}");
         }
@@ -120,7 +120,7 @@ fn a_sweep_onto_a_small_disk_goes_on_when_there_is_space() {
     }
 }
 
-/// Rows that failed are run again, and so may stand at another place.
+/// The rows in a fixed order: failed rows are run again, so they may be at another place.
 fn sorted_rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
     let mut rows = sweep::rows(folder);
     for row in &mut rows {
@@ -130,13 +130,13 @@ fn sorted_rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
     rows
 }
 
-/// A film that the system has no memory for is refused before anything is rendered, whichever way its pieces go.
+/// A film too large for the memory is refused before anything is rendered, with every output method.
 #[test]
 fn a_film_too_large_is_refused_before_the_work() {
     let _watchdog = Watchdog::new(Duration::from_mins(2));
     let folder = tempfile::tempdir().unwrap();
     for output in OUTPUTS.iter().map(|entry| entry.name) {
-        // It would take days.
+        // This render would take days.
         let large = ["render", "cornell", "--size", "8192x8192", "--spp", "400000", "--output", output, "-o", "a.pfm"];
         let Some(finished) = limited(folder.path(), "--as=3000000000", &large) else { return };
         let finished = finished.with_code(3);
@@ -145,7 +145,7 @@ fn a_film_too_large_is_refused_before_the_work() {
     }
 }
 
-/// Bytes of address space with which the program can list what there is: what it takes to load it, and little more.
+/// The least address space, in bytes, in which `pathmark list` runs: enough to load the program, and little more.
 fn least(folder: &Path) -> Option<u64> {
     let is_enough =
         |bytes: &u64| limited(folder, &format!("--as={bytes}"), &["list"]).is_some_and(|end| end.code == Some(0));
@@ -153,7 +153,7 @@ fn least(folder: &Path) -> Option<u64> {
     (1..2048).map(|k| k << 20).find(is_enough)
 }
 
-/// `pathmark ARGUMENTS` under a limit: what it does with enough, or a refusal that says what was refused. Nothing in between, and no hang.
+/// Runs `pathmark ARGUMENTS` under a memory limit. The command succeeds or names the refused resource; it never hangs.
 fn done_or_refused(folder: &Path, bytes: u64, arguments: &[&str]) {
     let Some(finished) = limited(folder, &format!("--as={bytes}"), arguments) else { return };
     let is_done = finished.code == Some(0);
@@ -162,7 +162,8 @@ fn done_or_refused(folder: &Path, bytes: u64, arguments: &[&str]) {
     assert!(is_done || said, "{arguments:?} in {bytes} bytes: {}", finished.err);
 }
 
-/// Every command in as little memory as it takes to load the program, and in more, up to enough. Where exactly it is refused is chance.
+/// Every command in just enough memory to load the program, and in more, up to enough. The place of the refusal is
+/// random.
 #[test]
 fn too_little_memory_is_the_systems_fault() {
     let watchdog = Watchdog::new(Duration::from_mins(2));
@@ -189,7 +190,7 @@ fn too_little_memory_is_the_systems_fault() {
     }
 }
 
-/// Threads' stacks are memory too. Some limits are met by the small stack that a new thread gets for its signals.
+/// Thread stacks are memory, too. At some limits, a new thread's small signal stack is refused.
 #[test]
 fn too_little_memory_for_threads_is_the_systems_fault() {
     let watchdog = Watchdog::new(Duration::from_mins(2));
@@ -197,7 +198,7 @@ fn too_little_memory_for_threads_is_the_systems_fault() {
     let Some(least) = least(folder.path()) else { return };
     let arguments =
         ["render", "cornell", "--size", "2x64", "--spp", "4", "--strategy", "thread-per-row", "-o", "a.pfm"];
-    // Page by page over the size of a stack.
+    // The limits cover the size of a stack, page by page in thorough runs.
     let step = if is_thorough() { 1 << 12 } else { 1 << 16 };
     for more in (0..2 << 20).step_by(step) {
         watchdog.now(format!("threads in {more} bytes more than nothing"));

@@ -1,4 +1,4 @@
-//! F03: one file, one writer. A second process is told so, and the first goes on.
+//! F03: one file, one writer. A second process is refused, and the first continues.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
@@ -21,7 +21,7 @@ fn running(folder: &Path, arguments: &[&str], file: &str) -> Child {
     child
 }
 
-/// How many lock files of ours are in a folder.
+/// The number of Pathmark's lock files in a folder.
 fn lock_files(folder: &Path) -> usize {
     let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
     names
@@ -53,7 +53,8 @@ fn two_renders_do_not_share_a_checkpoint() {
         assert!(!folder.path().join("b.pfm").exists());
     }
     end(first);
-    // A lock file that a killed process left locks nothing, and goes with the next one that ends by itself. No file of the user has such a name.
+    // A lock file of a killed process locks nothing, and the next process that ends by itself removes it. No file of
+    // the user has such a name.
     assert_eq!(lock_files(folder.path()), 1);
     fs::remove_file(folder.path().join("render.checkpoint")).unwrap();
     fs::write(folder.path().join("render.checkpoint.lock"), "the user's").unwrap();
@@ -73,7 +74,7 @@ fn two_processes_do_not_render_into_one_folder_of_references() {
     let first = running(folder.path(), &reference("4000000"), "references/.pathmark.lock");
     let second = finish(pathmark(folder.path(), &reference("40"))).with_code(2);
     assert!(second.err.contains("references = references: is being written by another process"), "{}", second.err);
-    // So does a sweep that needs one.
+    // A sweep that needs a reference is refused, too.
     let text = TINY.replace("[quick]\n", "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n");
     write_tiny(folder.path(), &text);
     let sweep = finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "."])).with_code(2);
@@ -82,13 +83,14 @@ fn two_processes_do_not_render_into_one_folder_of_references() {
     finish(pathmark(folder.path(), &reference("40"))).with_code(0);
     assert_eq!(lock_files(&folder.path().join("references")), 0);
     assert_eq!(fs::read(folder.path().join("references/.lock")).unwrap(), b"the user's");
-    // What is there is only read, and may be on a disk that is only read: no lock is asked for.
+    // Existing references are only read, perhaps from a read-only disk, so no lock is taken.
     let held = Lock::of_folder(&folder.path().join("references"), "references", Sharing::Alone).unwrap();
     finish(pathmark(folder.path(), &reference("40"))).with_code(0);
     drop(held);
 }
 
-/// `reproduce` has the folder for itself from its first look at what an earlier run left until the page is written; others share it.
+/// `reproduce` has the folder to itself from its first look at an earlier run's files until the page is written; other
+/// commands share it.
 #[test]
 fn reproduce_shares_its_folder_with_nobody() {
     let _watchdog = Watchdog::new(Duration::from_mins(5));
@@ -109,7 +111,7 @@ fn reproduce_shares_its_folder_with_nobody() {
     refused(&["check", "--out", "out"]);
     assert!(!out.join("earlier").exists());
     end(first);
-    // Without anybody in it, and with one who runs another experiment.
+    // An empty folder that another process shares to run an experiment.
     fs::remove_dir_all(&out).unwrap();
     fs::create_dir(&out).unwrap();
     let other = Lock::of_folder(&out, "out", Sharing::Shared).unwrap();
@@ -135,14 +137,14 @@ fn a_lock_is_taken_by_one_at_a_time_or_shared() {
         assert!(error.to_string().starts_with(&said), "{error}");
         drop(first);
     }
-    // Those that share it go in any order, and the last takes the file with it.
+    // Holders of a shared lock release it in any order; the last one removes the file.
     let [first, second] = [(); 2].map(|()| take(Sharing::Shared).unwrap());
     drop(first);
     assert_eq!(lock_files(folder.path()), 1);
     assert!(take(Sharing::Alone).is_err());
     drop(second);
     assert_eq!(lock_files(folder.path()), 0);
-    // Many want it at once: never do two have it, and each that waits no longer than its patience may get it.
+    // Many threads want the lock at once: never two have it, and a thread that waits within its patience may get it.
     let inside = std::sync::atomic::AtomicUsize::new(0);
     std::thread::scope(|scope| {
         for _ in 0..4 {
@@ -171,7 +173,8 @@ fn a_file_that_is_no_lock_file_stays() {
     assert_eq!(fs::read(&path).unwrap(), b"the user's");
 }
 
-/// Who waited for a file that was removed meanwhile has locked nothing: the next one makes a file of that name and locks that.
+/// A process that waited for a file removed meanwhile has locked nothing: the next process creates a new file of that
+/// name and locks it.
 #[test]
 fn the_lock_of_a_removed_file_is_none() {
     let _watchdog = Watchdog::new(Duration::from_mins(1));
@@ -181,7 +184,7 @@ fn the_lock_of_a_removed_file_is_none() {
     held.lock().unwrap();
     std::thread::scope(|scope| {
         let waiting = scope.spawn(|| try_lock(&waited_for, &path, Sharing::Alone).unwrap());
-        // Long enough for it to find the lock held, and shorter than its patience.
+        // Long enough to find the lock held, and shorter than the patience.
         std::thread::sleep(Duration::from_millis(300));
         fs::remove_file(&path).unwrap();
         drop(held);

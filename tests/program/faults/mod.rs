@@ -1,5 +1,5 @@
-//! What the system does to files: disks that are full at any write, kills at any instant, second processes on the same files. Whatever
-//! happens, a file is the old one or the new one, and what goes on from it comes to the same end.
+//! System faults: disks that are full at any write, kills at any instant, second processes on the same files. In every
+//! case a file is the old one or the new one, and a resumed run gives the same result.
 
 mod devices;
 mod disk;
@@ -9,12 +9,12 @@ mod locks;
 mod sweep;
 mod threads;
 
-/// Whether the full counts are asked for.
+/// Whether the tests run with their full counts.
 pub(crate) fn is_thorough() -> bool {
     std::env::var_os("PATHMARK_THOROUGH").is_some()
 }
 
-/// Says on the test's output why something was not tried.
+/// Prints why a check was skipped.
 fn skip(reason: &str) {
     println!("SKIPPED: {reason}");
 }

@@ -1,4 +1,4 @@
-//! F01: a sweep that is ended by a signal at any instant, and goes on to the rows and images of one that was not.
+//! F01: a sweep that a signal ends at any instant resumes to the rows and images of an undisturbed sweep.
 
 use super::kills::{End, Killer, endings, leftovers};
 use crate::experiment::{TINY, write_tiny};
@@ -9,22 +9,22 @@ use std::path::Path;
 use std::time::Instant;
 
 const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
-/// Five cells, three times.
+/// Five cells, three repetitions.
 const ROWS: usize = 15;
 
-/// References that are rendered first, and images that are kept.
+/// The definition of a sweep that renders references first and keeps images.
 pub(crate) fn text() -> String {
     let text = TINY.replace("[quick]\n", "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 400\n");
     text.replace("[matrix]", "keep = [\"images\"]\n\n[matrix]")
 }
 
-/// Whether a column is of the run and not of the machine it was measured on.
+/// Whether a column depends on the run alone, not on the machine or its times.
 fn is_fixed(column: &str) -> bool {
     let measured = ["warnings", "started_utc", "workers_used", "peak_rss_bytes"];
     !(column.ends_with("_s") || column.ends_with("_switches") || measured.contains(&column))
 }
 
-/// The finished rows in their order, without what was measured.
+/// The finished rows in their order, without measured columns.
 pub(crate) fn rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
     let text = fs::read(folder.join("out/tiny/records.csv")).unwrap_or_default();
     let end = text.iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
@@ -33,7 +33,7 @@ pub(crate) fn rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
     rows.map(|row| fixed(row.expect("no row is torn"))).collect()
 }
 
-/// Images and references, by name.
+/// The contents of images and references by file name.
 pub(crate) fn pictures(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for kind in ["out/tiny/images", "out/references"] {
@@ -63,14 +63,14 @@ fn a_sweep_killed_at_any_instant_is_resumed_to_the_same_rows() {
     let (mut torn, mut resumed) = (0, 0);
     for ending in endings() {
         let (mut kills, mut sweeps) = (0, 0);
-        // Which instant a kill meets is chance: until one has met each thing to be met.
+        // Kills come at random instants, so the loop continues until one has left rows to resume from.
         while kills < Killer::kills() || resumed == 0 {
             fs::remove_dir_all(folder.join("out")).unwrap();
             let mut before = 0;
             loop {
                 let end = killer.run(pathmark(folder, &RESUME), ending, before == 0);
                 let found = rows(folder);
-                // Each row stands where it stands in a sweep that nobody disturbs, once, and none has gone.
+                // Each row has its place in the undisturbed sweep, and no row is doubled or lost.
                 assert!(found.len() >= before, "{ending:?}: {} rows after {before}", found.len());
                 let wrong = found.iter().zip(&expected).position(|(found, expected)| found != expected);
                 assert!(wrong.is_none() && found.len() <= ROWS, "{ending:?}: {} rows, {wrong:?} is wrong", found.len());

@@ -1,4 +1,5 @@
-//! F11: threads that the system refuses. Who asked for them is told so, with exit code 3 and no output written; what needs none goes on.
+//! F11: threads that the system refuses. Commands that need them say so, with exit code 3 and no output written; all
+//! others work.
 
 use super::skip;
 use crate::program::{Finished, finish, pathmark};
@@ -12,7 +13,7 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// A user with no rights and no other processes: the limit counts a user's, and the first user has none.
+/// A user with no rights and no other processes. The limit counts a user's threads, and does not apply to root.
 const NOBODY: u32 = 65534;
 
 /// The program in a folder where every user may run it and write.
@@ -31,7 +32,7 @@ impl Public {
         self.0.path()
     }
 
-    /// `pathmark ARGUMENTS` by a user who may have so many threads.
+    /// Runs `pathmark ARGUMENTS` as a user who may have at most `threads` threads.
     fn limited(&self, threads: usize, arguments: &[&str]) -> Finished {
         let mut command = Command::new("prlimit");
         command.arg(format!("--nproc={threads}")).arg("./pathmark").args(arguments).current_dir(self.folder());
@@ -42,7 +43,7 @@ impl Public {
         finish(command)
     }
 
-    /// Whether the system counts threads here: not where there is no `prlimit`, nor in every container.
+    /// Whether the system limits threads here: not without `prlimit`, and not in every container.
     fn is_limited(&self) -> bool {
         if Command::new("prlimit").arg("--version").output().is_err() {
             skip("there is no program prlimit");
@@ -64,10 +65,11 @@ impl Public {
 /// Four pieces, three workers.
 const RENDER: [&str; 10] =
     ["render", "cornell", "--size", "16x12", "--spp", "4", "--threads", "3", "--decomposition", "tiles:8x8"];
-/// Enough for every strategy: the main thread, the one that shows progress, a worker for each piece, and what libraries start besides.
+/// Enough for every strategy: the main thread, the progress thread, a worker for each piece, and threads of libraries.
 const ENOUGH: usize = 10;
 
-/// A render under any strategy that gets too few threads says which one could not be started; with all of them it gives the image.
+/// Under any strategy, a render with too few threads names the thread that could not be started; with enough, it gives
+/// the image.
 #[test]
 fn a_render_has_all_its_threads_or_is_refused() {
     let watchdog = Watchdog::new(Duration::from_mins(5));
@@ -98,7 +100,7 @@ fn a_render_has_all_its_threads_or_is_refused() {
     }
 }
 
-/// All other commands with a single thread.
+/// Other commands with a single thread.
 #[test]
 fn commands_that_need_threads_say_so_and_the_others_go_on() {
     let watchdog = Watchdog::new(Duration::from_mins(5));

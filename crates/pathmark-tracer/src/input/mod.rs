@@ -1,4 +1,4 @@
-//! Reading what users write: TOML with the place of every mistake, and numbers with the range they may have.
+//! The user's input: TOML text with the position of every mistake, and numbers with their allowed ranges.
 
 mod numbers;
 mod text;

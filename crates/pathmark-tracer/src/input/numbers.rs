@@ -1,6 +1,7 @@
-//! Numbers in scene files, checked while they are read, so that the reader can point at them.
+//! Numbers in scene files: each is checked while it is read, so that an error can name its position.
 //!
-//! Lengths and coordinates stop at 1e100: their squares and products must stay finite in every intersection formula.
+//! Lengths and coordinates are at most 1e100: their squares and products must stay finite in every intersection
+//! formula.
 
 use crate::math::{Rgb, Vec3};
 use serde::de::{Deserialize, Deserializer, Error};
@@ -29,32 +30,32 @@ fn checked_triple<'de, D: Deserializer<'de>>(
     }
 }
 
-/// Whether a coordinate is within bounds; not so NaN.
+/// Whether a coordinate is within bounds; false for NaN.
 pub fn coordinate_limit(x: f64) -> bool {
     x.abs() <= LARGEST
 }
 
-/// The error of a number that is not.
+/// Returns the error for a number outside its allowed range.
 pub fn out_of_range<E: Error>(value: f64, allowed: &str) -> E {
     E::custom(format_args!("{value:?} is out of range (allowed: {allowed})"))
 }
 
-/// Three shares between 0 and 1.
+/// Reads an albedo: three shares from 0 to 1.
 pub fn albedo<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
     checked_triple(deserializer, |x| (0.0..=1.0).contains(&x), "0 to 1 in each channel").map(Rgb::from)
 }
 
-/// Three radiances, zero or more.
+/// Reads three radiances of zero or more.
 pub fn radiance<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Rgb, D::Error> {
     checked_triple(deserializer, |x| (0.0..=LARGEST).contains(&x), "0 to 1e100 in each channel").map(Rgb::from)
 }
 
-/// Three coordinates.
+/// Reads a point: three coordinates.
 pub fn point<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     checked_triple(deserializer, coordinate_limit, "-1e100 to 1e100 in each coordinate").map(Vec3::from)
 }
 
-/// A direction of any length; it is normalised here.
+/// Reads a direction of any length and normalises it.
 pub fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     let d = point(deserializer)?;
     let largest = d.x.abs().max(d.y.abs()).max(d.z.abs());
@@ -64,33 +65,33 @@ pub fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::
     Ok((d * (1.0 / largest)).normalized())
 }
 
-/// A length above zero.
+/// Reads a length above zero.
 pub fn length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (SMALLEST..=LARGEST).contains(&x), "1e-100 to 1e100")
 }
 
-/// A distance, zero or more.
+/// Reads a distance of zero or more.
 pub fn positive<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (0.0..=LARGEST).contains(&x), "0 to 1e100")
 }
 
-/// A ratio of indices of refraction.
+/// Reads a ratio of indices of refraction.
 pub fn refractive_index<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (0.01..=100.0).contains(&x), "0.01 to 100")
 }
 
-/// A number from 0 to 1.
+/// Reads a number from 0 to 1.
 pub fn share<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (0.0..=1.0).contains(&x), "0 to 1")
 }
 
-/// The roughness of a microfacet surface, alpha of GGX: 0, which is smooth, or from 1e-4, below which the lobe is narrower than directions
-/// are exact.
+/// Reads the roughness of a microfacet surface, GGX's alpha: 0 (smooth) or 1e-4 to 1. Below 1e-4 the lobe is narrower
+/// than the rounding error of directions.
 pub fn roughness<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| x == 0.0 || (1e-4..=1.0).contains(&x), "0, or 1e-4 to 1")
 }
 
-/// A vertical field of view in degrees, turned into the height of the image plane at distance 1.
+/// Reads a vertical field of view in degrees; returns the height of the image plane at distance 1.
 pub fn field_of_view<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     let degrees = checked(deserializer, |x| (1e-6..=179.0).contains(&x), "1e-6 to 179 degrees")?;
     Ok(2.0 * libm::tan(degrees.to_radians() / 2.0))

@@ -1,29 +1,29 @@
-//! Text files of the user's, with a limit on everything: a device, a pipe or a mistaken path is refused before it has filled the memory.
+//! The user's text files, with size limits: a device, a pipe or a wrong path is refused before it fills the memory.
 
 use crate::error::{Error, InputError, Result};
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::Path;
 
-/// No scene or experiment comes near this; a device file or a mistaken path does. Once parsed, a definition takes 70 times its length of
-/// memory: more objects than fit here belong in a mesh or a generator.
+/// Largest definition, in bytes. Every scene or experiment is far smaller, unlike a device file or a wrong path. A
+/// parsed definition takes 70 times its length in memory: more objects than fit here belong in a mesh or a generator.
 const LARGEST_DEFINITION: u64 = 3 << 20;
 
-/// What a text file may be.
+/// Size limits of a text file.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
-    /// Bytes in all.
+    /// Bytes in total.
     pub bytes: u64,
     /// Bytes of a line, its end included.
     pub line: u64,
 }
 
-/// The text of a definition.
+/// Reads the text of a definition.
 pub fn read_text(path: &Path) -> Result<String> {
     read_text_up_to(path, LARGEST_DEFINITION)
 }
 
-/// The text of a user's file of so many bytes at most.
+/// Reads a user's text file of at most `most` bytes.
 pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
     let mut bytes = Vec::new();
     let limits = Limits { bytes: most, line: u64::MAX };
@@ -34,7 +34,7 @@ pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
     })
 }
 
-/// Opens a user's text file. Its errors become the program's by [`unreadable`].
+/// Opens a user's text file. [`unreadable`] converts errors from reading it.
 pub fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
     let file = File::open(path).map_err(|e| match e.kind() {
         ErrorKind::NotFound => refused(path, "there is no such file").into(),
@@ -53,7 +53,7 @@ pub fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
     Ok(BufReader::new(Text { file, is_regular: data.is_file(), limits, bytes: 0, line: 0 }))
 }
 
-/// The error of a file that cannot be read: the user's if what is in it is wrong, the system's otherwise.
+/// Converts an error from reading a file: an input error if its contents are wrong, a system error otherwise.
 pub fn unreadable(path: &Path, error: io::Error) -> Error {
     match error.kind() {
         ErrorKind::InvalidData => refused(path, error.to_string()).into(),
@@ -70,11 +70,11 @@ fn refused(path: &Path, problem: impl Into<String>) -> InputError {
     InputError::new("file", path.display().to_string().replace('\0', "\\0"), problem)
 }
 
-/// A file that is read as long as it can be text within its limits.
+/// A file reader that fails as soon as the file is not text or exceeds its limits.
 #[derive(Debug)]
 pub struct Text {
     file: File,
-    /// Of other files, such as devices, nobody knows how long they are.
+    /// Whether it is a regular file. The length of other files, such as devices, is unknown.
     is_regular: bool,
     limits: Limits,
     bytes: u64,
@@ -111,7 +111,7 @@ mod tests {
     use std::fs;
     use std::io::BufRead;
 
-    /// No device is read for longer than it takes to see that it is none of ours.
+    /// A device is read only until it is clear that it holds no text.
     #[test]
     fn devices_and_other_files_are_refused() {
         let folder = tempfile::tempdir().unwrap();
@@ -122,7 +122,7 @@ mod tests {
         assert!(refusal(Path::new("a\0b")).to_string().contains("file = a\\0b: the name holds a zero byte"));
         assert!(refusal(&folder.path().join("x".repeat(300))).to_string().contains("too long"));
         assert!(refusal(folder.path()).to_string().contains("is a directory"));
-        // Where a zero byte stands in a text, its parser tells.
+        // The parser reports the position of a zero byte in a regular file.
         fs::write(&path, b"fine\nbut\0").unwrap();
         assert_eq!(read_text_up_to(&path, 9).unwrap(), "fine\nbut\0");
         fs::write(&path, b"fine\xff").unwrap();

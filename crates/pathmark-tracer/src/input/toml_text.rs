@@ -6,19 +6,19 @@ use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, Visitor};
 use std::ops::Range;
 use std::{fmt, marker::PhantomData};
 
-/// Reads a definition; `file` is the name to show.
+/// Parses a definition; `file` is its name in errors.
 pub fn parse<T: DeserializeOwned>(text: &str, file: &str) -> Result<T> {
     toml::from_str(text).map_err(|e| located(text, file, e.message(), e.span()).into())
 }
 
-/// Reads the table at the end of a path of keys, and nothing else of a definition; `None` if it has no such table.
+/// Parses only the table at the end of a path of keys; returns `None` if the definition has no such table.
 pub fn parse_within<T: DeserializeOwned>(text: &str, file: &str, path: &[&str]) -> Result<Option<T>> {
     let found =
         toml::Deserializer::parse(text).and_then(|definition| Within(path, PhantomData).deserialize(definition));
     found.map_err(|e| located(text, file, e.message(), e.span()).into())
 }
 
-/// What stands at the end of a path of keys.
+/// Deserialises only the value at the end of a path of keys.
 struct Within<'a, T>(&'a [&'a str], PhantomData<T>);
 
 impl<'de, T: DeserializeOwned> DeserializeSeed<'de> for Within<'_, T> {
@@ -58,15 +58,16 @@ fn located(text: &str, file: &str, message: &str, span: Option<Range<usize>>) ->
     InputError::new(field, value, message).in_file(file, Some(line_and_column(text, span.start)))
 }
 
-/// Counted from 1, columns in characters.
+/// Returns line and column of a byte offset, counted from 1, columns in characters.
 fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
     let before = &text[..offset.min(text.len())];
     let start = before.rfind('\n').map_or(0, |at| at + 1);
     (before.matches('\n').count() + 1, before[start..].chars().count() + 1)
 }
 
-/// The key that owns the span, and the span's own text as the value. The parser tells neither, but the text does: the key stands
-/// before the nearest `=`, unless the span is itself a key (an unknown field) or a whole table.
+/// Returns the key that owns the span, and the span's text as the value. The parser reports neither, so both are taken
+/// from the text. The key stands before the nearest `=`, unless the span is itself a key (an unknown field) or a whole
+/// table.
 fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
     let is_key = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | '"');
     let spanned = text.get(span.clone()).unwrap_or("").trim();
@@ -75,7 +76,7 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
         return (spanned.to_string(), String::new());
     }
     let before = text.get(..span.start).unwrap_or("");
-    // A table that begins with its header is named there, and has no value on one line.
+    // If the span of a table begins with its header, the header is the field, and there is no value on one line.
     let brackets = text[span.start..].len() - text[span.start..].trim_start_matches('[').len();
     let inside = &text[span.start + brackets..];
     let line = before.rsplit('\n').next().unwrap_or("");
@@ -91,7 +92,7 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
     if field.is_empty() { ("definition".to_string(), value) } else { (field, value) }
 }
 
-/// [`locate`] within the table of that name, as far as the next table.
+/// Like [`locate`], within the table of that name, up to the next table.
 pub fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
     let head = format!("[{table}]");
     let is_line = |at: &usize| text[..*at].is_empty() || text[..*at].ends_with('\n');
@@ -101,7 +102,7 @@ pub fn locate_in(table: &str, text: &str, key: &str, value: &str) -> Option<(usi
     Some((line + text[..start].matches('\n').count(), column))
 }
 
-/// Line and column of a value that was found wrong after parsing: its first appearance behind the key.
+/// Returns line and column of a value that was found wrong after parsing: its first occurrence behind the key.
 pub fn locate(text: &str, key: &str, value: &str) -> Option<(usize, usize)> {
     let at_key = text.match_indices(key).map(|(at, _)| at).find(|at| {
         let starts_line = text[..*at].rsplit('\n').next().is_some_and(|before| before.trim().is_empty());
@@ -117,7 +118,7 @@ mod tests {
     use serde::Deserialize;
     use serde::de::{Deserializer, Error};
 
-    /// A table that is wrong as a whole.
+    /// A table that always fails to parse.
     #[derive(Debug)]
     struct Wrong {
         _never_made: u8,
@@ -139,7 +140,7 @@ mod tests {
         _table: std::collections::BTreeMap<String, Wrong>,
     }
 
-    /// The field is the one that is wrong, and not the one that stands above it.
+    /// The error names the wrong field and not the field above it.
     #[test]
     fn a_wrong_table_is_named() {
         let said = |text: &str| parse::<File>(text, "f.toml").unwrap_err().to_string();

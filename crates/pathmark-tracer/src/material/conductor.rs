@@ -1,11 +1,12 @@
-//! Metal: microfacets after Cook and Torrance (1982) with GGX normals, height-correlated shadowing and Schlick's Fresnel term. Light that
-//! another facet catches is lost, so a rough metal is darker than a smooth one (59 % at α = 1).
+//! Metal: microfacets after Cook and Torrance (1982) with GGX normals, height-correlated shadowing and Schlick's
+//! Fresnel term. Light that hits another facet is lost, so a rough metal is darker than a smooth one (59 % at α = 1).
 //!
 //! ```toml
 //! material = { conductor = { alpha = 0.25, f0 = [1.0, 0.77, 0.34] } }
 //! ```
 //!
-//! α = 0 is the smooth mirror by its type and not as a limit. Otherwise α is from 1e-4, a lobe of some 0.01 degrees, to 1.
+//! α = 0 is the smooth mirror, a separate type and not a limit. Otherwise α is from 1e-4, a lobe of some 0.01 degrees,
+//! to 1.
 
 use super::angular::{scattered, schlick_average};
 use super::ggx::facets;
@@ -14,11 +15,11 @@ use crate::input::albedo;
 use crate::math::{Rgb, Vec3, dot, fresnel_schlick, reflect};
 use serde::Deserialize;
 
-/// A metal surface. Both sides are alike.
+/// A metal surface, the same on both sides.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Conductor {
-    /// How rough it is, by GGX's α.
+    /// The roughness, GGX's α.
     #[serde(rename = "alpha", deserialize_with = "facets")]
     pub facets: Facets,
     /// The share of light that a facet reflects at normal incidence, per channel, 0 to 1.
@@ -39,7 +40,7 @@ impl Conductor {
     }
 
     fn rough(&self, ggx: Ggx, wo: Vec3, wi: Vec3) -> Rgb {
-        // The cosine at the facet from the sum of the two directions: the same bits when they change places.
+        // The facet's cosine is computed from wo + wi, so exchanging the two directions gives the same bits.
         let sum = wo + wi;
         self.fresnel(0.5 * dot(sum, sum).sqrt()) * ggx.reflection(wo, wi)
     }
@@ -48,7 +49,8 @@ impl Conductor {
 impl Bsdf for Conductor {
     const EXAMPLES: &'static [&'static str] = &["{ conductor = { alpha = ROUGHNESS, f0 = [1.0, 0.77, 0.34] } }"];
 
-    /// By the normals that are seen; the weight is F G2/G1, at most 1. `None` where the facet points below the surface.
+    /// Samples visible normals; the weight is F G2/G1, at most 1. `None` if the mirrored direction is below the
+    /// surface.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let Facets::Rough(ggx) = self.facets else { return Some(self.reflected(wo)) };
@@ -95,7 +97,8 @@ impl Bsdf for Conductor {
 mod tests {
     use super::*;
 
-    /// Lobes narrower than directions are exact, wider than GGX has them, and what is no number are refused with what is allowed.
+    /// Values of α are refused, with the allowed range, if their lobe is too narrow, if they exceed 1, and if they are
+    /// negative, NaN or infinite.
     #[test]
     fn roughness_is_checked() {
         let read = |alpha: &str| toml::from_str::<Conductor>(&format!("alpha = {alpha}\nf0 = [1.0, 1.0, 1.0]"));

@@ -1,25 +1,27 @@
-//! Clear glass: reflection and refraction by their Fresnel shares, total internal reflection, and a tint that multiplies both directions.
+//! Clear glass: reflection and refraction by their Fresnel shares, total internal reflection, and a tint that
+//! multiplies both lobes.
 //!
 //! ```toml
 //! material = { dielectric = { eta = 1.5, tint = [0.999, 0.999, 0.999] } }
 //! material = { dielectric = { eta = 1.5, tint = [0.999, 0.999, 0.999], fresnel = "exact" } }
 //! ```
 //!
-//! `fresnel = "schlick"`, smallpt's and the default, is a polynomial that for η = 1.5 is off by at most 0.0357 of the light (at cosine 0.088
-//! from outside, 0.7476 from inside); `"exact"` is Fresnel's formula for unpolarised light.
+//! `fresnel = "schlick"` is the default, as in smallpt: a polynomial whose error for η = 1.5 is at most 0.0357 of the
+//! light (at cosine 0.088 from outside, 0.7476 from inside). `"exact"` is Fresnel's formula for unpolarised light.
 //!
-//! Radiance is not scaled by η² on the way through (smallpt's convention): right wherever camera and lights are in the same medium.
+//! Refraction does not scale radiance by η² (smallpt's convention). This is correct if camera and lights are in the
+//! same medium.
 
 use super::{Bsdf, BsdfSample, Density};
 use crate::input::{albedo, refractive_index};
 use crate::math::{Rgb, Vec3, fresnel_dielectric, fresnel_schlick, reflect, refract};
 use serde::Deserialize;
 
-/// How the share of light that is reflected is worked out.
+/// The formula for the reflected share of light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fresnel {
-    /// Schlick's approximation (1994), as smallpt has it.
+    /// Schlick's approximation (1994), as in smallpt.
     #[default]
     Schlick,
     /// Fresnel's formula.
@@ -30,18 +32,18 @@ pub enum Fresnel {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Dielectric {
-    /// Index of refraction of the inside over that of the outside.
+    /// The inside's index of refraction divided by the outside's.
     #[serde(deserialize_with = "refractive_index")]
     pub eta: f64,
-    /// The share of light that either direction keeps, per channel, 0 to 1.
+    /// The share of light that each lobe keeps, per channel, 0 to 1.
     #[serde(deserialize_with = "albedo")]
     pub tint: Rgb,
-    /// How the reflected share is worked out.
+    /// The formula for the reflected share.
     #[serde(default)]
     pub fresnel: Fresnel,
 }
 
-/// The refracted direction and the share of light that is reflected; `None` under total internal reflection.
+/// The refracted direction and the reflected share of light; none exists under total internal reflection.
 struct Interface {
     refracted: Vec3,
     reflectance: f64,
@@ -58,7 +60,7 @@ impl Dielectric {
         let reflectance = match self.fresnel {
             Fresnel::Schlick => {
                 let root = (self.eta - 1.0) / (self.eta + 1.0);
-                // Schlick's cosine is the one in the thinner medium.
+                // Schlick's formula takes the cosine in the medium with the lower index of refraction.
                 let cos = if eta < 1.0 { wo.z } else { -refracted.z };
                 fresnel_schlick(cos, root * root)
             }
@@ -79,7 +81,7 @@ impl Bsdf for Dielectric {
         "{ dielectric = { eta = 1.5, tint = [0.9, 0.8, 0.7], fresnel = 'exact' } }",
     ];
 
-    /// Reflects with probability 1/4 + R/2 (smallpt's), so that neither lobe's weight exceeds 4/3.
+    /// Reflects with probability 1/4 + R/2, as in smallpt, so that each lobe's weight is at most 4/3.
     #[inline(always)]
     fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let Some(Interface { refracted, reflectance }) = self.interface(wo, inside) else {
@@ -123,7 +125,7 @@ mod tests {
         Vec3::new((1.0 - cos * cos).sqrt(), 0.0, cos)
     }
 
-    /// Schlick's polynomial worked out by hand for n = 1.5, against the light that is split off.
+    /// The reflected lobe's weight is Schlick's polynomial, calculated by hand for n = 1.5.
     #[test]
     fn reflectance_by_angle() {
         for (inside, cos, expected) in [

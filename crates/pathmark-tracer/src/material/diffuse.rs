@@ -26,7 +26,7 @@ impl Bsdf for Diffuse {
     #[inline(always)]
     fn sample(&self, _wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let wi = cosine_hemisphere(u);
-        // albedo/π · cos θ over cos θ/π.
+        // The weight is albedo/π · cos θ divided by cos θ/π.
         Some(BsdfSample { wi, weight: self.albedo, density: Density::PerSolidAngle(wi.z * FRAC_1_PI) })
     }
 

@@ -1,13 +1,13 @@
-//! A mirror that reflects what Fresnel's formula says and absorbs the rest: the "perfect mirror" of the second report, whose renderer extends
-//! the exercise of a course (GAMES101, 2020).
+//! A mirror that reflects the share given by Fresnel's formula and absorbs the rest: the "perfect mirror" of the second
+//! report, whose renderer extends a course's exercise (GAMES101, 2020).
 //!
 //! ```toml
 //! material = { fresnel-mirror = { eta = 12.85 } }
 //! ```
 //!
-//! The report writes the delta as F/cos with density 1 and returns 0 where cos < 0.001, which loses the light of grazing directions and
-//! calls for a clamp elsewhere. Here the lobe is a delta by type: its weight is F, and no cosine is divided by. The report's `Kd` and `Ks`
-//! play no part in its mirror, so there are no such fields.
+//! The report writes the delta lobe as F/cos with density 1 and returns 0 where cos < 0.001. That loses the light of
+//! grazing directions and needs a clamp elsewhere. Here the lobe is a delta by type: its weight is F, without a
+//! division by the cosine. The report's mirror does not use `Kd` and `Ks`, so there are no such fields.
 
 use super::angular::schlick_average;
 use super::{Bsdf, BsdfSample, Density};
@@ -15,11 +15,11 @@ use crate::input::refractive_index;
 use crate::math::{Rgb, Vec3, fresnel_dielectric, reflect};
 use serde::Deserialize;
 
-/// A smooth surface over an opaque body that swallows what enters. Both sides are alike.
+/// A smooth surface over an opaque body that absorbs the light that enters it. Both sides are the same.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FresnelMirror {
-    /// Index of refraction of the body over that of the outside.
+    /// The body's index of refraction divided by the outside's.
     #[serde(deserialize_with = "refractive_index")]
     pub eta: f64,
 }

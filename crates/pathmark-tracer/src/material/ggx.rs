@@ -2,26 +2,28 @@
 //! 33 and 34) with Smith's height-correlated masking and shadowing (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based
 //! BRDFs", Journal of Computer Graphics Techniques 3(2), 2014, equation 99).
 //!
-//! Everything is written with r(w) = sqrt(w.z² + α²(w.x² + w.y²)), in which Smith's Λ is (r - z)/2z: no tangent of an arccosine, nothing that
-//! cancels, and no division that could need a guard against small cosines.
+//! All formulas use r(w) = sqrt(w.z² + α²(w.x² + w.y²)), with which Smith's Λ is (r - z)/2z. They need no tangent of an
+//! arccosine, have no cancellation, and need no guard against division by small cosines.
 
 use crate::input::roughness;
 use crate::math::{Vec3, dot, sin_cos_turns};
 use serde::Deserializer;
 use std::f64::consts::PI;
 
-/// The distribution for one roughness. Directions are unit and local, z being the normal of the surface at large.
+/// The distribution for one roughness. Directions are unit vectors in the local frame, whose z axis is the normal of
+/// the macroscopic surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ggx {
     alpha: f64,
 }
 
-/// What a surface is made of, seen closely: a mirror or many small ones. A type of its own and no limit of small numbers.
+/// The facets of a surface: one mirror, or many small ones. The smooth surface is a separate variant and not the limit
+/// of small α.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Facets {
     /// Smooth.
     Mirror,
-    /// Small mirrors in many directions.
+    /// Small mirrors that face many directions.
     Rough(Ggx),
 }
 
@@ -31,14 +33,14 @@ pub(super) fn facets<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Facet
 }
 
 impl Facets {
-    /// A mirror for 0, GGX for anything else.
+    /// Returns a mirror for 0, GGX for any other α.
     pub fn of(alpha: f64) -> Self {
         if alpha == 0.0 { Self::Mirror } else { Self::Rough(Ggx { alpha }) }
     }
 }
 
 impl Ggx {
-    /// The distribution with this α; `None` unless it is from 1e-4 to 1.
+    /// Returns the distribution with this α; `None` unless α is from 1e-4 to 1.
     pub fn new(alpha: f64) -> Option<Self> {
         (1e-4..=1.0).contains(&alpha).then_some(Self { alpha })
     }
@@ -53,32 +55,34 @@ impl Ggx {
         (w.z * w.z + self.alpha * self.alpha * (w.x * w.x + w.y * w.y)).sqrt()
     }
 
-    /// D: the area of facets with that normal, per steradian and per area of the surface. Relative error below 20 roundings.
+    /// Returns D: the area of facets with normal `h`, per steradian and per area of the surface. The relative error is
+    /// below 20 rounding errors.
     #[inline(always)]
     pub fn density(self, h: Vec3) -> f64 {
         if h.z <= 0.0 {
             return 0.0;
         }
         let alpha2 = self.alpha * self.alpha;
-        // 1 + cos²(α² - 1) is the same and cancels: with α = 1e-4 nothing is left of it in single precision.
+        // The equivalent form with 1 + cos²(α² - 1) cancels: for α = 1e-4 it has no correct digit in single precision.
         let a = (h.x * h.x + h.y * h.y) / alpha2 + h.z * h.z;
         1.0 / (PI * alpha2 * a * a)
     }
 
-    /// G1: the share of facets turned towards `w` that is seen from there.
+    /// Returns G1: the share of facets facing `w` that is visible from there.
     #[inline(always)]
     pub fn masking(self, w: Vec3) -> f64 {
         if w.z > 0.0 { 2.0 * w.z / (w.z + self.r(w)) } else { 0.0 }
     }
 
-    /// G2/G1: the share of facets seen from `wo` that is seen from `wi` too.
+    /// Returns G2/G1: the share of facets visible from `wo` that is also visible from `wi`.
     #[inline(always)]
     pub fn unshadowed(self, wo: Vec3, wi: Vec3) -> f64 {
         let (ro, ri) = (self.r(wo), self.r(wi));
         wi.z * (wo.z + ro) / (wi.z * ro + wo.z * ri)
     }
 
-    /// D G2 / (4 cos cos): the bsdf of facets that reflect everything. 0 unless both directions are above the surface.
+    /// Returns D G2 / (4 cos cos): the BSDF of facets that reflect all light. It is 0 unless both directions are above
+    /// the surface.
     #[inline(always)]
     pub fn reflection(self, wo: Vec3, wi: Vec3) -> f64 {
         if wo.z <= 0.0 || wi.z <= 0.0 {
@@ -87,8 +91,9 @@ impl Ggx {
         self.density((wo + wi).normalized()) / (2.0 * (wi.z * self.r(wo) + wo.z * self.r(wi)))
     }
 
-    /// The density per steradian of mirror directions `wi` at normals from [`Ggx::visible_normal`]: D G1 / (4 cos). Directions below the
-    /// surface have theirs too, so it integrates to 1 over the sphere.
+    /// Returns D G1 / (4 cos): the density per steradian of `wi`, the mirror direction at a normal from
+    /// [`Ggx::visible_normal`]. Directions below the surface have a density, too, so it integrates to 1 over the
+    /// sphere.
     #[inline(always)]
     pub fn pdf(self, wo: Vec3, wi: Vec3) -> f64 {
         let sum = wo + wi;
@@ -98,12 +103,12 @@ impl Ggx {
         self.density(sum.normalized()) / (2.0 * (wo.z + self.r(wo)))
     }
 
-    /// The normal of a facet, chosen by how much of it is seen from `wo`: Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical
-    /// Caps", Computer Graphics Forum 42(8), 2023, after Heitz, "Sampling the GGX Distribution of Visible Normals", Journal of Computer
-    /// Graphics Techniques 7(4), 2018.
+    /// Samples a facet's normal in proportion to its area visible from `wo`: Dupuy and Benyoub, "Sampling Visible GGX
+    /// Normals with Spherical Caps", Computer Graphics Forum 42(8), 2023, after Heitz, "Sampling the GGX Distribution
+    /// of Visible Normals", Journal of Computer Graphics Techniques 7(4), 2018.
     #[inline(always)]
     pub fn visible_normal(self, wo: Vec3, [u, v]: [f64; 2]) -> Vec3 {
-        // Where the facets are stretched to a half sphere, the mirror directions of what is seen are evenly spread over a cap.
+        // Stretched, the facets form a half sphere; mirror directions at its visible part are uniform over a cap.
         let stretched = Vec3::new(self.alpha * wo.x, self.alpha * wo.y, wo.z).normalized();
         let height = (1.0 - v) * (1.0 + stretched.z);
         let z = height - stretched.z;
@@ -112,7 +117,7 @@ impl Ggx {
         Vec3::new(self.alpha * (rim * cos + stretched.x), self.alpha * (rim * sin + stretched.y), height).normalized()
     }
 
-    /// The mirror direction of `wo` at a facet with that normal.
+    /// Returns the mirror direction of `wo` at a facet with normal `h`.
     #[inline(always)]
     pub(super) fn mirrored(wo: Vec3, h: Vec3) -> Vec3 {
         (h * (2.0 * dot(wo, h)) - wo).normalized()

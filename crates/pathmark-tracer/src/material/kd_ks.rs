@@ -6,13 +6,14 @@
 //! material = { kd-ks = { kd = [0.3, 0.3, 0.25], eta = 12.85, roughness = 0.25, sampling = "vndf" } }
 //! ```
 //!
-//! F is Fresnel's formula at the normal of the surface at large and at the angle of `wo`, where the path comes from. A model that obeyed
-//! Helmholtz would take it at the facet, whose angle is the same from both sides: this one gives another value when the directions change
-//! places, because F(wo) is not F(wi), but it does not make light: it scatters (1 - F) Kd + F E, and E of the facets is at most 1.
+//! F is Fresnel's formula for the normal of the macroscopic surface and the angle of `wo`, where the path comes from. A
+//! model that obeys Helmholtz reciprocity takes F at the facet, whose angle is the same from both sides. This model
+//! changes its value when the directions are exchanged, because F(wo) is not F(wi). It creates no light, however: it
+//! scatters (1 - F) Kd + F E, and E of the facets is at most 1.
 //!
-//! What the report guards is not guarded here: it puts D and the whole reflection to 1 where a divisor is below 0.001, which makes a surface of
-//! roughness 0 nearly black (0.056 of the light instead of all). The report's `Ks` is set, but nothing reads it: F takes its place, so there is
-//! no such field. Roughness 0 is a mirror by type over the matte body.
+//! The report sets D and the whole reflection to 1 where a divisor is below 0.001, which makes a surface of roughness 0
+//! nearly black (0.056 of the light instead of all). Here there are no such guards. The report sets `Ks` but never
+//! reads it: F takes its place, so there is no such field. Roughness 0 is, by type, a mirror over the matte body.
 
 use super::angular::{scattered, schlick_average};
 use super::ggx::facets;
@@ -23,31 +24,32 @@ use crate::sampling::cosine_hemisphere;
 use serde::Deserialize;
 use std::f64::consts::FRAC_1_PI;
 
-/// How directions are chosen where the surface is rough. What is estimated is the same.
+/// The sampling of directions on a rough surface. All variants have the same expectation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sampling {
-    /// By the cosine, as the report does.
+    /// By the cosine, as in the report.
     #[default]
     Cosine,
-    /// By the normals that are seen or by the cosine, each as often as its part of the surface reflects.
+    /// By visible normals or by the cosine, with probabilities in proportion to the light that each part of the surface
+    /// reflects.
     Vndf,
 }
 
-/// A matte body under facets. Both sides are alike.
+/// A matte body under facets. Both sides are the same.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct KdKs {
-    /// The share of light that the body scatters of what gets to it, per channel, 0 to 1.
+    /// The share that the body scatters of the light that reaches it, per channel, 0 to 1.
     #[serde(deserialize_with = "albedo")]
     pub kd: Rgb,
-    /// Index of refraction of the facets over that of the outside.
+    /// The facets' index of refraction divided by the outside's.
     #[serde(deserialize_with = "refractive_index")]
     pub eta: f64,
-    /// How rough it is, by GGX's α: 0, or 1e-4 to 1.
+    /// The roughness, GGX's α: 0, or 1e-4 to 1.
     #[serde(rename = "roughness", deserialize_with = "facets")]
     pub facets: Facets,
-    /// How directions are chosen.
+    /// The sampling of directions on a rough surface.
     #[serde(default)]
     pub sampling: Sampling,
 }
@@ -58,11 +60,11 @@ impl KdKs {
         fresnel_dielectric(wo.z, self.eta)
     }
 
-    /// The chance of following the facets under [`Sampling::Vndf`].
+    /// Returns the probability of sampling the facets under [`Sampling::Vndf`].
     #[inline(always)]
     fn chance(&self, fresnel: f64) -> f64 {
         let matte = (1.0 - fresnel) * self.kd.max_channel();
-        // Without any light it does not matter which way it is not found.
+        // Avoids 0/0: if nothing is reflected, the choice does not matter.
         if fresnel > 0.0 { fresnel / (fresnel + matte) } else { 0.0 }
     }
 
@@ -84,7 +86,7 @@ impl KdKs {
         }
     }
 
-    /// Chooses the facets with that chance; the number is stretched over [0, 1) again for what was chosen.
+    /// Chooses the facets with probability `chance`; the random number is rescaled to [0, 1) for the chosen part.
     #[inline(always)]
     fn choose([u, v]: [f64; 2], chance: f64) -> (bool, [f64; 2]) {
         if u < chance { (true, [u / chance, v]) } else { (false, [(u - chance) / (1.0 - chance), v]) }
@@ -102,7 +104,7 @@ impl Bsdf for KdKs {
     fn sample(&self, wo: Vec3, _inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
         let fresnel = self.fresnel(wo);
         let Facets::Rough(ggx) = self.facets else {
-            // The share of each is its chance, so neither weight holds it.
+            // Each lobe's probability is its share of the light, so the share cancels in the weight.
             let (is_mirrored, u) = Self::choose(u, fresnel);
             return Some(if is_mirrored {
                 BsdfSample { wi: reflect(wo), weight: Rgb::WHITE, density: Density::Delta }
@@ -175,7 +177,7 @@ impl Bsdf for KdKs {
 mod tests {
     use super::*;
 
-    /// Smooth: chosen by F, and the two shares add up to F and (1 - F) Kd.
+    /// A smooth surface: the mirror is sampled with probability F, and the lobes have the shares F and (1 - F) Kd.
     #[test]
     fn roughness_zero_is_a_mirror_over_a_matte_body() {
         let kd = Rgb { r: 0.5, g: 0.25, b: 0.125 };

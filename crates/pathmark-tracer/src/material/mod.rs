@@ -1,4 +1,4 @@
-//! What a surface does with light. One effect a file; this file is their table.
+//! Materials: how surfaces scatter light. Each effect has its own file; this file is their table.
 //!
 //! To add one: write its file with a type that implements [`Bsdf`] and `Deserialize`, and give it its `mod` and a line in `materials!` below.
 
@@ -20,65 +20,67 @@ pub use dielectric::Fresnel;
 pub use ggx::{Facets, Ggx};
 pub use kd_ks::Sampling;
 
-/// How likely a direction was.
+/// The density of a sampled direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Density {
     /// Per steradian.
     PerSolidAngle(f64),
-    /// One of finitely many directions: there is no density, and never an infinite one.
+    /// One of finitely many directions: it has no density, in particular no infinite one.
     Delta,
 }
 
-/// A direction that a surface scatters to.
+/// A sampled direction of scattering.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BsdfSample {
-    /// The direction, away from the surface; z < 0 goes through it.
+    /// The direction, away from the surface; z < 0 leads through the surface.
     pub wi: Vec3,
-    /// bsdf times |cos| over density: what the throughput is multiplied by.
+    /// BSDF times |cos| divided by the density: the factor for the throughput.
     pub weight: Rgb,
-    /// How likely it was.
+    /// The density of the direction.
     pub density: Density,
 }
 
-/// Scattering at a point. Directions are unit, local (z is the shading normal on the side of `wo`) and point away from the surface.
+/// Scattering at a point. Directions are unit vectors in the local frame (z is the shading normal on the side of `wo`)
+/// and point away from the surface.
 pub trait Bsdf {
-    /// Instances as scene files write them, at which every hard case of materials is tried; where one says `ROUGHNESS`, at many of them and
-    /// smooth.
+    /// Instances as scene files write them, for every check of hard cases of materials. The checks replace `ROUGHNESS`
+    /// by many values, smooth included.
     const EXAMPLES: &'static [&'static str];
 
-    /// Whether its value is the same with `wo` and `wi` exchanged, as Helmholtz demands.
+    /// Whether exchanging `wo` and `wi` keeps its value (Helmholtz reciprocity).
     const IS_RECIPROCAL: bool = true;
 
-    /// Scatters light that leaves along `wo`. `inside` tells that `wo` is on the inner side of the shape. `None` absorbs.
+    /// Samples a direction `wi` for light that leaves along `wo`. `inside` says that `wo` is on the inner side of the
+    /// shape. `None` means absorption.
     fn sample(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample>;
 
-    /// The bsdf's value per steradian for a pair of directions; black for delta lobes.
+    /// Returns the BSDF's value per steradian for a pair of directions; black for delta lobes.
     #[inline(always)]
     fn eval(&self, _wo: Vec3, _wi: Vec3) -> Rgb {
         Rgb::BLACK
     }
 
-    /// The density per steradian with which [`Bsdf::sample`] chooses `wi`; 0 for delta lobes.
+    /// Returns the density per steradian with which [`Bsdf::sample`] chooses `wi`; 0 for delta lobes.
     #[inline(always)]
     fn pdf(&self, _wo: Vec3, _wi: Vec3) -> f64 {
         0.0
     }
 
-    /// The directions of its delta lobes, each weighted by its share of the light, for estimators that follow all of them.
+    /// Returns the delta lobes, each weighted by its share of the light, for estimators that follow all of them.
     #[inline(always)]
     fn delta_lobes(&self, _wo: Vec3, _inside: bool) -> [Option<BsdfSample>; 2] {
         [None, None]
     }
 
-    /// Whether light goes through, into a medium of its own inside the shape.
+    /// Whether light passes through, into a separate medium inside the shape.
     const TRANSMITS: bool = false;
 
-    /// The share of light that it scatters: smallpt's "colour". Where the share depends on the angle, about its mean: roulette goes by it and is
-    /// unbiased for any number above 0.
+    /// Returns the share of light that it scatters: smallpt's "colour". If the share depends on the angle, this is
+    /// about its mean: Russian roulette uses it and is unbiased for any value above 0.
     fn albedo(&self) -> Rgb;
 
-    /// The share of light that it scatters towards directions with that cosine, from 0 to 1, on either side; `None` if that is
-    /// [`Bsdf::albedo`] whatever the angle.
+    /// Returns the share of light that it scatters towards directions with that cosine, from 0 to 1, on either side;
+    /// `None` if the share is [`Bsdf::albedo`] at every angle.
     fn albedo_at(&self, _cos: f64) -> Option<Rgb> {
         None
     }
@@ -117,7 +119,7 @@ macro_rules! materials {
                 match self { $(Self::$Type(_) => $Type::IS_RECIPROCAL),* }
             }
 
-            /// The effect that it stands for.
+            /// Returns the effect of the material.
             pub const fn effect(&self) -> Effects {
                 match self { $(Self::$Type(_) => $Type::EFFECT),* }
             }
@@ -136,7 +138,7 @@ macro_rules! materials {
                 match self { $(Self::$Type(material) => material.albedo_at(cos)),* }
             }
 
-            /// [`Bsdf::sample`] for the effects in `X`; whoever chooses `X` makes sure that it covers the scene.
+            /// [`Bsdf::sample`] for the effects in `X`; the caller must choose an `X` that covers the scene.
             #[inline(always)]
             pub fn sample<X: EffectSet>(&self, wo: Vec3, inside: bool, u: [f64; 2]) -> Option<BsdfSample> {
                 match self {

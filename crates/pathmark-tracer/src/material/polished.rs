@@ -1,10 +1,12 @@
-//! A polished surface: part of the light is mirrored, the rest goes into a diffuse base. It is report C's "reflectivity" of 80 percent.
+//! A polished surface: it mirrors part of the light, and the rest reaches a diffuse base. It is report C's
+//! "reflectivity" of 80 percent.
 //!
 //! ```toml
 //! material = { polished = { albedo = [0.75, 0.25, 0.25], reflectivity = 0.8 } }
 //! ```
 //!
-//! The mirrored share keeps its colour and does not depend on the angle; without Fresnel's equations that is no real varnish.
+//! The mirrored light keeps its colour, and its share does not depend on the angle. A real varnish follows Fresnel's
+//! equations.
 
 use super::{Bsdf, BsdfSample, Density};
 use crate::input::{albedo, share};
@@ -17,7 +19,7 @@ use std::f64::consts::FRAC_1_PI;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Polished {
-    /// The share of light that the base reflects of what reaches it, per channel, 0 to 1.
+    /// The share that the base reflects of the light that reaches it, per channel, 0 to 1.
     #[serde(deserialize_with = "albedo")]
     pub albedo: Rgb,
     /// The share of light that is mirrored, 0 to 1; the rest reaches the base.
@@ -45,7 +47,7 @@ impl Bsdf for Polished {
         "{ polished = { albedo = [0.75, 0.5, 0.25], reflectivity = 0.8 } }",
     ];
 
-    /// Mirrors with the probability `reflectivity`; what is left of the first number then serves the base.
+    /// Mirrors with probability `reflectivity`. Otherwise the first random number is rescaled to sample the base.
     #[inline(always)]
     fn sample(&self, wo: Vec3, _inside: bool, [u, v]: [f64; 2]) -> Option<BsdfSample> {
         if u < self.reflectivity {
@@ -84,8 +86,8 @@ mod tests {
 
     const WO: Vec3 = Vec3::new(0.6, 0.0, 0.8);
 
-    /// Midpoints of the first number: as many of them mirror as the reflectivity says, the others fill the base's unit square evenly, and
-    /// the mean weight is the albedo.
+    /// For midpoints as the first random number, the share of mirrored samples is the reflectivity, the other samples
+    /// cover the base's unit square evenly, and the mean weight is the albedo.
     #[test]
     fn lobes_have_their_shares() {
         for (reflectivity, mirrors) in [(0.0, 0), (0.25, 250), (0.8, 800), (1.0, 1000)] {

@@ -1,17 +1,17 @@
-//! Emission that depends on the angle: a table by the cosine, between whose entries one reads off a straight line.
+//! Emission that depends on the angle: a table by the cosine, with linear interpolation between its entries.
 
 use crate::math::Rgb;
 
 /// Intervals of the table.
 const INTERVALS: u32 = 128;
 
-/// The radiance that a surface gives off by the angle to its normal, the same on both sides. Entry k stands for the cosine (k/n)², because
-/// reflection changes fastest along the surface.
+/// The radiance that a surface emits, by the angle to its normal, the same on both sides. Entry k of n is for the
+/// cosine (k/n)², because reflection changes fastest at grazing angles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AngularEmission(Vec<Rgb>);
 
 impl AngularEmission {
-    /// The table of a function of the cosine; `None` if it has no value.
+    /// Tabulates a function of the cosine; `None` if the function returns `None`.
     pub fn tabulate(emission: impl Fn(f64) -> Option<Rgb>) -> Option<Self> {
         let entry = |k: u32| {
             let root = f64::from(k) / f64::from(INTERVALS);
@@ -24,7 +24,7 @@ impl AngularEmission {
     #[inline(always)]
     pub fn at(&self, cos: f64) -> Rgb {
         let place = cos.sqrt() * f64::from(INTERVALS);
-        // A unit vector may be longer than 1 by a rounding.
+        // Rounding may make a unit vector longer than 1.
         let left = (place as usize).min(INTERVALS as usize - 1);
         let share = place - left as f64;
         self.0[left] * (1.0 - share) + self.0[left + 1] * share
@@ -35,7 +35,8 @@ impl AngularEmission {
 mod tests {
     use super::*;
 
-    /// Straight in the root of the cosine, so such a function is given back, also at both ends and a rounding beyond.
+    /// The table is linear in the root of the cosine, so it reproduces such a function, also at both ends and one ulp
+    /// beyond.
     #[test]
     fn reads_between_the_entries() {
         let table = AngularEmission::tabulate(|cos| Some(Rgb { r: cos.sqrt(), g: 1.0, b: 2.0 - cos.sqrt() })).unwrap();

@@ -1,5 +1,5 @@
-//! What a scene can call for besides materials and primitives. To add a feature, give it a line in `features!` and let `Scene::effects`
-//! tell when it is called for.
+//! Features: effects of a scene besides materials and primitives. To add one, give it a line in `features!` and let
+//! `Scene::effects` report its use.
 
 use crate::effect::{Effects, Entry};
 

@@ -1,4 +1,4 @@
-//! A homogeneous medium that fills the scene, except inside glass. A camera stands in the fog, wherever it is.
+//! A homogeneous medium that fills the scene, except inside glass. A camera is in the fog, wherever it stands.
 //!
 //! ```toml
 //! [fog]
@@ -7,8 +7,9 @@
 //! emission = [0.0, 0.0, 0.0]           # optional: the radiance of fog without an end
 //! ```
 //!
-//! Where light is scattered is drawn with density σs exp(-σs t), so nothing is left to weigh but absorption, which follows the law of Beer
-//! and Lambert, exp(-σa t), in each channel. One σs for all channels keeps the draw exact for each of them.
+//! The distance to the next scattering is sampled with density σs exp(-σs t), so only absorption remains as a weight.
+//! It follows the law of Beer and Lambert, exp(-σa t), in each channel. One σs for all channels keeps the sampling
+//! exact for each of them.
 
 use crate::input::{positive, radiance};
 use crate::math::Rgb;
@@ -24,7 +25,7 @@ pub struct Fog {
     /// Share of light scattered per unit of length, σs.
     #[serde(deserialize_with = "positive")]
     pub scattering: f64,
-    /// The source function: the radiance of fog without an end, W sr⁻¹ m⁻² per channel.
+    /// The source function: the radiance of infinitely deep fog, W sr⁻¹ m⁻² per channel.
     #[serde(default = "black", deserialize_with = "radiance")]
     pub emission: Rgb,
 }
@@ -33,13 +34,13 @@ fn black() -> Rgb {
     Rgb::BLACK
 }
 
-/// exp(-σt), also for endless ways; 1 without any loss.
+/// Returns exp(-σt), also for infinite distances; 1 if σ is 0.
 #[inline(always)]
 fn kept(sigma: f64, t: f64) -> f64 {
     if sigma > 0.0 { libm::exp(-sigma * t) } else { 1.0 }
 }
 
-/// A function of σ in every channel, worked out once where they are alike.
+/// Applies a function of σ to every channel, only once if all channels are equal.
 #[inline(always)]
 fn by_channel(sigma: Rgb, f: impl Fn(f64) -> f64) -> Rgb {
     if sigma.r == sigma.g && sigma.g == sigma.b {
@@ -49,14 +50,15 @@ fn by_channel(sigma: Rgb, f: impl Fn(f64) -> f64) -> Rgb {
     sigma.map(f)
 }
 
-/// 1 - exp(-σt), exact also for thin fog.
+/// Returns 1 - exp(-σt), exact also for thin fog; 0 if σ is 0.
 #[inline(always)]
 fn lost(sigma: f64, t: f64) -> f64 {
     if sigma > 0.0 { -libm::expm1(-sigma * t) } else { 0.0 }
 }
 
 impl Fog {
-    /// How far light gets before it is scattered, for a number in [0, 1); infinite without scattering, and then no number is drawn.
+    /// Returns the distance to the next scattering for a random number in [0, 1). Without scattering it is infinite,
+    /// and no number is drawn.
     #[inline(always)]
     pub fn free_path(&self, draw: impl FnOnce() -> f64) -> f64 {
         // ln(1 - u) for u < 1 is finite, and exact where u is small.
@@ -75,7 +77,7 @@ impl Fog {
         self.transmittance(t) * kept(self.scattering, t)
     }
 
-    /// The radiance that the fog adds over a distance on which nothing is scattered, per channel: emission (1 - exp(-σa t)).
+    /// The radiance that the fog adds over a distance without scattering, per channel: emission (1 - exp(-σa t)).
     #[inline(always)]
     pub fn glow(&self, t: f64) -> Rgb {
         if self.emission.is_black() {
@@ -84,7 +86,8 @@ impl Fog {
         self.emission * by_channel(self.absorption, |sigma| lost(sigma, t))
     }
 
-    /// What arrives unscattered of the radiance that the fog gives off over a distance: emission σa/σt (1 - exp(-σt t)) for σt = σa + σs.
+    /// The radiance that the fog emits over a distance and that arrives unscattered: emission σa/σt (1 - exp(-σt t))
+    /// for σt = σa + σs.
     #[inline(always)]
     pub fn unhindered_glow(&self, t: f64) -> Rgb {
         if self.emission.is_black() {
@@ -97,7 +100,7 @@ impl Fog {
         self.emission * by_channel(self.absorption, share)
     }
 
-    /// The same fog with every length multiplied.
+    /// Returns the fog with every length multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self { absorption: self.absorption * (1.0 / factor), scattering: self.scattering / factor, ..*self }

@@ -1,6 +1,7 @@
-//! The scenes that there are by name, and scenes from files and texts.
+//! The library of named scenes, and scenes from files and texts.
 //!
-//! To add one, write `experiments/scenes/NAME.toml`: the build embeds every file there. A program of one's own brings scenes along as text.
+//! To add one, write `experiments/scenes/NAME.toml`: the build embeds every file there. A user's program adds scenes as
+//! text.
 
 use super::Scene;
 use super::reader::{estimator_of_text, scene_from_text};
@@ -8,7 +9,7 @@ use super::source::{Folder, OwnScene, SCENES, Source, source};
 use crate::error::Result;
 use std::path::PathBuf;
 
-/// The scenes in the binary, and those that a user's program adds.
+/// The embedded scenes, and the scenes that a user's program adds.
 #[derive(Debug, Clone, Default)]
 pub struct Library {
     own: Vec<OwnScene>,
@@ -25,32 +26,33 @@ impl Library {
         SCENES.iter().map(|(name, _)| *name).chain(self.own.iter().map(|scene| scene.name.as_str()))
     }
 
-    /// The scene of that name, or the one in the file of that path. A number behind a colon is for the scene's generator: `spheres:1000`.
+    /// Loads the scene of that name or the file at that path. A number after a colon is for the scene's generator:
+    /// `spheres:1000`.
     pub fn load(&self, name_or_path: &str) -> Result<Scene> {
         let (base, number) = split(name_or_path);
         scene_from_text(source(base, &Folder::Disk(PathBuf::new()), &self.own)?, number, &self.own)
     }
 
-    /// [`Scene::estimator`] of that scene, which needs no more than its text: no mesh is read and nothing is generated.
+    /// Returns [`Scene::estimator`] of that scene from its text alone: it reads no mesh and generates nothing.
     pub fn estimator_of(&self, name_or_path: &str) -> Result<String> {
         estimator_of_text(source(split(name_or_path).0, &Folder::Disk(PathBuf::new()), &self.own)?, &self.own)
     }
 }
 
-/// A scene's name or path, and the number behind a colon with its text.
+/// Splits a scene's name or path from the number after a colon, which comes with its text.
 fn split(name_or_path: &str) -> (&str, Option<(f64, &str)>) {
     let parts = name_or_path.rsplit_once(':');
     let found = parts.and_then(|(base, number)| Some((base, Some((number.parse().ok()?, number)))));
     found.unwrap_or((name_or_path, None))
 }
 
-/// The scene in the binary of that name, or the one in the file of that path, as [`Library::load`] says.
+/// Loads the embedded scene of that name or the file at that path, like [`Library::load`].
 pub fn load(name_or_path: &str) -> Result<Scene> {
     Library::default().load(name_or_path)
 }
 
 impl Scene {
-    /// Reads a scene from its text; files that it names are looked for from the current folder on.
+    /// Reads a scene from its text. Files that it names are looked for relative to the current folder.
     ///
     /// ```
     /// # use pathmark_tracer as pathmark;

@@ -1,4 +1,4 @@
-//! What is rendered: shapes with materials and emission, lights, a camera, and what effects they call for.
+//! Scenes: shapes with materials and emission, lights, a camera, and the effects that they use.
 
 mod angular_emission;
 mod camera;
@@ -43,21 +43,21 @@ use crate::material::Material;
 use crate::math::{Frame, Ray, Rgb, Vec3, dot};
 use std::path::PathBuf;
 
-/// What is known of a thing in the scene besides its surface.
+/// The properties of an object in the scene, apart from its surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Object {
-    /// What the scene file calls it.
+    /// Its name in the scene file.
     pub name: String,
-    /// What its surface does with light.
+    /// The material of its surface.
     pub material: Material,
-    /// The radiance that it gives off in every direction, on both sides.
+    /// The radiance that it emits in every direction, on both sides.
     pub emission: Rgb,
-    /// The radiance that it gives off instead, by the angle; scene files have none, [`Scene::in_equilibrium`] may need it.
+    /// The radiance that it emits instead, by the angle. Scene files have none; [`Scene::in_equilibrium`] may need it.
     pub angular_emission: Option<AngularEmission>,
 }
 
 impl Object {
-    /// The radiance that it gives off at that cosine to its normal, on either side.
+    /// Returns the radiance that it emits at that cosine to its normal, on either side.
     #[inline(always)]
     pub fn emitted<X: EffectSet>(&self, cos: f64) -> Rgb {
         match &self.angular_emission {
@@ -67,7 +67,7 @@ impl Object {
     }
 }
 
-/// Where a path stands: on a primitive, on one of its sides. A ray that starts there needs no epsilon to miss its own start.
+/// The primitive on which a ray starts, and the side. Such a ray needs no epsilon to miss its own start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Standpoint {
     /// Number of the primitive.
@@ -76,16 +76,16 @@ pub struct Standpoint {
     pub inside: bool,
 }
 
-/// The first thing that a ray meets.
+/// The first intersection of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// Distance, in lengths of the ray's direction.
+    /// Distance, in multiples of the direction's length.
     pub t: f64,
     /// Number of the primitive.
     pub primitive: u32,
     /// Index of the object that it belongs to.
     pub object: u32,
-    /// The point.
+    /// The intersection point.
     pub point: Vec3,
     /// The outward unit normal.
     pub normal: Vec3,
@@ -94,60 +94,62 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// The local frame, its normal on the side that the ray came from.
+    /// Returns the local frame, with its normal on the side from which the ray came.
     #[inline(always)]
     pub fn frame(&self) -> Frame {
         Frame::around(if self.inside { -self.normal } else { self.normal })
     }
 }
 
-/// The estimator of a scene that names none: on a scene with small lights others take up to a hundred times as long to the same error.
+/// The estimator of a scene that names none: on a scene with small lights, others take up to a hundred times as long
+/// for the same error.
 pub const USUAL_ESTIMATOR: &str = "mis";
 
-/// Everything that a kernel needs to know about what it renders.
+/// A scene: everything that a kernel needs for rendering.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Its name: the file's stem, and a generator's number.
     pub name: String,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: String,
     /// SHA-256 of everything that defines it, shortened to 16 hexadecimal digits.
     pub hash: String,
     /// The files on disk that it was read from: its own, its bases' and its meshes'.
     pub files: Vec<PathBuf>,
-    /// What its author should hear of how it was read.
+    /// Remarks for its author on how it was read.
     pub remarks: Vec<String>,
-    /// The estimator that it names; [`Scene::estimator`] is the one that is used unless another is asked for.
+    /// The estimator that the scene names. [`Scene::estimator`] also covers scenes that name none.
     pub default_estimator: Option<String>,
-    /// Where it is seen from.
+    /// The camera.
     pub camera: Camera,
-    /// The surfaces, apart from the objects, so that the search for the nearest touches nothing else.
+    /// The surfaces, stored apart from the objects, so that the search for the nearest one reads nothing else.
     pub primitives: Primitives,
-    /// What is in it.
+    /// The objects.
     pub objects: Vec<Object>,
-    /// The object of each primitive.
+    /// The object's index for each primitive.
     pub owners: Vec<u32>,
     /// Lights without a size.
     pub point_lights: Vec<PointLight>,
-    /// The radiance of rays that meet nothing; `None` if none should, because the scene is closed.
+    /// The radiance of rays that hit nothing; `None` if the scene is closed, so that there should be no such rays.
     pub background: Option<Rgb>,
-    /// What is between the surfaces.
+    /// The medium between the surfaces.
     pub fog: Option<Fog>,
-    /// What the search for the nearest primitive goes by; every primitive is tested if `None`.
+    /// The hierarchy that speeds up the search for the nearest primitive; every primitive is tested if `None`.
     pub hierarchy: Option<Hierarchy>,
-    /// What estimators that ask for it aim at.
+    /// The lights for estimators with next-event estimation.
     pub lights: Option<Lights>,
-    /// Nearer than this nothing is hit; `None` tells exactly where a ray starts. Scene files have none: it belongs to the render.
+    /// The least distance of a hit. If `None`, the ray's exact start prevents self-intersection. Scene files have none,
+    /// because the epsilon belongs to the render.
     pub epsilon: Option<f64>,
 }
 
 impl Scene {
-    /// The estimator that is used unless another is asked for.
+    /// Returns the estimator that is used unless the user names another.
     pub fn estimator(&self) -> &str {
         self.default_estimator.as_deref().unwrap_or(USUAL_ESTIMATOR)
     }
 
-    /// The effects that it calls for.
+    /// Returns the effects that it uses.
     pub fn effects(&self) -> Effects {
         let called = |is_there: bool, effect: Effects| if is_there { effect } else { Effects::NONE };
         let materials = self.objects.iter().fold(Effects::NONE, |all, object| all.and(object.material.effect()));
@@ -164,20 +166,21 @@ impl Scene {
             .and(called(self.hierarchy.is_some(), HIERARCHY))
     }
 
-    /// The first primitive of the kinds in `X` along the ray; among equally near ones the one with the lowest number. `from` is where the
-    /// ray starts, if it starts on one.
+    /// Returns the first primitive of the kinds in `X` along the ray; among equally near ones, the one with the lowest
+    /// number. `from` is the ray's start, if it is on a primitive.
     #[inline(always)]
     pub fn intersect<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, tests: &mut Tests) -> Option<Hit> {
         self.first::<X>(ray, from, f64::INFINITY, tests)
     }
 
-    /// The first primitive of any kind along the ray. This crate compiles it, so a caller in a crate that is not optimised searches as fast.
+    /// Returns the first primitive of any kind along the ray. This crate compiles it, so it is equally fast when an
+    /// unoptimised crate calls it.
     pub fn first_of_any(&self, ray: &Ray, from: Option<Standpoint>) -> Option<Hit> {
         self.intersect::<AllEffects>(ray, from, &mut Tests::default())
     }
 
-    /// As [`Self::intersect`], if it is nearer than `limit`. With an epsilon the search begins that far along the ray and nobody knows where it started, so
-    /// that it finds what a program finds that drops nearer hits.
+    /// Like [`Self::intersect`], for hits nearer than `limit`. With an epsilon, the search starts that far along the
+    /// ray and without `from`. It then finds the same hit as a program that drops hits nearer than epsilon.
     #[inline(always)]
     fn first<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, limit: f64, tests: &mut Tests) -> Option<Hit> {
         let (mut ray, mut from, mut limit) = (*ray, from, limit);
@@ -189,7 +192,7 @@ impl Scene {
         Some(Hit { t: epsilon.map_or(hit.t, |epsilon| hit.t + epsilon), ..hit })
     }
 
-    /// Likewise, without an epsilon.
+    /// The same search without an epsilon.
     #[inline(always)]
     fn first_exactly<X: EffectSet>(
         &self,
@@ -220,8 +223,8 @@ impl Scene {
         Some(Hit { t, primitive, object, point, normal, inside: dot(normal, ray.direction) > 0.0 })
     }
 
-    /// The distance and the number of the first primitive along a ray, which is as exact as numbers of so many digits. [`Scene::intersect`]
-    /// finds the same with those of double precision, sooner.
+    /// Returns the distance and the number of the first primitive along a ray whose coordinates have `digits` binary
+    /// digits. [`Scene::intersect`] finds the same for double precision, faster.
     pub fn nearest(&self, ray: &Ray, from: Option<Standpoint>, digits: u32, tests: &mut Tests) -> Nearest {
         let hierarchy = self.hierarchy.as_ref();
         if self.primitives.triangles.is_empty() {
@@ -230,22 +233,24 @@ impl Scene {
         self.primitives.surely_nearest(hierarchy, ray, from, (f64::INFINITY, digits), tests)
     }
 
-    /// Whether everything in it is a sphere.
+    /// Whether all its primitives are spheres.
     pub fn is_round(&self) -> bool {
         self.primitives.spheres.len() == self.owners.len()
     }
 
-    /// How far from the origin things happen among spheres: where the camera is, or, if that is the origin, as far as the least of them reaches.
+    /// Returns the scale of a scene of spheres: the camera's distance from the origin, or the smallest distance from
+    /// the origin to a sphere's far side, if that is larger.
     pub fn size(&self) -> f64 {
         let length = |v: Vec3| dot(v, v).sqrt();
         let reaches = self.primitives.spheres.iter().map(|sphere| length(sphere.center) + sphere.radius);
         reaches.fold(f64::INFINITY, f64::min).max(length(self.camera.position))
     }
 
-    /// The opaque spheres that no path gets out of, because all camera rays start well inside of them; none if they start on a lens.
+    /// Returns the opaque spheres that no path leaves, because all camera rays start well inside them; none if the
+    /// camera has a lens.
     pub fn enclosing(&self, view: &View) -> Vec<u32> {
         let starts = view.starts();
-        // More than starts rise between those that are looked at.
+        // A margin for the ray starts between the tested ones, which may lie farther out.
         let clear = 1e-4 * self.size();
         let spheres = self.primitives.spheres.iter().zip(0_u32..).filter(|(sphere, number)| {
             let material = &self.objects[self.owners[*number as usize] as usize].material;
@@ -258,26 +263,26 @@ impl Scene {
         if self.camera.lens.is_some() { Vec::new() } else { spheres.map(|(_, number)| number).collect() }
     }
 
-    /// The object that a primitive belongs to.
+    /// Returns the index of the object that a primitive belongs to.
     #[inline(always)]
     pub fn owner<X: EffectSet>(&self, primitive: u32) -> u32 {
         if X::EFFECTS.cover(COMPOUND) { self.owners[primitive as usize] } else { primitive }
     }
 
-    /// Whether anything of the kinds in `X` is on the ray nearer than `limit`.
+    /// Whether a primitive of the kinds in `X` is on the ray nearer than `limit`.
     #[inline(always)]
     pub fn is_blocked<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, limit: f64, tests: &mut Tests) -> bool {
         self.first::<X>(ray, from, limit, tests).is_some()
     }
 
-    /// Whether anything of any kind is on the ray nearer than `limit`; compiled as [`Self::first_of_any`] is.
+    /// Whether any primitive is on the ray nearer than `limit`; this crate compiles it, like [`Self::first_of_any`].
     pub fn is_blocked_by_any(&self, ray: &Ray, from: Option<Standpoint>, limit: f64) -> bool {
         self.is_blocked::<AllEffects>(ray, from, limit, &mut Tests::default())
     }
 
-    /// The same scene in thermal equilibrium: every surface gives off exactly what it does not reflect (1 - albedo, by the angle where that
-    /// matters), fog glows, the background is white where there is one and point lights are out, so that the radiance is 1 everywhere, in
-    /// every direction: an exact expectation for every pixel.
+    /// Returns the scene in thermal equilibrium. Every surface emits exactly the light that it does not reflect: 1 -
+    /// albedo, by the angle where that matters. Fog glows, a background is white, and there are no point lights. The
+    /// radiance is then 1 everywhere, in every direction: an exact expectation for every pixel.
     #[must_use]
     pub fn in_equilibrium(&self) -> Self {
         let rest = |share: Rgb| Rgb { r: 1.0 - share.r, g: 1.0 - share.g, b: 1.0 - share.b };
@@ -293,7 +298,7 @@ impl Scene {
         scene
     }
 
-    /// The same scene with every length multiplied. By a power of two it must give the same bits.
+    /// Returns the scene with every length multiplied by `factor`. A power of two must give the same bits.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let mut scene = self.clone();
@@ -305,7 +310,7 @@ impl Scene {
         scene
     }
 
-    /// The same scene with its lights to aim at, as they are reached from that view.
+    /// Returns the scene with its lights for next-event estimation, as paths from that view can reach them.
     #[must_use]
     pub fn lit(&self, view: &View) -> Self {
         let mut lit = self.clone();
@@ -313,24 +318,25 @@ impl Scene {
         lit
     }
 
-    /// Adds what estimators aim at, as seen by that view.
+    /// Adds the lights for next-event estimation, as paths from that view can reach them.
     pub(crate) fn add_lights(&mut self, view: &View) {
         self.lights = Some(self.lights_for(view));
     }
 
-    /// What estimators aim at, as seen by that view.
+    /// Returns the lights for next-event estimation, as paths from that view can reach them.
     pub(crate) fn lights_for(&self, view: &View) -> Lights {
         Lights::of(self, &view.origins())
     }
 
-    /// The same scene with the search structure of that name; `None` if it is to have none.
+    /// Returns the scene with the accelerator of that name; `None` if that builds no hierarchy.
     pub fn accelerated(&self, name: &str) -> Option<Self> {
         // Without a store nothing can fail.
         let hierarchy = self.hierarchy_by(name, None).ok()??;
         Some(Self { hierarchy: Some(hierarchy), ..self.clone() })
     }
 
-    /// The search structure of that name over its primitives, from the store if it is there; `None` if there is to be none.
+    /// Returns the hierarchy of that accelerator over its primitives, from the store if it holds it; `None` if the
+    /// accelerator builds none.
     pub(crate) fn hierarchy_by(&self, name: &str, store: Option<&dyn TreeStore>) -> Result<Option<Hierarchy>> {
         let accelerator = accelerator(Some(name), 0, Scan::OneByOne);
         accelerator.map_or(Ok(None), |accelerator| accelerator.build(self.primitives.bounds(), store))

@@ -11,17 +11,18 @@ use crate::input::{length, point, radiance};
 use crate::math::{Rgb, Vec3};
 use serde::{Deserialize, Deserializer};
 
-/// The light.
+/// A point light.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointLight {
-    /// Where it is.
+    /// Its position.
     #[serde(deserialize_with = "point")]
     pub position: Vec3,
     /// Radiant intensity, in W per steradian.
     #[serde(deserialize_with = "radiance")]
     pub intensity: Rgb,
-    /// Farther away it gives no light, which no real light does; `None` if it follows the inverse square law everywhere.
+    /// The distance beyond which it gives no light, unlike any real light; `None` if it follows the inverse square law
+    /// everywhere.
     #[serde(default, deserialize_with = "reach")]
     pub reach: Option<f64>,
 }
@@ -31,7 +32,7 @@ fn reach<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::E
 }
 
 impl PointLight {
-    /// The same light with every length multiplied; its irradiance stays what it was.
+    /// Returns the light with every length multiplied by `factor`; its irradiance stays the same.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let reach = self.reach.map(|reach| reach * factor);

@@ -1,18 +1,18 @@
 //! Effect profiles: the sets of effects that kernels are compiled for.
 //!
-//! A scene runs on the smallest profile that covers what it calls for, so an effect that it does not use costs nothing. `--effects
-//! PROFILE` forces a larger one, which is how that cost is measured.
+//! A scene runs on the smallest profile that covers its effects, so an unused effect costs nothing. `--effects PROFILE`
+//! forces a larger profile, to measure that cost.
 
 use super::feature::{BACKGROUND, COMPOUND, FEATURES, FOG, HIERARCHY, LENS, POINT_LIGHT};
 use super::shape::{PRIMITIVES, Plane, Sphere};
 use crate::effect::{EffectSet, Effects, all};
 use crate::material::{Dielectric, Diffuse, MATERIALS, Mirror, Polished};
 
-/// A function over profiles: how a profile's name becomes a type in a kernel.
+/// A function over profiles: it turns a profile's name into a type parameter of a kernel.
 pub trait ProfileVisitor {
-    /// What it returns.
+    /// The result.
     type Output;
-    /// Called with the profile that was named.
+    /// Runs with the profile that was named.
     fn visit<X: EffectSet>(self) -> Self::Output;
 }
 
@@ -20,7 +20,7 @@ pub trait ProfileVisitor {
 pub struct ProfileEntry {
     /// Its name on the command line and in records.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
     /// The effects in it.
     pub effects: Effects,
@@ -35,7 +35,7 @@ macro_rules! profiles {
             pub const NAME: &str = $name;
         })*
 
-        /// The profiles. The fitting one is the first that covers a scene, so smaller ones come first.
+        /// The profiles. A scene gets the first one that covers it, so smaller ones come first.
         pub const PROFILES: &[ProfileEntry] =
             &[$(ProfileEntry { name: $name, about: $about, effects: $Type::EFFECTS }),*];
 

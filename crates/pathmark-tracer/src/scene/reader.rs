@@ -19,8 +19,9 @@
 //! emission = [0.0, 0.0, 0.0]   # optional
 //! ```
 //!
-//! There may be `[[point-lights]]`, a `[fog]` and a `[generator.NAME]`. With a base, whatever is named here replaces what the base says;
-//! an object with the name of one of its objects replaces the fields that it has, and `without` lists objects to leave out.
+//! A file may also have `[[point-lights]]`, a `[fog]` and a `[generator.NAME]`. With a base, every entry replaces the
+//! base's entry of that name. An object with the name of one of the base's objects replaces only the fields that it
+//! has, and `without` lists objects to leave out.
 
 use super::generator::{Generator, Made};
 use super::shape::{AnyShape, Primitives};
@@ -69,7 +70,7 @@ fn some_radiance<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Res
     radiance(deserializer).map(Some)
 }
 
-/// An object before its shape has become primitives.
+/// An object before its shapes are turned into primitives.
 struct Part {
     name: String,
     shapes: Vec<AnyShape>,
@@ -78,7 +79,7 @@ struct Part {
     emission: Rgb,
 }
 
-/// A scene while it is put together from its bases.
+/// A scene while it is assembled from its bases.
 struct Draft {
     estimator: Option<String>,
     background: Option<Rgb>,
@@ -91,11 +92,11 @@ struct Draft {
     files: Vec<PathBuf>,
 }
 
-/// A scene that is the base of a base and so on, further than this, is taken for a circle.
+/// The longest chain of bases; a longer one counts as circular.
 const DEEPEST_BASE: usize = 8;
 
-/// Reads a scene. `number` is for its generator, with the text that it was given as; `own` are scenes that may be its base besides those in the
-/// binary.
+/// Reads a scene. `number` is for its generator, with its text as given. `own` are scenes that may be its base, besides
+/// the embedded ones.
 pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: &[OwnScene]) -> Result<Scene> {
     let source = &Rc::new(source);
     let (mut draft, about) = draft(source, 0, own)?;
@@ -150,7 +151,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
     Ok(scene)
 }
 
-/// [`Scene::estimator`] of a scene that is not read any further.
+/// Returns [`Scene::estimator`] without reading any more of the scene.
 pub(super) fn estimator_of_text(source: Source, own: &[OwnScene]) -> Result<String> {
     let (draft, _) = draft(&Rc::new(source), 0, own)?;
     Ok(draft.estimator.unwrap_or_else(|| USUAL_ESTIMATOR.to_string()))
@@ -178,7 +179,7 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
     Ok(())
 }
 
-/// A problem with a shape that has no place of its own is one of the object.
+/// Adds the object's position to an input error of its shape that has no position.
 fn at_object(source: &Source, name: &str, problem: Error) -> Error {
     match problem {
         Error::Input(problem) if problem.place.is_none() => {
@@ -189,12 +190,12 @@ fn at_object(source: &Source, name: &str, problem: Error) -> Error {
 }
 
 fn missing(source: &Source, field: &str, problem: &str) -> Error {
-    // An empty list has a place; what is not written at all has none.
+    // An empty list has a position; a missing field has none.
     let at = locate(&source.text, field, "[]");
     InputError::new(field, if at.is_some() { "[]" } else { "" }, problem).in_file(&source.file, at).into()
 }
 
-/// What a file says on top of what its base says.
+/// Applies a file's entries to the draft of its base; returns the draft and the file's `about`.
 fn draft(source: &Rc<Source>, depth: usize, own: &[OwnScene]) -> Result<(Draft, String)> {
     let mut file: SceneFile = parse(&source.text, &source.file)?;
     if let Some(generator) = &mut file.generator {

@@ -1,4 +1,4 @@
-//! Where the text of a scene and of its other files comes from: the binary, a user's program, or the disk.
+//! Sources of the texts of scenes and of their other files: the binary, a user's program, or the disk.
 
 use crate::digest::Fingerprint;
 use crate::error::{InputError, Result};
@@ -6,10 +6,10 @@ use crate::input::{Limits, Text, open_text, read_text};
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
-/// Name and definition of the scenes that the binary carries.
+/// Names and definitions of the scenes that are embedded in the binary.
 pub const SCENES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/scenes.rs"));
 
-/// A scene that a user's program brings along.
+/// A scene that a user's program provides.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OwnScene {
     /// Its name.
@@ -18,10 +18,10 @@ pub struct OwnScene {
     pub text: String,
 }
 
-/// Name and text of the meshes that they use.
+/// Names and texts of the meshes that the embedded scenes use.
 const MESHES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/meshes.rs"));
 
-/// Where a scene's other files are looked for.
+/// The location of a scene's other files.
 #[derive(Debug, Clone)]
 pub(super) enum Folder {
     /// In the binary.
@@ -31,12 +31,12 @@ pub(super) enum Folder {
 }
 
 impl Folder {
-    /// What to call a file of that name in errors.
+    /// Returns the name of a file for errors: its path, if it is on disk.
     pub(super) fn place_of(&self, name: &str) -> String {
         self.path_of(name).map_or_else(|| name.to_string(), |path| path.display().to_string())
     }
 
-    /// Where a file of that name is on disk.
+    /// Returns the path on disk of a file of that name; `None` if files are embedded.
     fn path_of(&self, name: &str) -> Option<PathBuf> {
         match self {
             Self::Embedded => None,
@@ -55,13 +55,13 @@ impl Folder {
     }
 }
 
-/// A file that is being read.
+/// An open file.
 enum Opened {
     Embedded(&'static [u8]),
     Disk(BufReader<Text>),
 }
 
-/// The other files of a scene; what is read becomes part of the scene's hash.
+/// The other files of a scene; their contents become part of the scene's hash.
 pub(super) struct Files<'a> {
     pub(super) folder: &'a Folder,
     pub(super) hash: &'a mut Fingerprint,
@@ -70,14 +70,15 @@ pub(super) struct Files<'a> {
 }
 
 impl Files<'_> {
-    /// Something that the user should hear, once: a file may be used by several objects.
+    /// Adds a remark for the user, once: several objects may use the same file.
     pub(super) fn remark(&mut self, text: String) {
         if !self.remarks.contains(&text) {
             self.remarks.push(text);
         }
     }
 
-    /// Opens a file of so many bytes at most, and in each of its lines. Whoever reads it puts what is read into the hash.
+    /// Opens a file of at most `bytes` bytes, with at most `line` bytes in each line. The reader must add the contents
+    /// to the hash.
     pub(super) fn open(&mut self, name: &str, bytes: u64, line: u64) -> Result<Box<dyn BufRead>> {
         let opened = self.folder.open(name, Limits { bytes, line })?;
         self.read.extend(self.folder.path_of(name));
@@ -88,7 +89,7 @@ impl Files<'_> {
     }
 }
 
-/// The text of a scene, what to call it, and where its other files are.
+/// The text of a scene, its names for records and errors, and the location of its other files.
 pub(super) struct Source {
     pub(super) name: String,
     pub(super) file: String,
@@ -96,8 +97,8 @@ pub(super) struct Source {
     pub(super) folder: Folder,
 }
 
-/// The scene in the binary of that name, or the file of that path: whatever ends in `.toml` or has a directory in it is a path. `folder` is
-/// where a relative path starts.
+/// Returns the scene of that name, embedded or in `own`, or the file at that path. A name that ends in `.toml` or
+/// contains a directory is a path. Relative paths start at `folder`.
 pub(super) fn source(name_or_path: &str, folder: &Folder, own: &[OwnScene]) -> Result<Source> {
     let path = Path::new(name_or_path);
     if path.extension().is_some_and(|extension| extension == "toml") || path.components().count() > 1 {

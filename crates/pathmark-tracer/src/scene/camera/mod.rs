@@ -1,5 +1,5 @@
-//! Where a scene is seen from. A camera and its pixel filter belong together. One kind a file; this file is their table and what they
-//! have in common: rows lie level, sample k of a pixel is one ray.
+//! Cameras, each with its pixel filter. Each kind has its own file; this file is their table and their common part:
+//! image rows are level, and sample k of a pixel is one ray.
 //!
 //! To add one: write its file with a type that implements `Into<Camera>` and `Deserialize` and has an `EXAMPLE`, and give it its `mod` and a
 //! line in `cameras!` below.
@@ -14,20 +14,20 @@ use crate::sampling::{concentric_disk, tent};
 use crate::scene::LENS;
 use serde::Deserialize;
 
-/// Any camera, read.
+/// Any camera, after it has been read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
     /// The pinhole, or the middle of the lens.
     pub position: Vec3,
-    /// The middle of the view, of length 1.
+    /// The direction to the centre of the view, of length 1.
     pub direction: Vec3,
-    /// Which way is up, roughly.
+    /// The approximate upward direction.
     pub up: Vec3,
     /// Height of the image plane at distance 1.
     pub field: f64,
-    /// How far along its direction a ray starts, so that it can start inside a closed box.
+    /// The distance along its direction at which a ray starts, so that it can start inside a closed box.
     pub advance: f64,
-    /// How samples are spread over a pixel.
+    /// The distribution of samples over a pixel.
     pub filter: Filter,
     /// The lens; a pinhole if `None`.
     pub lens: Option<Lens>,
@@ -38,18 +38,18 @@ pub struct Camera {
 pub struct Lens {
     /// Its radius.
     pub radius: f64,
-    /// Distance of the plane that is sharp, along the view direction.
+    /// Distance of the plane in focus, along the view direction.
     pub focus: f64,
 }
 
-/// How the samples of a pixel are spread.
+/// The distribution of samples over a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filter {
-    /// smallpt's: a tent over each of 2x2 subpixels, sample k taking subpixel k mod 4.
+    /// smallpt's: a tent over each of 2x2 subpixels; sample k is in subpixel k mod 4.
     Tent,
-    /// Evenly over the pixel.
+    /// Uniform over the pixel.
     Box,
-    /// All through its centre.
+    /// Every sample at the pixel's centre.
     Center,
 }
 
@@ -57,9 +57,9 @@ pub enum Filter {
 pub struct FilterEntry {
     /// Its name on the command line and in records.
     pub name: &'static str,
-    /// How it spreads samples, in a line.
+    /// Its distribution of samples, in one line.
     pub about: &'static str,
-    /// It.
+    /// The filter.
     pub filter: Filter,
 }
 
@@ -89,7 +89,7 @@ macro_rules! cameras {
         /// Name and description of the cameras, in the order in which they are listed.
         pub const CAMERAS: &[(&str, &str)] = &[$(($name, $about)),*];
 
-        /// One of each kind, as scene files write it: the hard cases try them.
+        /// An example of each kind, as scene files write it, for the checks of hard cases.
         pub const CAMERA_EXAMPLES: &[&str] = &[$($module::$Type::EXAMPLE),*];
 
         /// A camera as scene files name it.
@@ -126,7 +126,7 @@ pub struct View {
 }
 
 impl Camera {
-    /// What it calls for.
+    /// Returns the effects that it uses.
     pub fn effects(&self) -> Effects {
         if self.lens.is_some() { LENS } else { Effects::NONE }
     }
@@ -144,7 +144,7 @@ impl Camera {
         View { camera: *self, filter: self.filter, right, up, width: w, height: h, rows: height }
     }
 
-    /// The same camera with every length multiplied.
+    /// Returns the camera with every length multiplied by `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let lens = self.lens.map(|lens| Lens { radius: lens.radius * factor, focus: lens.focus * factor });
@@ -152,7 +152,7 @@ impl Camera {
     }
 }
 
-/// Column and row of the subpixel that a sample belongs to; not looked at where pixels have none.
+/// Returns column and row of the subpixel that a sample belongs to; filters without subpixels ignore them.
 #[inline(always)]
 fn subpixel(sample: u32) -> [f64; 2] {
     let number = sample % SUBPIXELS;
@@ -160,13 +160,14 @@ fn subpixel(sample: u32) -> [f64; 2] {
 }
 
 impl View {
-    /// The same view with another filter, if there is one.
+    /// Returns the view with another filter, if one is given.
     #[must_use]
     pub fn filtered(self, filter: Option<Filter>) -> Self {
         Self { filter: filter.unwrap_or(self.filter), ..self }
     }
 
-    /// Where rays start, nine of them: through the corners of the image, the middles of its edges and its own, from the middle of the lens.
+    /// Returns the starts of nine rays from the centre of the lens: through the corners of the image, the midpoints of
+    /// its edges and its centre.
     pub fn origins(&self) -> [Vec3; 9] {
         std::array::from_fn(|k| {
             let (across, upward) = ((k % 3) as f64 / 2.0 - 0.5, (k / 3) as f64 / 2.0 - 0.5);
@@ -175,7 +176,8 @@ impl View {
         })
     }
 
-    /// Where rays start, many of them: all over the image and as far beyond its edges as the filter reaches, a quarter of a pixel.
+    /// Returns the starts of many rays: all over the image and as far beyond its edges as the filter reaches, a quarter
+    /// of a pixel.
     pub fn starts(&self) -> Vec<Vec3> {
         const STEPS: u32 = 32;
         let place = |k: u32, pixels: f64| (f64::from(k) / f64::from(STEPS) - 0.5) * (1.0 + 0.5 / pixels);
@@ -188,8 +190,8 @@ impl View {
         starts.collect()
     }
 
-    /// The ray of sample `sample` through pixel (`x`, `y`), row 0 at the top. `film` places it in the pixel and `lens` on the lens; the
-    /// latter is asked only if there is one.
+    /// Returns the ray of sample `sample` through pixel (`x`, `y`), row 0 at the top. The random numbers `film` place
+    /// it in the pixel, and `lens` places it on the lens. `lens` is called only if there is one.
     ///
     /// The direction is normalised before the ray is advanced. g++ happens to evaluate smallpt's expression in that order; the other
     /// order starts rays above the ceiling and lights the top rows.
@@ -215,7 +217,7 @@ impl View {
         self.pinhole_ray(towards)
     }
 
-    /// The direction, of any length, through a place in pixel (`x`, `y`).
+    /// Returns the direction, of any length, through a place in pixel (`x`, `y`).
     #[inline(always)]
     fn towards<T: Real>(&self, [x, y]: [T; 2], subpixel: [T; 2], film: [T; 2]) -> Vec3<T> {
         let (half, two) = (T::splat(0.5), T::splat(2.0));

@@ -13,7 +13,7 @@ use crate::input::{direction, field_of_view, point};
 use crate::math::{Vec3, dot};
 use serde::{Deserialize, Deserializer};
 
-/// The camera as it is written.
+/// The camera as scene files write it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct PinholeText {
@@ -27,7 +27,7 @@ struct PinholeText {
     field_of_view: f64,
 }
 
-/// The camera, its directions checked against each other.
+/// The camera, after its directions have been checked against each other.
 pub(in crate::scene) struct Pinhole(Camera);
 
 impl Pinhole {
@@ -39,7 +39,7 @@ pub(super) fn upwards() -> Vec3 {
     Vec3::new(0.0, 1.0, 0.0)
 }
 
-/// The camera at a place that looks at another, `field` being the height of the image plane at distance 1.
+/// Returns a camera at `position` that looks at `target`; `field` is the height of the image plane at distance 1.
 pub(super) fn looking_at(position: Vec3, target: Vec3, up: Vec3, field: f64) -> Result<Camera, &'static str> {
     let towards = target - position;
     let largest = towards.x.abs().max(towards.y.abs()).max(towards.z.abs());

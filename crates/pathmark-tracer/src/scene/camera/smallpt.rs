@@ -13,7 +13,7 @@ use crate::input::{direction, length, point, positive};
 use crate::math::Vec3;
 use serde::{Deserialize, Deserializer};
 
-/// The camera as it is written.
+/// The camera as scene files write it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Smallpt {
@@ -31,7 +31,7 @@ impl Smallpt {
     pub(super) const EXAMPLE: &str = "[camera.smallpt]\nposition = [50.0, 52.0, 295.6]\ndirection = [0.0, -0.042612, -1.0]\nfield = 0.5135\nadvance = 140.0\n";
 }
 
-/// Rows lie along the x axis, so a camera that looks along it would have no upward direction.
+/// Image rows lie along the x axis, so a camera that looks along it would have no upward direction.
 fn view_direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     let d = direction(deserializer)?;
     if d.y.abs().max(d.z.abs()) < 1e-6 {

@@ -1,5 +1,5 @@
-//! A thin lens: what is at its focus distance is sharp, everything else is not (Potmesil and Chakravarty, "A Lens and Aperture Camera
-//! Model for Synthetic Image Generation", 1981).
+//! A thin lens: objects at its focus distance are sharp, all others are not (Potmesil and Chakravarty, "A Lens and
+//! Aperture Camera Model for Synthetic Image Generation", 1981).
 //!
 //! ```toml
 //! [camera.thin-lens]
@@ -17,7 +17,7 @@ use crate::input::{direction, field_of_view, length, point};
 use crate::math::Vec3;
 use serde::{Deserialize, Deserializer};
 
-/// The camera as it is written.
+/// The camera as scene files write it.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct ThinLensText {
@@ -35,7 +35,7 @@ struct ThinLensText {
     focus: f64,
 }
 
-/// The camera, its directions checked against each other.
+/// The camera, after its directions have been checked against each other.
 pub(in crate::scene) struct ThinLens(Camera);
 
 impl ThinLens {

@@ -1,6 +1,7 @@
-//! A ball with bumps, of about so many triangles: a mesh like those that researchers have, in any size.
+//! A ball with bumps, of about the requested number of triangles: a mesh like those of researchers, in any size.
 //!
-//! Its surface is cut along m - 1 parallels and 2 m meridians into 4 m (m - 1) triangles, the fewest that are as many as asked for.
+//! Its surface is cut along m - 1 parallels and 2 m meridians into 4 m (m - 1) triangles, with the smallest m that
+//! gives at least the requested number.
 
 use super::{Generate, Made};
 use crate::material::{Diffuse, Material};
@@ -10,18 +11,18 @@ use crate::scene::shape::AnyShape;
 use serde::Deserialize;
 use std::f64::consts::PI;
 
-/// As many as there may be balls.
+/// The same limit as for balls.
 const MOST: f64 = super::spheres::MOST;
 
 const RADIUS: f64 = 0.6;
-/// Height of the bumps over the radius.
+/// Height of the bumps divided by the radius.
 const BUMPS: f64 = 0.08;
 
-/// The generator as it is written.
+/// The generator as scene files write it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct BumpyBall {
-    /// How many at least: the number behind the scene's name.
+    /// The least number of triangles: the number behind the scene's name.
     triangles: u32,
 }
 
@@ -32,11 +33,11 @@ impl BumpyBall {
     }
 }
 
-/// The point `i` of `bands` parts down from the upper pole and `j` of twice as many parts around.
+/// Returns the point `i` of `bands` parts down from the upper pole and `j` of twice as many parts around.
 fn point(bands: u32, i: u32, j: u32) -> Vec3 {
     let part = PI / f64::from(bands);
     let (down, around) = (part * f64::from(i), part * f64::from(j % (2 * bands)));
-    // The poles are points, also where rounding has it that the sine of half a turn is not zero.
+    // The poles are points, although rounding makes the sine of half a turn nonzero.
     let ring = if i == 0 || i == bands { 0.0 } else { libm::sin(down) };
     let radius = RADIUS * (1.0 + BUMPS * ring * libm::sin(9.0 * down) * libm::sin(8.0 * around));
     Vec3::new(ring * libm::cos(around), libm::cos(down), ring * libm::sin(around)) * radius
@@ -63,7 +64,7 @@ impl Generate for BumpyBall {
         for i in 0..bands {
             for j in 0..2 * bands {
                 let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| point(bands, i, j));
-                // Seen from outside the corners run counterclockwise. At the poles two of the four are one.
+                // Seen from outside, the corners run counterclockwise. At the poles, two of the four coincide.
                 if i + 1 < bands {
                     shapes.push(AnyShape::Triangle(Triangle { corners: [a, c, b] }));
                 }
@@ -82,8 +83,8 @@ mod tests {
     use super::*;
     use crate::math::dot;
 
-    /// Closed, with every normal outwards: the divergence theorem gives the volume of the ball. Bumps and dents add 3 h^2 <f^2>, some half a
-    /// percent, and flat pieces take as much away.
+    /// The surface is closed, with every normal outwards: the divergence theorem gives the volume of the ball. Bumps
+    /// and dents add 3 h^2 <f^2>, some half a percent, and flat triangles remove as much.
     #[test]
     fn it_is_a_closed_ball() {
         for (wanted, made) in [(8, 8), (9, 24), (20_000, 20_448), (20_448, 20_448)] {

@@ -1,24 +1,24 @@
-//! So many balls in clusters in the cube from -1 to 1: each cluster has a place at random and a density that falls off around it, so that most
-//! of the cube is empty and a few places are crowded.
+//! Balls in clusters in the cube from -1 to 1. Each cluster has a random centre and a density that decreases around it,
+//! so that most of the cube is empty and a few places are crowded.
 
 use super::spheres::{Balls, MOST};
 use super::{Generate, Made};
 use crate::math::Vec3;
 use serde::Deserialize;
 
-/// The generator as it is written.
+/// The generator as scene files write it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Clusters {
-    /// How many balls: the number behind the scene's name.
+    /// The number of balls: the number behind the scene's name.
     count: u32,
-    /// In how many clusters they are.
+    /// The number of clusters.
     groups: std::num::NonZeroU16,
-    /// Of their places and colours.
+    /// The seed of their places and colours.
     seed: u64,
 }
 
-/// Half the width of a cluster: places are the mean of two even ones, whose density is a tent.
+/// Half the width of a cluster. An offset is the mean of two uniform ones, so its density is a tent.
 const SPREAD: f64 = 0.12;
 
 impl Generate for Clusters {
@@ -37,7 +37,7 @@ impl Generate for Clusters {
     }
 
     fn make(&self) -> Vec<Made> {
-        // As large as they would be in a cube of a cluster's size.
+        // The radius that they would have in a cube of a cluster's size.
         let mut balls = Balls::new(
             self.seed,
             SPREAD * 0.5 / libm::cbrt(f64::from(self.count.max(1)) / f64::from(self.groups.get())),

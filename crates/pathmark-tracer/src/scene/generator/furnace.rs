@@ -1,5 +1,6 @@
-//! A closed box in thermal equilibrium: its walls give off what they do not reflect, a mirror and a glass ball neither absorb nor emit,
-//! so the radiance is 1 everywhere, in every direction, whatever the albedo. The higher that is, the longer are the paths.
+//! A closed box in thermal equilibrium. Its walls emit the light that they do not reflect; a mirror ball and a glass
+//! ball neither absorb nor emit. The radiance is therefore 1 everywhere, in every direction, for any albedo. A higher
+//! albedo makes longer paths.
 
 use super::{Generate, Made};
 use crate::material::{Dielectric, Diffuse, Fresnel, Material, Mirror};
@@ -8,11 +9,11 @@ use crate::scene::Sphere;
 use crate::scene::shape::{AnyShape, Quad};
 use serde::Deserialize;
 
-/// The generator as it is written.
+/// The generator as scene files write it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Furnace {
-    /// Of the walls: the number behind the scene's name.
+    /// The albedo of the walls: the number behind the scene's name.
     albedo: f64,
 }
 
@@ -33,7 +34,7 @@ impl Generate for Furnace {
 
     fn make(&self) -> Vec<Made> {
         let grey = |x: f64| Rgb { r: x, g: x, b: x };
-        // Corner k has coordinate -1 or 1 by the bits of k.
+        // The bits of k select -1 or 1 for each coordinate of corner k.
         let corner = |k: u8| {
             let side = |bit: u8| if k & bit == 0 { -1.0 } else { 1.0 };
             Vec3::new(side(1), side(2), side(4))

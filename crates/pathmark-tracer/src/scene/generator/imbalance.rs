@@ -1,8 +1,9 @@
-//! Work that is concentrated in a corner by a stated factor.
+//! Load imbalance: work that is concentrated in a corner by a given factor.
 //!
-//! The camera looks from the middle of a diffuse sphere; a black screen close in front of it covers the image but for its upper left
-//! sixteenth. On the screen a path ends with its first ray. In the sphere, under roulette after the fifth vertex, it takes
-//! 5 + 1/(1 - albedo) rays on average, which fixes the albedo. The sphere gives off what it does not reflect, so the corner is white.
+//! The camera is at the centre of a diffuse sphere; a black screen close in front of it covers the image except the
+//! upper left sixteenth. On the screen, a path ends with its first ray. In the sphere, with Russian roulette after the
+//! fifth vertex, a path takes 5 + 1/(1 - albedo) rays on average, which determines the albedo. The sphere emits the
+//! light that it does not reflect, so the corner is white.
 
 use super::{Generate, Made};
 use crate::material::{Diffuse, Material};
@@ -11,14 +12,14 @@ use crate::scene::Sphere;
 use crate::scene::shape::{AnyShape, Quad};
 use serde::Deserialize;
 
-/// Rays before roulette starts.
+/// Rays of a path before Russian roulette starts.
 const CERTAIN: f64 = 5.0;
 
-/// The generator as it is written.
+/// The generator as scene files write it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Imbalance {
-    /// Rays of a path in the corner, one elsewhere: the number behind the scene's name.
+    /// Mean number of rays of a path in the corner (elsewhere one): the number behind the scene's name.
     factor: f64,
 }
 
@@ -47,7 +48,8 @@ impl Generate for Imbalance {
             material: diffuse(albedo),
             emission: grey(1.0 - albedo),
         };
-        // With an image plane as high as it is far away, the image reaches this far up at this distance, and a third further sideways.
+        // The image plane is as high as it is far away, so at `z` the image reaches `half` up and a third further
+        // sideways.
         let (z, half) = (-1e-4, 0.5e-4);
         let screen = |name: &str, [x0, x1]: [f64; 2], [y0, y1]: [f64; 2]| Made {
             name: name.to_string(),

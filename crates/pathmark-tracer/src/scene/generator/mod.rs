@@ -1,4 +1,4 @@
-//! Scenes that are computed instead of written down, for studies that need them in many sizes. A scene file names one:
+//! Generators: scenes that are computed instead of written, for studies that need many sizes. A scene file names one:
 //!
 //! ```toml
 //! [generator.spheres]
@@ -6,7 +6,7 @@
 //! seed = 1
 //! ```
 //!
-//! and `NAME:NUMBER`, wherever scenes are named, replaces its first field: `spheres:100000`.
+//! Wherever a scene is named, `NAME:NUMBER` replaces the generator's first field: `spheres:100000`.
 //!
 //! To add one: write its file with a type that implements [`Generate`] and `Deserialize`, and give it a line in `generators!` below.
 
@@ -21,7 +21,7 @@ use crate::material::Material;
 use crate::math::Rgb;
 use serde::Deserialize;
 
-/// An object as a generator makes it.
+/// An object that a generator makes.
 pub(super) struct Made {
     pub(super) name: String,
     pub(super) shapes: Vec<AnyShape>,
@@ -29,18 +29,18 @@ pub(super) struct Made {
     pub(super) emission: Rgb,
 }
 
-/// Makes objects.
+/// A generator of objects.
 trait Generate {
-    /// The field that the number behind the scene's name stands for.
+    /// The field that the number behind the scene's name sets.
     const FIELD: &'static str;
 
-    /// What the file says of it.
+    /// Returns the value of that field.
     fn number(&self) -> f64;
 
-    /// Replaces what the number behind the scene's name stands for; says what is allowed if it is something else.
+    /// Sets that field; the error states the allowed values.
     fn set_number(&mut self, number: f64) -> Result<(), &'static str>;
 
-    /// The objects.
+    /// Returns the objects.
     fn make(&self) -> Vec<Made>;
 }
 
@@ -72,7 +72,7 @@ macro_rules! generators {
                 match self { $(Self::$Type(generator) => generator.set_number(number)),* }
             }
 
-            /// The objects.
+            /// Returns the objects.
             pub(super) fn make(&self) -> Vec<Made> {
                 match self { $(Self::$Type(generator) => generator.make()),* }
             }

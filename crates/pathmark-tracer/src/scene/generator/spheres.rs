@@ -1,5 +1,5 @@
-//! So many balls of the same size in the cube from -1 to 1, at random places; they may overlap. The radius shrinks with the cube root of
-//! their number, so that they fill the same share of the cube and an image keeps its character.
+//! Balls of equal size at random places in the cube from -1 to 1; they may overlap. Their radius decreases with the
+//! cube root of their number, so that they fill the same share of the cube and the image keeps its character.
 
 use super::{Generate, Made};
 use crate::material::{Diffuse, Material};
@@ -10,19 +10,19 @@ use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use serde::Deserialize;
 
-/// The most that fit in the numbers of primitives with room to spare.
+/// The most balls; the numbers of primitives have room to spare.
 pub(super) const MOST: f64 = 1e7;
 
-/// Balls of one colour are one object.
+/// Number of colours; all balls of one colour are one object.
 const COLOURS: usize = 8;
 
-/// The generator as it is written.
+/// The generator as scene files write it.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Spheres {
-    /// How many: the number behind the scene's name.
+    /// The number of balls: the number behind the scene's name.
     count: u32,
-    /// Of their places and colours.
+    /// The seed of their places and colours.
     seed: u64,
 }
 
@@ -51,7 +51,7 @@ impl Generate for Spheres {
     }
 }
 
-/// Balls of one size that are added one by one, each of the next colour.
+/// Balls of one size, added one by one with the colours in turn.
 pub(super) struct Balls {
     numbers: Pcg64,
     radius: f64,
@@ -75,7 +75,7 @@ impl Balls {
         (self.numbers.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A place in the cube from -1 to 1.
+    /// Returns a random place in the cube from -1 to 1.
     pub(super) fn place(&mut self) -> Vec3 {
         let mut coordinate = || 2.0 * self.unit() - 1.0;
         Vec3::new(coordinate(), coordinate(), coordinate())

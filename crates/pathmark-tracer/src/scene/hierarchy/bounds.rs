@@ -1,4 +1,4 @@
-//! Boxes with faces along the axes, and rays against them.
+//! Axis-aligned bounding boxes, and the test of rays against them.
 
 use crate::math::{Ray, Vec3};
 
@@ -12,7 +12,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box around nothing, which any other contains.
+    /// The empty box, which every other box contains.
     pub const EMPTY: Self = Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
 
     /// The smallest box around some points.
@@ -29,7 +29,7 @@ impl Bounds {
     pub fn and(&self, other: &Self) -> Self {
         let mut both = *self;
         for axis in 0..3 {
-            // Comparisons instead of `min` and `max`, which take three times as long to say what becomes of NaN.
+            // Comparisons instead of `min` and `max`, which take three times as long because they handle NaN.
             let (low, high) = (other.low[axis], other.high[axis]);
             both.low[axis] = if low < both.low[axis] { low } else { both.low[axis] };
             both.high[axis] = if high > both.high[axis] { high } else { both.high[axis] };
@@ -37,24 +37,25 @@ impl Bounds {
         both
     }
 
-    /// Its middle along an axis; halves first, so that it cannot overflow.
+    /// Returns its centre along an axis. It halves before it adds, so that it cannot overflow.
     pub fn middle(&self, axis: usize) -> f64 {
         0.5 * self.low[axis] + 0.5 * self.high[axis]
     }
 
-    /// The box with its share of the [`padding`] on every side: as far as rounding can move it or a primitive in it.
+    /// Returns the box with its share of the [`padding`] on every side: as far as rounding can move it or a primitive
+    /// in it.
     #[must_use]
     pub(super) fn padded(&self) -> Self {
         self.grown(padding(f64::MANTISSA_DIGITS) * self.largest())
     }
 
-    /// The box with every side moved outwards.
+    /// Returns the box with every side moved outwards by `by`.
     #[must_use]
     pub fn grown(&self, by: f64) -> Self {
         Self { low: self.low.map(|x| x - by), high: self.high.map(|x| x + by) }
     }
 
-    /// The largest of its coordinates, whatever their signs.
+    /// Returns its largest absolute coordinate.
     pub fn largest(&self) -> f64 {
         self.low.iter().chain(&self.high).fold(0.0, |largest, x| largest.max(x.abs()))
     }
@@ -63,37 +64,39 @@ impl Bounds {
         [self.low, self.high]
     }
 
-    /// Whether a ray meets the box, which is closed, or passes it by no more than 2^-47 times the largest coordinate of the box plus the
-    /// largest of the ray's origin.
+    /// Whether a ray meets the closed box, or misses it by at most 2^-47 times the largest coordinate of the box plus
+    /// the largest of the ray's origin.
     pub fn meets(&self, ray: &Ray) -> bool {
         Slabs::new(ray).enter(&self.padded().faces(), f64::INFINITY).is_some()
     }
 
-    /// Half of its surface; 0 if it is empty.
+    /// Returns half of its surface area; 0 if it is empty.
     pub fn half_area(&self) -> f64 {
         let [x, y, z] = [0, 1, 2].map(|axis| (self.high[axis] - self.low[axis]).max(0.0));
         x * y + y * z + z * x
     }
 }
 
-/// How far outside a box a ray may pass and still be let in, for each unit of the largest coordinate of the box and of the ray's origin, with numbers
-/// of so many digits. It covers what rounding can do to the box test and to the tests of the primitives in it: at most some 30 units in the last place.
+/// Returns the distance outside a box at which a ray still hits it, in units of the sum of the largest coordinates of
+/// the box and of the ray's origin. Numbers have `digits` binary digits. The padding covers the rounding errors of the
+/// box test and of the tests of its primitives: at most some 30 ulps.
 pub const fn padding(digits: u32) -> f64 {
     64.0 / (1_u64 << digits) as f64
 }
 
-/// The smallest and the largest coordinates of a box: an array, so that a direction's sign can choose without a branch.
+/// The smallest and the largest coordinates of a box: an array, so that a direction's sign selects one without a
+/// branch.
 pub(crate) type Faces = [[f64; 3]; 2];
 
-/// A ray, made ready for boxes.
+/// A ray prepared for box tests.
 #[derive(Clone, Copy)]
 pub(crate) struct Slabs {
-    /// The origin, moved back and forth by its share of the padding: where distances to near and far faces are taken from.
+    /// The origin, moved forward and backward by its share of the padding: distances to near and far faces start there.
     near: [f64; 3],
     far: [f64; 3],
-    /// One over the direction, infinite with a plus sign where that is zero.
+    /// One over the direction, plus infinity where the direction is zero.
     inverse: [f64; 3],
-    /// Whether it goes towards smaller coordinates.
+    /// Whether the ray leads towards smaller coordinates, for each axis.
     backward: [bool; 3],
 }
 
@@ -110,13 +113,15 @@ impl Slabs {
             near[axis] += outwards;
             far[axis] -= outwards;
         }
-        // Adding zero turns minus zero into zero, or the near and far faces would change places.
+        // Adding zero turns minus zero into zero: 1/-0 would exchange the near and far faces.
         Self { near, far, inverse: direction.map(|d| 1.0 / (d + 0.0)), backward }
     }
 
-    /// Where the ray enters the box between these faces, which have their padding; `None` if it does not or only beyond `limit`.
+    /// Returns the distance at which the ray enters the box with these padded faces; `None` if it misses the box or
+    /// enters it beyond `limit`.
     ///
-    /// A ray along a face gives 0 times infinity, NaN, for that axis, and the comparisons then keep what the other axes say: it is let in.
+    /// A ray along a face gives 0 times infinity, NaN, for that axis. The comparisons then ignore the axis, so the ray
+    /// counts as inside it.
     #[inline(always)]
     pub(crate) fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);

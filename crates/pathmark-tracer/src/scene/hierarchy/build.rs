@@ -1,8 +1,8 @@
-//! From boxes to a tree, whatever the rule by which nodes are split.
+//! Construction of a tree from boxes, with any rule for splitting nodes.
 //!
-//! A node of many primitives is divided by what the rule sees without sorting them, its two halves side by side. A node of few is a part: its
-//! primitives are sorted, and parts are built by as many threads as there are processors. No thread sees what another one does, so the tree is the
-//! same for any number of them.
+//! The rule divides a node of many primitives without sorting them; its two halves are built in parallel. A node of few
+//! primitives is a part: its primitives are sorted, and as many threads as there are processors build the parts. No
+//! thread depends on another one's results, so the tree is the same for any number of threads.
 
 use super::bounds::Faces;
 use super::sorted::sorted;
@@ -12,20 +12,21 @@ use std::panic::resume_unwind;
 use std::sync::{Mutex, PoisonError};
 use std::thread::{Builder, available_parallelism, scope};
 
-/// Deeper than this the middle is taken instead of the rule's answer, so that a traversal never needs more than [`DEEPEST`] places.
+/// From this level on, nodes are split in the middle instead of by the rule, so that a traversal never needs more than
+/// [`DEEPEST`] places.
 pub(super) const UNBALANCED: usize = 32;
 
 /// The deepest level: halving 2^32 primitives after [`UNBALANCED`] levels.
 pub(crate) const DEEPEST: usize = UNBALANCED + 32;
 
-/// Up to so many primitives of a node are sorted and every place between two of them tried. Of a million triangles the tree that is divided by bins
-/// above that has within a few percent the cost of the one that is sorted throughout.
+/// The most primitives of a node that are sorted, with every place between two of them tried. For a million triangles,
+/// the tree whose larger nodes are divided by bins costs within a few percent of the fully sorted tree.
 const SORTED: usize = 4096;
 
-/// A node whose place in the list is taken, and which is not yet known.
+/// A node that is not yet known; it reserves a place in the list.
 pub(super) const UNKNOWN: Node = Node { faces: Bounds::EMPTY.faces(), at: 0, count: 0 };
 
-/// Primitives of which a node is to be built.
+/// Primitives from which a node is to be built.
 struct Task<'a> {
     own: &'a mut [Item],
     /// The first one's place in the order of the leaves.
@@ -43,7 +44,7 @@ enum Top {
     Part,
 }
 
-/// The tree over primitives; `None` if there are none.
+/// Builds the tree over primitives; `None` if there are none.
 pub(super) fn build(items: Vec<Item>, rule: &impl Split) -> Option<Hierarchy> {
     let threads = if items.len() > SORTED { available_parallelism().map_or(1, std::num::NonZero::get) } else { 1 };
     build_with(items, rule, SORTED, threads)
@@ -60,7 +61,7 @@ fn build_with(mut items: Vec<Item>, rule: &impl Split, most: usize, threads: usi
     Some(Hierarchy { nodes, order: items.into_iter().map(|item| item.number).collect() })
 }
 
-/// Divides nodes until they have `most` primitives or the rule needs them sorted.
+/// Divides nodes until they have at most `most` primitives or the rule needs them sorted.
 fn divided<'a>(task: Task<'a>, rule: &impl Split, most: usize, threads: usize) -> (Top, Vec<Task<'a>>) {
     let Task { own, first, depth } = task;
     if own.len() <= most || depth >= UNBALANCED {
@@ -84,7 +85,7 @@ fn divided<'a>(task: Task<'a>, rule: &impl Split, most: usize, threads: usize) -
     (Top::Inner { faces, children: Box::new([a, b]) }, tasks)
 }
 
-/// Does both, on two threads if there are to be several and the system gives one.
+/// Runs both functions, on two threads if `threads` is at least 2 and the system provides one.
 fn both<A: Send, B>(threads: usize, first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B) -> (A, B) {
     if threads < 2 {
         return (first(), second());
@@ -99,7 +100,8 @@ fn both<A: Send, B>(threads: usize, first: impl FnOnce() -> A + Send, second: im
     })
 }
 
-/// All nodes, by so many threads. A part is put into the list as soon as those before it are there, so that few wait beside it.
+/// Returns all nodes, built by `threads` threads. A part enters the list as soon as those before it are there, so that
+/// few parts wait.
 fn nodes<S: Split>(assembly: Assembly, tasks: Vec<Task<'_>>, rule: &S, threads: usize) -> Vec<Node> {
     let count = tasks.len();
     let waiting = Mutex::new(tasks.into_iter().enumerate());
@@ -114,7 +116,7 @@ fn nodes<S: Split>(assembly: Assembly, tasks: Vec<Task<'_>>, rule: &S, threads: 
         }
     };
     scope(|scope| {
-        // Where the system gives no thread, this one does what is left.
+        // If the system provides no thread, this one builds the remaining parts.
         for _ in 1..threads.min(count) {
             if Builder::new().spawn_scoped(scope, work).is_err() {
                 break;
@@ -125,26 +127,26 @@ fn nodes<S: Split>(assembly: Assembly, tasks: Vec<Task<'_>>, rule: &S, threads: 
     assembly.into_inner().unwrap_or_else(PoisonError::into_inner).nodes
 }
 
-/// The list of nodes as it is put together.
+/// The list of nodes while it is assembled.
 struct Assembly {
     nodes: Vec<Node>,
-    /// What is not in it yet, the first last, with the places of its roots.
+    /// The subtrees that are not in it yet, last one first, with the places of their roots.
     rest: Vec<(Top, usize)>,
-    /// The number of the next part, and those behind it that are done.
+    /// The number of the next part, and the finished parts behind it.
     next: usize,
     done: BTreeMap<usize, Vec<Node>>,
 }
 
 impl Assembly {
-    /// Of so many primitives.
+    /// Creates an empty list for that many primitives.
     fn of(top: Top, primitives: usize) -> Self {
         let mut nodes = Vec::with_capacity(2 * primitives);
         nodes.push(UNKNOWN);
         Self { nodes, rest: vec![(top, 0)], next: 0, done: BTreeMap::new() }
     }
 
-    /// Takes the part of that number, and puts into the list whatever can be. A root has a place that is there; what is below it comes behind all
-    /// others.
+    /// Takes the part of that number, and adds every part whose turn it is. A root already has a place in the list; the
+    /// nodes below it are appended.
     fn take(&mut self, number: usize, part: Vec<Node>) {
         self.done.insert(number, part);
         while let Some((top, place)) = self.rest.pop() {
@@ -162,7 +164,7 @@ impl Assembly {
                         return;
                     };
                     self.next += 1;
-                    // A part counts its nodes from its root, which is not among those that follow.
+                    // A part numbers its nodes from its root, which is not among the appended ones.
                     let offset = self.nodes.len() as u32 - 1;
                     let moved =
                         |node: Node| Node { at: if node.count == 0 { node.at + offset } else { node.at }, ..node };
@@ -183,7 +185,7 @@ mod tests {
     use rand::Rng;
     use rand_pcg::Pcg64Mcg;
 
-    /// Boxes in a cube, some of them alike, most of them in one corner, and some primitives without one.
+    /// Returns boxes in a cube, some with the same centre, most of them in one corner; some primitives have no box.
     fn items(count: u32) -> Vec<Item> {
         let mut numbers = Pcg64Mcg::new(7);
         let mut unit = || (numbers.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
@@ -199,14 +201,15 @@ mod tests {
         (0..count).filter_map(&mut one).collect()
     }
 
-    /// The expected cost of a search: the surfaces of nodes, and of leaves times their primitives, over that of the root.
+    /// Returns the expected cost of a search: the sum of the nodes' surfaces, for leaves times their primitives,
+    /// divided by the root's surface.
     fn cost(tree: &Hierarchy) -> f64 {
         let area = |node: &Node| Bounds { low: node.faces[0], high: node.faces[1] }.half_area();
         let of = |node: &Node| area(node) * f64::from(node.count.max(1));
         tree.nodes.iter().map(of).sum::<f64>() / area(&tree.nodes[0])
     }
 
-    /// Halves are the same whether they are found by sorting or not.
+    /// Halving gives the same tree with and without sorting.
     #[test]
     fn dividing_at_the_median_is_sorting() {
         let items = items(3000);
@@ -231,7 +234,7 @@ mod tests {
         assert_eq!(leaves.map(|node| node.count as usize).sum::<usize>(), bounded.len());
     }
 
-    /// Bins see 31 places on each axis where sorting sees them all.
+    /// Bins try 31 places on each axis; sorting tries all.
     #[test]
     fn dividing_by_bins_costs_little() {
         let items = items(20_000);
@@ -241,7 +244,7 @@ mod tests {
         assert!((0.9..1.05).contains(&ratio), "{ratio}");
     }
 
-    /// Where all middles are one, nothing can be told apart, and the tree still holds everything.
+    /// If all centres coincide, no rule can separate the boxes, and the tree still holds all of them.
     #[test]
     fn boxes_in_one_place_are_all_kept() {
         let bounds = Bounds { low: [0.0; 3], high: [1.0; 3] };

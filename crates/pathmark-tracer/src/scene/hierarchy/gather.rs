@@ -1,34 +1,36 @@
-//! The same tree with many children a node, for those who test as many boxes or primitives at a time (Dammertz, Hanika and Keller, "Shallow
-//! Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays", 2008).
+//! Wide trees: the same tree with many children per node, for code that tests as many boxes or primitives at a time
+//! (Dammertz, Hanika and Keller, "Shallow Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays",
+//! 2008).
 
 use super::{Bounds, Hierarchy};
 
-/// A child of a node with many.
+/// A child of a wide node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Child {
-    /// Its box, with its padding.
+    /// Its bounding box, padding included.
     pub bounds: Bounds,
-    /// What is in it.
+    /// The contents of its box.
     pub content: Content,
 }
 
-/// What is in a box.
+/// The contents of a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Content {
-    /// A node by its number.
+    /// The number of a node.
     Node(u32),
-    /// Primitives by their places in the order of the leaves, from one on: no more than a node has children, unless the tree keeps more together.
+    /// Consecutive primitives in the order of the leaves: at most as many as a node has children, unless a leaf of the
+    /// binary tree holds more.
     Primitives {
-        /// The first.
+        /// The place of the first one.
         first: u32,
-        /// How many.
+        /// Their number.
         count: u32,
     },
 }
 
-/// A tree whose nodes have many children; the first node is the root, and each stands behind its parent.
+/// A tree whose nodes have many children; the first node is the root, and each node comes after its parent.
 pub struct Gathered {
-    /// Of each node the first of its children, and how many it has.
+    /// For each node, its first child and the number of its children.
     nodes: Vec<[u32; 2]>,
     children: Vec<Child>,
     /// Primitives in the order of the leaves.
@@ -36,7 +38,7 @@ pub struct Gathered {
 }
 
 impl Gathered {
-    /// A tree of nodes with these children over primitives in that order.
+    /// Creates a tree from the children of each node and the order of the primitives.
     #[cfg(test)]
     pub(crate) fn new(nodes: impl IntoIterator<Item = Vec<Child>>, order: Vec<u32>) -> Self {
         let mut made = Self { nodes: Vec::new(), children: Vec::new(), order };
@@ -57,7 +59,7 @@ impl Gathered {
         &self.children
     }
 
-    /// The primitives in these places.
+    /// Returns `count` primitives from place `first` on, in the order of the leaves.
     pub fn primitives(&self, first: u32, count: u32) -> &[u32] {
         &self.order[first as usize..][..count as usize]
     }
@@ -66,28 +68,31 @@ impl Gathered {
 /// The most children that a node may have.
 const MOST_CHILDREN: usize = 16;
 
-/// What rays are expected to cost below a node of the binary tree, in looks at the root, when one, two and so on up to one less than the width of a
-/// node stand for it, at most. A look at a leaf costs as much as one at a node, for each time that it has as many primitives as a node has children.
+/// Expected costs of rays below a node of the binary tree, in visits of the root. Children of a wide node replace that
+/// node in the wide tree: its *stand-ins*. Entry k - 1 is the cost with at most k stand-ins, for k below the width. A
+/// visit of a leaf costs as much as a visit of a node, once for each group of primitives as large as the width.
 type Costs = [f32; MOST_CHILDREN - 1];
 
-/// How the tree of least cost is made of the binary one. Only the choices are kept for each node: costs would take four times as much memory.
+/// The choices that make the wide tree of least cost from the binary one. Costs are not kept for each node: they would
+/// take four times as much memory.
 struct Choices {
-    /// Of each node: at 0 whether it is a wide node itself where one stands for it, and at k - 1, where k stand for it, how many of them stand for its
-    /// first child: 0 if fewer than k stand for it at the same cost. The last place is that of the node as a wide one.
+    /// For each node, entry 0 is 1 if a single stand-in for it is a wide node. Entry k - 1 says how many of k stand-ins
+    /// replace its first child; 0 if fewer than k have the same cost. The last entry, for k = width, is for its
+    /// children as a wide node.
     of: Vec<[u8; MOST_CHILDREN]>,
     width: usize,
 }
 
 impl Choices {
-    /// From the leaves up, since children stand behind their parents (Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs
-    /// Through Compressed Wide BVHs", 2017, who find the tree of least cost in this way).
+    /// Chooses from the leaves up, since children come after their parents (Ylitie, Karras and Laine, "Efficient
+    /// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", 2017, find the tree of least cost in this way).
     fn of(hierarchy: &Hierarchy, width: usize) -> Self {
         debug_assert!((2..=MOST_CHILDREN).contains(&width));
         let nodes = &hierarchy.nodes;
         let sizes = hierarchy.sizes();
         let whole = hierarchy.bounds(0).half_area();
         let mut choices = Self { of: vec![[0; MOST_CHILDREN]; nodes.len()], width };
-        // Costs of nodes whose parents are still to come, which are few, and where those of each node are.
+        // The costs of the few nodes whose parents are still to come, and each node's place among these costs.
         let (mut costs, mut free): (Vec<Costs>, Vec<u32>) = (Vec::new(), Vec::new());
         let mut place = vec![0_u32; nodes.len()];
         for (index, node) in nodes.iter().enumerate().rev() {
@@ -127,13 +132,14 @@ impl Choices {
         self.of[index][0] == 1
     }
 
-    /// How many of so many nodes that stand for this one stand for its first child; `None` if fewer nodes do as well.
+    /// Returns how many of `count` stand-ins for this node replace its first child; `None` if fewer have the same cost.
     fn to_first(&self, index: usize, count: usize) -> Option<usize> {
         Some(usize::from(self.of[index][count - 1])).filter(|count| *count > 0)
     }
 }
 
-/// The least cost of two siblings for which so many nodes stand at most, and how many of those stand for the first.
+/// Returns the least cost of two siblings with at most `count` stand-ins together, and how many of those replace the
+/// first.
 fn least([first, second]: [&Costs; 2], count: usize) -> (f32, u8) {
     let mut least = (f32::INFINITY, 1);
     for to_first in 1..count {
@@ -146,8 +152,9 @@ fn least([first, second]: [&Costs; 2], count: usize) -> (f32, u8) {
 }
 
 impl Hierarchy {
-    /// Nodes of at most `width` children, which must be 2 or more; the first is the root. Of all such trees over this one it is the one that rays are
-    /// expected to go through at the least cost. Nobody needs the binary one any more, so its nodes are gone before the primitives are laid out anew.
+    /// Returns the tree whose nodes have at most `width` children, which must be 2 or more; the first node is the root.
+    /// Of all such trees over this one, it has the least expected cost. It consumes the binary tree, so that its nodes
+    /// are freed before the primitives are laid out anew.
     pub fn gathered(self, width: usize) -> Gathered {
         let choices = Choices::of(&self, width);
         let (mut nodes, mut children) = (vec![[0; 2]], Vec::new());
@@ -182,10 +189,10 @@ impl Hierarchy {
         Gathered { nodes, children, order: self.order }
     }
 
-    /// The primitives below each node.
+    /// Returns the number of primitives below each node.
     fn sizes(&self) -> Vec<u32> {
         let mut sizes = vec![0; self.nodes.len()];
-        // Children stand behind their parents.
+        // Children come after their parents.
         for (index, node) in self.nodes.iter().enumerate().rev() {
             let at = node.at as usize;
             sizes[index] = if node.count == 0 { sizes[at] + sizes[at + 1] } else { node.count };
@@ -198,7 +205,7 @@ impl Hierarchy {
         Bounds { low, high }
     }
 
-    /// Those below a node, which stand side by side in the order of the leaves.
+    /// Returns the primitives below a node, which are consecutive in the order of the leaves.
     fn primitives(&self, root: usize) -> Content {
         let leaf = |second: usize| {
             let mut node = &self.nodes[root];
@@ -217,7 +224,7 @@ mod tests {
     use super::*;
     use crate::scene::load;
 
-    /// All ways to have up to `most` nodes of the binary tree stand for one of them.
+    /// Returns all sets of up to `most` nodes of the binary tree that can stand in for node `index`.
     fn stand_ins(tree: &Hierarchy, index: usize, most: usize) -> Vec<Vec<usize>> {
         let mut all = vec![vec![index]];
         if tree.nodes[index].count == 0 && most > 1 {
@@ -231,7 +238,7 @@ mod tests {
         all
     }
 
-    /// The least cost of a node by trying all trees.
+    /// Returns the least cost of a node, found by trying all trees.
     fn least_of_all(tree: &Hierarchy, sizes: &[u32], index: usize, width: usize) -> f64 {
         let area = tree.bounds(index).half_area();
         let is_leaf = tree.nodes[index].count > 0;
@@ -270,7 +277,8 @@ mod tests {
         }
     }
 
-    /// Every primitive is in exactly one box, its own box in all that it is in, and no node is wider than asked for.
+    /// Every primitive is in exactly one box, all boxes that it is in contain its own, and no node has more than
+    /// `width` children.
     #[test]
     fn all_primitives_are_kept() {
         for (name, width) in [("spheres:1000", 16), ("spheres:1000", 4), ("spheres:3", 16), ("cornell-mesh", 8)] {

@@ -1,7 +1,8 @@
-//! Hierarchies that outlast the process that built them: `--cache FOLDER`.
+//! Stored hierarchies, for later processes: `--cache FOLDER`.
 //!
-//! The key is made of what a hierarchy is built from, the accelerator's name and the padded boxes of the primitives. So a scene that is edited,
-//! scaled or generated anew has another key, and one whose materials, lights or camera change keeps its hierarchy.
+//! The key depends on the input of the construction: the accelerator's name and the padded boxes of the primitives. A
+//! scene that is edited, scaled or generated anew therefore has another key. A scene whose materials, lights or camera
+//! change keeps its hierarchy.
 
 use super::tree_file::{BLOCK, MAGIC};
 use super::{Hierarchy, Item};
@@ -10,19 +11,22 @@ use sha2::{Digest, Sha256};
 use std::fmt::{self, Write as _};
 use std::io::{self, Read, Write};
 
-/// A folder, or whatever else holds bytes by key. Scenes of few primitives are built sooner than looked up.
+/// A store of bytes by key, such as a folder. Scenes of few primitives are not stored, because building is faster than
+/// reading.
 pub trait TreeStore: fmt::Debug + Send + Sync {
-    /// Gives the bytes of that key to `read`, whose error means that they are damaged; `false` if there are none.
+    /// Passes the bytes of that key to `read`, whose error means that they are damaged. Returns `false` if there are
+    /// none.
     fn find(&self, key: &str, read: &mut dyn FnMut(&mut dyn Read) -> io::Result<()>) -> Result<bool>;
 
-    /// Keeps what `write` writes, all of it or nothing.
+    /// Stores the output of `write`, all of it or nothing.
     fn keep(&self, key: &str, write: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>) -> Result<()>;
 }
 
-/// Fewer primitives have a hierarchy within milliseconds, sooner than a file is opened on many systems.
+/// The least number of primitives whose hierarchy is stored. With fewer, building takes milliseconds, less than opening
+/// a file on many systems.
 pub(super) const WORTH_KEEPING: usize = 4096;
 
-/// The hierarchy of the store, or else the one that `build` makes of the primitives, which the store then keeps.
+/// Returns the stored hierarchy; if there is none, builds and stores it.
 pub(super) fn found_or_built(
     name: &str,
     items: Vec<Item>,
@@ -49,7 +53,7 @@ pub(super) fn found_or_built(
     Ok(built)
 }
 
-/// The first half of a SHA-256: 32 hexadecimal digits.
+/// Returns the key: the first half of a SHA-256, 32 hexadecimal digits.
 fn key(name: &str, items: &[Item]) -> String {
     let mut hash = Sha256::new_with_prefix(MAGIC);
     hash.update(name);
@@ -78,7 +82,7 @@ mod tests {
     use std::collections::HashMap;
     use std::sync::Mutex;
 
-    /// Keeps trees in memory.
+    /// A store in memory.
     #[derive(Debug, Default)]
     struct Shelf(Mutex<HashMap<String, Vec<u8>>>);
 
@@ -106,7 +110,8 @@ mod tests {
             for accelerator in ["median", "sah"] {
                 let built = scene.hierarchy_by(accelerator, None).unwrap();
                 assert!(built.is_some());
-                // Built and kept, then found: the shelf refuses to keep it twice.
+                // The first call builds and stores the tree, the second finds it: the shelf refuses to store a key
+                // twice.
                 for _ in 0..2 {
                     assert!(scene.hierarchy_by(accelerator, Some(&shelf)).unwrap() == built, "{name}, {accelerator}");
                 }

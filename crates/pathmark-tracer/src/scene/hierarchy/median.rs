@@ -1,8 +1,9 @@
-//! `--accelerator median`: half of the primitives to either side, along the axis where their centroids spread most, down to one each.
+//! `--accelerator median`: each child gets half of the primitives, along the axis of the widest spread of centroids,
+//! down to one primitive per leaf.
 
 use super::{Bounds, Item, Split};
 
-/// The rule; it remembers nothing.
+/// The rule; it has no state.
 #[derive(Clone)]
 pub(super) struct Median;
 

@@ -1,10 +1,10 @@
 //! A bounding volume hierarchy over the primitives, so that a ray is tested against few of them: `--accelerator median` and `sah`, which
 //! report B describes.
 //!
-//! It finds what testing every primitive finds, to the bit: boxes have a padding that covers the rounding of box and primitive (hits of
-//! triangles that it may not cover are looked at again, `shape/doubt.rs`), a box as far as the nearest hit is still opened, and among
-//! equally near primitives the lowest number wins. It is built from total orders, so the same scene gives the same tree, whatever the number of
-//! threads that build it.
+//! It finds the same hits as testing every primitive, to the bit. Boxes have a padding that covers the rounding errors
+//! of the box and primitive tests; triangle hits that it may not cover are searched again (`shape/doubt.rs`). A box
+//! exactly as far as the nearest hit is still opened, and among equally near primitives the lowest number wins. It is
+//! built from total orders, so the same scene gives the same tree for any number of threads that build it.
 //!
 //! To add a way of splitting: write its file with a type that implements [`Split`], and give it a line in `accelerators!` below.
 
@@ -40,13 +40,13 @@ pub struct Tests {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Node {
     faces: Faces,
-    /// Of an inner node the first child, behind which is the second; of a leaf its first entry in `order`.
+    /// For an inner node, the first child (the second one follows it); for a leaf, its first entry in `order`.
     at: u32,
     /// Entries of a leaf; 0 in an inner node.
     count: u32,
 }
 
-/// The tree. Children come in pairs, depth first.
+/// The binary tree. Children are stored in pairs, depth first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hierarchy {
     nodes: Vec<Node>,
@@ -61,25 +61,27 @@ struct Item {
     number: u32,
 }
 
-/// How a node's primitives are divided between its children.
+/// A rule that divides a node's primitives between its children.
 trait Split: Clone + Send + Sync {
-    /// Of few primitives: the axis, and how many of the node's primitives, in the order of their centroids along it, go to the first child; `None` makes
-    /// it a leaf. `sorted` holds them three times, in the order of each axis.
+    /// Splits a node of few primitives: returns the axis, and how many primitives, in the order of their centroids
+    /// along it, go to the first child; `None` makes it a leaf. `sorted` holds them three times, in the order of each
+    /// axis.
     fn split(&mut self, bounds: &[Bounds], node: &Bounds, sorted: [&[u32]; 3]) -> Option<(usize, usize)>;
 
-    /// Of many, which nobody has sorted: puts those of the first child to the front and says how many they are, at least one and not all; `None` if
-    /// they have to be sorted. `middles` is the box around their centroids.
+    /// Divides a node of many unsorted primitives: moves the first child's primitives to the front and returns their
+    /// number, at least one and not all; `None` if they must be sorted. `middles` is the bounding box of their
+    /// centroids.
     fn divide(&self, node: &Bounds, middles: &Bounds, own: &mut [Item]) -> Option<usize>;
 }
 
-/// From primitives to a tree, if there are any.
+/// Builds a tree over primitives; `None` if there are none.
 type Build = fn(Vec<Item>) -> Option<Hierarchy>;
 
 /// One line of the table of accelerators.
 pub struct Entry {
     /// Its name on the command line, in CSV and TOML.
     pub name: &'static str,
-    /// What it is, in a line.
+    /// A description in one line.
     pub about: &'static str,
     build: Option<Build>,
 }
@@ -97,31 +99,33 @@ accelerators! {
     "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|items| build::build(items, &sah::Sah::new()));
 }
 
-/// From so many primitives on, a hierarchy is faster than testing all of them (experiment `acceleration`). Of the shipped scenes those with
-/// 12 and more gain, also `furnace` with 12 triangles and 2 spheres and `vista` with spheres in spheres; those with up to 9 lose.
+/// The least number of primitives for which a hierarchy is faster than testing all of them (experiment `acceleration`).
+/// Of the shipped scenes those with 12 and more gain, also `furnace` with 12 triangles and 2 spheres and `vista` with
+/// spheres in spheres; those with up to 9 lose.
 const WORTH_A_HIERARCHY: usize = 12;
 
-/// Likewise, where lanes test spheres side by side, in registers of single precision: with registers of 16 `spheres:100` is 1.2 times as fast without
-/// one and `spheres:200` with, with registers of 8 `spheres:50` as fast and `spheres:100` 1.4 times as fast with.
+/// Likewise, in multiples of the register width, where lanes test spheres side by side in registers of single
+/// precision. With registers of 16, `spheres:100` is 1.2 times as fast without a hierarchy and `spheres:200` with one.
+/// With registers of 8, `spheres:50` is as fast, and `spheres:100` is 1.4 times as fast with one.
 const REGISTERS_WORTH_A_HIERARCHY: usize = 8;
 
-/// Likewise, in as many primitives as there are lanes, where lanes of double precision test any primitives side by side: testing all triangles of
-/// `bumpy-ball:N` is as fast at some 100 triangles in 16 lanes, and at 45 in 8.
+/// Likewise, in multiples of the number of lanes, where lanes of double precision test any primitives side by side:
+/// testing all triangles of `bumpy-ball:N` is as fast at some 100 triangles in 16 lanes, and at 45 in 8.
 const DOUBLES_WORTH_A_HIERARCHY: usize = 6;
 
 /// Likewise, in single precision: at some 130 triangles in 32 lanes, and at 60 in 16.
 const SINGLES_WORTH_A_HIERARCHY: usize = 4;
 
-/// How primitives are tested where there is no hierarchy.
+/// The tests of primitives without a hierarchy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scan {
     /// One after the other.
     OneByOne,
-    /// Spheres, each against the rays of many lanes, whose registers hold so many numbers of single precision.
+    /// Spheres, each against the rays of many lanes; registers hold this many numbers of single precision.
     Spheres(usize),
-    /// Any primitives, each against the rays of so many lanes of double precision.
+    /// Any primitives, each against the rays of this many lanes of double precision.
     Doubles(usize),
-    /// Likewise, of single precision.
+    /// Likewise, with lanes of single precision.
     Singles(usize),
 }
 
@@ -131,12 +135,13 @@ impl Entry {
         self.build.is_some()
     }
 
-    /// Whether a store is asked for a hierarchy over so many primitives.
+    /// Whether a store is asked for a hierarchy over that many primitives.
     pub fn is_kept(&self, primitives: usize) -> bool {
         self.is_hierarchy() && primitives >= kept::WORTH_KEEPING
     }
 
-    /// Builds the structure over primitives with these boxes, or takes it from the store; `None` if there is nothing to build.
+    /// Builds the hierarchy over primitives with these boxes, or takes it from the store; `None` if there is nothing to
+    /// build.
     pub fn build(
         &self,
         bounds: impl Iterator<Item = Option<Bounds>>,
@@ -153,7 +158,7 @@ impl Entry {
     }
 }
 
-/// The accelerator of that name, or the fitting one for so many primitives.
+/// Returns the accelerator of that name; without a name, the default for that many primitives.
 pub fn accelerator(name: Option<&str>, primitives: usize, scan: Scan) -> Option<&'static Entry> {
     let worth = match scan {
         Scan::OneByOne => WORTH_A_HIERARCHY,
@@ -167,8 +172,8 @@ pub fn accelerator(name: Option<&str>, primitives: usize, scan: Scan) -> Option<
 }
 
 impl Hierarchy {
-    /// The nodes in their order: the faces of their boxes, of an inner node the first child and 0, of a leaf the first entry and how many it has in
-    /// [`Hierarchy::order`].
+    /// Returns the nodes in their order, each with the faces of its box and two numbers: for an inner node, the first
+    /// child and 0; for a leaf, the first entry in [`Hierarchy::order`] and the number of entries.
     pub(crate) fn nodes(&self) -> impl ExactSizeIterator<Item = (Faces, u32, u32)> {
         self.nodes.iter().map(|node| (node.faces, node.at, node.count))
     }

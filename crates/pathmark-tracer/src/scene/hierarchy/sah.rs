@@ -1,22 +1,23 @@
-//! `--accelerator sah`: every position between two centroids along every axis is tried, and the one with the least expected cost taken:
-//! `C = C_trav + (S_A / S_N) N_A C_isect + (S_B / S_N) N_B C_isect` (MacDonald and Booth, "Heuristics for Ray Tracing Using Space
-//! Subdivision", 1990; report B), where S are surfaces and N numbers of primitives. A node that no split makes cheaper is a leaf.
+//! `--accelerator sah`: every position between two centroids along every axis is tried, and the one with the least
+//! expected cost is taken: `C = C_trav + (S_A / S_N) N_A C_isect + (S_B / S_N) N_B C_isect` (MacDonald and Booth,
+//! "Heuristics for Ray Tracing Using Space Subdivision", 1990; report B), where S are surface areas and N numbers of
+//! primitives. A node that no split makes cheaper is a leaf.
 //!
-//! Of nodes with thousands of primitives only the places between 32 equal bins are tried (I. Wald, "On fast Construction of SAH-based Bounding
-//! Volume Hierarchies", 2007).
+//! For nodes with thousands of primitives, only the positions between 32 equal bins are tried (I. Wald, "On fast
+//! Construction of SAH-based Bounding Volume Hierarchies", 2007).
 
 use super::{Bounds, Item, Split};
 
-/// What a step of the traversal costs in tests of a primitive (measured: a box takes about as long as half a sphere).
+/// Cost of a traversal step, in tests of a primitive (measured: a box takes about half as long as a sphere).
 const TRAVERSAL: f64 = 1.0;
 
 /// Bins on an axis.
 const BINS: usize = 32;
 
-/// The primitives of a bin: the box around them, and how many there are.
+/// The primitives of a bin: their bounding box and their number.
 type Bin = (Bounds, usize);
 
-/// The rule, and room for the surfaces of everything behind a position.
+/// The rule, with a buffer for the surface area of the primitives behind each position.
 #[derive(Clone)]
 pub(super) struct Sah {
     behind: Vec<f64>,
@@ -32,7 +33,7 @@ impl Split for Sah {
     fn split(&mut self, bounds: &[Bounds], node: &Bounds, sorted: [&[u32]; 3]) -> Option<(usize, usize)> {
         let count = sorted[0].len();
         let mut best = None;
-        // Multiplied by the node's surface, so that a flat node divides nothing by zero.
+        // Multiplied by the node's surface area, so that a flat node causes no division by zero.
         let mut least = (count as f64 - TRAVERSAL) * node.half_area();
         self.behind.resize(self.behind.len().max(count), 0.0);
         for (axis, order) in sorted.iter().enumerate() {
@@ -55,7 +56,7 @@ impl Split for Sah {
     }
 
     fn divide(&self, node: &Bounds, middles: &Bounds, own: &mut [Item]) -> Option<usize> {
-        // A conversion to an integer takes what is no number for 0.
+        // On an axis without extent, positions become NaN, which the conversion to an integer turns into 0.
         let scale = [0, 1, 2].map(|axis| BINS as f64 / (middles.high[axis] - middles.low[axis]));
         let bin_of = |bounds: &Bounds, axis: usize| {
             (((bounds.middle(axis) - middles.low[axis]) * scale[axis]) as usize).min(BINS - 1)
@@ -74,7 +75,7 @@ impl Split for Sah {
     }
 }
 
-/// Those for which it holds to the front; gives their number.
+/// Moves the items that satisfy `is_first` to the front; returns their number.
 fn to_front(own: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
     let mut front = 0;
     for place in 0..own.len() {
@@ -86,7 +87,8 @@ fn to_front(own: &mut [Item], is_first: impl Fn(&Item) -> bool) -> usize {
     front
 }
 
-/// The cost and the place, an axis and a bin, that is the cheapest of the best so far and of all before a bin of this axis.
+/// Returns the cheaper of the best split so far and the best one before a bin of this axis: its cost and its place, an
+/// axis and a bin.
 fn cheaper(mut best: (f64, Option<(usize, usize)>), axis: usize, bins: &[Bin; BINS]) -> (f64, Option<(usize, usize)>) {
     let add = |(grown, number): Bin, bin: &Bin| (grown.and(&bin.0), number + bin.1);
     let mut behind = [0.0; BINS];

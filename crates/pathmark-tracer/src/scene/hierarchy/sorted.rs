@@ -1,9 +1,9 @@
-//! The nodes over few primitives, which are sorted along each axis once.
+//! Construction of the nodes over few primitives, which are sorted once along each axis.
 
 use super::build::{UNBALANCED, UNKNOWN};
 use super::{Bounds, Item, Node, Split};
 
-/// What is still to be built: a node, its range of the sorted primitives, and its depth.
+/// A node that is still to be built: its index, its range of the sorted primitives, and its depth.
 struct Task {
     node: usize,
     first: usize,
@@ -11,12 +11,13 @@ struct Task {
     depth: usize,
 }
 
-/// The nodes over these primitives, the root first, whose leaves have their places from `first` on. The primitives are put into the order of the leaves.
+/// Builds the nodes over these primitives, the root first. Places in the order of the leaves start at `first_place`.
+/// The primitives are put into that order.
 pub(super) fn sorted(own: &mut [Item], first_place: usize, depth: usize, rule: &mut impl Split) -> Vec<Node> {
     own.sort_unstable_by_key(|item| item.number);
     let numbers: Vec<u32> = own.iter().map(|item| item.number).collect();
     let bounds: Vec<Bounds> = own.iter().map(|item| item.bounds).collect();
-    // Ties go by number: a total order, so one tree.
+    // Ties are broken by number: a total order gives a unique tree.
     let mut sorted = [0, 1, 2].map(|axis| {
         let mut order: Vec<(f64, u32)> = (0..).zip(&bounds).map(|(k, bounds)| (bounds.middle(axis), k)).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -58,7 +59,7 @@ pub(super) fn sorted(own: &mut [Item], first_place: usize, depth: usize, rule: &
     nodes
 }
 
-/// Those of the first child to the front; both keep their order.
+/// Moves the primitives of the first child to the front; the primitives of both children keep their order.
 fn partition(range: &mut [u32], to_first: &[bool], aside: &mut Vec<u32>) {
     aside.clear();
     let mut front = 0;
@@ -74,7 +75,7 @@ fn partition(range: &mut [u32], to_first: &[bool], aside: &mut Vec<u32>) {
     range[front..].copy_from_slice(aside);
 }
 
-/// The axis along which a box is longest.
+/// Returns the longest axis of a box.
 fn widest(bounds: &Bounds) -> usize {
     let length = |axis: usize| bounds.high[axis] - bounds.low[axis];
     (1..3).fold(0, |widest, axis| if length(axis) > length(widest) { axis } else { widest })

@@ -1,4 +1,4 @@
-//! A ray through the tree: a loop over a stack of fixed size, nearer children first.
+//! Traversal of the tree by a ray: a loop over a stack of fixed size, nearer children first.
 
 use super::bounds::Slabs;
 use super::build::DEEPEST;
@@ -6,7 +6,7 @@ use super::{Hierarchy, Tests};
 use crate::math::Ray;
 use crate::scene::shape::Nearest;
 
-/// Nodes to come back to, and where the ray enters their boxes.
+/// A stack of nodes that are visited later, with the distances at which the ray enters their boxes.
 struct Waiting {
     nodes: [u32; DEEPEST],
     distances: [f64; DEEPEST],
@@ -21,7 +21,8 @@ impl Waiting {
         self.count += 1;
     }
 
-    /// The last one whose box begins no farther than `limit`. At the very distance of the nearest so far a lower number may win the tie.
+    /// Returns the last node whose box begins no farther than `limit`. At exactly the distance of the nearest hit so
+    /// far, a lower number may win the tie.
     #[inline(always)]
     fn pop(&mut self, limit: f64) -> Option<u32> {
         while self.count > 0 {
@@ -35,7 +36,7 @@ impl Waiting {
 }
 
 impl Hierarchy {
-    /// The nearest primitive, if it beats `nearest`; `distance` tests one.
+    /// Returns the nearest primitive, or `nearest` if none beats it; `distance` tests a primitive.
     #[inline(always)]
     pub(in crate::scene) fn nearest(
         &self,
@@ -45,7 +46,7 @@ impl Hierarchy {
         mut distance: impl FnMut(u32) -> f64,
     ) -> Nearest {
         let slabs = Slabs::new(ray);
-        // One node waits for each level above the one that is looked at.
+        // At most one node waits for each level above the current one.
         let mut waiting = Waiting { nodes: [0; DEEPEST], distances: [0.0; DEEPEST], count: 0 };
         tests.boxes += 1;
         let mut next = slabs.enter(&self.nodes[0].faces, nearest.t).map(|_| 0);
@@ -54,7 +55,7 @@ impl Hierarchy {
             if node.count == 0 {
                 tests.boxes += 2;
                 let (first, second) = (node.at, node.at + 1);
-                // Written out: as a closure it is a call for each box, with everything that the loop holds put away and fetched.
+                // Written out: as a closure, each box test is a call that saves and restores all state of the loop.
                 let a = slabs.enter(&self.nodes[first as usize].faces, nearest.t);
                 let b = slabs.enter(&self.nodes[second as usize].faces, nearest.t);
                 next = match (a, b) {

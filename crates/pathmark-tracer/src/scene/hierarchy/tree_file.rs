@@ -1,5 +1,5 @@
-//! The file of a hierarchy. It has no boxes: they are those of the primitives, so whatever a file says, rays find the same. Numbers are little-endian,
-//! of 32 bits where nothing else is said:
+//! The file format of a hierarchy. It has no boxes: they are computed from the primitives, so whatever a file contains,
+//! rays find the same hits. Numbers are little-endian and have 32 bits unless stated otherwise:
 //!
 //! ```text
 //! pathmark tree 1\n   16 bytes
@@ -16,13 +16,13 @@ use sha2::digest::Output;
 use sha2::{Digest, Sha256};
 use std::io::{self, ErrorKind, Read, Write};
 
-/// How files begin. The number is raised when the same primitives give another hierarchy.
+/// The first bytes of a file. The number is raised when the same primitives give another hierarchy.
 pub(super) const MAGIC: &[u8; 16] = b"pathmark tree 1\n";
 
 /// Numbers that are read or written at once.
 pub(super) const BLOCK: usize = 1 << 14;
 
-/// Writes or reads, and hashes all of it.
+/// A writer or reader that hashes all its bytes.
 struct Hashed<'a, F: ?Sized> {
     file: &'a mut F,
     hash: Sha256,
@@ -77,7 +77,7 @@ fn damaged(problem: &str) -> io::Error {
 }
 
 impl Hierarchy {
-    /// `numbers` are those of all primitives that have a box.
+    /// Writes the hierarchy; `numbers` are the numbers of all primitives that have a box.
     pub(super) fn write(&self, file: &mut dyn Write, numbers: &[u32]) -> io::Result<()> {
         let mut file = Hashed { file, hash: Sha256::new() };
         file.put(MAGIC)?;
@@ -93,7 +93,7 @@ impl Hierarchy {
         file.write_all(&hash.finalize())
     }
 
-    /// A hierarchy over these primitives.
+    /// Reads a hierarchy over these primitives.
     pub(super) fn read(file: &mut dyn Read, items: &[Item]) -> io::Result<Self> {
         let mut file = Hashed { file, hash: Sha256::new() };
         let mut magic = [0; MAGIC.len()];
@@ -116,15 +116,15 @@ impl Hierarchy {
         Self::assembled(nodes.as_chunks().0, &order, items).map_err(damaged)
     }
 
-    /// From `at` and `count` of the nodes, and the order of the primitives. A forged file can carry a valid SHA-256, so everything is checked that a
-    /// search relies on.
+    /// Assembles a hierarchy from `at` and `count` of the nodes and the order of the primitives. A forged file can
+    /// carry a valid SHA-256, so every property that a search relies on is checked.
     fn assembled(nodes: &[[u32; 2]], order: &[u32], items: &[Item]) -> std::result::Result<Self, &'static str> {
         let mut is_missing = vec![true; items.len()];
         let mut is_new = |place: &u32| is_missing.get_mut(*place as usize).is_some_and(std::mem::take);
         if !order.iter().all(&mut is_new) {
             return Err("its primitives are others");
         }
-        // Below the root; 0 where no parent has been seen.
+        // Levels below the root; 0 if no parent has been seen.
         let mut levels = vec![0_u8; nodes.len()];
         for (index, [at, count]) in nodes.iter().enumerate() {
             let (at, level) = (*at as usize, levels[index]);
@@ -134,7 +134,7 @@ impl Hierarchy {
             if *count > 0 {
                 continue;
             }
-            // Children stand behind their parent, so none is its own ancestor.
+            // Children come after their parent, so no node is its own ancestor.
             let children = levels.get_mut(at..at + 2).filter(|_| at > index && usize::from(level) < DEEPEST);
             match children {
                 Some(children) if *children == [0, 0] => children.fill(level + 1),
@@ -142,7 +142,7 @@ impl Hierarchy {
             }
         }
         let mut all = vec![Node { faces: Bounds::EMPTY.faces(), at: 0, count: 0 }; nodes.len()];
-        // Where a node's primitives begin and end in the order of the leaves.
+        // The begin and end of each node's primitives in the order of the leaves.
         let mut ranges = vec![[0; 2]; nodes.len()];
         for (index, &[at, count]) in nodes.iter().enumerate().rev() {
             let (first, mut bounds) = (at as usize, Bounds::EMPTY);
@@ -179,7 +179,7 @@ pub(super) mod tests {
     use crate::digest::Fingerprint;
     use crate::scene::{Scene, load};
 
-    /// The primitives that a hierarchy of the scene is over.
+    /// Returns the primitives that a hierarchy of the scene holds.
     pub(in crate::scene::hierarchy) fn items(scene: &Scene) -> Vec<Item> {
         let with_box = (0..).zip(scene.primitives.bounds());
         with_box.filter_map(|(number, bounds)| Some(Item { bounds: bounds?.padded(), number })).collect()
@@ -220,7 +220,7 @@ pub(super) mod tests {
         let is_leaf = |index: usize| nodes[index][1] > 0;
         let leaf = (0..nodes.len()).find(|index| is_leaf(*index)).unwrap();
         let last = (0..nodes.len()).rfind(|index| !is_leaf(*index)).unwrap();
-        // Two leaves of a node, of as many primitives each.
+        // Two sibling leaves with the same number of primitives.
         let equal =
             (1..nodes.len()).step_by(2).find(|first| is_leaf(*first) && nodes[*first][1] == nodes[first + 1][1]);
         let equal = equal.unwrap();
@@ -250,7 +250,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Searches have room for so many levels.
+    /// Searches have room for only `DEEPEST` levels.
     #[test]
     fn too_many_levels_are_refused() {
         let all = items(&load("spheres:5000").unwrap());
@@ -267,8 +267,8 @@ pub(super) mod tests {
         assert_eq!(chain(DEEPEST as u32 + 1), Err("a node has no children of its own"));
     }
 
-    /// A golden digest, which changes when the same primitives give another hierarchy. Then raise the number in [`MAGIC`], or this program takes files of
-    /// older programs for its own.
+    /// A golden digest, which changes when the same primitives give another hierarchy. Then raise the number in
+    /// [`MAGIC`]; otherwise this program accepts files of older programs.
     #[test]
     fn the_same_primitives_give_the_same_tree_as_ever() {
         let mut fingerprint = Fingerprint::default();

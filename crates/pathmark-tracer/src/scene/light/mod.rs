@@ -1,7 +1,8 @@
-//! Surfaces that give off light, as something to aim at: what next-event estimation chooses from. One kind of target a file.
+//! Lights: emitting surfaces as targets of next-event estimation. Each kind of target has its own file.
 //!
-//! Planes have no end, a background has no place, and of a sphere the part may be left out that no path can reach; such light is found by the
-//! directions of surfaces alone. [`Lights::density`] says which, so what is not aimed at is not lost.
+//! Planes are infinite and a background has no position, so neither is a target; a sphere's target may leave out the
+//! part that no path can reach. Only BSDF sampling finds such light. It is not lost, because [`Lights::density`] is 0
+//! there.
 
 mod reach;
 mod sphere;
@@ -16,40 +17,42 @@ pub use sphere::one_minus_cos;
 pub use sphere::towards_cap;
 pub use triangle::{TriangleTarget, per_steradian, point_of};
 
-/// A direction towards a light.
+/// A sampled direction towards a light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aim {
     /// The direction, of length 1.
     pub direction: Vec3,
-    /// The primitive that it is to arrive at; it need not, if something is before it.
+    /// The primitive that it aims at; another one may block the way.
     pub primitive: u32,
-    /// How likely the light and the direction were, per steradian; positive and finite.
+    /// The density of the light and the direction, per steradian; positive and finite.
     pub density: f64,
 }
 
-/// What can be aimed at. Directions come with their density per steradian, seen from `point`.
+/// A target of next-event estimation. Directions come with their density per steradian, seen from `point`.
 trait Target {
-    /// Chooses a direction; `None` if none that was chosen leads there. `own` tells which side the point is on if it is on the target itself.
+    /// Samples a direction; `None` if the sampled one does not lead to the target. If the point is on the target
+    /// itself, `own` says whether it is on the inner side.
     fn aim(&self, point: Vec3, own: Option<bool>, u: [f64; 2]) -> Option<(Vec3, f64)>;
 
-    /// How likely the direction of a ray was that set out from `ray.origin` and met the target at `hit`; 0 if it is never chosen.
+    /// Returns the density of the direction of a ray that started at `ray.origin` and met the target at `hit`; 0 if it
+    /// is never sampled.
     fn density(&self, ray: &Ray, own: Option<bool>, hit: &Hit) -> f64;
 
-    /// The area of what is aimed at.
+    /// Returns the area that is aimed at.
     fn area(&self) -> f64;
 }
 
-/// Anything that can be aimed at.
+/// Any target.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnyTarget {
-    /// A sphere, or the cap of it that can be seen.
+    /// A sphere, or its cap that paths can reach.
     Sphere(SphereTarget),
     /// A whole triangle.
     Triangle(TriangleTarget),
 }
 
 impl AnyTarget {
-    /// What of a primitive can be aimed at.
+    /// Returns the target for a primitive: its part that paths can reach; `None` if there is none.
     fn of(primitives: &Primitives, primitive: u32, walls: &Walls) -> Option<Self> {
         let mut index = primitive as usize;
         if let Some(sphere) = primitives.spheres.get(index) {
@@ -73,18 +76,18 @@ impl AnyTarget {
     }
 }
 
-/// A light, and how it is chosen.
+/// A light with its selection probability.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Light {
     pub target: AnyTarget,
     pub primitive: u32,
-    /// How often it is chosen.
+    /// The probability of choosing it.
     pub chance: f64,
-    /// How often it or one before it is.
+    /// The probability of choosing it or one before it.
     pub up_to: f64,
 }
 
-/// Pairs of a light and a wall that are looked at; with more of them spheres are aimed at as wholes.
+/// The most pairs of a light and a wall that are tested; with more, whole spheres are targets.
 const MOST_PAIRS: usize = 1 << 24;
 
 /// The lights of a scene.
@@ -92,16 +95,16 @@ const MOST_PAIRS: usize = 1 << 24;
 pub struct Lights {
     /// Every light that estimators aim at.
     pub lights: Vec<Light>,
-    /// The light of each primitive, or [`NO_LIGHT`].
+    /// The light's index for each primitive, or [`NO_LIGHT`].
     pub of_primitive: Vec<u32>,
 }
 
-/// Of a primitive that is none.
+/// Marks a primitive that is no light.
 pub const NO_LIGHT: u32 = u32::MAX;
 
 impl Lights {
-    /// The lights of a scene whose camera rays start at `origins`. Half of the time a light is chosen by its power, half of the time evenly, so
-    /// that none is starved where a large one outshines it.
+    /// Collects the lights of a scene whose camera rays start at `origins`. Half of the choices are in proportion to
+    /// power and half are uniform, so that a bright light does not starve the others.
     pub(super) fn of(scene: &Scene, origins: &[Vec3]) -> Self {
         let is_light = |owner: &u32| {
             let object = &scene.objects[*owner as usize];
@@ -121,7 +124,7 @@ impl Lights {
         }
         let all: f64 = found.iter().map(|(_, _, power)| power).sum();
         let even = 1.0 / found.len() as f64;
-        // By sums of powers instead of chances, so that the last of very many is 1.
+        // From sums of powers instead of probabilities, so that the last of very many is 1.
         let chance = |power: f64, count: f64| if all > 0.0 { 0.5 * (power / all + count * even) } else { count * even };
         let mut of_primitive = vec![NO_LIGHT; scene.owners.len()];
         let mut so_far = 0.0;
@@ -135,8 +138,8 @@ impl Lights {
         Self { lights, of_primitive }
     }
 
-    /// A direction from a point towards a light; `None` if there is none or the direction that was chosen leads past it. `choice` is asked only
-    /// where there are several lights.
+    /// Samples a direction from a point towards a light; `None` if there is no light or the direction misses it. A
+    /// single light is chosen without calling `choice`.
     #[inline(always)]
     pub fn aim(
         &self,
@@ -149,7 +152,7 @@ impl Lights {
             [only] => only,
             lights => {
                 let number = choice();
-                // The last sum may fall short of 1 by rounding.
+                // Rounding may leave the last sum below 1.
                 let index = lights.partition_point(|light| light.up_to <= number).min(lights.len().checked_sub(1)?);
                 &lights[index]
             }
@@ -163,12 +166,13 @@ impl Lights {
         (density > 0.0 && density < f64::INFINITY).then_some(Aim { direction, primitive: light.primitive, density })
     }
 
-    /// How often each light is chosen.
+    /// Returns the probability of choosing each light.
     pub fn chances(&self) -> impl Iterator<Item = f64> {
         self.lights.iter().map(|light| light.chance)
     }
 
-    /// How likely [`Lights::aim`] was to choose the direction of a ray that met `hit`, per steradian; 0 if nothing is aimed at there.
+    /// Returns the density per steradian with which [`Lights::aim`] samples the direction of a ray that met `hit`; 0 if
+    /// `hit` is on no target.
     #[inline(always)]
     pub fn density(&self, ray: &Ray, from: Option<Standpoint>, hit: &Hit) -> f64 {
         let Some(light) = self.lights.get(self.of_primitive[hit.primitive as usize] as usize) else { return 0.0 };
@@ -181,7 +185,7 @@ impl Lights {
     }
 }
 
-/// The side of the light that a point of its own is on.
+/// Returns whether a ray that starts on this light leaves to its inside; `None` if it starts elsewhere.
 #[inline(always)]
 fn own(from: Option<Standpoint>, light: u32) -> Option<bool> {
     from.filter(|from| from.primitive == light).map(|from| from.inside)
@@ -195,7 +199,7 @@ fn mean(radiance: Rgb) -> f64 {
 mod tests {
     use crate::scene::load;
 
-    /// H37: of very many lights every one is chosen, none twice, and the chances make 1.
+    /// H37: with very many lights, each is chosen, none occurs twice, and the probabilities sum to 1.
     #[test]
     fn chances_of_many_lights_make_one() {
         let scene = load("spheres:100000").unwrap().in_equilibrium();
@@ -209,7 +213,7 @@ mod tests {
         assert!(lights.of_primitive.iter().enumerate().all(|(light, of)| light == *of as usize));
     }
 
-    /// Light outside of a closed room is not aimed at: here the room's own sphere is between.
+    /// A light outside a closed room is no target: here the room's ceiling is between.
     #[test]
     fn what_cannot_be_reached_is_no_target() {
         let mut scene = load("cornell").unwrap();

@@ -1,5 +1,5 @@
-//! Which part of a spherical light any path can reach. No path crosses an opaque sphere or plane: whatever starts on one side of it stays
-//! there. Of smallpt's light, a sphere of radius 600, that is a cap of height 0.268 below the ceiling.
+//! Reachable parts of spherical lights. No path crosses an opaque sphere or plane: it stays on the side where it
+//! starts. For smallpt's light, a sphere of radius 600, the reachable part is a cap of height 0.268 below the ceiling.
 
 use super::sphere::Cap;
 use crate::math::{Vec3, dot};
@@ -13,7 +13,7 @@ enum Wall {
         sphere: Sphere,
         inside: bool,
     },
-    /// Paths are where the normal points.
+    /// Paths are on the side that the normal points to.
     Plane(Plane),
 }
 
@@ -21,17 +21,17 @@ enum Wall {
 #[derive(Default)]
 pub(super) struct Walls(Vec<Wall>);
 
-/// How much of a sphere can be reached.
+/// The reachable part of a sphere.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Part {
     All,
     Nothing,
-    /// What can be is in this cap.
+    /// The reachable part is in this cap.
     Cap(Cap),
 }
 
 impl Part {
-    /// The part of a sphere of that radius that reaches so far from its end on the axis.
+    /// Returns the part of a sphere of that radius that extends by `height` from its end on the axis.
     fn of(axis: Vec3, height: f64, radius: f64) -> Self {
         if height >= 2.0 * radius {
             Self::All
@@ -57,7 +57,7 @@ impl Wall {
                 if d >= wall + r || d + wall <= r {
                     return if *inside { Part::Nothing } else { Part::All };
                 }
-                // The circle in which they meet, by differences of lengths instead of squares.
+                // The height up to the circle of intersection, by differences of lengths instead of squares.
                 let axis = offset * (1.0 / d);
                 if *inside {
                     let height = (wall - d + r) * (wall + d - r) / (2.0 * d);
@@ -72,13 +72,15 @@ impl Wall {
 }
 
 impl Walls {
-    /// Those of a scene whose camera rays start at such points. Should one start elsewhere, it finds by chance what is not aimed at.
+    /// Returns the walls of a scene whose camera rays start at `origins`. A ray that starts elsewhere can find the
+    /// omitted lights by BSDF sampling.
     pub(super) fn of(scene: &Scene, origins: &[Vec3]) -> Self {
         let is_opaque = |primitive: u32| {
             let owner = scene.owners[primitive as usize] as usize;
             !scene.objects[owner].material.transmits()
         };
-        // Above zero on one side and below on the other; which side is it, if it is one.
+        // `height` is positive on one side and negative on the other. Returns whether all origins are on the negative
+        // side; `None` if they are on both.
         let side = |height: &dyn Fn(Vec3) -> f64| {
             let is_above = origins.iter().all(|origin| height(*origin) > 0.0);
             let is_below = origins.iter().all(|origin| height(*origin) < 0.0);
@@ -106,7 +108,8 @@ impl Walls {
         self.0.len()
     }
 
-    /// What can be reached of a sphere, which is the primitive of that number: the smallest cap that a single wall leaves.
+    /// Returns the reachable part of a sphere, which is the primitive of that number: the smallest cap that a single
+    /// wall leaves.
     pub(super) fn reachable(&self, primitive: u32, light: &Sphere) -> Part {
         let mut reachable = Part::All;
         for wall in &self.0 {

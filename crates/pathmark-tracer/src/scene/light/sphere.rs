@@ -1,5 +1,6 @@
-//! A sphere as a target: by the cone of directions under which it is seen (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct
-//! Lighting Calculations", 1996), evenly over all directions from within it, and by area where little of it can be reached.
+//! A sphere as a target: sampled by the cone of directions that it subtends (Shirley, Wang and Zimmerman, "Monte Carlo
+//! Techniques for Direct Lighting Calculations", 1996), uniformly over all directions from inside it, and by area if
+//! only a small part can be reached.
 
 use super::Target;
 use crate::math::{Frame, Ray, Real, Vec3, dot, sin_cos_turns};
@@ -16,25 +17,25 @@ pub struct Cap {
     pub height: f64,
 }
 
-/// The sphere, or the part of it that can be reached.
+/// The sphere, or its reachable part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SphereTarget {
     sphere: Sphere,
     cap: Option<Cap>,
 }
 
-/// How directions are chosen from a point.
+/// The sampling of directions from a point.
 enum Way<'a> {
-    /// The point is inside.
+    /// Uniformly over all directions, because the point is inside.
     Everywhere,
-    /// Evenly over the area of the cap.
+    /// Uniformly over the area of the cap.
     Area(&'a Cap),
-    /// Evenly in the cone around an axis, whose half angle has this 1 - cos.
+    /// Uniformly in the cone around an axis; the half angle is given as 1 - cos.
     Cone { axis: Vec3, one_minus_cos: f64 },
 }
 
-/// 1 - cos of the half angle under which a sphere is seen from that distance of its centre, beyond the radius: to a few roundings whatever
-/// the ratio, where 1 - sqrt(1 - (r/d)²) has no digit left at 1e8.
+/// Returns 1 - cos of the half angle that a sphere subtends at `distance` from its centre, which must exceed the
+/// radius. The error is a few rounding errors at any ratio, while 1 - sqrt(1 - (r/d)²) has no correct digit at 1e8.
 #[inline(always)]
 pub fn one_minus_cos<T: Real>(radius: T, distance: T) -> T {
     let sin = radius / distance;
@@ -42,7 +43,7 @@ pub fn one_minus_cos<T: Real>(radius: T, distance: T) -> T {
     sin * sin / (T::splat(1.0) + cos2.sqrt())
 }
 
-/// A direction evenly in the cone around an axis whose half angle has this 1 - cos.
+/// Samples a direction uniformly in the cone around an axis; the half angle is given as 1 - cos.
 #[inline(always)]
 pub fn towards_cap<T: Real>(axis: Vec3<T>, one_minus_cos: T, u: [T; 2]) -> Vec3<T> {
     let z = u[1] * one_minus_cos;
@@ -56,12 +57,12 @@ impl SphereTarget {
         Self { sphere, cap }
     }
 
-    /// The sphere, and the part of it that is aimed at, if that is not all.
+    /// Returns the sphere, and the cap that is aimed at, if that is not the whole sphere.
     pub fn parts(&self) -> (Sphere, Option<Cap>) {
         (self.sphere, self.cap)
     }
 
-    /// `None` from its own outside, where it is hidden by itself.
+    /// Returns the sampling of directions; `None` from a point on its own outside, because the sphere hides itself.
     #[inline(always)]
     fn way(&self, point: Vec3, own: Option<bool>) -> Option<Way<'_>> {
         let radius = self.sphere.radius;
@@ -75,7 +76,7 @@ impl SphereTarget {
             return None;
         }
         match &self.cap {
-            // The cone reaches a cap of this height too, if nothing is before it.
+            // From the point, a cap of height r (d - r)/d is visible; a lower reachable cap is sampled by area.
             Some(cap) if cap.height * distance < radius * (distance - radius) => Some(Way::Area(cap)),
             _ => {
                 let axis = offset * (1.0 / distance);
@@ -111,7 +112,7 @@ impl Target for SphereTarget {
             Some(Way::Everywhere) => UNIFORM_SPHERE_DENSITY,
             Some(Way::Cone { one_minus_cos, .. }) => 0.5 / (PI * one_minus_cos),
             Some(Way::Area(cap)) => {
-                // |n - a|² is 2 (1 - cos) without its cancellation.
+                // |n - a|² equals 2 (1 - cos), without its cancellation.
                 let off = hit.normal - cap.axis;
                 if dot(off, off) * self.sphere.radius > 2.0 * cap.height {
                     return 0.0;

@@ -1,30 +1,31 @@
-//! A triangle as a target: points evenly over its area (Turk, "Generating Random Points in Triangles", 1990). It gives off light on both
-//! sides.
+//! A triangle as a target: points are sampled uniformly over its area (Turk, "Generating Random Points in Triangles",
+//! 1990). It emits on both sides.
 
 use super::Target;
 use crate::math::{Ray, Real, Vec3, dot};
 use crate::scene::{Hit, Primitive, Triangle};
 
-/// The triangle with what aiming at it needs.
+/// A triangle with the data for aiming at it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TriangleTarget {
     /// The corner that the edges start from.
     pub corner: Vec3,
-    /// From there to the other corners.
+    /// The edges from there to the other corners.
     pub edges: [Vec3; 2],
-    /// Of unit length.
+    /// The unit normal.
     pub normal: Vec3,
     area: f64,
 }
 
-/// A point of the triangle with that corner and the edges from there.
+/// Samples a point of the triangle with that corner and the edges from there.
 #[inline(always)]
 pub fn point_of<T: Real>(corner: Vec3<T>, [e, f]: [Vec3<T>; 2], [u, v]: [T; 2]) -> Vec3<T> {
     let root = u.sqrt();
     corner + e * (root * (T::splat(1.0) - v)) + f * (root * v)
 }
 
-/// How likely a direction is that leads to a point of a flat light of that area and normal, whose distance has that square.
+/// Returns the density per steradian of a direction to a point on a flat light of that area and normal; `square` is the
+/// squared distance to the point.
 #[inline(always)]
 pub fn per_steradian<T: Real>(square: T, direction: Vec3<T>, normal: Vec3<T>, area: T) -> T {
     square / (dot(direction, normal).abs() * area)
@@ -47,7 +48,7 @@ impl Target for TriangleTarget {
         let towards = point_of(self.corner, self.edges, u) - point;
         let square = dot(towards, towards);
         let direction = towards * (1.0 / square.sqrt());
-        // Nothing flat is seen from itself.
+        // A flat surface is not visible from itself.
         (own.is_none() && square > 0.0).then(|| (direction, per_steradian(square, direction, self.normal, self.area)))
     }
 

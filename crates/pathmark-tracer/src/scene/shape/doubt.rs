@@ -1,48 +1,54 @@
-//! Hits of triangles that are rounding alone, and the search that leaves them out.
+//! Doubtful hits: triangle hits that may be rounding errors, and the search that leaves them out.
 //!
-//! A search goes by numbers of the ray's origin and of corners, all of which are rounded, and so can take for a hit what is none in two ways.
-//! *A neighbour*: where a ray starts on one triangle within rounding of another, it may seem to start before that one, or behind it. *A sliver*: a
-//! triangle that looks so thin to the ray that its edge functions are noise is met anywhere along its length, if at all.
+//! The coordinates of a ray's origin and of corners are rounded, so a search can find false hits in two ways. *A
+//! neighbour*: a ray that starts on one triangle, within rounding error of another, may seem to start in front of the
+//! other one or behind it. *A sliver*: if a triangle looks so thin to the ray that its edge functions are noise, the
+//! ray may hit it anywhere along its length, or miss it.
 //!
-//! A hit is *sure* if rounding does not matter to it. The point where it meets must be in the triangle's box, as far as coordinates are. And if it
-//! starts near that triangle's plane, on another one, that triangle must have a corner in front of the plane which the ray leaves, and the ray must
-//! come from the side on which the other one is; so much follows from corners alone, and does not ask how exactly the ray's origin is known.
+//! A hit is *sure* if rounding does not matter to it. Its point must be in the triangle's bounding box, within rounding
+//! error of coordinates. If the ray starts near that triangle's plane, on another triangle, two more conditions apply.
+//! The hit triangle must have a corner in front of the plane that the ray leaves, and the ray must come from the side
+//! on which its own triangle is. Both follow from corners alone and do not depend on how exactly the ray's origin is
+//! known.
 //!
-//! The first hit of all that are sure, F, is what every search finds. A search returns its nearest hit; if that is near or not in its box
-//! ([`Primitives::is_doubtful`]), [`Primitives::surely_nearest`] searches again for sure ones alone; lanes do so by a tree whose boxes are larger.
-//! A search without a hierarchy looks at every hit, so a sure one that it returns is F. One by a hierarchy may pass by hits that are not in their
-//! boxes, but none that is sure: its point, at distance t, is at most 32 u (|b| + |o|) outside of its box, rounding that point moves it by 6 u (|b| +
-//! |o|), and boxes are padded by 64 u (|b| + |o|), so that after another 6 u for their own test they begin no farther than t. (u is the unit of
-//! rounding, |o| and |b| are the largest coordinates of the ray's origin and of the box.) If its nearest hit is sure, F was not farther than any
-//! limit on the way, was found and is what it returns.
+//! Every search finds F, the first of all sure hits. A search returns its nearest hit. If the ray starts near the plane
+//! of the hit triangle, or the point is not in its box ([`Primitives::is_doubtful`]), [`Primitives::surely_nearest`]
+//! searches again, for sure hits only. Lanes search again in a tree with larger boxes. A search without a hierarchy
+//! tests every hit, so a sure hit that it returns is F. A search in a hierarchy may miss hits that are not in their
+//! boxes, but no sure hit. The point of a sure hit, at distance t, is at most 32 u (|b| + |o|) outside its box;
+//! rounding moves that point by 6 u (|b| + |o|), and boxes are padded by 64 u (|b| + |o|). So after another 6 u for
+//! their own test, the boxes begin no farther than t. (u is the unit of rounding; |o| and |b| are the largest
+//! coordinates of the ray's origin and of the box.) If the nearest hit is sure, F was within every limit on the way, so
+//! F was found and is the result.
 
 use super::{Bounds, Nearest, Primitive, Primitives, Standpoint, Triangle};
 use crate::math::{Ray, Vec3, dot};
 use crate::scene::hierarchy::{Hierarchy, Tests, padding};
 use crate::scene::{AllEffects, Hit};
 
-/// How near to the plane of what it meets a ray may start and still be no reason for doubt, for each unit of the largest coordinates of the ray's origin
-/// and of the triangle, with numbers of so many digits: the square root of a unit in the last place and a few digits less. What is nearer is looked
-/// at again, which costs time and nothing else.
+/// Returns the largest distance at which a ray's start counts as near the plane of the triangle that it hits. The unit
+/// is the sum of the largest coordinates of the ray's origin and of the triangle; numbers have `digits` binary digits.
+/// The result is a few digits less than the square root of an ulp. Hits from near starts are searched again, which only
+/// costs time.
 pub const fn nearness(digits: u32) -> f64 {
     1.0 / (1_u64 << (digits * 5 / 8)) as f64
 }
 
-/// The largest of a vector's coordinates, whatever their signs.
+/// Returns the largest absolute coordinate of a vector.
 fn largest(v: Vec3) -> f64 {
     v.x.abs().max(v.y.abs()).max(v.z.abs())
 }
 
-/// What there is to doubt about a hit.
+/// The reasons to doubt a hit.
 struct Looks {
     /// Whether the ray starts near the triangle's plane.
     is_near: bool,
-    /// Whether the point is in the triangle's box, as far as coordinates are.
+    /// Whether the point is in the triangle's bounding box, within rounding error of coordinates.
     is_inside: bool,
 }
 
 impl Triangle {
-    /// What there is to doubt about its being hit at distance `t`.
+    /// Returns the reasons to doubt a hit of this triangle at distance `t`.
     #[inline(always)]
     fn looks(&self, ray: &Ray, t: f64, normal: Vec3, digits: u32) -> Looks {
         let bounds = Bounds::of_points(&self.corners);
@@ -55,13 +61,13 @@ impl Triangle {
         }
     }
 
-    /// Whether a ray in that direction, which starts on this triangle, can meet another one.
+    /// Whether a ray that starts on this triangle in that direction can hit the other one.
     fn can_reach(&self, direction: Vec3, other: &Self) -> bool {
         let normals = [self, other].map(|triangle| triangle.normal(triangle.corners[0]));
         let slack = 0.5
             * padding(f64::MANTISSA_DIGITS)
             * [self, other].map(|triangle| Bounds::of_points(&triangle.corners).largest()).iter().sum::<f64>();
-        // How far corners are above a plane.
+        // The heights of corners above a plane.
         let heights = |of: &Self, plane: &Self, normal: Vec3| of.corners.map(|p| dot(p - plane.corners[0], normal));
         let ahead = if dot(direction, normals[0]) < 0.0 { -normals[0] } else { normals[0] };
         let rises = heights(other, self, ahead).iter().any(|height| *height > slack);
@@ -74,13 +80,13 @@ impl Triangle {
 }
 
 impl Primitives {
-    /// The triangle of that number, if it is one.
+    /// Returns the triangle of that number; `None` if the primitive is no triangle.
     #[inline(always)]
     pub(crate) fn triangle(&self, primitive: u32) -> Option<&Triangle> {
         self.triangles.get((primitive as usize).checked_sub(self.spheres.len() + self.planes.len())?)
     }
 
-    /// Whether a hit may be of a triangle and not sure.
+    /// Whether a hit is on a triangle and may not be sure.
     #[inline(always)]
     pub(in crate::scene) fn is_doubtful(&self, ray: &Ray, hit: &Hit) -> bool {
         self.triangle(hit.primitive).is_some_and(|triangle| {
@@ -89,7 +95,8 @@ impl Primitives {
         })
     }
 
-    /// The first primitive along the ray that is nearer than `limit` and surely hit. Rays are as exact as numbers of so many digits.
+    /// Returns the first primitive along the ray with a sure hit nearer than `limit`. The ray's coordinates have
+    /// `digits` binary digits.
     #[cold]
     #[inline(never)]
     pub(in crate::scene) fn surely_nearest(
@@ -110,7 +117,8 @@ impl Primitives {
         all.fold(none, |nearest, primitive| nearest.or_in_any_order(distance(primitive), primitive))
     }
 
-    /// The distance along a ray, which is as exact as numbers of so many digits, to the primitive of each number; NaN where it is not surely met.
+    /// Returns a function from a primitive's number to its distance along the ray; NaN without a sure hit. The ray's
+    /// coordinates have `digits` binary digits.
     pub(crate) fn sure_distances(&self, ray: &Ray, from: Option<Standpoint>, digits: u32) -> impl Fn(u32) -> f64 {
         let prepared = Self::prepare(ray);
         let own = from.and_then(|from| self.triangle(from.primitive));

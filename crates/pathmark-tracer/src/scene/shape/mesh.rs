@@ -1,12 +1,13 @@
-//! The triangles of a file beside the scene: a PLY file if its name ends in `.ply`, otherwise a Wavefront OBJ file or one of its objects (`o` or
-//! `g` lines). Polygons are cut into triangles; normals, texture coordinates and materials in the file are not used. Triangles without an area
-//! are left out.
+//! Meshes: the triangles of a file in the scene's folder. It is a PLY file if its name ends in `.ply`, otherwise a
+//! Wavefront OBJ file or one of its objects (`o` or `g` lines). Polygons are cut into triangles; normals, texture
+//! coordinates and materials in the file are not used. Triangles without an area are left out.
 //!
 //! ```toml
 //! shape = { mesh = { file = "box.obj", object = "tall-block" } }
 //! ```
 //!
-//! A mistaken path may lead to a file without an end, so one of more than a gibibyte is refused unless the scene says `largest-mib = 4096`.
+//! A wrong path may lead to an endless file, so a file of more than a gibibyte is refused, unless the scene raises the
+//! limit: `largest-mib = 4096`.
 
 use super::obj::Essence;
 use super::{Primitives, Shape, Triangle, ply};
@@ -17,10 +18,10 @@ use serde::Deserialize;
 use std::io::BufReader;
 use std::path::Path;
 
-/// No line of a text comes near this.
+/// The longest line of a text in bytes; real lines are far shorter.
 const LONGEST_LINE: u64 = 1 << 20;
 
-/// A file of some ten million triangles.
+/// The default size limit in MiB: a file of some ten million triangles.
 const fn largest() -> u32 {
     1024
 }
@@ -29,11 +30,11 @@ const fn largest() -> u32 {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(in crate::scene) struct Mesh {
-    /// The file, beside the scene's.
+    /// The file, in the scene's folder.
     file: String,
-    /// The object in it; all if `None`.
+    /// The object in it; all objects if `None`.
     object: Option<String>,
-    /// Mebibytes that the file may have.
+    /// The file's size limit in MiB.
     #[serde(default = "largest")]
     largest_mib: u32,
 }
@@ -94,7 +95,7 @@ impl Mesh {
         if let Some(object) = &self.object {
             return Err(self.error(files.folder, "object", object, "a PLY file has no objects").into());
         }
-        // What is binary has no lines.
+        // A binary file has no lines, so their length has no limit.
         let file = files.open(&self.file, u64::from(self.largest_mib) << 20, u64::MAX)?;
         ply::read(file, &files.folder.place_of(&self.file), files.hash, add)
     }

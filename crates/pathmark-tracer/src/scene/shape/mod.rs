@@ -1,11 +1,12 @@
-//! What surfaces are made of. Rays are tested against *primitives*, of which each kind has an array of its own; *shapes* are what scene
-//! files name, and each becomes one primitive or many.
+//! Shapes and primitives. Rays are tested against *primitives*; each kind has its own array. Scene files name *shapes*;
+//! each becomes one or more primitives.
 //!
-//! To add a shape that is made of primitives: write its file with a type that implements [`Shape`] and `Deserialize`, and give it a line
-//! in `shapes!` below. A new kind of primitive implements [`Primitive`] and has a line in `primitives!` besides.
+//! To add a shape that is made of primitives: write its file with a type that implements [`Shape`] and `Deserialize`,
+//! and give it a line in `shapes!` below. A new kind of primitive also implements [`Primitive`] and has a line in
+//! `primitives!`.
 //!
-//! Primitives are numbered kind by kind, in the order of the table, and within a kind in the order of the scene. Among equally near ones
-//! the lowest number is hit, whatever structure accelerates the search.
+//! Primitives are numbered kind by kind, in the order of the table, and within a kind in the order of the scene. Among
+//! equally near primitives, the one with the lowest number is hit, with any accelerator.
 
 mod doubt;
 mod mesh;
@@ -27,41 +28,42 @@ pub(super) use mesh::Mesh;
 pub(super) use quad::Quad;
 use serde::Deserialize;
 
-/// Something that a ray can be tested against.
+/// A surface that rays are tested against.
 pub trait Primitive {
-    /// What of a ray every primitive of the kind needs to know, worked out once.
+    /// The data of a ray that all primitives of the kind need, computed once.
     type Prepared: Copy;
 
-    /// Works it out.
+    /// Computes the data of a ray.
     fn prepare(ray: &Ray) -> Self::Prepared;
 
-    /// Distance to the surface for a ray (of unit direction) that starts elsewhere; not above zero, or NaN, if it misses.
+    /// Returns the distance to the surface for a ray (of unit direction) that starts elsewhere; zero, negative or NaN
+    /// if it misses.
     fn meet(&self, ray: &Ray, prepared: &Self::Prepared) -> f64;
 
-    /// Distance to where a ray that starts on the surface meets it again; NaN if it does not.
+    /// Returns the distance at which a ray that starts on the surface meets it again; NaN if it does not.
     fn leave(&self, ray: &Ray, inside: bool) -> f64;
 
-    /// The unit normal of the outer side at a point of the surface.
+    /// Returns the outward unit normal at a point of the surface.
     fn normal(&self, point: Vec3) -> Vec3;
 
-    /// A box around it; `None` if it has no end.
+    /// Returns its bounding box; `None` if it is infinite.
     fn bounds(&self) -> Option<Bounds>;
 
-    /// The same with every length multiplied.
+    /// Returns the primitive with every length multiplied by `factor`.
     #[must_use]
     fn scaled(&self, factor: f64) -> Self;
 }
 
 /// A shape as scene files name it.
 pub(super) trait Shape {
-    /// Adds its primitives. Files that it names are looked for in the scene's own folder.
+    /// Adds its primitives. Files that it names are looked for in the scene's folder.
     fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()>;
 }
 
 /// The nearest primitive so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Nearest {
-    /// Distance, in lengths of the ray's direction.
+    /// Distance, in multiples of the direction's length.
     pub t: f64,
     /// Number of the primitive; `u32::MAX` if there is none.
     pub primitive: u32,
@@ -86,41 +88,41 @@ macro_rules! primitives {
         #[derive(Debug, Clone, PartialEq, Default)]
         pub struct Primitives {
             $(#[doc = $about] pub $field: Vec<$Type>,)*
-            /// Triangles of meshes that were left out because they have no area.
+            /// Number of mesh triangles that were left out because they have no area.
             pub degenerate: usize,
         }
 
-        /// What each kind needs to know of a ray.
+        /// The data of a ray for each kind of primitive.
         #[derive(Clone, Copy)]
         struct Prepared {
             $($field: <$Type as Primitive>::Prepared,)*
         }
 
         impl Primitives {
-            /// How many there are of each kind, in the order of the table.
+            /// Returns the number of primitives of each kind, in the order of the table.
             pub fn counts(&self) -> Vec<usize> {
                 vec![$(self.$field.len()),*]
             }
 
-            /// The kinds that there are.
+            /// Returns the kinds that occur.
             pub fn effects(&self) -> Effects {
                 let mut effects = Effects::NONE;
                 $(if !self.$field.is_empty() { effects = effects.and($Type::EFFECT); })*
                 effects
             }
 
-            /// The boxes of all primitives in the order of their numbers; `None` for those without an end.
+            /// Returns the bounding boxes of all primitives in the order of their numbers; `None` for infinite ones.
             pub fn bounds(&self) -> impl Iterator<Item = Option<Bounds>> {
                 std::iter::empty()$(.chain(self.$field.iter().map(Primitive::bounds)))*
             }
 
-            /// The same with every length multiplied.
+            /// Returns the primitives with every length multiplied by `factor`.
             #[must_use]
             pub fn scaled(&self, factor: f64) -> Self {
                 Self { $($field: self.$field.iter().map(|primitive| primitive.scaled(factor)).collect(),)* degenerate: self.degenerate }
             }
 
-            /// The outward unit normal of a primitive of the kinds in `X` at a point of it.
+            /// Returns the outward unit normal of a primitive, of a kind in `X`, at a point on it.
             #[inline(always)]
             pub fn normal<X: EffectSet>(&self, primitive: u32, point: Vec3) -> Vec3 {
                 let mut index = primitive as usize;
@@ -133,7 +135,7 @@ macro_rules! primitives {
                 unreachable!("primitive {index} after the last")
             }
 
-            /// Tests every primitive of the kinds in `X` for which `is_wanted`, in the order of their numbers.
+            /// Tests every primitive of the kinds in `X` that `is_wanted` selects, in the order of their numbers.
             #[inline(always)]
             fn scan<X: EffectSet>(
                 &self,
@@ -157,7 +159,7 @@ macro_rules! primitives {
                     }
                     first += self.$field.len() as u32;
                 })*
-                // The last kind leaves it unread.
+                // It is not read after the last kind.
                 let _ = first;
                 nearest
             }
@@ -167,7 +169,7 @@ macro_rules! primitives {
                 Prepared { $($field: $Type::prepare(ray)),* }
             }
 
-            /// Distance to one primitive of the kinds in `X`, from elsewhere or, if it is the ray's own, from there.
+            /// Returns the distance to one primitive, of a kind in `X`, for a ray that starts on it or elsewhere.
             #[inline(always)]
             fn distance<X: EffectSet>(
                 &self,
@@ -235,14 +237,15 @@ shapes! {
 }
 
 impl Nearest {
-    /// Nothing nearer than `t`.
+    /// Returns a search's initial state: no primitive, and only hits nearer than `t` count.
     #[inline(always)]
     pub(crate) fn than(t: f64) -> Self {
         Self { t, primitive: u32::MAX }
     }
 
-    /// The nearer of this one and a primitive with a higher number. NaN, zero and negative distances are no hits. Written as selections,
-    /// because a processor cannot foresee which will turn out to be nearer: wrong guesses cost about a tenth of the kernel's time.
+    /// Returns the nearer of this one and a primitive with a higher number. NaN, zero and negative distances are no
+    /// hits. It uses selections, because the processor cannot predict which is nearer: wrong predictions cost about a
+    /// tenth of the kernel's time.
     #[inline(always)]
     fn or(self, distance: f64, primitive: u32) -> Self {
         let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
@@ -252,7 +255,8 @@ impl Nearest {
         }
     }
 
-    /// Likewise, for primitives in any order. What is exactly as far as a limit, at which no primitive is, does not beat it.
+    /// Likewise, for primitives in any order. A hit exactly at the initial limit, where no primitive is, does not
+    /// count.
     #[inline(always)]
     pub(crate) fn or_in_any_order(self, distance: f64, primitive: u32) -> Self {
         let ahead = if distance > 0.0 { distance } else { f64::INFINITY };
@@ -263,7 +267,8 @@ impl Nearest {
 }
 
 impl Primitives {
-    /// The first primitive of the kinds in `X` along the ray that is nearer than `limit`. Where it starts on one, `from` says so.
+    /// Returns the first primitive of the kinds in `X` along the ray that is nearer than `limit`. `from` is the ray's
+    /// start, if it is on a primitive.
     #[inline(always)]
     pub(super) fn nearest<X: EffectSet>(
         &self,
@@ -285,7 +290,7 @@ impl Primitives {
         self.scan::<X>(ray, from, none, |_| true)
     }
 
-    /// The nearest of what is too large for a hierarchy.
+    /// Returns the nearest infinite primitive, which is too large for a hierarchy.
     #[inline(always)]
     fn endless<X: EffectSet>(&self, ray: &Ray, from: Option<Standpoint>, none: Nearest) -> Nearest {
         self.scan::<X>(ray, from, none, |kind| kind == Plane::EFFECT)

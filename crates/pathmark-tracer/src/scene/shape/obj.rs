@@ -1,5 +1,6 @@
-//! What is used of a Wavefront OBJ file: vertices, faces without normals and texture coordinates, and the names of objects. Each is
-//! checked here, because the parser that cuts the faces into triangles does not tell where a mistake stands.
+//! The used parts of a Wavefront OBJ file: vertices, faces without normals and texture coordinates, and the names of
+//! objects. All are checked here, because the parser that cuts the faces into triangles does not report the position of
+//! a mistake.
 //!
 //! A file is read line by line and never in memory as a whole.
 
@@ -10,7 +11,7 @@ use std::fmt::Write;
 use std::io::{self, BufRead, ErrorKind, Read};
 use std::path::Path;
 
-/// First words of lines that are not used, and what they hold.
+/// First words of unused lines, and the contents of such lines.
 const UNUSED: [(&str, &str); 5] = [
     ("vn", "normals"),
     ("vt", "texture coordinates"),
@@ -19,27 +20,27 @@ const UNUSED: [(&str, &str); 5] = [
     ("l", "lines"),
 ];
 
-/// A file with nothing in it but that. The first mistake ends it: [`Essence::error`].
+/// A reader that passes on only the used parts of a file. The first mistake ends it: [`Essence::error`].
 pub(super) struct Essence<'a, R> {
     file: R,
-    /// What to call it.
+    /// The file's name in errors.
     name: &'a str,
     hash: &'a mut Fingerprint,
-    /// The names of what was left out.
+    /// The names of the parts that were left out.
     pub(super) unused: Vec<&'static str>,
-    /// Why it ended before the file did.
+    /// The error that ended it before the file's end.
     pub(super) error: Option<Error>,
     line: Vec<u8>,
     lines: usize,
     bytes: usize,
     vertices: i64,
-    /// What is left of the present line to be read, from `read` on.
+    /// The used text of the current line; the parser has read it up to `read`.
     text: String,
     read: usize,
 }
 
 impl<'a, R: BufRead> Essence<'a, R> {
-    /// Of a file, all of which will be in the hash.
+    /// Wraps a file; its whole contents go into `hash`.
     pub(super) fn new(file: R, name: &'a str, hash: &'a mut Fingerprint) -> Self {
         Self {
             file,
@@ -56,7 +57,7 @@ impl<'a, R: BufRead> Essence<'a, R> {
         }
     }
 
-    /// Reads the next line that is used; whether there was one.
+    /// Reads the next used line; returns whether there was one.
     fn next_line(&mut self) -> io::Result<bool> {
         self.text.clear();
         self.read = 0;
@@ -80,13 +81,13 @@ impl<'a, R: BufRead> Essence<'a, R> {
         Ok(true)
     }
 
-    /// Keeps the error for whoever asked for the mesh, and tells the parser that there is one.
+    /// Keeps the error for the caller, and returns one that stops the parser.
     fn fail(&mut self, error: Error) -> io::Error {
         self.error = Some(error);
         ErrorKind::InvalidData.into()
     }
 
-    /// Takes what is used of a line.
+    /// Takes the used part of a line.
     fn take(&mut self, line: &[u8]) -> Result<()> {
         let line = std::str::from_utf8(line).map_err(|e| {
             let at = self.bytes + e.valid_up_to();

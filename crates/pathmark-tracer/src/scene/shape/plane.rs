@@ -1,4 +1,4 @@
-//! A plane without an end, seen from both sides. Its inside is where its normal does not point.
+//! An infinite plane, visible from both sides. Its normal points to its outside.
 //!
 //! ```toml
 //! shape = { plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] } }
@@ -16,7 +16,7 @@ pub struct Plane {
     /// Any point of it.
     #[serde(deserialize_with = "point")]
     pub point: Vec3,
-    /// Its normal; of length 1 once it is read.
+    /// Its normal; reading normalises it.
     #[serde(deserialize_with = "direction")]
     pub normal: Vec3,
 }

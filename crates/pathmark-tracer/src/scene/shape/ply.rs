@@ -1,5 +1,6 @@
-//! The triangles of a PLY file (Turk, "The PLY Polygon File Format", 1994), text or binary: the element `vertex` with `x`, `y` and `z`, then the
-//! element `face` with a list `vertex_indices` or `vertex_index`. What else is in the file is not used.
+//! The triangles of a PLY file (Turk, "The PLY Polygon File Format", 1994), text or binary: the element `vertex` with
+//! `x`, `y` and `z`, then the element `face` with a list `vertex_indices` or `vertex_index`. The rest of the file is
+//! not used.
 //!
 //! A file is read element by element and never in memory as a whole.
 
@@ -14,17 +15,17 @@ use ply_rs_bw::ply::{
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
-/// No header comes near this, and no line of a text.
+/// The longest header, and the longest line of a text, in bytes; real ones are far shorter.
 const LONGEST: u64 = 1 << 20;
 
-/// What the list of a face's corners is called.
+/// The names of the list of a face's corners.
 const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 /// A vertex, a face, or an element of another kind.
 #[derive(Default)]
 struct Element {
     position: [f64; 3],
-    /// `None` where a number is below 0.
+    /// `None` if a number is below 0.
     corners: Option<Vec<u32>>,
 }
 
@@ -59,11 +60,11 @@ impl PropertyAccess for Element {
     }
 }
 
-/// A reader all of which goes into a hash.
+/// A reader that adds all that it reads to a hash.
 struct Hashed<'a, R> {
     file: R,
     hash: &'a mut Fingerprint,
-    /// Why it could not be read on: the parser keeps no more of that than the text.
+    /// The error of the last read: the parser keeps only its text.
     error: Option<io::Error>,
 }
 
@@ -79,18 +80,18 @@ impl<R: Read> Read for Hashed<'_, R> {
     }
 }
 
-/// A file whose header has been read.
+/// A PLY file and its header.
 struct Ply<'a, R: Read> {
     file: BufReader<Hashed<'a, R>>,
     name: &'a str,
     header: Header,
-    /// The line that was read last.
+    /// The number of the last line read.
     line: usize,
-    /// Whether what is read next has lines.
+    /// Whether the next part of the file has lines.
     has_lines: bool,
 }
 
-/// Reads the triangles of a file, all of which will be in the hash.
+/// Reads the triangles of a file; its whole contents go into `hash`.
 pub(super) fn read(file: impl Read, name: &str, hash: &mut Fingerprint, add: impl FnMut([Vec3; 3])) -> Result<()> {
     let mut ply = Ply {
         file: BufReader::new(Hashed { file, hash, error: None }),
@@ -100,7 +101,7 @@ pub(super) fn read(file: impl Read, name: &str, hash: &mut Fingerprint, add: imp
         has_lines: true,
     };
     let found = ply.read(add);
-    // The cause of what went wrong, not what the parser made of it.
+    // The original error instead of the parser's version of it.
     match ply.file.get_mut().error.take() {
         Some(error) => Err(unreadable(Path::new(name), error)),
         None => found,
@@ -121,7 +122,7 @@ impl<R: Read> Ply<'_, R> {
                     };
                     self.faces(element, vertices, &mut add)?;
                 }
-                // In a binary file they take no room, however many the header tells of.
+                // Elements without properties take no bytes in a binary file, whatever number the header states.
                 _ if element.properties.is_empty() && !self.has_lines => {}
                 _ => {
                     for index in 0..element.count {
@@ -130,12 +131,12 @@ impl<R: Read> Ply<'_, R> {
                 }
             }
         }
-        // What stands behind all elements is no part of the mesh, but of the file.
+        // Bytes after the last element are no part of the mesh, but they go into the hash.
         let _ = io::copy(&mut self.file, &mut io::sink());
         Ok(())
     }
 
-    /// An error in the line that was read last, if there are lines.
+    /// Creates an error at the last line read, if there are lines.
     fn refused(&self, field: &str, value: &str, problem: &str) -> InputError {
         let value: String = value.chars().take(80).collect();
         InputError::new(field, value, problem).in_file(self.name, self.has_lines.then_some((self.line, 1)))
@@ -186,7 +187,7 @@ impl<R: Read> Ply<'_, R> {
         Ok(())
     }
 
-    /// Whether there are vertices and faces, and of a kind that has places and corners.
+    /// Checks that there are vertices with coordinates and faces with corners.
     fn judge_header(&self) -> Result<()> {
         let property = |element: &str, name: &str| {
             self.header.elements.get(element).and_then(|element| element.properties.get(name))
@@ -209,7 +210,7 @@ impl<R: Read> Ply<'_, R> {
         Ok(())
     }
 
-    /// Reads the next element, which has this number among those of its kind.
+    /// Reads the next element; `index` is its number among the elements of its kind.
     fn next(&mut self, element: &ElementDef, index: usize) -> Result<Element> {
         let parser = Parser::new();
         let found = match self.header.encoding {
@@ -273,7 +274,7 @@ impl<R: Read> Ply<'_, R> {
 mod tests {
     use super::*;
 
-    /// The element "edge" has no bytes; the lists of faces and their numbers have different types.
+    /// The element "edge" has no bytes; the lengths of the faces' lists and their entries have different types.
     const HEADER: &str = "ply\nformat ENCODING 1.0\ncomment a square\nelement vertex 4\nproperty uchar red\nproperty float x\n\
         property double y\nproperty short z\nelement edge 9999999999\nelement face 2\nproperty list uchar ushort vertex_indices\n\
         property int flags\nend_header\n";
@@ -311,7 +312,7 @@ mod tests {
     fn text() -> Vec<u8> {
         let mut file = header("ascii");
         file.extend(VERTICES.iter().flat_map(|[x, y, z]| format!("255 {x} {y} {z}\r\n").into_bytes()));
-        // Nothing stands in the line of an element without properties, so a text has none of those.
+        // In a text, an element without properties is an empty line, so this file leaves such elements out.
         let text = String::from_utf8(file).unwrap().replace("element edge 9999999999\n", "");
         let faces = FACES.iter().map(|face| {
             let corners = face.iter().map(u16::to_string).collect::<Vec<_>>().join(" ");
@@ -335,7 +336,7 @@ mod tests {
         }
     }
 
-    /// A file that ends before it should is refused wherever that is.
+    /// A truncated file is refused, wherever it ends.
     #[test]
     fn every_shorter_file_is_refused() {
         for file in [text(), binary(true)] {

@@ -1,5 +1,5 @@
-//! Four corners in order around the edge, seen from both sides: two triangles that share the diagonal from the first to the third corner.
-//! The outside is where the corners run counterclockwise.
+//! A quad: four corners in order around the edge, visible from both sides. It is two triangles that share the diagonal
+//! from the first to the third corner. Its outside is the side from which the corners run counterclockwise.
 //!
 //! ```toml
 //! shape = { quad = { corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] } }
@@ -16,7 +16,7 @@ use serde::{Deserialize, Deserializer};
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in crate::scene) struct Quad {
-    /// Its corners, around the edge.
+    /// Its corners, in order around the edge.
     #[serde(deserialize_with = "corners")]
     pub(in crate::scene) corners: [Vec3; 4],
 }
@@ -25,7 +25,7 @@ fn halves([a, b, c, d]: [Vec3; 4]) -> [Triangle; 2] {
     [Triangle { corners: [a, b, c] }, Triangle { corners: [a, c, d] }]
 }
 
-/// Four corners of which neither half lies on a line.
+/// Reads four corners; neither half may lie on a line.
 fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<[Vec3; 4], D::Error> {
     let corners = points(deserializer)?;
     if halves(corners).iter().any(Triangle::is_degenerate) {

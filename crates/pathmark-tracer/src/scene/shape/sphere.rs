@@ -32,7 +32,7 @@ impl Primitive for Sphere {
         first_root(ray.origin - self.center, ray.direction, 1.0, self.radius)
     }
 
-    /// To the outside there is no other root.
+    /// A ray to the outside has no other root.
     #[inline(always)]
     fn leave(&self, ray: &Ray, inside: bool) -> f64 {
         if inside { other_root(self.center - ray.origin, ray.direction) } else { f64::NAN }

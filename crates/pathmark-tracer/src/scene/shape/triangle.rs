@@ -1,4 +1,4 @@
-//! A triangle, seen from both sides; its outside is where its corners run counterclockwise.
+//! A triangle, visible from both sides; its outside is the side from which its corners run counterclockwise.
 //!
 //! ```toml
 //! shape = { triangle = { corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] } }
@@ -18,7 +18,7 @@ pub struct Triangle {
     pub corners: [Vec3; 3],
 }
 
-/// Three corners that span an area.
+/// Reads three corners that span an area.
 fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Vec3; 3], D::Error> {
     let corners = points(deserializer)?;
     if (Triangle { corners }).is_degenerate() {
@@ -27,7 +27,7 @@ fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Vec3; 3], D::E
     Ok(corners)
 }
 
-/// So many points.
+/// Reads `N` points.
 pub(super) fn points<'de, D: Deserializer<'de>, const N: usize>(deserializer: D) -> Result<[Vec3; N], D::Error>
 where
     [[f64; 3]; N]: Deserialize<'de>,
@@ -57,7 +57,7 @@ impl Primitive for Triangle {
 
     #[inline(always)]
     fn meet(&self, ray: &Ray, shear: &Shear) -> f64 {
-        // Written out: by `map` over an array it takes three times as long.
+        // Written out, because `map` over an array takes three times as long.
         let [a, b, c] = self.corners;
         triangle_root(
             sheared(shear.turned(a - ray.origin), shear.by),
@@ -71,7 +71,7 @@ impl Primitive for Triangle {
         f64::NAN
     }
 
-    /// From edges scaled by their longest component, so that neither tiny nor huge triangles under- or overflow.
+    /// Scales the edges by their longest component, so that tiny and huge triangles neither under- nor overflow.
     #[inline(always)]
     fn normal(&self, _point: Vec3) -> Vec3 {
         let [a, b, c] = self.corners;
