@@ -2,7 +2,7 @@
 
 use super::refused;
 
-/// Options of `render cornell` that are wrong, and what the message must hold besides: field, value, what is allowed.
+/// Wrong options of `render cornell`, and the words that the message must contain: field, value, allowed values.
 const WRONG: &[(&[&str], &[&str])] = &[
     (&["--strategy", "stealth"], &["strategy", "stealth", "work-stealing", "thread-per-row"]),
     (&["--strategy", "dynamic:0"], &["strategy", "dynamic:0", "from 1"]),
@@ -21,14 +21,14 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--sampler", "dice"], &["sampler", "dice", "independent"]),
     (&["--kernel", "quantum"], &["kernel", "quantum", "scalar"]),
     (&["--kernel", "device:abacus:0"], &["kernel", "device:abacus:0", "there is no device abacus:0 here"]),
-    (&["--kernel", "lanes+scalar"], &["kernel", "scalar", "is no device", "device:ID"]),
+    (&["--kernel", "lanes+scalar"], &["kernel", "scalar", "is not a device", "device:ID"]),
     (&["--kernel", "lanes", "--device", "host"], &["--device host", "--kernel is lanes"]),
     (&["--kernel", "scalar", "--precision", "f32"], &["precision", "f32", "scalar kernel", "f64"]),
     (&["--kernel", "device:host", "--simd", "avx2"], &["simd", "avx2", "a device has none"]),
     (&["--effects", "smoke"], &["effects", "smoke", "diffuse", "all"]),
     (&["--accelerator", "octree"], &["accelerator", "octree", "median", "sah"]),
     (&["--max-depth", "70000"], &["--max-depth", "70000"]),
-    // A profile that there is, but too small for glass and a mirror.
+    // An existing profile, but too small for glass and a mirror.
     (&["--effects", "diffuse"], &["effects", "diffuse", "all"]),
     (&["--spp", "0"], &["spp", "0", "1 to"]),
     (&["--spp", "6"], &["spp", "6", "multiple of 4", "4 or 8"]),
@@ -63,9 +63,9 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--clamp", "pixel"], &["clamp", "pixel", "subpixel or recursion"]),
     (&["--clamp", "subpixel:0"], &["clamp", "subpixel:0", "above 0"]),
     (&["--filter", "gauss"], &["filter", "gauss", "tent, box, center"]),
-    (&["--epsilon=-1e-4"], &["epsilon", "-1e-4", "from 0 on"]),
-    (&["--epsilon", "small"], &["epsilon", "small", "from 0 on"]),
-    // A profile that there is and that covers the scene, but not with this sampler.
+    (&["--epsilon=-1e-4"], &["epsilon", "-1e-4", "at least 0"]),
+    (&["--epsilon", "small"], &["epsilon", "small", "at least 0"]),
+    // An existing profile that covers the scene, but not with this sampler.
     (&["--sampler", "sobol", "--effects", "surfaces"], &["effects", "surfaces", "sobol", "smallpt"]),
     (&["--max-depth", "65536"], &["max-depth", "65536"]),
     (&["--max-depth=-1"], &["max-depth", "-1"]),
@@ -117,14 +117,14 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
     }
 }
 
-/// The hidden verb that cells run in: what it reads comes from another process, which may be another version.
+/// The hidden verb that runs a cell: its input comes from another process, which may be another version.
 #[test]
 fn a_cell_that_is_no_cell_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     refused(folder.path(), &["cell"], 2, &["standard input", "description of a cell"]);
 }
 
-/// What a workload would not look at is refused, not ignored.
+/// Options that a workload would not read are refused, not ignored.
 #[test]
 fn a_workload_takes_no_options_of_light() {
     let folder = tempfile::tempdir().unwrap();

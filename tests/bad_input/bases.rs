@@ -1,4 +1,4 @@
-//! Scenes that change another one, and generators: what is inherited, left out or counted wrongly.
+//! Scenes with a base, and generators: wrong inheritance, omissions and counts.
 
 use super::{line_of, place, refused};
 use std::fs;
@@ -37,7 +37,7 @@ fn bases_that_are_not_there_are_refused() {
         let message = refused_scene(&[("scene.toml", &with(base))], said);
         assert_eq!(line(&message, "scene.toml"), Some(2), "{message}");
     }
-    // A mistake in a base stands in the base.
+    // A mistake in a base is reported in the base's file.
     let wrong = format!("about = 'x'\n{CAMERA}{BALL}").replace("radius = 1.0", "radius = 0.0");
     let message = refused_scene(&[("scene.toml", &with("other.toml")), ("other.toml", &wrong)], &["radius", "1e-100"]);
     assert_eq!(line(&message, "other.toml"), Some(line_of(&wrong, "radius")), "{message}");

@@ -1,4 +1,4 @@
-//! What can be known before any work is refused before it: each of these commands would otherwise render for hours, or reads what has no end.
+//! Input that is refused before any work: each of these commands would otherwise render for hours or read without end.
 
 use super::experiment::{TINY, write_tiny};
 use super::program::{finish, pathmark};
@@ -8,7 +8,7 @@ use std::fs;
 use std::os::unix::ffi::OsStringExt;
 use std::process::Command;
 
-/// Nobody would wait for this.
+/// Takes hours.
 const LONG: [&str; 4] = ["render", "cornell", "--spp", "4000000"];
 /// A reference that takes hours.
 const REFERENCE: &str = "[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 16000000\n";
@@ -41,7 +41,7 @@ fn a_name_too_long_for_the_files_to_come() {
     }
 }
 
-/// The cells' processes are told where to write in JSON.
+/// The cells' processes receive the output folder as JSON.
 #[test]
 fn a_folder_whose_name_is_no_text() {
     let folder = tempfile::tempdir().unwrap();
@@ -59,7 +59,7 @@ fn a_curve_that_cannot_be_rendered_in_rounds() {
     refused(folder.path(), &RUN, 2, &["tiny.toml:", "clamp", "subpixel", "rounds"]);
 }
 
-/// Two programs of one name would write rows that nobody can tell apart.
+/// Two programs with one name would write rows that cannot be told apart.
 #[test]
 fn two_other_programs_of_one_name() {
     let folder = tempfile::tempdir().unwrap();
@@ -72,7 +72,7 @@ fn two_other_programs_of_one_name() {
     refused(folder.path(), &RUN, 2, &["tiny.toml:", "name = other"]);
 }
 
-/// The jobs of a long run, and interruptions so short that there are billions of them.
+/// A job of a long run, and interruptions so short that there would be billions of them.
 #[test]
 fn noise_that_takes_for_ever_to_draw() {
     let folder = tempfile::tempdir().unwrap();
@@ -87,7 +87,7 @@ fn noise_that_takes_for_ever_to_draw() {
     refused(folder.path(), &arguments, 2, &["noise = .9:.001", "times"]);
 }
 
-/// Files that never end, and others that are none, under a limit of memory that a reader without bounds would reach.
+/// Files that never end and paths that are no files, under a memory limit that an unbounded reader would reach.
 #[test]
 fn files_without_an_end() {
     let folder = tempfile::tempdir().unwrap();
@@ -123,7 +123,7 @@ fn files_without_an_end() {
     }
 }
 
-/// Help that nobody can have got is a failure like any other output's; help that nobody wants to the end is none.
+/// Help that cannot be written is a failure like any other output; a reader that stops early causes none.
 #[test]
 fn help_onto_a_full_disk() {
     let folder = tempfile::tempdir().unwrap();

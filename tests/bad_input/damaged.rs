@@ -1,4 +1,4 @@
-//! Files of the program's own that a crash, a full disk or a second run has left in a state that no run would.
+//! Pathmark's own files in a state that no complete run leaves: after a crash, a full disk or a second run.
 
 use super::experiment::{TINY, write_tiny};
 use super::program::{finish, pathmark};
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
 const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
 
-/// A folder with `tiny.toml` and what a run of it leaves in `out`.
+/// A folder with `tiny.toml` and a run's results in `out`, and the path of the rows.
 fn after_a_run() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
@@ -55,7 +55,7 @@ fn a_damaged_reference_is_refused_and_kept() {
         }
         fs::write(&film, &whole).unwrap();
     }
-    // And whole they are used.
+    // Undamaged, the films are used.
     finish(pathmark(folder.path(), &RUN)).with_code(0);
 }
 
@@ -112,7 +112,7 @@ fn rows_that_are_none_are_refused_with_their_line() {
     }
 }
 
-/// Rows of another version have other columns; what a reader needs to know is the version.
+/// Rows of another version have other columns, so the message must name the version.
 #[test]
 fn rows_of_another_version_are_told_as_such() {
     let (folder, records) = after_a_run();
@@ -121,7 +121,7 @@ fn rows_of_another_version_are_told_as_such() {
     let rows: Vec<&str> = rows.lines().map(|row| row.split_once(',').unwrap().1).collect();
     let newer = (SCHEMA + 1).to_string();
     for (columns, version) in [("a_column_that_was", "6"), ("two,columns", &newer), ("mse", "")] {
-        // Columns that there are no longer, instead of those behind the first.
+        // Columns that no longer exist, in place of the second.
         let header = header.replacen("experiment", columns, 1);
         let value = if columns.contains(',') { "1,2" } else { "1" };
         let rest = rows.iter().map(|row| row.split_once(',').unwrap().1);
@@ -133,7 +133,7 @@ fn rows_of_another_version_are_told_as_such() {
     }
 }
 
-/// Rows of version 7 lack two columns that may be empty: they are read, and no rows of other columns are put behind them.
+/// Rows of version 7 lack two columns that may be empty. They are read, but no rows with other columns are appended.
 #[test]
 fn rows_of_the_version_before_are_read_and_not_added_to() {
     let (folder, records) = after_a_run();
@@ -182,7 +182,7 @@ fn a_damaged_machine_or_definition_is_refused_at_its_place() {
     }
 }
 
-/// Waits until a running sweep has its file, and insists that a second one stays away from it.
+/// Waits until a running sweep has its records file, and asserts that the `second` commands are refused.
 fn second_is_refused(first: &[&str], second: &[&[&str]], records: &str, said: &str) {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), &TINY.replace("spp = [4]", "spp = [4000]"));

@@ -1,11 +1,11 @@
-//! Experiment files that are wrong: refused before the first cell, with nothing in the output folder.
+//! Wrong experiment files: refused before the first cell, with nothing in the output folder.
 
 use super::experiment::{TINY, write_tiny};
 use super::{line_of, place, refused};
 
 const REFERENCE: &str = "\n[reference]\nestimator = \"bsdf\"\n\n[quick]\nreference-spp = 40\n";
 
-/// What is put in the place of what, and what the message must hold.
+/// The text to replace, its replacement, and the words that the message must contain.
 const WRONG: &[(&str, &str, &[&str])] = &[
     ("strategy = [\"serial\"", "strategy = [\"stealth\"", &["strategy", "stealth", "work-stealing"]),
     ("strategy = [\"serial\"", "strategy = [\"dynamic:0\"", &["strategy", "dynamic:0", "from 1"]),
@@ -66,13 +66,13 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("title = \"Tiny\"", "title = Tiny", &["title"]),
 ];
 
-/// Puts `wrong` in the place of `right` and insists on a refusal that points at its lines.
+/// Puts `wrong` in place of `right`; returns whether the refusal points at its lines.
 fn check(base: &str, right: &str, wrong: &str, options: &[&str], said: &[&str]) -> bool {
     assert!(base.contains(right), "{right:?}");
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), &base.replacen(right, wrong, 1));
     let changed = line_of(base, right)..=line_of(base, right) + wrong.matches('\n').count();
-    // A missing field is missed where its table begins.
+    // A missing field is reported where its table begins.
     let table = line_of(base, "[matrix]");
     let arguments = [&["run", "tiny.toml", "--out", "new"], options].concat();
     std::panic::catch_unwind(|| {
@@ -87,7 +87,7 @@ fn check(base: &str, right: &str, wrong: &str, options: &[&str], said: &[&str]) 
 #[test]
 fn each_wrong_experiment_is_refused_at_its_place() {
     let failed = WRONG.iter().filter(|(right, wrong, said)| !check(TINY, right, wrong, &[], said));
-    // All cases are tried before any is told, so that one run shows everything that is wrong.
+    // All cases run before any failure is reported, so that one run shows all of them.
     let failed: Vec<_> = failed.map(|(_, wrong, _)| wrong).collect();
     assert!(failed.is_empty(), "{failed:?}");
 }
@@ -100,7 +100,7 @@ fn a_fault_in_the_full_profile_is_shown_there() {
     assert!(check(TINY, "size = [32, 16]", "size = [0, 16]", &["--full"], &["size", "0x16"]));
 }
 
-/// What a definition lacks is named, together with what it has.
+/// The message names the missing profile and the existing ones.
 #[test]
 fn a_profile_that_is_not_there_is_refused() {
     let (head, quick) = TINY.split_once("[quick]").unwrap();
@@ -119,7 +119,7 @@ fn a_profile_that_is_not_there_is_refused() {
     refuse(&format!("{head}[full]{full}"), &["--full", "--reports"], &["--full", "--reports"]);
 }
 
-/// A reference that cannot be, or that is too coarse to measure anything with.
+/// A reference that is impossible, or too coarse to measure anything with.
 #[test]
 fn each_wrong_reference_is_refused_at_its_place() {
     let base = TINY.replace("\n[quick]\n", REFERENCE);
@@ -137,7 +137,8 @@ fn each_wrong_reference_is_refused_at_its_place() {
     assert!(failed.is_empty(), "{failed:?}");
 }
 
-/// The experiment's folder has its name, in the folder of results: a name that leads elsewhere is refused.
+/// The experiment's folder, in the folder of results, takes the experiment's name: a name that leads elsewhere is
+/// refused.
 #[test]
 fn names_that_lead_elsewhere_are_refused() {
     for name in ["...toml", "..toml", "earlier.toml", "guards.toml", "references.toml", "report.html.toml"] {
@@ -147,7 +148,7 @@ fn names_that_lead_elsewhere_are_refused() {
     }
 }
 
-/// What `--set` cannot mean, and a figure that would have nothing to compare with.
+/// Invalid values for `--set`, and a figure that would have nothing to compare with.
 #[test]
 fn values_that_cannot_be_set_are_refused() {
     let wrong: &[(&str, &[&str])] = &[

@@ -1,5 +1,5 @@
-//! Wrong input is refused with a message that helps: which field, which value, where it stands, what is allowed. The exit code says
-//! whose turn it is (2 the user's, 3 the system's), nothing panics or hangs, and no file has come, gone or changed.
+//! Wrong input is refused with a helpful message: the field, the value, its place, the allowed values. The exit code
+//! says who must act (2 the user, 3 the system), nothing panics or hangs, and no file is added, removed or changed.
 
 mod arguments;
 mod bases;
@@ -24,10 +24,11 @@ use snapshot::{assert_untouched, snapshot};
 use std::ffi::OsStr;
 use std::path::Path;
 
-/// What the largest of the refusals so far may have taken: whoever is refused has cost little.
+/// Limit of the peak memory of all refusals so far: a refusal must be cheap.
 const MOST_MEMORY_KIB: i64 = 256 << 10;
 
-/// Runs a command that must be refused and returns what it said. `folder` is where it runs and what it may not touch.
+/// Runs a command that must be refused and returns its message. `folder` is its working directory, which must not
+/// change.
 fn refused(folder: &Path, arguments: &[impl AsRef<OsStr>], code: i32, said: &[&str]) -> String {
     let before = snapshot(folder);
     let finished = finish(pathmark(folder, arguments)).with_code(code);
@@ -48,7 +49,7 @@ fn place(message: &str, file: &str) -> Option<(usize, usize)> {
     numbers.next().zip(numbers.next())
 }
 
-/// The line, from 1, on which a text first stands.
+/// The line, from 1, on which `part` first occurs.
 fn line_of(text: &str, part: &str) -> usize {
     let at = text.find(part).unwrap_or_else(|| panic!("{part:?} is not in the text"));
     text[..at].matches('\n').count() + 1

@@ -1,4 +1,4 @@
-//! Scenes with a mesh whose file is wrong, and one whose file only looks wrong.
+//! Scenes with a wrong mesh file, and one whose mesh file only looks wrong.
 
 use super::program::{finish, pathmark};
 use super::{place, refused};
@@ -22,7 +22,7 @@ const OBJ: &str = "o square\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3\nf 
 
 const ARGUMENTS: [&str; 8] = ["render", "mesh.toml", "--size", "8x8", "--spp", "4", "-o", "image.png"];
 
-/// What is put in the place of what, the line of the mistake, and what the message must hold.
+/// The text to replace, its replacement, the line of the mistake, and the words that the message must contain.
 const WRONG: &[(&str, &str, usize, &[&str])] = &[
     ("v 1 1 0", "v 1 nan 0", 4, &["v = nan", "-1e100 to 1e100"]),
     ("v 1 1 0", "v 1 inf 0", 4, &["v = inf", "-1e100 to 1e100"]),
@@ -37,7 +37,7 @@ const WRONG: &[(&str, &str, usize, &[&str])] = &[
     ("f 1 2 3", "f 1 2 /1/1", 6, &["f = /1/1", "1 to 4"]),
     ("f 1 2 3", "f 1 2", 6, &["f = 1 2", "three corners"]),
     ("f -4 -2 -1", "f -5 -2 -1", 7, &["f = -5", "-4 to -1"]),
-    ("o square\n", "f 1 2 3\n", 1, &["f = 1", "a vertex in a line above it"]),
+    ("o square\n", "f 1 2 3\n", 1, &["f = 1", "a vertex in an earlier line"]),
 ];
 
 fn folder(scene: &str, obj: Option<&[u8]>) -> tempfile::TempDir {
@@ -49,7 +49,7 @@ fn folder(scene: &str, obj: Option<&[u8]>) -> tempfile::TempDir {
     folder
 }
 
-/// Puts each wrong line into a text that is right, writes it to the file and asks whether its place is told.
+/// Puts each wrong line into a correct text, writes it to the file, and checks that the message gives the line.
 fn each_is_named(
     text: &str,
     wrong: &[(&str, &str, usize, &[&str])],
@@ -71,7 +71,7 @@ fn each_wrong_line_is_named() {
     each_is_named(PLY, WRONG_PLY, "thing.ply", |ply| ply_folder(SCENE, ply));
 }
 
-/// T05: corners on a line are left out; if that is all there is, the mesh is none.
+/// T05: triangles with all corners on a line are left out; a mesh without any other triangle is refused.
 #[test]
 fn a_mesh_without_a_triangle_is_refused() {
     let flat = OBJ.replace("v 1 -1 0", "v 0 0 0").replace("v -1 1 0", "v 2 2 0");
@@ -83,7 +83,7 @@ fn a_mesh_without_a_triangle_is_refused() {
     finish(pathmark(folder(SCENE, Some(one_left.as_bytes())).path(), &ARGUMENTS)).with_code(0);
 }
 
-/// What concerns the file as a whole stands where the scene names it.
+/// Mistakes that concern the whole file are reported where the scene names the file.
 #[test]
 fn files_that_are_no_meshes_are_refused() {
     let missing = folder(SCENE, None);
@@ -102,7 +102,7 @@ fn files_that_are_no_meshes_are_refused() {
         folder(SCENE, Some(&vec![b' '; 2 << 20])).path(),
         &ARGUMENTS,
         2,
-        &["thing.obj", "a line of such a file", "1 MiB"],
+        &["thing.obj", "a line that is too long", "1 MiB"],
     );
     let endless = SCENE.replace("\"thing.obj\"", "\"/dev/zero\"");
     refused(folder(&endless, None).path(), &ARGUMENTS, 2, &["/dev/zero", "byte 0 is zero"]);
@@ -113,7 +113,7 @@ fn files_that_are_no_meshes_are_refused() {
     refused(folder(&unknown, Some(OBJ.as_bytes())).path(), &ARGUMENTS, 2, &["smooth", "file", "object"]);
 }
 
-/// Line ends of Windows, normals, texture coordinates that are not there, polygons, materials and comments are no mistakes.
+/// Windows line ends, normals, missing texture coordinates, polygons, materials and comments are no mistakes.
 #[test]
 fn what_is_not_used_is_not_judged() {
     let full = "# a square\r\nmtllib none.mtl\r\no square\r\nv -1 -1 0 1.0\r\nv 1 -1 0\r\nv 1 1 0\r\nv -1 1 0\r\n\
@@ -124,23 +124,23 @@ fn what_is_not_used_is_not_judged() {
 const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n\
                    property list uchar int vertex_indices\nend_header\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n3 0 1 2\n3 0 2 3\n";
 
-/// Likewise, in the text of a PLY file.
+/// The same for the text of a PLY file.
 const WRONG_PLY: &[(&str, &str, usize, &[&str])] = &[
-    ("ply\n", "plx\n", 1, &["header = plx", "none of a PLY file"]),
+    ("ply\n", "plx\n", 1, &["header = plx", "not the header of a PLY file"]),
     ("ascii 1.0", "morse 1.0", 2, &["header = format morse 1.0", "not understood"]),
     ("vertex 4", "vertex four", 3, &["header = element vertex four", "not understood"]),
     ("property float z\n", "", 8, &["property = z", "x, y and z"]),
     ("float z", "list uchar float z", 9, &["property = z", "x, y and z"]),
     ("vertex_indices", "corners", 9, &["property = vertex_indices", "vertex_index"]),
     ("uchar int", "uchar float", 9, &["property = vertex_indices", "whole numbers"]),
-    ("1 1 0", "1 nan 0", 12, &["vertex = 2", "not what the header tells"]),
+    ("1 1 0", "1 nan 0", 12, &["vertex = 2", "does not match the header"]),
     ("1 1 0", "1 1e39 0", 12, &["vertex = inf", "vertex 2", "-1e100 to 1e100"]),
-    ("1 1 0", "1 one 0", 12, &["vertex = 2", "not what the header tells"]),
-    ("1 1 0", "1 1", 12, &["vertex = 2", "not what the header tells"]),
+    ("1 1 0", "1 one 0", 12, &["vertex = 2", "does not match the header"]),
+    ("1 1 0", "1 1", 12, &["vertex = 2", "does not match the header"]),
     ("3 0 1 2", "3 0 1 4", 14, &["face = 0 1 4", "0 to 3"]),
     ("3 0 1 2", "3 0 1 -1", 14, &["corners of face 0", "0 to 3"]),
     ("3 0 1 2", "2 0 1", 14, &["face = 0 1", "three or more"]),
-    ("3 0 1 2", "9 0 1 2", 14, &["face = 0", "not what the header tells"]),
+    ("3 0 1 2", "9 0 1 2", 14, &["face = 0", "does not match the header"]),
     ("face 2", "face 3", 16, &["face = 2", "ends before the 3"]),
 ];
 
@@ -158,7 +158,7 @@ fn ply_files_that_are_no_meshes_are_refused() {
     refused(ply_folder(SCENE, points.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "face", "no such list"]);
     let endless = "ply\n".to_string() + &"comment none\n".repeat(90_000);
     refused(ply_folder(SCENE, endless.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "longer than 1 MiB"]);
-    // Nobody reserves room for as many vertices as a header tells of.
+    // The reader does not reserve memory for as many vertices as the header claims.
     let binary = PLY.replace("ascii", "binary_little_endian").replace("vertex 4", "vertex 9999999999");
     refused(ply_folder(SCENE, binary.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "ends before the 9999999999"]);
     let small = SCENE.replace("\"thing.obj\"", "\"thing.obj\", largest-mib = 1");

@@ -1,4 +1,4 @@
-//! Outputs that cannot be written, known before anything is rendered.
+//! Outputs that cannot be written are refused before anything is rendered.
 
 use super::program::{finish, pathmark, wait};
 use super::{refused, snapshot};
@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::process::Stdio;
 
-/// Nobody would wait for this; a refusal that came after the render would reach the time limit.
+/// Takes longer than the time limit, so a refusal after the render would fail the test.
 const LONG: [&str; 4] = ["render", "cornell", "--spp", "4000000"];
 
 #[test]
@@ -33,7 +33,7 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
         println!("{output}");
         refused(folder.path(), &[LONG.as_slice(), &["-o", output]].concat(), 2, said);
     }
-    // Each option is called by its own name.
+    // Each option has its own name in the message.
     for (option, field) in [("--trace", "trace"), ("--checkpoint", "checkpoint")] {
         let said = format!("{field} = nowhere/file: its directory does not exist");
         refused(folder.path(), &[LONG.as_slice(), &[option, "nowhere/file"]].concat(), 2, &[&said]);
@@ -74,7 +74,7 @@ fn an_output_folder_that_is_a_file_is_refused() {
     refused(folder.path(), &["report", "file"], 2, &["folder", "file"]);
 }
 
-/// In folders of results, too, nothing is overwritten that this program has not written, or that is an input.
+/// In folders of results, too, the program overwrites neither files that it has not written nor its inputs.
 #[test]
 fn files_of_others_in_a_folder_of_results_are_kept() {
     let run: &[&str] = &["run", "tiny.toml", "--out", "out"];
@@ -120,14 +120,14 @@ fn files_of_others_in_a_folder_of_results_are_kept() {
         }
         refused(folder.path(), arguments, 2, &["out"]);
     }
-    // An experiment whose copy would replace it.
+    // An experiment that would be replaced by its copy.
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("experiment")).unwrap();
     fs::write(folder.path().join("experiment/experiment.toml"), super::experiment::TINY).unwrap();
     refused(folder.path(), &["run", "experiment/experiment.toml", "--out", "."], 2, &["the experiment", "overwritten"]);
 }
 
-/// What this program wrote it may replace: the page of an earlier run.
+/// The program may replace its own files: the page of an earlier run.
 #[test]
 fn pages_of_its_own_are_drawn_again() {
     let folder = tempfile::tempdir().unwrap();
@@ -138,7 +138,7 @@ fn pages_of_its_own_are_drawn_again() {
     finish(pathmark(folder.path(), &["report", "out"])).with_code(0);
 }
 
-/// A file that was there stays as it was when the command is refused for another reason.
+/// An existing file stays unchanged when the command is refused for another reason.
 #[test]
 fn a_refused_render_leaves_the_old_image() {
     let folder = tempfile::tempdir().unwrap();
@@ -194,7 +194,7 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
         drop(out);
         wait(child).with_code(0);
 
-        // Closed before the first byte.
+        // The reader closes before the first byte.
         let mut child = pathmark(folder.path(), arguments).spawn().unwrap();
         drop(child.stdout.take());
         wait(child).with_code(0);

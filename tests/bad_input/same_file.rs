@@ -6,11 +6,11 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
-/// A verb with all its files. What it reads has names that all of its options take.
+/// A verb with all its files. All options of the verb accept the names of its inputs.
 struct Verb {
     arguments: &'static [&'static str],
     inputs: &'static [&'static str],
-    /// Options, and what errors call them.
+    /// Options, and the names of their fields in errors.
     outputs: &'static [(&'static str, &'static str)],
 }
 
@@ -47,7 +47,7 @@ shape = { mesh = { file = "mesh.ppm" } }
 material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
 "#;
 
-/// Every input of every verb.
+/// Writes all inputs of all verbs.
 fn inputs(folder: &Path) {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     write("mesh.ppm", "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n");
@@ -61,7 +61,7 @@ fn inputs(folder: &Path) {
     render("reference.png", "2");
 }
 
-/// Other ways to spell the file `name`, by links that this makes.
+/// Other spellings of the file `name`; creates the links that they use.
 fn spellings(folder: &Path, name: &str) -> Vec<String> {
     fs::create_dir_all(folder.join("sub")).unwrap();
     let link = |link: String, target: &str| {

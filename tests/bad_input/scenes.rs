@@ -1,4 +1,4 @@
-//! Scene files that are wrong, and two that only look wrong.
+//! Wrong scene files, and two that only look wrong.
 
 use super::program::{finish, pathmark};
 use super::{line_of, place, refused};
@@ -20,7 +20,8 @@ material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }
 emission = [1.0, 1.0, 1.0]
 "#;
 
-/// What is put in the place of what, and what the message must hold: the field, the value, what is allowed.
+/// The text to replace, its replacement, and the words that the message must contain: the field, the value, the allowed
+/// values.
 const WRONG: &[(&str, &str, &[&str])] = &[
     ("radius = 20.0", "radius = nan", &["radius", "NaN", "1e-100 to 1e100"]),
     ("radius = 20.0", "radius = inf", &["radius", "inf", "1e-100 to 1e100"]),
@@ -53,7 +54,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("shape = { sphere =", "shape = { cube =", &["cube", "sphere"]),
     ("[0.0, -0.042612, -1.0]", "[0.0, 0.0, 0.0]", &["direction", "zero", "length"]),
     ("[0.0, -0.042612, -1.0]", "[nan, 0.0, 1.0]", &["direction", "nan"]),
-    // Rows are upright by the camera's own rule, which has no answer when it looks along its rows.
+    // The camera's rule for upright rows has no answer when the camera looks along its rows.
     ("[0.0, -0.042612, -1.0]", "[1.0, 0.0, 0.0]", &["direction", "1.0, 0.0, 0.0"]),
     ("field = 0.5135", "field = 0.0", &["field", "0", "1e-100 to 1e100"]),
     ("advance = 140.0", "advance = -1.0", &["advance", "-1", "0 to 1e100"]),
@@ -65,7 +66,8 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("about = \"one ball\"", "about = \"one\0ball\"", &["about"]),
 ];
 
-/// Other shapes in the ball's place, and what the message must hold: T05, T17 and what else has no area or direction.
+/// Other shapes in place of the ball, and the words that the message must contain: T05, T17 and other shapes without an
+/// area or a direction.
 const SHAPES: &[(&str, &[&str])] = &[
     ("triangle = { corners = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [2.0, 2.0, 2.0]] }", &["corners", "on a line", "area"]),
     ("triangle = { corners = [[1.0, 2.0, 3.0], [1.0, 2.0, 3.0], [1.0, 2.0, 3.0]] }", &["corners", "on a line", "area"]),
@@ -80,7 +82,7 @@ const SHAPES: &[(&str, &[&str])] = &[
     ("mesh = { object = \"x\" }", &["file", "missing"]),
 ];
 
-/// Other cameras in the place of the first, likewise.
+/// Other cameras in place of the first, and the words that the message must contain.
 const CAMERAS: &[(&str, &[&str])] = &[
     ("look-at = [0.0, 0.0, 0.0]\nfield-of-view = 0.0", &["field-of-view", "0.0", "1e-6 to 179"]),
     ("look-at = [0.0, 0.0, 0.0]\nfield-of-view = 180.0", &["field-of-view", "180", "1e-6 to 179"]),
@@ -102,7 +104,7 @@ fn each_wrong_scene_is_refused_at_its_place() {
         let text = BALL.replacen(right, wrong, 1);
         fs::write(folder.path().join("ball.toml"), &text).unwrap();
         let changed = line_of(BALL, right)..=line_of(BALL, right) + wrong.matches('\n').count();
-        // All cases are tried before any is told, so that one run shows everything that is wrong.
+        // All cases run before any failure is reported, so that one run shows all of them.
         let outcome = std::panic::catch_unwind(|| {
             let message = refused(folder.path(), &ARGUMENTS, 2, said);
             let found = place(&message, "ball.toml");
@@ -133,7 +135,7 @@ fn shapes_without_an_area_and_cameras_without_a_view_are_refused() {
     }
 }
 
-/// The column is that of the value, counted in characters.
+/// The column is the value's first character, counted in characters.
 #[test]
 fn the_column_is_counted_in_characters() {
     let folder = tempfile::tempdir().unwrap();
@@ -174,7 +176,7 @@ fn files_that_are_no_scenes_are_refused() {
     refused_file(b"about = \"\xff\xfe\"\n", &["UTF-8"]);
     refused_file("about = \"no end", &["ball.toml:1:"]);
     refused_file(vec![b'#'; 20 << 20], &["3 MiB"]);
-    // One line that is as long as a file may be.
+    // One line as long as a file may be.
     refused_file([b"about = '".as_slice(), &vec![b'x'; (3 << 20) - 9]].concat(), &["ball.toml:1:"]);
 }
 
@@ -186,12 +188,12 @@ fn a_scene_without_objects_is_refused_at_its_place() {
     refused_file(format!("objects = []\n{camera}"), &["ball.toml:1:", "objects = []", "at least one"]);
 }
 
-/// A file of a gigabyte, which takes no room on the disk, costs no more than any other refusal.
+/// A sparse file of a gigabyte: its refusal costs no more than any other.
 #[test]
 fn a_line_of_a_gigabyte_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::File::create(folder.path().join("ball.toml")).unwrap().set_len(1 << 30).unwrap();
-    // Not through `refused`, which would read the file to compare it.
+    // Without `refused`, which would read the file to compare it.
     let finished = finish(pathmark(folder.path(), &ARGUMENTS)).with_code(2);
     assert!(finished.err.contains("ball.toml") && finished.err.contains("3 MiB"), "{}", finished.err);
 }
@@ -215,7 +217,7 @@ fn paths_that_are_no_scene_files_are_refused() {
         ("folder.toml", &["folder.toml", "directory"]),
         ("missing.toml", &["missing.toml", "no such file"]),
         ("./missing", &["missing", "no such file"]),
-        // It never ends, so only a limit stops the reading.
+        // It never ends, so the reader must stop by itself.
         ("/dev/zero", &["/dev/zero", "byte 0 is zero"]),
     ];
     for (scene, said) in cases.iter().filter(|(scene, _)| !scene.starts_with('/') || Path::new(scene).exists()) {

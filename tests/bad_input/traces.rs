@@ -1,4 +1,4 @@
-//! Trace files that are none, and options of `simulate` and `trace` that make no sense.
+//! Invalid trace files, and options of `simulate` and `trace` that make no sense.
 
 use super::program::{finish, pathmark};
 use super::refused;
@@ -62,7 +62,7 @@ fn options_that_make_no_sense_are_refused() {
     refused(folder.path(), &["simulate", "none.csv"], 2, &["none.csv"]);
 }
 
-/// A render that could not write its trace is refused before it is rendered.
+/// A render that could not write its trace is refused before it starts.
 #[test]
 fn a_trace_that_cannot_be_written_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,8 +1,9 @@
-//! F04, F09: files with any damage. Each target reads its seeds, every beginning of each short one, and mutations of them, drawn from a fixed
-//! seed. A reader may accept or refuse; it may not panic, ask for more memory than a refusal may take, or think for a second.
+//! F04, F09: files with any damage. Each target reads its seeds, every prefix of each short seed, and mutations drawn
+//! from a fixed seed. A reader may accept or refuse. It may not panic, use more memory than a refusal may take, or
+//! compute for a second.
 //!
-//! `PATHMARK_THOROUGH=1` draws a hundred times as many. What fails is written to a folder and its name told: add it to
-//! `corpus/TARGET`, where this program finds it by itself.
+//! `PATHMARK_THOROUGH=1` draws a hundred times as many mutations. A failing input is written to a file, and its path is
+//! printed: add it to `corpus/TARGET`, where this program finds it by itself.
 
 mod mutate;
 mod targets;
@@ -23,16 +24,16 @@ use watchdog::Watchdog;
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// What a reader may ask for, given a file of some thousand bytes.
+/// Memory in bytes that a reader may use for a file of some thousand bytes.
 const MOST_MEMORY: usize = 256 << 20;
-/// CPU time, which does not depend on what else the machine does.
+/// CPU time, which does not depend on the machine's other work.
 const LONGEST: Duration = Duration::from_secs(1);
-/// Of shorter seeds every beginning is read.
+/// Every prefix of a shorter seed is read.
 const LONGEST_CUT: usize = 1100;
-/// After so many failures of one target the rest would say nothing new.
+/// After so many failures of one target, more would show nothing new.
 const MOST_FAILURES: usize = 5;
 
-/// What is known of a target when all its inputs have been read.
+/// The results of a target after all its inputs.
 #[derive(Default)]
 struct Tally {
     inputs: u64,
@@ -55,7 +56,7 @@ fn said(payload: &(dyn Any + Send)) -> &str {
 }
 
 impl Tally {
-    /// Reads one input and notes what is wrong about how that went.
+    /// Reads one input and records a problem, if there is one.
     fn read(&mut self, target: &Target, path: &Path, input: &[u8]) {
         fs::write(path, input).unwrap();
         MEMORY.reset_peak_usage();
@@ -81,7 +82,7 @@ impl Tally {
     }
 }
 
-/// The seeds of a target: its folder, and what the program itself makes or carries.
+/// The seeds of a target: the files of its folder, and the seeds that the program makes or carries.
 fn seeds(target: &Target) -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus").join(target.name);
     let entries = fs::read_dir(folder).into_iter().flatten();
@@ -92,7 +93,7 @@ fn seeds(target: &Target) -> Vec<Vec<u8>> {
 }
 
 fn try_all(target: &Target, rounds: u64, watchdog: &Watchdog) -> Tally {
-    // In memory where there is such a folder: a disk takes longer than all readers together.
+    // In memory if there is such a folder: a disk takes longer than all readers together.
     let folder = tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap();
     (target.prepare)(folder.path());
     let path = folder.path().join(target.file);

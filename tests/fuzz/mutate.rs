@@ -1,9 +1,10 @@
-//! Damage: bits, bytes, numbers, words and parts of other files, several at a time. The same seed gives the same inputs.
+//! Damage to inputs: bits, bytes, numbers, words and parts of other files, several at a time. The same seed gives the
+//! same inputs.
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// No input is longer: what is looked for are mistakes, not patience.
+/// The largest input in bytes: the search is for mistakes, not for slow inputs.
 const LONGEST: usize = 1 << 14;
 const BYTES: &[u8] = &[0, 1, 0x7f, 0x80, 0xff, b'\n', b' ', b'"', b',', b'.', b'-', b'0', b'9', b'=', b'[', b']', b'#'];
 const INTEGERS: &[u32] =
@@ -45,7 +46,7 @@ const NUMBERS: &[&str] = &[
     "2147483648",
 ];
 
-/// Makes inputs without an end.
+/// An endless source of damaged inputs.
 pub(crate) struct Mutator<'a> {
     seeds: &'a [Vec<u8>],
     words: &'a [&'a str],
@@ -57,7 +58,7 @@ impl<'a> Mutator<'a> {
         Self { seeds, words, random: Pcg64::seed_from_u64(1) }
     }
 
-    /// A seed with some mutations, mostly few: a file with many is refused for the first.
+    /// A seed with some mutations, mostly few: a reader refuses a file with many mutations for its first.
     pub(crate) fn next(&mut self) -> Vec<u8> {
         let mut bytes = self.seed().to_vec();
         self.mutate(&mut bytes);
@@ -76,12 +77,12 @@ impl<'a> Mutator<'a> {
         &of[self.random.random_range(0..of.len())]
     }
 
-    /// A place between two bytes.
+    /// A position between two bytes.
     fn place(&mut self, bytes: &[u8]) -> usize {
         self.random.random_range(0..=bytes.len())
     }
 
-    /// A stretch, mostly a short one.
+    /// A range of bytes, mostly a short one.
     fn stretch(&mut self, bytes: &[u8]) -> std::ops::Range<usize> {
         let start = self.place(bytes);
         let most = if self.random.random_bool(0.8) { 16 } else { bytes.len() };
@@ -118,7 +119,7 @@ impl<'a> Mutator<'a> {
         }
     }
 
-    /// Another number in the place of the next one written in digits.
+    /// Replaces the next number written in digits by another.
     fn other_number(&mut self, bytes: &mut Vec<u8>, at: usize) {
         let is_digit = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-');
         let Some(start) = bytes[at..].iter().position(is_digit).map(|skipped| at + skipped) else { return };

@@ -1,4 +1,4 @@
-//! What is read: one line a target.
+//! The fuzz targets: kinds of files with their readers.
 
 use pathmark::Lab;
 use pathmark::error::Result;
@@ -14,25 +14,25 @@ use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::Path;
 
-/// A kind of file and who reads it.
+/// A kind of file and its reader.
 pub(crate) struct Target {
-    /// Its name, and that of its corpus's folder.
+    /// The name of the target and of its corpus folder.
     pub(crate) name: &'static str,
-    /// What the file is called, as its reader goes by that.
+    /// The file's name, which its reader depends on.
     pub(crate) file: &'static str,
-    /// Puts beside it what its reader looks for.
+    /// Writes the files that the reader expects beside it.
     pub(crate) prepare: fn(&Path),
-    /// Whether the file was accepted. What is accepted must be of use.
+    /// Reads the file and returns whether it was accepted. An accepted file must be usable.
     pub(crate) read: fn(&Path) -> bool,
-    /// Makes a damaged file pass what guards it against damage, so that what lies behind is reached.
+    /// Makes a damaged file pass its checks against damage, so that the code behind them is reached.
     pub(crate) repair: fn(Vec<u8>) -> Vec<u8>,
-    /// Seeds beside the corpus, which the program carries or makes: those never grow old.
+    /// Seeds besides the corpus that the program carries or makes, so that they never become outdated.
     pub(crate) more: fn() -> Vec<Vec<u8>>,
     /// Words of the format.
     pub(crate) words: &'static [&'static str],
-    /// Whether beginnings of seeds are tried.
+    /// Whether prefixes of seeds are tried.
     pub(crate) cut: bool,
-    /// How many mutations a round has.
+    /// Mutations in a round.
     pub(crate) mutations: u64,
 }
 
@@ -48,7 +48,7 @@ const TARGET: Target = Target {
     mutations: 7000,
 };
 
-/// All of them.
+/// All targets.
 pub(crate) const TARGETS: &[Target] = &[
     Target {
         name: "scene",
@@ -64,7 +64,7 @@ pub(crate) const TARGETS: &[Target] = &[
         name: "experiment",
         file: "tiny.toml",
         read: experiment,
-        // The cells of a large matrix are many: what takes long is no news.
+        // A large matrix has many cells, so it is known to take long.
         more: || texts(EXPERIMENTS, 1300, "spheres"),
         words: EXPERIMENT_WORDS,
         mutations: 1200,
@@ -208,28 +208,28 @@ fn ok<T>(result: Result<T>) -> bool {
     match result {
         Ok(_) => true,
         Err(error) => {
-            // Somebody reads it.
+            // Users read the message.
             assert!(!error.to_string().is_empty());
             false
         }
     }
 }
 
-/// Definitions that the program carries, but for long ones and those that ask for much by themselves.
+/// Definitions that the program carries, except long ones and those that contain `heavy`.
 fn texts(table: &[(&str, &str)], most: usize, heavy: &str) -> Vec<Vec<u8>> {
     let texts = table.iter().map(|(_, text)| *text).filter(|text| text.len() < most && !text.contains(heavy));
     texts.map(|text| text.as_bytes().to_vec()).collect()
 }
 
-/// Whitted's rays branch at every glass surface.
+/// Whitted's rays branch at every glass surface, so the test limits their depth.
 const DEEPEST: u16 = 6;
 
-/// A scene that is accepted can be rendered by every estimator, whatever it looks like.
+/// Every estimator can render every accepted scene.
 fn scene(path: &Path) -> bool {
     let Ok(scene) = scene::load(path.to_str().unwrap()) else { return false };
     let scene = std::sync::Arc::new(scene);
     for entry in pathmark::estimator::ESTIMATORS {
-        // Fog that scatters again and again, or glass in a mirror, is not what is looked for here.
+        // The test is not about fog that scatters again and again, or glass in a mirror.
         let spec =
             Spec { width: 2, height: 1, estimator: entry.name.into(), max_depth: Some(DEEPEST), ..Spec::default() };
         let settings = Settings { spp: 4, spec, strategy: "serial".into(), ..Settings::default() };
@@ -265,7 +265,7 @@ fn experiment(path: &Path) -> bool {
     Profile::ALL.into_iter().filter(|profile| ok(definition.cells(*profile))).count() > 0
 }
 
-/// With the checksum of the bytes before it; the beginnings of files keep the one that does not fit.
+/// Replaces the checksum at the end by the right one. Prefixes of seeds keep their wrong checksum.
 fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
     if let Some(end) = bytes.len().checked_sub(32) {
         let digest = Sha256::digest(&bytes[..end]);
@@ -300,7 +300,7 @@ fn checkpoints() -> Vec<Vec<u8>> {
     made.to_vec()
 }
 
-/// Records of two strategies, three times each.
+/// Records of two strategies, three repetitions each.
 fn rows() -> Vec<Vec<u8>> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("records.csv");
@@ -324,7 +324,8 @@ fn checkpoint(path: &Path) -> bool {
     saved.is_none_or(|saved| saved.film.film().pixels().len() == 6)
 }
 
-/// What is accepted has the pixels that it says; and if its format can hold them, they come back.
+/// An accepted image has as many pixels as its size says. If PFM holds its values exactly, a small image can be written
+/// and read back.
 fn image(path: &Path) -> bool {
     let Ok(image) = image_io::read(path) else { return false };
     assert_eq!(image.pixels.len(), image.width as usize * image.height as usize);
@@ -346,7 +347,7 @@ fn beside_the_records(folder: &Path) {
     fs::copy(corpus.join("machine/machine.toml"), to.join("machine.toml")).unwrap();
 }
 
-/// The whole page from rows that somebody may have edited.
+/// Draws the whole page from rows that may have been edited.
 fn report(path: &Path) -> bool {
     ok(pathmark::report::write(&Lab::built_in(), path.parent().and_then(Path::parent).unwrap()))
 }

@@ -1,4 +1,4 @@
-//! What a fault changes, and how it is applied.
+//! Faults: their edits, and how they are applied.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -14,7 +14,8 @@ pub(crate) struct Fault {
     edits: Vec<Edit>,
 }
 
-/// A text that stands exactly once, in `file` or in the sources of all packages, and what replaces it. Blanks and line ends are not compared.
+/// A text that occurs exactly once, in `file` or in the sources of all packages, and its replacement. White space is
+/// not compared.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Edit {
@@ -28,7 +29,7 @@ pub(crate) struct Sources(BTreeMap<PathBuf, Source>);
 
 struct Source {
     text: String,
-    /// The text without blanks, and where in it each byte stood.
+    /// The text without white space; `places` has the position of each of its bytes in `text`.
     bare: String,
     places: Vec<usize>,
 }
@@ -52,7 +53,7 @@ impl FromIterator<(PathBuf, String)> for Sources {
 }
 
 impl Sources {
-    /// The sources of the package at `root` and of those in its `crates`.
+    /// The sources of the package at `root` and of the packages in its `crates`.
     pub(crate) fn read(root: &Path) -> Self {
         let text = |file: PathBuf| (file.strip_prefix(root).unwrap().to_path_buf(), fs::read_to_string(&file).unwrap());
         packages(root).iter().flat_map(|package| source_files(&package.join("src"))).map(text).collect()
@@ -63,13 +64,13 @@ impl Sources {
     }
 }
 
-/// The folders of the package at `root` and of those in its `crates`.
+/// The folders of the package at `root` and of the packages in its `crates`.
 pub(crate) fn packages(root: &Path) -> Vec<PathBuf> {
     let members = fs::read_dir(root.join("crates")).into_iter().flatten().map(|entry| entry.unwrap().path());
     std::iter::once(root.to_path_buf()).chain(members).collect()
 }
 
-/// The files of code below a folder, in Rust and for devices; none if there is no such folder.
+/// The source files below a folder, in Rust and for devices; none if the folder does not exist.
 pub(crate) fn source_files(folder: &Path) -> Vec<PathBuf> {
     let (mut files, mut folders) = (Vec::new(), vec![folder.to_path_buf()]);
     while let Some(folder) = folders.pop() {
@@ -85,7 +86,7 @@ pub(crate) fn source_files(folder: &Path) -> Vec<PathBuf> {
 }
 
 impl Fault {
-    /// The files that change, with their new text.
+    /// Returns the changed files with their new text.
     pub(crate) fn apply(&self, sources: &Sources) -> Result<BTreeMap<PathBuf, String>, String> {
         let mut changed: BTreeMap<PathBuf, Source> = BTreeMap::new();
         for edit in &self.edits {

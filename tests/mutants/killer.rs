@@ -1,4 +1,4 @@
-//! Who notices a fault: cases of `pathmark check`, or tests by their path, wherever their program is.
+//! Killers, which notice a fault: cases of `pathmark check`, or tests by their path, in any test program.
 
 use super::fault::{packages, source_files};
 use std::collections::BTreeSet;
@@ -12,9 +12,9 @@ pub(crate) enum Killer {
     Tests(Vec<String>, Vec<String>),
 }
 
-/// Everyone who could notice something.
+/// All cases and tests.
 pub(crate) struct Killers {
-    /// The path of each test: its program, or `lib`; its modules as files lie, and its function.
+    /// The path of each test: its program or `lib`, its modules by their files, and its function.
     tests: Vec<Vec<String>>,
     /// The source of the hard cases.
     cases: String,
@@ -41,7 +41,7 @@ impl Killers {
         Self { tests, cases }
     }
 
-    /// Who is meant by the words of an entry.
+    /// Returns the cases or tests that an entry's `killed_by` names.
     pub(crate) fn find(&self, words: &str) -> Result<Killer, String> {
         match words.split_once(' ') {
             Some(("check", ids)) => self.cases(ids),
@@ -72,7 +72,7 @@ impl Killers {
     }
 }
 
-/// The names of the functions that `#[test]` stands before.
+/// The names of the functions marked `#[test]`.
 fn functions(text: &str) -> impl Iterator<Item = &str> {
     let after = text.split("#[test]").skip(1);
     after.filter_map(|text| text.split_once("fn ")?.1.split_once('(')).map(|(name, _)| name)

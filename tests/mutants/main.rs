@@ -1,4 +1,5 @@
-//! Named faults, each with the case or test that notices it: `mutants.toml`. Applied by matching text, so they survive code that moves.
+//! Named faults, each with the case or test that notices it: `mutants.toml`. They are applied by matching text, so they
+//! survive moved code.
 
 mod fault;
 mod killer;
@@ -34,7 +35,8 @@ fn every_killer_exists() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// The same file may lie elsewhere and break its lines elsewhere; a text that is there twice, or not at all, is told.
+/// The text may have moved to another file or have other line breaks. A text that occurs twice or not at all is an
+/// error.
 #[test]
 fn a_fault_is_applied_wherever_its_text_stands_once() {
     let sources =

@@ -1,4 +1,4 @@
-//! Tries a fault in a scratch copy of what is committed.
+//! Trials of faults in a scratch copy of the committed files.
 
 use super::fault::{Fault, Sources};
 use super::killer::{Killer, Killers};
@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 pub(crate) enum Outcome {
-    /// What noticed it.
+    /// The failed cases or tests, or a time limit or crash.
     Killed(String),
-    /// Who should have noticed it.
+    /// The cases or tests that should have noticed it.
     Survived(String),
-    /// Why nobody could.
+    /// The reason why the fault could not be tried.
     NotTried(String),
 }
 
@@ -65,7 +65,7 @@ impl Scratch {
         })
     }
 
-    /// What those who should notice say.
+    /// Runs the cases or tests that should notice the fault. The error says why the copy does not compile.
     fn noticed(&self, killer: &Killer) -> Result<Output, String> {
         let limited = |program: &Path| {
             let mut command = self.command("timeout");
@@ -96,7 +96,8 @@ impl Scratch {
         Ok(try_it.output().unwrap())
     }
 
-    /// Compiling takes longer than the cases: less optimisation, and only what a fault changes.
+    /// A command in the copy. Compiling takes longer than the cases: less optimisation, and only the code that a fault
+    /// changes.
     fn command(&self, program: impl AsRef<std::ffi::OsStr>) -> Command {
         let mut command = Command::new(program);
         command.current_dir(&self.copy).env("CARGO_TARGET_DIR", &self.target).env("CARGO_INCREMENTAL", "1");

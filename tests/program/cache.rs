@@ -1,4 +1,4 @@
-//! `--cache FOLDER`: hierarchies of large scenes are built once, whoever asks next and for whatever image.
+//! `--cache FOLDER`: the tree over a large scene is built once, for all later commands and images.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{Finished, finish, pathmark};
@@ -29,7 +29,7 @@ fn a_tree_is_built_once_and_the_image_is_the_same() {
     assert!(without["build_s"].as_f64().unwrap() > 0.0);
     let trees = folder.path().join("trees");
     let mut kept = None;
-    // The same boxes have one tree, whoever looks into it.
+    // Equal bounding boxes have one tree, whatever kernel or precision traverses it.
     for more in
         [&[][..], &[], &["--kernel", "scalar"], &["--precision", "f32"], &["--seed", "7", "--estimator", "bsdf"]]
     {
@@ -40,7 +40,7 @@ fn a_tree_is_built_once_and_the_image_is_the_same() {
         }
         assert!(with["build_s"].is_null(), "it would mix building and reading");
         let [file] = files(&trees).try_into().expect("one file");
-        // Another file in its place would have another time.
+        // A rewritten file would have another time.
         let found = (fs::metadata(&file).unwrap().modified().unwrap(), file);
         assert_eq!(kept.get_or_insert_with(|| found.clone()), &found);
     }
@@ -50,7 +50,7 @@ fn a_tree_is_built_once_and_the_image_is_the_same() {
     assert_eq!(files(&trees).len(), 2);
 }
 
-/// A damaged file may be all that is left of something: the program says so and does not replace it.
+/// A damaged file may hold the last copy of something: the program reports it and does not replace it.
 #[test]
 fn a_damaged_file_is_refused_and_left_alone() {
     let folder = tempfile::tempdir().unwrap();
@@ -88,7 +88,7 @@ fn what_can_be_no_folder_is_refused_before_any_work() {
             assert!(refused.err.contains("cache = ") && refused.err.contains(problem), "{}", refused.err);
         }
     }
-    // Where other input is refused, no folder is made, and none where nothing is kept.
+    // If other input is refused or nothing is cached, no folder is made.
     render(folder.path(), &["--strategy", "nonsense"]).with_code(2);
     render(folder.path(), &["--accelerator", "none"]).with_code(0);
     finish(pathmark(folder.path(), &["render", "mandelbrot", "--cache", "trees"])).with_code(2);
@@ -99,7 +99,7 @@ fn what_can_be_no_folder_is_refused_before_any_work() {
     assert_eq!(names, ["file", "tiny.toml", "x.pfm"]);
 }
 
-/// Every command that builds a hierarchy takes the kept one.
+/// Every command that builds a tree uses the cached one.
 #[test]
 fn all_commands_share_a_file() {
     let folder = tempfile::tempdir().unwrap();
@@ -117,7 +117,7 @@ fn all_commands_share_a_file() {
     }
 }
 
-/// Cells are processes of their own, and each would build the tree again.
+/// Cells run in separate processes, and each would build the tree again.
 #[test]
 fn cells_of_a_sweep_share_trees() {
     let folder = tempfile::tempdir().unwrap();
@@ -129,7 +129,7 @@ fn cells_of_a_sweep_share_trees() {
     let build_s = rows.headers().unwrap().iter().position(|name| name == "build_s").unwrap();
     let rows: Vec<_> = rows.records().map(Result::unwrap).collect();
     assert!(rows.len() > 1 && rows.iter().all(|row| row[build_s].is_empty()));
-    // Rows that were measured otherwise are not added.
+    // Rows with a build time are not added to rows without one.
     let without = finish(pathmark(folder.path(), &[&large[..], &["--resume"]].concat())).with_code(2);
     assert!(without.err.contains("cache"), "{}", without.err);
 }

@@ -6,7 +6,7 @@ use crate::snapshot::{assert_untouched, snapshot};
 use std::fs;
 use std::path::Path;
 
-/// A folder `out` with the rows of a small experiment that has the name of a large one.
+/// A folder whose `out` has the rows of a small experiment under the name of a large one.
 fn with_rows() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
@@ -40,7 +40,7 @@ fn small_images_do_not_judge_a_report_and_are_told_as_such() {
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     let (claims, experiment) = (page.find("id=\"claims\"").unwrap(), page.find("id=\"thread-scaling\"").unwrap());
     assert!(claims < experiment, "the claims come first");
-    // Nothing that was measured can have become unexpected: it was not measured at the report's size.
+    // No verdict can be unexpected, because nothing was measured at the report's size.
     assert_eq!(listing(folder.path(), &["--strict"]).len(), 72);
 }
 

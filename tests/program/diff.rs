@@ -13,7 +13,8 @@ pub(crate) fn run(folder: &Path, arguments: &[&str], code: i32) -> Finished {
     finish(pathmark(folder, arguments)).with_code(code)
 }
 
-/// Rows as a sweep of another commit on the same machine would have left them: times of its cells by repetition.
+/// Writes rows as a sweep of another commit on the same machine would leave them. `times` gives the time of a cell's
+/// repetition.
 pub(crate) fn measured(folder: &Path, name: &str, times: impl Fn(&str, u32) -> f64) {
     let from = folder.join("base/tiny");
     let to = folder.join(name);
@@ -34,7 +35,7 @@ pub(crate) fn measured(folder: &Path, name: &str, times: impl Fn(&str, u32) -> f
     }
 }
 
-/// Times around a second, none alike.
+/// Times around a second, all different.
 pub(crate) fn steady(cell: &str, repetition: u32) -> f64 {
     1.0 + 1e-3 * f64::from(repetition * 7 % 10) + 1e-6 * cell.len() as f64
 }
@@ -72,7 +73,7 @@ fn what_got_slower_fails_and_what_did_not_passes() {
     assert_eq!(verdicts("slow", 1.05, "serial", &["--fail-above", "3%"], 1), ["slower"]);
     assert_eq!(verdicts("slow", 1.05, "serial", &["--fail-above", "0.1"], 0), ["same"]);
     assert_eq!(verdicts("fast", 0.9, "work-stealing", &[], 0), ["faster", "faster"]);
-    // The table says the same as the object.
+    // The table has the same verdict as the JSON object.
     let text = run(folder.path(), &["diff", "old", "slow"], 1);
     assert!(text.out.contains("slower") && text.err.contains("1 cell got slower"), "{}{}", text.out, text.err);
     assert!(text.err.contains("not measured in turns"), "{}", text.err);
@@ -82,7 +83,7 @@ fn what_got_slower_fails_and_what_did_not_passes() {
 fn what_cannot_be_told_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
     base(folder.path());
-    // Times that scatter by half decide nothing about a change of a tenth.
+    // Times that scatter by half decide nothing about a change by a tenth.
     measured(folder.path(), "wild", |cell, repetition| {
         1.1 * steady(cell, repetition) * (0.7 + 0.1 * f64::from(repetition * 3 % 10))
     });
@@ -133,15 +134,15 @@ fn what_does_not_compare_is_refused() {
     refused(&["old", "ancient"], &["schema", "6"]);
 }
 
-/// Writes a shell script by a process of its own: were it open for writing here, a child that another test starts meanwhile would hold it open, too,
-/// and for that long nobody could run it.
+/// Writes a shell script in another process. If it were open for writing here, a child that another test starts
+/// meanwhile would hold it open, too, and until that child ends the script could not run.
 fn write_script(path: &Path, text: &str) {
     let mut writer = Command::new("sh");
     writer.args(["-c", "printf '#!/bin/sh\n%s\n' \"$1\" >\"$0\" && chmod 755 \"$0\""]).arg(path).arg(text);
     assert!(writer.status().unwrap().success());
 }
 
-/// The same program behind a script, as another build of it.
+/// The same program behind a script, as another build.
 fn other_build(folder: &Path) -> PathBuf {
     let script = folder.join("other");
     write_script(&script, &format!("exec {} \"$@\"", cargo_bin!("pathmark").display()));
@@ -160,8 +161,8 @@ fn rows(folder: &Path) -> Vec<[String; 4]> {
     rows
 }
 
-/// Times differ by less than a limit that is large enough as soon as there are two ends to an interval: five intervals that hold together at every
-/// look need 11 repetitions for that, because 2 * 2^n / (n + 1) reaches 2 / (.05 / 5) there.
+/// The limit is so large that times differ by less as soon as an interval has two ends. Five intervals that hold
+/// together at every look need 11 repetitions for that: there, 2 * 2^n / (n + 1) reaches 2 / (.05 / 5).
 #[test]
 fn repetitions_go_on_until_it_is_known() {
     let folder = tempfile::tempdir().unwrap();
@@ -179,7 +180,7 @@ fn repetitions_go_on_until_it_is_known() {
     let found = json(&run(folder.path(), &compared, 0));
     assert_eq!(found["sequential"], true);
     assert!(found["cells"].as_array().unwrap().iter().all(|cell| cell["change"] == "same"), "{found}");
-    // Fewer are no answer, and neither is no time.
+    // Fewer repetitions decide nothing, and neither does a time limit of zero.
     until("few", &["--until", huge, "--repetitions", "10"], 0);
     assert_eq!(rows(&folder.path().join("few/tiny")).len(), 5 * 10);
     until("short", &["--until", huge, "--within", "0s"], 0);
@@ -197,7 +198,7 @@ fn repetitions_go_on_until_it_is_known() {
     assert!(alone.err.contains("--until"), "{}", alone.err);
 }
 
-/// Two builds in turns; the other one is the same program behind a script.
+/// Two builds are measured in turns; the other one is the same program behind a script.
 #[test]
 fn two_builds_are_measured_in_turns() {
     let folder = tempfile::tempdir().unwrap();
@@ -210,7 +211,7 @@ fn two_builds_are_measured_in_turns() {
     let found = run(folder.path(), &["diff", "out/against/tiny", "out/tiny", "--json", "--fail-above", "1000%"], 0);
     assert_eq!((&json(&found)["paired"], json(&found)["cells"].as_array().unwrap().len()), (&true.into(), 5));
     assert!(!found.err.contains("not measured in turns"));
-    // The same folder again, and programs that are none.
+    // The same folder again, and files that are no builds of Pathmark.
     run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 2);
     for other in ["./nowhere", "tiny.toml", ".", "/bin/true", "/bin/sh"] {
         let finished = run(folder.path(), &["run", "tiny.toml", "--against", other, "--out", "new"], 2);
@@ -224,7 +225,8 @@ fn two_builds_are_measured_in_turns() {
     assert_eq!(rows("new/tiny").len(), 15);
 }
 
-/// Instructions are counted beside the rows, and those that differ by a thousandth or less are the same. Without valgrind this says so and passes.
+/// Instructions are counted beside the rows; counts that differ by a thousandth or less are equal. Without valgrind the
+/// test says so and passes.
 #[test]
 fn instructions_are_counted_and_compared() {
     let folder = tempfile::tempdir().unwrap();

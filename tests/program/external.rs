@@ -1,5 +1,5 @@
-//! Other programs in an experiment's tables: their image is read and measured, their time is that of the process, and one that is not there stops
-//! nothing.
+//! Other programs in an experiment's tables: their image is read and measured, their process is timed, and a missing
+//! program stops nothing.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{Finished, finish, pathmark};
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
-/// Runs the small experiment with one more table; rows of `other`, and what the program said.
+/// Runs the small experiment with one more table. Returns the rows of `other` and the finished program.
 fn run(folder: &Path, external: &str) -> (Vec<BTreeMap<String, String>>, Finished) {
     let (matrix, scales) = TINY.split_once("[quick]").unwrap();
     let scales = scales.replacen("repetitions = 3", "repetitions = 1\nreference-spp = 40", 1);
@@ -42,7 +42,8 @@ fn its_image_is_measured_and_its_process_timed() {
         let number = |column: &str| row[column].parse::<f64>().unwrap();
         assert!(number("makespan_s") >= 0.05, "the process sleeps that long: {}", row["makespan_s"]);
         assert!(number("cpu_user_s") + number("cpu_system_s") < number("makespan_s"), "and uses no processor for it");
-        // Of a black image the squared error is the mean square of the picture, which is above the square of its mean, 0.33.
+        // For a black image, the squared error is the picture's mean square, which is above the square of its mean,
+        // 0.33.
         assert!(number("mse") > 0.33 * 0.33 && number("mean_radiance") == 0.0, "{}", row["mse"]);
         assert_eq!((row["sampler"].as_str(), row["spp"].as_str(), row["error"].as_str()), ("external", "8", ""));
     }
@@ -78,7 +79,7 @@ fn one_that_fails_or_writes_another_size_is_a_failed_row() {
     }
 }
 
-/// A number that is named twice, as by the curves of two lists, is one row; what is resumed has all of them.
+/// A sample count that is listed twice, as by the curves of two lists, gives one row; a resumed sweep finds all rows.
 #[test]
 fn a_doubled_number_of_samples_is_one_row() {
     let folder = tempfile::tempdir().unwrap();
@@ -93,7 +94,7 @@ fn a_doubled_number_of_samples_is_one_row() {
     assert!(rows() == before, "there was nothing to resume");
 }
 
-/// Also where there is no reference that the image would not fit.
+/// The size is checked even if no reference has to match it.
 #[test]
 fn an_image_of_another_size_is_a_failed_row_without_references() {
     let folder = tempfile::tempdir().unwrap();
@@ -104,7 +105,7 @@ fn an_image_of_another_size_is_a_failed_row_without_references() {
     assert!(failed.err.contains("size = 1x1") && failed.err.contains("24x16"), "{}", failed.err);
 }
 
-/// Images of two sizes are each measured against a reference of their own.
+/// Images of two sizes are each measured against their own reference.
 #[test]
 fn every_size_has_its_reference() {
     let folder = tempfile::tempdir().unwrap();
@@ -131,17 +132,17 @@ fn a_command_without_a_place_for_the_seed_is_refused() {
     assert!(refused.err.contains("command") && refused.err.contains("{seed}") && rows.is_empty(), "{}", refused.err);
 }
 
-/// Whether a process runs; one that has ended and that nobody waits for is no more than its number.
+/// Whether a process runs; an ended process that nobody has waited for does not.
 fn runs(process: &str) -> bool {
     let status = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
     status.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with('Z'))
 }
 
-/// Neither the other program nor what it has started outlives the sweep, however that ends, nor its cell.
+/// Neither the other program nor its children outlive the sweep or the cell, however these end.
 #[test]
 fn it_ends_with_the_sweep() {
     let watchdog = Watchdog::new(Duration::from_mins(2));
-    // Its own process, one that it starts, and the cell's, which is its parent.
+    // The ids of its own process, of its child, and of its parent, the cell.
     let command =
         r#""sh", "-c", "sleep 1000 & echo $$ $! $PPID > pids.tmp; mv pids.tmp pids; wait", "{out}", "{spp}", "{seed}""#;
     for (signal, victim) in

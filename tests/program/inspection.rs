@@ -1,5 +1,5 @@
-//! A single sample looked into is the one that the image was given, its path says where its light comes from, and the light by bounces is
-//! the image taken apart: report C's debug pixel, and report B's L = E + KE + K²E + ...
+//! Inspection of samples: an inspected sample equals the one in the image, its path tells where its light comes from,
+//! and light by bounces decomposes the image: report C's debug pixel, and report B's L = E + KE + K²E + ...
 //!
 //! Levels are family-wise 1e-3 (Sidak) within each test, two-sided.
 
@@ -304,8 +304,8 @@ fn rays_are_searched_alone_and_exported() {
     assert!(!folder.path().join("spheres").exists());
 }
 
-/// A lamp too bright for f32 makes samples invalid there. For every combination of render options, the printed replay
-/// command shows such a sample again.
+/// A lamp too bright for f32 makes samples invalid there. With each of these render options, the printed replay command
+/// shows such a sample again.
 #[test]
 fn a_told_command_shows_the_invalid_sample_on_every_axis() {
     let folder = tempfile::tempdir().unwrap();
@@ -330,7 +330,7 @@ fn a_told_command_shows_the_invalid_sample_on_every_axis() {
         for command in told {
             let arguments: Vec<&str> = ["replay"].into_iter().chain(command.split(' ')).collect();
             let replay = finish(pathmark(folder.path(), &arguments)).with_code(0);
-            assert!(replay.out.contains("This is no radiance"), "{command}: {}", replay.out);
+            assert!(replay.out.contains("This radiance is invalid"), "{command}: {}", replay.out);
             let json = finish(pathmark(folder.path(), &[&arguments[..], &["--json"]].concat())).with_code(0).out;
             let json: Value = serde_json::from_str(&json).unwrap();
             assert_eq!((&json["valid"], &json["precision"]), (&false.into(), &"f32".into()), "{command}");

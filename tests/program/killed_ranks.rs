@@ -1,4 +1,4 @@
-//! Processes of one image of which one is killed: they end, and others go on with what they left.
+//! Ranks of one image of which one is killed: all end, and other ranks resume their work.
 
 use crate::faults::is_thorough;
 use crate::program::{Finished, finish, pathmark, wait};
@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// The processes that run this program, by number.
+/// The ids of the processes that run `program` below a launcher.
 fn processes_of(program: &Path, launcher: u32) -> Vec<u32> {
     let is_below = |mut pid: u32| loop {
         let Ok(stat) = fs::read_to_string(format!("/proc/{pid}/stat")) else { return false };
@@ -33,9 +33,9 @@ fn runs(program: &Path, pid: u32) -> bool {
 /// How long a launcher may take to end after all its processes have.
 const LAUNCHERS_PATIENCE: Duration = Duration::from_secs(3);
 
-/// Kills one of the ranks of a launcher, if they are all there and still there `after` some time. Once one is gone all are; the launcher of
-/// Open MPI 4.1.4 sometimes waits for a lock of its own for ever after that, so it is killed then.
-/// Who ends by itself must not fail.
+/// Kills one of a launcher's ranks, if all ranks have started and it still runs after the delay `after`. When one rank
+/// is gone, all end. After that, the launcher of Open MPI 4.1.4 sometimes waits for its own lock for ever, so it is
+/// killed, too. A run that ends by itself must succeed.
 fn with_a_rank_killed(mut command: Command, count: usize, after: Duration, victim: usize) -> Finished {
     let program = fs::canonicalize(program()).unwrap();
     let mut child = command.spawn().unwrap();
@@ -48,7 +48,7 @@ fn with_a_rank_killed(mut command: Command, count: usize, after: Duration, victi
     };
     std::thread::sleep(after);
     let victim = found.get(victim).filter(|pid| runs(&program, **pid));
-    // It may have ended meanwhile.
+    // The process may have ended meanwhile.
     let kill = |pid: &u32| Command::new("kill").args(["-9", &pid.to_string()]).stderr(Stdio::null()).status().unwrap();
     let is_killed = victim.is_some_and(|pid| kill(pid).success());
     while found.iter().any(|pid| runs(&program, *pid)) {
@@ -85,8 +85,8 @@ fn a_rank_that_dies_ends_the_run() {
     }
 }
 
-/// A render by ranks goes on with the checkpoint that it left when one of them was killed: with other ranks, another rule and another library,
-/// to the image of one process that nobody disturbed.
+/// A render by ranks resumes from the checkpoint that it left when one of them was killed. With other ranks, another
+/// rule and another library, it gives the image of one undisturbed process.
 #[test]
 fn what_killed_ranks_have_rendered_is_gone_on_with() {
     if !has_launcher() {

@@ -11,7 +11,7 @@ fn run(folder: &Path, arguments: &[&str], code: i32) -> String {
     finished.out + &finished.err
 }
 
-/// The repetitions of each cell, and its checksum.
+/// The repetitions and the checksum of each cell.
 fn rows(folder: &Path) -> BTreeMap<String, (BTreeSet<u32>, String)> {
     let mut reader = csv::Reader::from_path(folder.join("tiny/records.csv")).unwrap();
     let heads = reader.headers().unwrap().clone();
@@ -44,12 +44,12 @@ fn parts_of_a_sweep_are_its_rows() {
     for (cell, (repetitions, checksum)) in &merged {
         let (alone, expected) = &whole[cell];
         assert_eq!(checksum, expected, "{cell}");
-        // A cell is of one part, and a serial one of each part that has something to compare with it.
+        // A cell belongs to one part, a serial cell to each part that has a cell to compare with it.
         let parts: BTreeSet<u32> = repetitions.iter().map(|repetition| repetition % 2).collect();
         assert_eq!(repetitions.len(), alone.len() * parts.len(), "{cell}: {repetitions:?}");
         assert!(parts.len() == 1 || cell.contains("serial"), "{cell}: {repetitions:?}");
     }
-    // Whoever goes on with a part goes on with that part.
+    // A part can be resumed only as the same part.
     assert!(run(folder.path(), &["run", "tiny.toml", "--out", "1-2", "--resume"], 2).contains("shard"));
     assert!(run(folder.path(), &["merge", "2-2", "1-2", "-o", "merged"], 2).contains("merged"));
 }
@@ -73,7 +73,7 @@ fn parts_that_make_no_sweep_are_refused() {
     refused(&["a", "whole"], &["whole", "no part"]);
     refused(&["a", "nowhere"], &["nowhere"]);
     assert!(run(folder.path(), &["merge", "a", "b", "-o", "merged", "--partial"], 0).contains("3/3"));
-    // Rows of an edited experiment are rows of another.
+    // Rows of an edited experiment belong to another experiment.
     let edited = fs::read_to_string(folder.path().join("tiny.toml")).unwrap() + "\n# edited\n";
     fs::write(folder.path().join("tiny.toml"), edited).unwrap();
     run(folder.path(), &["run", "tiny.toml", "--shard", "3/3", "--repetitions", "1", "--out", "d"], 0);

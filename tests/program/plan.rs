@@ -1,8 +1,8 @@
-//! `reproduce --plan` says what it would take and leaves the disk alone.
+//! `reproduce --plan` prints the expected effort and leaves the disk alone.
 
 use crate::program::{finish, pathmark};
 
-/// The columns of the table's lines.
+/// The columns of each line of the table.
 fn lines(out: &str) -> Vec<Vec<&str>> {
     let lines = out.lines().map(|line| line.split_whitespace().collect::<Vec<&str>>());
     lines.take_while(|line| line.first() != Some(&"Seconds")).collect()

@@ -1,4 +1,4 @@
-//! What an accuracy costs: the prediction, and whether paying for it gives what was predicted.
+//! The price of an accuracy: the prediction, and whether the render at that price has the predicted accuracy.
 
 use crate::program::{Finished, finish, pathmark};
 use serde_json::Value;
@@ -27,12 +27,13 @@ fn half_the_error_is_predicted_to_cost_four_times_as_much() {
         assert!(number("kurtosis") > 1.0 && (0.0..1.0).contains(&number("largest_share")));
         assert!(row["paid_rmse"].is_null(), "nobody paid");
     }
-    // Rounded up to whole images of four subpixels.
+    // Rounded up to a multiple of the four subpixels.
     assert!((number(1, "spp") - 4.0 * number(0, "spp")).abs() <= 16.0 && number(0, "spp") % 4.0 == 0.0);
 }
 
-/// The goal is reached: two images of seeds that the pilot has not seen differ by as much as was predicted. The pilot's own interval says
-/// within how much; what is left is the noise of two images of 1728 pixels, a standard deviation of about 3 %.
+/// The goal is reached: two images with seeds that the pilot has not used differ by as much as predicted. The pilot's
+/// interval bounds the prediction's error. The rest is the noise of two images of 1728 pixels, a standard deviation of
+/// about 3 %.
 #[test]
 fn paying_gives_what_was_predicted() {
     for (estimator, sampler) in [("bsdf", "independent"), ("smallpt", "sobol")] {
@@ -51,7 +52,7 @@ fn paying_gives_what_was_predicted() {
         ]);
         let ratio = rows[0]["rmse_ratio"].as_f64().unwrap();
         assert!((ratio - 1.0).abs() < 0.12, "{estimator} with {sampler}: {}", rows[0]);
-        // Sobol's samples are rounded up to a power of two, and so the error may be smaller.
+        // Sobol sample counts are rounded up to a power of two, so the error may be smaller.
         let reached = rows[0]["paid_rmse"].as_f64().unwrap() / 0.15;
         let least = if sampler == "sobol" { 0.5 } else { 0.86 };
         assert!((least..1.14).contains(&reached), "{}", rows[0]);
@@ -94,7 +95,7 @@ fn what_cannot_be_priced_is_refused() {
     }
 }
 
-/// A pilot of one sample is whole for an estimator that needs no more, whatever those need that it is compared with.
+/// An estimator that needs no more may have a pilot of one sample, even beside estimators that need more.
 #[test]
 fn a_short_pilot_is_compared_with_estimators_that_need_more() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,7 +3,7 @@
 use crate::diff::{base, json, measured, run, steady};
 use std::fs;
 
-/// What stands for the times of a cell in the tests: serial runs take three times as long, one thread twice.
+/// Invented times of a cell: three times as long for serial runs, and twice for one thread.
 fn times(cell: &str, repetition: u32) -> f64 {
     let factor = match cell {
         _ if cell.ends_with("serial/1t") => 3.0,

@@ -1,4 +1,4 @@
-//! One image by several processes: MPI as the system has it. Without `mpiexec` these tests say so and pass.
+//! One image by several processes, with the system's MPI. Without `mpiexec` these tests say so and pass.
 
 use crate::program::{Finished, finish, pathmark};
 use crate::watchdog::Watchdog;
@@ -28,7 +28,7 @@ pub(crate) fn is_launcher(name: &str) -> bool {
     Command::new(name).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
 }
 
-/// Whether processes can be started; says so if not.
+/// Whether processes can be started; prints a line if not.
 pub(crate) fn has_launcher() -> bool {
     let found = is_launcher("mpiexec");
     if !found {
@@ -37,7 +37,7 @@ pub(crate) fn has_launcher() -> bool {
     found
 }
 
-/// Open MPI asks for words that MPICH does not know: more processes than processors, and root.
+/// Permissions that Open MPI asks for, unlike MPICH: more processes than processors, and root.
 const OPEN_MPI: [(&str, &str); 4] = [
     ("OMPI_ALLOW_RUN_AS_ROOT", "1"),
     ("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"),
@@ -70,7 +70,8 @@ pub(crate) fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
 }
 
-/// Every rule, and for one of each way more ranks than jobs, threads and precisions: the checksum of one process.
+/// Every rule gives the checksum of one process. One rule of each kind also runs with many ranks, with threads and in
+/// f32.
 #[test]
 fn every_rule_gives_the_image_of_one_process() {
     if !has_launcher() {
@@ -105,7 +106,7 @@ fn every_rule_gives_the_image_of_one_process() {
         }
     }
     for rule in ["static-cyclic", "guided", "adaptive-factoring", "master-worker:3"] {
-        // More ranks than rows of tiles, and pieces of some of a pixel's samples.
+        // More ranks than rows of tiles, and pieces with some of a pixel's samples.
         let threads = ["--threads", "2", "--decomposition", "samples:16:32x32"];
         together(5, rule, &threads, &expected);
         let single = ["--threads", "2", "--precision", "f32", "--strategy", "static-blocks"];
@@ -114,7 +115,7 @@ fn every_rule_gives_the_image_of_one_process() {
     together(8, "dynamic:3", &["--threads", "2", "--strategy", "thread-per-row"], &expected);
 }
 
-/// Debian's launchers stand beside each other under these names, each with its own library: one checksum.
+/// Debian installs its launchers side by side under these names, each with its own library: one checksum.
 #[test]
 fn every_library_gives_the_image_of_one_process() {
     let _watchdog = Watchdog::new(Duration::from_mins(2));
@@ -157,14 +158,14 @@ fn what_ranks_cannot_do_is_refused() {
     refused(&["--mpi", "auto"], 2, &["--ranks"]);
     refused(&["--ranks", "guided", "-o", "x", "--shard", "1/2"], 2, &["--ranks", "--shard"]);
     refused(&["--ranks", "guided", "-o", "x.png", "--adaptive"], 2, &["--ranks", "--adaptive"]);
-    // A launcher that the library knows nothing of: each process would be alone, and render all of the image.
+    // The library does not know this launcher: each process would be alone and render the whole image.
     let mut command = pathmark(folder.path(), &[&SCENE, ["--ranks", "guided"].as_slice()].concat());
     command.envs([("OMPI_COMM_WORLD_SIZE", "3"), ("OMPI_COMM_WORLD_RANK", "0")]);
     let finished = finish(command);
     assert!(finished.code == Some(3) && finished.err.contains("mpiexec"), "{:?} {}", finished.code, finished.err);
 }
 
-/// What messages cost is told by rank 0 alone, medians within their intervals.
+/// Rank 0 alone prints the costs of messages; each median lies within its interval.
 #[test]
 fn what_messages_cost_is_told() {
     let folder = tempfile::tempdir().unwrap();
@@ -184,7 +185,7 @@ fn what_messages_cost_is_told() {
     assert!(ranks(folder.path(), 2, &["message-costs"]).with_code(0).out.contains("a fetch-and-op, waits"));
 }
 
-/// Ranks that were given another scene, seed or rule say so instead of making an image of two.
+/// Ranks that were given another seed, decomposition or rule are refused; a mixed image would be wrong.
 #[test]
 fn ranks_that_would_render_something_else_are_refused() {
     if !has_launcher() {
@@ -206,7 +207,7 @@ fn ranks_that_would_render_something_else_are_refused() {
     }
 }
 
-/// An accuracy is reached with the samples that one process takes for it, and its image.
+/// Ranks reach a target error with the samples and the image of one process.
 #[test]
 fn ranks_stop_at_the_accuracy_at_which_one_process_stops() {
     if !has_launcher() {
@@ -220,14 +221,15 @@ fn ranks_stop_at_the_accuracy_at_which_one_process_stops() {
     for key in ["checksum", "spp", "target_error", "paths"] {
         assert_eq!(together[key], alone[key], "{key}");
     }
-    // Who may not go on with a file says so, and the others end with it.
+    // A rank that may not resume from a file says so, and the others end with it.
     fs::write(folder.path().join("c"), "no checkpoint").unwrap();
     let refused = [&SCENE[..], &["--threads", "1", "--ranks", "guided", "--checkpoint", "c"]].concat();
     let finished = ranks(folder.path(), 3, &refused).with_code(2);
     assert_eq!(finished.err.matches("checkpoint = c").count(), 1, "{}", finished.err);
 }
 
-/// Rows of processes stand among those of threads, with one checksum; without a launcher they say that nothing was measured.
+/// Rows of processes stand beside those of threads, with one checksum. Without a launcher they report that nothing was
+/// measured.
 #[test]
 fn processes_have_rows_in_an_experiment() {
     if !has_launcher() {
@@ -282,7 +284,7 @@ repetitions = 2
         let each = if strategy == "serial" { "1" } else { "2" };
         assert_eq!(threads, each, "{strategy} by {rule}");
         let workers = each.parse::<usize>().unwrap() * ranks.parse().unwrap_or(1);
-        // A rank or a thread that comes late may find nothing left, unless jobs are dealt.
+        // A rank or thread that starts late may find no job left, unless jobs are assigned in advance.
         let used: usize = used.parse().unwrap();
         let is_dealt = strategy == "serial" && (rule.is_empty() || rule == "static-blocks");
         assert!(used == workers || (!is_dealt && (1..workers).contains(&used)), "{strategy} by {rule}: {used}");
@@ -294,7 +296,8 @@ repetitions = 2
     }
 }
 
-/// Processes that this machine does not have, from the trace of a serial run and a file of costs. Needs no MPI.
+/// Forecasts for processes that this machine does not have, from the trace of a serial run and a file of message costs.
+/// Needs no MPI.
 #[test]
 fn processes_are_forecast_from_a_trace() {
     let folder = tempfile::tempdir().unwrap();
@@ -327,7 +330,7 @@ fn processes_are_forecast_from_a_trace() {
     assert!((0.9..=1.0).contains(&number(0, 4)), "one process of one thread: {}", number(0, 4));
     for row in 0..4 {
         assert!(number(row, 4) <= number(row, 5) * (1.0 + 1e-9) * [1.0, 4.0, 4.0, 16.0][row], "{:?}", rows[row]);
-        // Whoever waits a second for an answer leaves rank 0 alone, and is waited for.
+        // Ranks that wait a second for an answer leave rank 0 alone, and the run waits for them.
         assert!(row % 2 == 0 || number(4 + row, 3) >= 1.0, "{:?}", rows[4 + row]);
     }
     let refused = |more: &[&str], said: &[&str]| {

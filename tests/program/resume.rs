@@ -1,5 +1,5 @@
-//! A sweep that is resumed gives the rows of one that was not stopped: each once, whole, with the same checksums. Kills at any instant are in
-//! `tests/faults`.
+//! A resumed sweep gives the rows of an undisturbed one: each row once, whole, with the same checksums.
+//! `tests/program/faults` has the kills at any instant.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
 const RESUME: [&str; 5] = ["run", "tiny.toml", "--out", "out", "--resume"];
 
-/// A folder with `tiny.toml`, and where its rows will be.
+/// A folder with `tiny.toml`, and the path of the rows to come.
 fn prepared(text: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), text);
@@ -20,12 +20,12 @@ fn prepared(text: &str) -> (tempfile::TempDir, PathBuf) {
     (folder, records)
 }
 
-/// One map from column to value for each row; the reader insists that every row has all columns.
+/// One map from column to value for each row; the reader requires that every row has all columns.
 fn rows(records: &Path) -> Vec<BTreeMap<String, String>> {
     csv::Reader::from_path(records).unwrap().deserialize().map(|row| row.expect("no row is torn")).collect()
 }
 
-/// (cell, repetition) and what must not depend on when it ran.
+/// (cell, repetition), and the values that must not depend on the time of the run.
 fn results(records: &Path) -> BTreeMap<(String, String), [String; 3]> {
     let rows = rows(records);
     let key = |row: &BTreeMap<String, String>| (row["cell"].clone(), row["repetition"].clone());
@@ -35,7 +35,7 @@ fn results(records: &Path) -> BTreeMap<(String, String), [String; 3]> {
     results
 }
 
-/// Puts another text into fields of the rows, given the number of a row, the name of a column and what is there.
+/// Replaces fields of the rows: `field` gets the number of a row, the name of a column and the old text.
 fn rewrite(records: &Path, field: impl for<'a> Fn(usize, &str, &'a str) -> &'a str) {
     let mut reader = csv::Reader::from_path(records).unwrap();
     let headers = reader.headers().unwrap().clone();
@@ -48,7 +48,7 @@ fn rewrite(records: &Path, field: impl for<'a> Fn(usize, &str, &'a str) -> &'a s
     fs::write(records, writer.into_inner().unwrap()).unwrap();
 }
 
-/// Resuming drops what the crash tore, whatever is left of it, and repeats that row alone.
+/// Resuming drops torn data, whatever is left of it, and repeats only the missing rows.
 #[test]
 fn a_torn_row_is_written_again() {
     let (folder, records) = prepared(TINY);
@@ -63,7 +63,7 @@ fn a_torn_row_is_written_again() {
         finish(pathmark(folder.path(), &RESUME)).with_code(0);
         assert_eq!(results(&records), expected);
     }
-    // Half a row more, and bytes that are no text, as a power cut may leave them.
+    // Half a row more, and bytes that are no text: a power cut may leave either.
     for tail in [row.as_bytes()[..row.len() / 2].to_vec(), vec![0; 100], vec![0xff; 100]] {
         println!("tail {:?}", &tail[..4]);
         fs::write(&records, [whole.as_bytes(), &tail].concat()).unwrap();
@@ -72,7 +72,7 @@ fn a_torn_row_is_written_again() {
     }
 }
 
-/// Killed between making the files of the folder: whatever is there, `--resume` goes on.
+/// Killed between the creation of the folder's files: `--resume` continues from any of these states.
 #[test]
 fn a_sweep_killed_before_its_first_row_can_be_resumed() {
     let (folder, records) = prepared(TINY);
@@ -92,7 +92,7 @@ fn a_sweep_killed_before_its_first_row_can_be_resumed() {
     }
 }
 
-/// A row that failed is no result: it is run again, and stands there once.
+/// A failed row is no result: it is run again, and appears once.
 #[test]
 fn a_failed_row_is_run_again() {
     let (folder, records) = prepared(TINY);
@@ -107,14 +107,14 @@ fn a_failed_row_is_run_again() {
     assert_eq!(orders.len(), rows.len(), "two rows claim the same position in the sweep");
 }
 
-/// A cell with a doubtful row runs once more, in a repetition of its own with the serial run that it is compared with. All rows stay; those that
-/// would always be doubtful are left alone.
+/// A cell with a doubtful row runs once more, in a new repetition together with the serial run that it is compared
+/// with. All rows stay. Rows that would always be doubtful are not run again.
 #[test]
 fn what_is_doubtful_runs_again() {
     let (folder, records) = prepared(TINY);
     finish(pathmark(folder.path(), &RUN)).with_code(0);
     let doubtful = rows(&records).iter().position(|row| row["strategy"] == "static-blocks").unwrap();
-    // Whatever the machine did meanwhile.
+    // Fixed warnings, whatever else the machine did meanwhile.
     rewrite(&records, |index, column, field| match (column, index == doubtful) {
         ("warnings", true) => "foreign-load(60 %)",
         ("warnings", false) => "too-short",
@@ -140,13 +140,13 @@ fn resuming_what_is_done_changes_no_row() {
     let before = fs::read(&records).unwrap();
     finish(pathmark(folder.path(), &RESUME)).with_code(0);
     assert_eq!(fs::read(&records).unwrap(), before);
-    // More repetitions go behind the old rows.
+    // More repetitions are appended to the old rows.
     finish(pathmark(folder.path(), &[RESUME.as_slice(), &["--repetitions", "4"]].concat())).with_code(0);
     assert!(fs::read(&records).unwrap().starts_with(&before));
     assert_eq!(results(&records).len(), 5 * 4);
 }
 
-/// Rows of another definition, profile, processor or revision are no repetitions of these.
+/// Rows of another definition, profile, processor or revision are not repetitions of these rows.
 #[test]
 fn resuming_with_another_definition_or_machine_is_refused() {
     let (folder, records) = prepared(TINY);
@@ -172,8 +172,8 @@ fn resuming_with_another_definition_or_machine_is_refused() {
     }
 }
 
-/// A curve gives a row at 4, 8, 16, 32 and 40 samples, each with the checksum of an image rendered at once: the second matrix has those on another schedule. Cut off among
-/// its rows and resumed, it has all of them once.
+/// A curve gives a row at 4, 8, 16, 32 and 40 samples, each with the checksum of an image rendered at once: the second
+/// matrix has those on another schedule. Cut off among its rows and resumed, the curve has each row once.
 #[test]
 fn a_curve_cut_off_among_its_rows_is_resumed() {
     let curve = TINY
@@ -181,7 +181,7 @@ fn a_curve_cut_off_among_its_rows_is_resumed() {
         .replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
     let (head, scales) = curve.split_once("[quick]").unwrap();
     let (head, matrix) = head.split_once("[matrix]").unwrap();
-    // Another schedule: of equal cells, one is left out.
+    // On another schedule, because only one of equal cells is kept.
     let single = matrix.replace("spp = [40]\ncurve = true", "spp = [4, 8, 16, 32, 40]");
     let single = single.replace("[\"serial\"]", "[\"static-blocks\"]").replace("[1, 2]", "[1]");
     let text = format!("{head}[[matrix]]{matrix}[[matrix]]{single}[quick]{scales}");
@@ -210,8 +210,8 @@ fn a_curve_cut_off_among_its_rows_is_resumed() {
     assert_eq!(results(&records), expected);
 }
 
-/// The shape of the experiments for the reports' own sizes: a matrix for one profile beside one for all, several seeds, a thread for each
-/// row, and errors from a reference.
+/// The form of the experiments at the reports' sizes: a matrix for one profile beside one for all, several seeds, a
+/// thread for each row, and errors from a reference.
 const REPORTS: &str = r#"title = "Tiny"
 question = "Does it go on?"
 analysis = "It did."
@@ -251,12 +251,12 @@ repetitions = 2
 reference-spp = 80
 "#;
 
-/// Runs the program until the table has so many rows, and kills it.
+/// Runs the program until the table has `count` rows, then kills it.
 fn kill_at(folder: &Path, arguments: &[&str], records: &Path, count: usize) {
     let mut child = pathmark(folder, arguments).spawn().unwrap();
     let start = Instant::now();
     let there = || fs::read_to_string(records).map_or(0, |text| text.matches('\n').count());
-    // The head is a line, too.
+    // The header is a line, too.
     while there() < count + 1 {
         assert!(start.elapsed() < Duration::from_mins(2), "{count} rows take too long");
         assert!(child.try_wait().unwrap().is_none(), "it ended before it had {count} rows");

@@ -1,5 +1,5 @@
-//! M04: an image that shares samples with its reference looks better than it is, and two equal halves leave the reference's noise in the
-//! cross form. Both are refused where errors are measured, whoever asks.
+//! M04: an image that shares samples with its reference looks better than it is, and two equal halves leave the
+//! reference's noise in the cross form. Every command that measures errors refuses both.
 
 use crate::program::{Finished, finish, pathmark, wait};
 use pathmark::experiment::{CellJob, HalfFile, PointJob, SceneVersion, reference_seed};
@@ -20,7 +20,7 @@ fn halves(folder: &Path) -> [PathBuf; 2] {
     films.try_into().unwrap()
 }
 
-/// What a sweep's child answers for an image of this seed against these halves.
+/// The answer of a sweep's child for an image of this seed against these halves.
 fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
     let settings = Settings {
         scene: "cornell".to_string(),
@@ -46,7 +46,7 @@ fn measured(folder: &Path, seed: u64, references: [PathBuf; 2]) -> Finished {
     };
     let mut command = pathmark(folder, &["cell"]);
     let mut child = command.stdin(Stdio::piped()).spawn().unwrap();
-    // Held until the end: a child whose input closes takes its parent for dead.
+    // Open until the end: a child whose input closes assumes that its parent has died.
     let mut input = child.stdin.take().unwrap();
     writeln!(input, "{}", serde_json::to_string(&job).unwrap()).unwrap();
     let finished = wait(child);
@@ -70,7 +70,7 @@ fn shared_seeds_are_refused() {
     }
 }
 
-/// `compare` reads film files, which know their seeds; a picture does not.
+/// `compare` reads film files, which record their seeds.
 #[test]
 fn films_of_one_seed_are_not_compared() {
     let folder = tempfile::tempdir().unwrap();
@@ -81,7 +81,7 @@ fn films_of_one_seed_are_not_compared() {
     };
     let fine = compared(&first, &second).with_code(0);
     assert!(fine.out.starts_with("mse") && !fine.out.contains("rmse  0 "), "{}", fine.out);
-    // Under another name, and with more samples of the same seed.
+    // A copy under another name, and a film with more samples of the same seed.
     let copy = folder.path().join("copy.film");
     fs::copy(&first, &copy).unwrap();
     let longer = ["reference", "cornell", "--spp", "16", "--size", "16x12", "--out", "films", "--quiet"];

@@ -1,4 +1,4 @@
-//! `run --set` and `run --filter`: other values for an experiment, and a part of it, without an edit.
+//! `run --set` and `run --filter`: other values for an experiment, or a part of it, without editing it.
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
@@ -36,7 +36,7 @@ fn values_are_set_in_every_matrix_and_profile() {
     assert_eq!(rows.len(), 10);
 }
 
-/// What stands beside the rows is the experiment that was run.
+/// The definition beside the rows is the experiment that was run.
 #[test]
 fn the_definition_beside_the_rows_has_the_values() {
     let folder = tempfile::tempdir().unwrap();
@@ -51,7 +51,7 @@ fn the_definition_beside_the_rows_has_the_values() {
     assert_eq!(values(&first, "cell"), values(&second, "cell"));
 }
 
-/// A speedup without its serial run would be an empty figure.
+/// Without its serial run, a speedup would be an empty figure.
 #[test]
 fn filters_take_several_values_and_leave_serial_runs_in() {
     let folder = tempfile::tempdir().unwrap();
@@ -61,7 +61,7 @@ fn filters_take_several_values_and_leave_serial_runs_in() {
     assert_eq!(cells, BTreeSet::from([("serial", "1"), ("static-blocks", "2"), ("work-stealing", "2")]));
 }
 
-/// Only what has no usual value must be said.
+/// Only fields without a default must be given.
 #[test]
 fn an_experiment_of_few_lines_runs() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! An estimator of our own: how far away what one sees is.
+//! An estimator outside Pathmark: the distance of the visible surface.
 
 use pathmark::effect::EffectSet;
 use pathmark::estimator::{Estimator, Probe};

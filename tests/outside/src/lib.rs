@@ -1,4 +1,4 @@
-//! A pool, an estimator and a workload that Pathmark knows nothing of.
+//! A pool, an estimator and a workload outside Pathmark.
 
 mod depth;
 mod pool;
@@ -8,12 +8,12 @@ pub use depth::Depth;
 pub use pool::ENTRY;
 pub use primes::Primes;
 
-/// Pathmark with what this crate adds.
+/// Pathmark with the additions of this crate.
 pub fn lab() -> pathmark::Lab {
     pathmark::Lab::new().strategy(ENTRY).estimator("depth", Depth).workload("primes", Primes).experiment("ours", OURS)
 }
 
-/// An experiment over what is ours and what is not: thread scaling and granularity on two workloads.
+/// An experiment over this crate's additions and built-in entries: thread scaling and granularity on two workloads.
 const OURS: &str = r#"
 title = "Our pool"
 question = "Is it any good?"

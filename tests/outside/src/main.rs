@@ -1,4 +1,4 @@
-//! `outside`: the command line of Pathmark with a pool, an estimator and a workload more.
+//! `outside`: Pathmark's command line with an additional pool, estimator and workload.
 
 use std::process::ExitCode;
 

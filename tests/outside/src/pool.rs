@@ -1,4 +1,4 @@
-//! A pool of our own: workers relay a counter under a lock.
+//! A thread pool outside Pathmark: workers take turns at a counter under a lock.
 
 use pathmark::strategy::{Blueprint, Discipline, Entry, Job, Panics, Strategy, StrategyError};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,7 +12,7 @@ fn make(blueprint: &Blueprint) -> Result<Box<dyn Strategy>, StrategyError> {
 
 struct Relay(Blueprint);
 
-/// What the workers of a run share.
+/// The state that a run's workers share.
 struct Run {
     next: Mutex<usize>,
     panics: Panics,

@@ -1,4 +1,4 @@
-//! A workload of our own: primes among some numbers, by trial division.
+//! A workload outside Pathmark: counts primes by trial division.
 
 use pathmark::kernel::workload::{Item, Workload};
 

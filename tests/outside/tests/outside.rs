@@ -1,4 +1,4 @@
-//! What a crate outside of Pathmark's repository can rely on.
+//! Guarantees for a crate outside Pathmark's repository.
 
 use pathmark::measure::{Settings, Setup};
 use serde_json::Value;
@@ -18,7 +18,7 @@ fn the_pool_keeps_the_contract() {
     pathmark::strategy::contract::verify(&outside::ENTRY).unwrap();
 }
 
-/// In the dev profile, whose frames are the largest, on workers' own stacks.
+/// In the dev profile, whose stack frames are the largest, on the workers' own stacks.
 #[test]
 fn the_front_pages_example_runs_in_the_dev_profile() {
     let settings = Settings { spp: 4, decomposition: "tiles:8x8".into(), threads: 2, ..Settings::default() };
@@ -41,7 +41,8 @@ fn the_list_shows_what_is_ours() {
     }
 }
 
-/// A sweep over our pool, estimator and workload: children have the same tables, each image has one checksum, figures show them.
+/// A sweep over this crate's pool, estimator and workload: child processes have the same tables, each scene has one
+/// checksum, and figures show them.
 #[test]
 fn experiments_compare_what_is_ours_with_the_rest() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,7 +3,7 @@
 use super::{TINY, json, run, write_tiny};
 use crate::program::{finish, pathmark};
 
-/// Named cases come with all that was tried; a name that is none is refused with those that are.
+/// Named cases are printed with all their trials; an unknown name is refused with the known ones.
 #[test]
 fn cases_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
@@ -16,7 +16,8 @@ fn cases_can_be_chosen() {
     assert!(refused.err.contains("case = Z9") && refused.err.contains("P10"), "{}", refused.err);
 }
 
-/// What no scene can cause, as far as its reader can tell, is no failure of a scene that has none (what is, is tested where it can be injected).
+/// Good images pass `--strict`. As far as its reader can tell, no scene can cause a fault; faults are tested where they
+/// can be injected.
 #[test]
 fn strict_lets_good_images_pass() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What one verb writes, another reads.
+//! Files that one verb writes and another reads.
 
 use super::{json, names, record, run};
 use crate::experiment::{TINY, write_tiny};
@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// Rendered to the same bits, so what is left is the format's own rounding (and, in display formats, the clamp).
+/// Both images have the same bits, so the difference is the format's rounding (and, in display formats, the clamp).
 #[test]
 fn every_format_is_read_back() {
     let folder = tempfile::tempdir().unwrap();
@@ -29,7 +29,7 @@ fn every_format_is_read_back() {
     }
 }
 
-/// Automatic exposure is for looking: it scales display formats alone, and says nothing else than without it.
+/// Automatic exposure is for viewing: it scales only display formats and leaves the record unchanged.
 #[test]
 fn automatic_exposure_changes_only_what_is_shown() {
     let folder = tempfile::tempdir().unwrap();
@@ -37,7 +37,7 @@ fn automatic_exposure_changes_only_what_is_shown() {
         let options = [&["-o", image], options].concat();
         let mut record = record(folder.path(), "report-c", &options);
         let object = record.as_object_mut().unwrap();
-        // Times and the machine's moods.
+        // Times and values that depend on the machine's state.
         object.retain(|name, _| !name.ends_with("_s") && !name.contains("switches") && name != "started_utc");
         object.retain(|name, _| !["warnings", "workers_used", "peak_rss_bytes"].contains(&name.as_str()));
         record
@@ -50,7 +50,7 @@ fn automatic_exposure_changes_only_what_is_shown() {
         let is_shown = ["png", "ppm", "bmp"].contains(&format.as_str());
         assert_eq!(bytes(&plain) != bytes(&exposed), is_shown, "{format}");
     }
-    // What is shown is the light over its largest channel, to the rounding of 8 bits.
+    // The displayed image is the light divided by its largest channel, to the rounding of 8 bits.
     let (light, shown) = (linear("plain.pfm"), linear("exposed.png"));
     let largest = light.pixels.iter().flatten().copied().fold(0.0, f64::max);
     assert!(!(0.9..=1.1).contains(&largest), "no power: the brightest channel is {largest}");
@@ -83,7 +83,7 @@ fn a_reference_is_cached_and_a_heat_map_is_drawn() {
     assert_eq!(same["rmse"], 0.0);
 }
 
-/// From a reference to a comparison: the two films that `reference` writes, against an image that shares no sample with them.
+/// From a reference to a comparison: the two films of `reference` against an image that shares no sample with them.
 #[test]
 fn an_image_is_compared_with_both_halves_of_a_reference() {
     let folder = tempfile::tempdir().unwrap();
@@ -106,7 +106,7 @@ fn an_image_is_compared_with_both_halves_of_a_reference() {
         let (root, square) = (number(&format!("rmse{end}")), number(&format!("mse{end}")));
         assert!((root * root / square - 1.0).abs() < 1e-9, "{compared}");
     }
-    // The noise of the references is in the plain form and not in this one.
+    // The plain form includes the noise of the reference; the cross form does not.
     let plain = json(&run(folder.path(), &["compare", "a.pfm", films[0], "--json"]).out);
     assert!(plain["mse"].as_f64().unwrap() > number("mse"), "{plain}");
     let same = finish(pathmark(folder.path(), &["compare", "a.pfm", films[0], films[0]])).with_code(2);
@@ -121,7 +121,7 @@ fn a_heat_map_has_the_scale_that_was_asked_for() {
     record(folder.path(), "cornell", &["--seed", "2", "-o", "b.pfm"]);
     let light = |scale: &str| {
         let map = ["compare", "a.pfm", "b.pfm", "--heatmap", "map.png", "--scale", scale];
-        assert!(run(folder.path(), &map).out.contains(&format!("from 0, dark, to {scale}000, light")));
+        assert!(run(folder.path(), &map).out.contains(&format!("from 0 (dark) to {scale}000 (light)")));
         let image = ::pathmark::image_io::read(&folder.path().join("map.png")).unwrap();
         image.pixels.as_flattened().iter().sum::<f64>()
     };
@@ -133,7 +133,7 @@ fn assert_png(path: &Path) {
     assert!(bytes.starts_with(b"\x89PNG\r\n\x1a\n") && bytes.len() > 100, "{}", path.display());
 }
 
-/// As far as it goes without a parser: elements are closed in the order in which they were opened.
+/// Checks an SVG without a parser: each closing tag must match the last open element.
 fn assert_svg(path: &Path) {
     let text = fs::read_to_string(path).unwrap();
     let mut open = Vec::new();
@@ -189,7 +189,7 @@ fn pictures_say_what_they_are_of() {
     for (other, shares) in [("b.exr", true), ("c.png", false)] {
         assert_eq!(json(&run(folder.path(), &["compare", "a.png", other, "--json"]).out)["shares_samples"], shares);
     }
-    // What was converted still says so; a format without notes cannot.
+    // A converted image keeps its notes, unless its format has none.
     run(folder.path(), &["convert", "a.png", "-o", "d.exr"]);
     assert!(run(folder.path(), &["compare", "d.exr", "b.exr"]).out.contains(shared));
     run(folder.path(), &["convert", "a.png", "-o", "e.ppm"]);
@@ -200,6 +200,6 @@ fn pictures_say_what_they_are_of() {
         assert!(text.contains(part), "{part}");
     }
     let flip = run(folder.path(), &["compare", "a.png", "c.png", "--flip", "flip.png"]).out;
-    assert!(flip.contains("flip.png: from 0, dark, to 1.0000, light"), "{flip}");
+    assert!(flip.contains("flip.png: from 0 (dark) to 1.0000 (light)"), "{flip}");
     assert!(folder.path().join("flip.png").is_file());
 }

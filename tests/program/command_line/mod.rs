@@ -1,4 +1,5 @@
-//! The command line does what its help says: every name that `list` prints runs as it is, and what one verb writes another reads.
+//! The command line works as its help says: every name that `list` prints runs as it is, and verbs read each other's
+//! files.
 
 mod check;
 mod files;
@@ -32,7 +33,7 @@ fn names(kind: &str) -> Vec<String> {
     items.iter().map(name).collect()
 }
 
-/// The record of a tiny render with some options.
+/// The JSON record of a tiny render with `options`.
 fn record(folder: &Path, scene: &str, options: &[&str]) -> Value {
     let base = ["render", scene, "--size", "24x16", "--spp", "4", "--json"];
     let finished = run(folder, &[base.as_slice(), options].concat());
@@ -52,7 +53,7 @@ fn quiet_is_quiet_and_talk_goes_to_stderr() {
         assert_eq!(finished.err, "", "{arguments:?}");
         assert_ne!(finished.out, "", "{arguments:?}");
     }
-    // Without a name the image is called after its scene.
+    // Without a given name, the image is named after its scene.
     assert!(folder.path().join("cornell.png").is_file());
     fs::remove_dir_all(folder.path().join("out")).unwrap();
     let finished = run(folder.path(), &sweep);

@@ -34,7 +34,7 @@ const KINDS: [&str; 25] = [
     "warnings",
 ];
 
-/// Columns of `records.csv` that say what a row is of and what it measured.
+/// Columns of `records.csv` that identify a row and hold its measurements.
 const COLUMNS: [&str; 39] = [
     "schema",
     "experiment",
@@ -89,14 +89,14 @@ fn warnings_are_explained_as_rows_have_them() {
     }
 }
 
-/// What `new` writes runs as it is, and a file that is there is never replaced.
+/// Files that `new` writes run as they are, and `new` never replaces an existing file.
 #[test]
 fn starters_run_as_they_are() {
     let folder = tempfile::tempdir().unwrap();
     for (kind, name) in [("experiment", "mine"), ("scene", "room.toml")] {
         run(folder.path(), &["new", kind, name]);
         let refused = finish(pathmark(folder.path(), &["new", kind, name])).with_code(2);
-        assert!(refused.err.contains("is there already"), "{}", refused.err);
+        assert!(refused.err.contains("already exists"), "{}", refused.err);
     }
     run(folder.path(), &["run", "mine.toml", "--repetitions", "1"]);
     run(folder.path(), &["render", "room.toml", "--size", "24x16", "--spp", "4"]);
@@ -110,7 +110,7 @@ fn every_kind_is_listed_with_name_and_about() {
         assert!(!names.is_empty(), "{kind}");
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{kind}: a name twice in {names:?}");
     }
-    // And all of them at once.
+    // All kinds at once.
     let folder = tempfile::tempdir().unwrap();
     let all = json(&run(folder.path(), &["list", "--json"]).out);
     let kinds: BTreeSet<_> = all.as_array().unwrap().iter().filter_map(|item| item["kind"].as_str()).collect();
@@ -133,7 +133,7 @@ fn every_listed_name_runs_as_it_is() {
     }
 }
 
-/// A profile runs where it covers the scene; a scene of one diffuse ball is covered by all.
+/// A profile runs if it covers the scene; every profile covers a scene of one diffuse ball.
 #[test]
 fn every_effect_profile_runs_and_gives_the_same_image() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Renders in rounds: what they say, what they leave on disk, and that they can be killed.
+//! Renders in rounds: their reports, their files, and kills in between.
 
 use super::{json, run};
 use crate::program::{finish, pathmark};
@@ -14,7 +14,7 @@ fn render(folder: &Path, options: &[&str]) -> Value {
     json(&run(folder, &[SIZE.as_slice(), &["--json"], options].concat()).out)
 }
 
-/// What is refused leaves the folder as it was.
+/// Asserts that a render is refused and leaves the folder unchanged.
 fn refused(folder: &Path, options: &[&str], said: &[&str]) {
     let files = || {
         let mut files: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -27,7 +27,7 @@ fn refused(folder: &Path, options: &[&str], said: &[&str]) {
     assert!(finished.out.is_empty() && before == files(), "{options:?}");
 }
 
-/// Where it stops is recorded, and as many samples at once have the same checksum.
+/// The stopping point is recorded, and a render of as many samples at once has the same checksum.
 #[test]
 fn goals_are_recorded_and_reproduced() {
     let folder = tempfile::tempdir().unwrap();
@@ -66,7 +66,7 @@ fn options_that_contradict_are_refused() {
 
 const FEWEST_KILLS: u64 = 5;
 
-/// Killed (SIGKILL) at growing delays until it gets through: the image of one that nobody disturbed.
+/// Killed (SIGKILL) at growing delays until it finishes, a render gives the image of an undisturbed one.
 #[test]
 fn killed_at_any_instant_it_goes_on_to_the_same_image() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,14 +89,14 @@ fn killed_at_any_instant_it_goes_on_to_the_same_image() {
                 if kills >= FEWEST_KILLS {
                     break;
                 }
-                // The machine is fast, or was busy while this one slept: from the start.
+                // The machine is fast, or was busy while this process slept: start over.
                 fs::remove_file(folder.path().join("box.checkpoint")).unwrap();
                 continue;
             }
             kills += 1;
         }
         println!("{kills} kills on the way to {goal:?}");
-        // Nothing is left to do, and what the killed processes left is gone.
+        // Nothing is left to do, and the temporary files of the killed processes are gone.
         let again = json(&run(folder.path(), &options).out);
         let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
         let left: Vec<_> = names.filter(|name| name.to_string_lossy().starts_with(".pathmark-")).collect();
@@ -106,8 +106,8 @@ fn killed_at_any_instant_it_goes_on_to_the_same_image() {
     }
 }
 
-/// A light beyond single precision makes invalid samples. What a checkpoint goes on from has them as well, and so does a render that finds
-/// nothing left to do.
+/// A light beyond single precision makes invalid samples. A resumed render counts them as well, and so does a render
+/// that finds nothing left to do.
 #[test]
 fn invalid_samples_are_not_forgotten_on_resume() {
     let folder = tempfile::tempdir().unwrap();
@@ -124,13 +124,13 @@ fn invalid_samples_are_not_forgotten_on_resume() {
     for _ in 0..2 {
         assert_eq!(render(&["--spp", "20", "--checkpoint", "c", "--strict"], 1), expected);
     }
-    // Twice the samples, from the checkpoint and at once.
+    // Twice the samples, resumed and rendered at once.
     let longer = render(&["--spp", "40", "--checkpoint", "c"], 0);
     assert_eq!(longer, render(&["--spp", "40"], 0));
     assert!(longer[0].as_u64() > expected[0].as_u64());
 }
 
-/// A checkpoint goes on to more samples, and to nothing else.
+/// A checkpoint can be resumed with more samples, and with no other change of the image.
 #[test]
 fn a_checkpoint_is_of_one_render() {
     let folder = tempfile::tempdir().unwrap();
@@ -139,7 +139,7 @@ fn a_checkpoint_is_of_one_render() {
     let longer = render(folder.path(), &with(&["--spp", "52"]));
     assert_eq!(longer["checksum"], render(folder.path(), &["--spp", "52"])["checksum"]);
     assert!(longer["warnings"].as_str().unwrap().contains("resumed(at 20 spp)"), "{longer}");
-    // Who renders does not matter.
+    // The strategy and the decomposition may differ.
     let other =
         render(folder.path(), &with(&["--spp", "80", "--strategy", "serial", "--decomposition", "samples:16:8x8"]));
     assert_eq!(other["checksum"], render(folder.path(), &["--spp", "80"])["checksum"]);
@@ -190,7 +190,8 @@ fn a_damaged_checkpoint_is_refused_and_kept() {
     refused(folder.path(), &options, &["directory"]);
 }
 
-/// `--until` doubles both halves; a longer reference goes on from a shorter one, with the bits of one that did not.
+/// `--until` doubles both halves; a longer reference resumes from a shorter one, with the bits of a reference rendered
+/// at once.
 #[test]
 fn a_reference_is_refined_and_extended() {
     let folder = tempfile::tempdir().unwrap();
@@ -205,12 +206,12 @@ fn a_reference_is_refined_and_extended() {
     let bytes = |film: &String| fs::read(folder.path().join(film)).unwrap();
     let (coarse, errors, _) = reference(&["--until", "0.2"]);
     assert!(errors.iter().all(|error| (0.05..=0.2).contains(error)), "{errors:?}");
-    // The two accounts agree: of 384 pixels the difference is known to some percent.
+    // The two error estimates agree: over 384 pixels, the difference is known to some percent.
     assert!((0.8..1.25).contains(&(errors[0] / errors[1])), "{errors:?}");
     let (fine, errors, said) = reference(&["--until", "0.1"]);
     assert!(errors.iter().all(|error| (0.025..=0.1).contains(error)) && fine != coarse, "{errors:?}");
     assert!(!said.contains("at 16 spp"), "it goes on from what is there: {said}");
-    // Films on the way are gone, those of the first call are not.
+    // Intermediate films are removed, the films of the first call are not.
     assert_eq!(fs::read_dir(folder.path().join("out/references")).unwrap().count(), 4);
     let (odd, _, _) = reference(&["--spp", "300"]);
     let fresh = reference(&["--spp", "300", "--out", "fresh"]).0;

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// `TINY` over other scenes, in one schedule, with one figure.
+/// `TINY` over other scenes, with one schedule and one figure.
 fn tiny(scenes: &str, figure: &str, more: &str) -> String {
     let strategies = ("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
     let text =
@@ -61,13 +61,13 @@ fn a_gallery_shows_each_scene_once() {
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     assert!(page.contains("alt=\"2 scenes\""));
     assert!(folder.path().join("out/tiny/figures/gallery.png").is_file());
-    // Without the images there is a sentence instead.
+    // Without the images, the page has a sentence instead.
     fs::remove_dir_all(folder.path().join("out/tiny/images")).unwrap();
     run(folder.path(), &["report", "out"]);
     assert!(fs::read_to_string(folder.path().join("out/report.html")).unwrap().contains("There is no gallery"));
 }
 
-/// Runs an experiment, changes its rows, draws its report again, and reads a table of it: rows by their first cell.
+/// Runs an experiment, changes its rows, redraws its report, and reads one of its tables: rows by their first cell.
 fn with_rows(
     folder: &Path,
     text: &str,
@@ -93,7 +93,7 @@ fn with_rows(
     reader.records().map(|row| cells(row.unwrap())).map(|row| (row[0].clone(), row)).collect()
 }
 
-/// What the figure is told of an effect.
+/// The comparison of one effect for the figure `effects`.
 const GLASS: &str = r#"
 [[figure.effects.price]]
 effect = "mirror and glass"
@@ -102,7 +102,7 @@ unused = { scene = "cornell-diffuse", profile = "smallpt" }
 used = { scene = "cornell", profile = "smallpt" }
 "#;
 
-/// The profile that fits and its name are one run, and a short curve is the beginning of a long one.
+/// The fitting profile and the profile's own name are one run, and a short curve is the beginning of a long one.
 #[test]
 fn two_words_for_one_run_are_one_cell() {
     let ids = |text: &str| {
@@ -118,13 +118,14 @@ fn two_words_for_one_run_are_one_cell() {
     assert_eq!((ids(&curves("[16]")).len(), ids(&curves("[8, 16]")).len(), ids(&curves("[16, 8]")).len()), (3, 3, 3));
 }
 
-/// Times are put into the rows, so the ratios are known.
+/// The test writes times into the rows, so the ratios are known.
 #[test]
 fn the_price_of_an_effect_is_a_ratio_of_times() {
     let folder = tempfile::tempdir().unwrap();
     let text = tiny("[\"cornell\", \"cornell-diffuse\"]", "effects", GLASS)
         .replace("spp = [4]", "spp = [4]\nkernel = [\"scalar\"]\neffects = [\"fitting\", \"smallpt\", \"all\"]");
-    // A sample takes 1000 ns where the profile fits, 1100 in the next and 1250 in the largest, and each repetition is slower by itself.
+    // A sample takes 1000 ns with the fitting profile, 1100 with the next and 1250 with the largest. Each repetition is
+    // slower by a common factor.
     let change = |row: &mut BTreeMap<String, String>| {
         let ns = match (row["scene"].as_str(), row["effects"].as_str()) {
             (_, "all") => 1250.0,
@@ -138,7 +139,7 @@ fn the_price_of_an_effect_is_a_ratio_of_times() {
     let profiles = with_rows(folder.path(), &text, change, "profiles-table.csv");
     for scene in ["cornell", "cornell-diffuse"] {
         let row = &profiles[scene];
-        // Fitting and largest profile, and the ratio with its ends.
+        // The times with the fitting and the largest profile, and the ratio with its interval.
         for (text, expected) in row[2..7].iter().zip([2000.0, 2500.0, 1.25, 1.25, 1.25]) {
             assert!((text.parse::<f64>().unwrap() / expected - 1.0).abs() < 1e-12, "{row:?}");
         }
@@ -155,7 +156,8 @@ fn the_price_of_an_effect_is_a_ratio_of_times() {
     }
 }
 
-/// Errors are put into the rows: relative ones are those over the mean radiance of the kept images, and the most accurate comes first.
+/// The test writes errors into the rows: relative errors are divided by the mean radiance of the kept images, and the
+/// most accurate scene comes first.
 #[test]
 fn accuracy_by_scene_is_relative_to_its_brightness() {
     let folder = tempfile::tempdir().unwrap();
@@ -164,7 +166,7 @@ fn accuracy_by_scene_is_relative_to_its_brightness() {
     let text = tiny(scenes, "scene-accuracy", more).replace("seed = [1]", "seed = [1, 2, 3]");
     let rmse = |scene: &str, seed: f64| match scene {
         "cornell" => 0.2 * seed,
-        // Half of the box's, but for a factor whose logarithms sum to nothing.
+        // Half the box's error, times factors whose logarithms sum to zero.
         "cornell-diffuse" => 0.1 * seed * [1.1, 1.0, 1.0 / 1.1][seed as usize - 1],
         "cornell-mirror" => 0.4 * (4.0 - seed),
         _ => 0.3 * seed,
@@ -182,7 +184,7 @@ fn accuracy_by_scene_is_relative_to_its_brightness() {
         assert!((number(3) - number(2) / number(1)).abs() < 1e-3, "{row:?}");
     }
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    // Twice the error of the diffuse box in the geometric mean; the images' brightness differs a little.
+    // In the geometric mean, twice the error of the diffuse box; the images' brightness differs a little.
     let radiance = |scene: &str| table[scene][1].parse::<f64>().unwrap();
     let ratio = 2.0 * radiance("cornell-diffuse") / radiance("cornell");
     let said = page.split("its relative error is ").nth(1).unwrap().split(' ').next().unwrap().parse::<f64>().unwrap();
@@ -190,7 +192,7 @@ fn accuracy_by_scene_is_relative_to_its_brightness() {
     assert!(page.contains("Over 3 different scenes"));
 }
 
-/// A mesh with parts that nothing is done with: said once, however many objects use the file.
+/// A mesh with unused parts: reported once, however many objects use the file.
 #[test]
 fn unused_parts_of_a_mesh_are_told_once() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,16 +1,16 @@
-//! What a run leaves of its schedule, and what can be made of it: traces, timelines, forecasts.
+//! A run's schedule and its uses: traces, timelines, forecasts.
 
 use super::{json, run};
 use crate::experiment::{TINY, write_tiny};
 use std::fs;
 use std::path::Path;
 
-/// The head of the table of predictions.
+/// The heading of the table of predictions.
 const PREDICTED: &str = "The simulator predicts this machine";
 
 const SIZE: [&str; 6] = ["--size", "24x16", "--spp", "4", "--decomposition", "tiles:8x8"];
 
-/// `cornell` in six tiles, with a trace in `run.csv`.
+/// Renders `cornell` in six tiles, with a trace in `run.csv`.
 fn traced(folder: &Path, strategy: &str, threads: &str) {
     let who = ["--strategy", strategy, "--threads", threads, "--trace", "run.csv"];
     run(folder, &[&["render", "cornell"][..], &SIZE, &who].concat());
@@ -28,7 +28,7 @@ fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
     assert_eq!(rows.len(), 6);
     let column = |index: usize| rows.iter().map(|row| row[index].parse::<f64>().unwrap()).collect::<Vec<_>>();
     let (workers, paths) = (column(1), column(4));
-    // Dealt out like cards: two workers, turn by turn.
+    // The cyclic assignment alternates between the two workers.
     assert!(workers.windows(2).all(|pair| pair[0] != pair[1]), "{workers:?}");
     assert!(paths.iter().all(|paths| *paths == 256.0), "{paths:?}");
     let makespan = header["makespan_s"].as_f64().unwrap();
@@ -44,7 +44,7 @@ fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
     run(folder.path(), &["trace", "run.csv", "-o", "run.png"]);
 }
 
-/// Predicts this machine, then others; the forecast of one worker is the sum of the jobs and what handing them out costs.
+/// Predicts this machine, then forecasts others.
 #[test]
 fn a_trace_is_replayed_on_other_machines() {
     let folder = tempfile::tempdir().unwrap();
@@ -64,7 +64,8 @@ fn a_trace_is_replayed_on_other_machines() {
     assert!(!said.contains(PREDICTED), "{said}");
 }
 
-/// What cannot be tried on this machine, a thread for each of 19200 pixels, is left out with a word and simulated all the same.
+/// A strategy that cannot run on this machine, a thread for each of 19200 pixels, is skipped with a message and
+/// simulated all the same.
 #[test]
 fn jobs_too_many_for_threads_are_simulated() {
     let folder = tempfile::tempdir().unwrap();
@@ -89,12 +90,13 @@ fn an_experiment_with_traces_is_predicted_from_its_rows() {
     assert_eq!(fs::read_dir(folder.path().join("out/tiny/traces")).unwrap().count(), 15);
     let said = run(folder.path(), &["simulate", "out/tiny", "--workers", "1..4"]).out;
     let table = said.split_once(PREDICTED).unwrap_or_else(|| panic!("{said}")).1;
-    // How well is the machine's business, which may be disturbed; that each schedule is there is not.
+    // The accuracy of a prediction depends on the machine, which may be disturbed. The presence of each schedule does
+    // not.
     let predicted = table.lines().filter(|line| line.contains("tiles:8x8")).count();
     assert_eq!(predicted, 4, "{said}");
 }
 
-/// No figure fails for want of what it would like to show: a schedule that was not run, an error that was not measured.
+/// No figure fails because its data are missing: a schedule that was not run, an error that was not measured.
 #[test]
 fn every_figure_makes_do_with_any_rows() {
     let names: Vec<String> = pathmark::report::FIGURES

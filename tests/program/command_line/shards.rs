@@ -30,7 +30,7 @@ fn parts_are_merged_into_the_image() {
         let merged = run(folder.path(), &[&["merge"], names.as_slice(), &["-o", "whole.exr", "--json"]].concat());
         let merged = json(&merged.out);
         assert_eq!((merged["checksum"].as_str(), &merged["of"]), (Some(expected.as_str()), &3.into()));
-        // What the image says of itself is what an image that was rendered at once says.
+        // The merged file equals the file of an image rendered at once, notes included.
         run(folder.path(), &[SIZE.as_slice(), &["--spp", "48", "-o", "at-once.exr"]].concat());
         let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
         assert!(read("whole.exr") == read("at-once.exr"), "{by}");
@@ -38,7 +38,7 @@ fn parts_are_merged_into_the_image() {
         run(folder.path(), &[&["merge"], names.as_slice(), &["-o", "whole.film"]].concat());
         run(folder.path(), &["convert", "whole.film", "-o", "again.exr"]);
         assert!(read("again.exr") == read("at-once.exr"), "{by}");
-        // One is missing.
+        // One part is missing.
         let two = [&["merge"], &names[..2], &["-o", "two.png"]].concat();
         let finished = finish(pathmark(folder.path(), &two)).with_code(2);
         assert!(finished.err.contains("3/3") && !folder.path().join("two.png").exists(), "{}", finished.err);
@@ -64,7 +64,7 @@ fn what_is_no_shard_is_refused_before_any_work() {
     for shard in ["0/4", "5/4", "4", "a/b", "1/0", "-1/2"] {
         refused(&["--shard", shard, "-o", "part.film"], &["shard", shard]);
     }
-    refused(&["--shard", "1/2", "-o", "part.png"], &["image", "part.png", "no picture"]);
+    refused(&["--shard", "1/2", "-o", "part.png"], &["image", "part.png", "not a picture"]);
     refused(&["--shard", "1/2", "-o", "part.film", "--spp", "16"], &["shard", "1 block", "at most 1"]);
     refused(&["--shard", "1/7", "--shard-by", "tiles", "-o", "part.film"], &["shard", "6 tiles", "at most 6"]);
     refused(&["--shard", "1/2"], &["--image"]);
@@ -77,7 +77,7 @@ fn what_is_no_shard_is_refused_before_any_work() {
     refused(&["--shard", "auto", "-o", "p"], &["shard", "SLURM_ARRAY_TASK_ID"]);
 }
 
-/// As SLURM sets them for `--array=3-6`, and for an array with gaps.
+/// The variables as SLURM sets them for `--array=3-6`, and for an array with gaps.
 #[test]
 fn a_task_of_an_array_knows_its_shard() {
     let folder = tempfile::tempdir().unwrap();
@@ -99,7 +99,7 @@ fn a_task_of_an_array_knows_its_shard() {
 
 const FEWEST_KILLS: u64 = 5;
 
-/// A part killed (SIGKILL) at growing delays until it gets through: the image of parts that nobody disturbed.
+/// A part is killed (SIGKILL) at growing delays until it finishes: the image of undisturbed parts.
 #[test]
 fn a_killed_part_goes_on_to_the_same_image() {
     for by in ["samples", "tiles"] {
@@ -126,7 +126,7 @@ fn a_killed_part_goes_on_to_the_same_image() {
                 if kills >= FEWEST_KILLS {
                     break;
                 }
-                // The machine is fast, or was busy while this one slept: from the start.
+                // The machine is fast, or was busy while this process slept: start over.
                 fs::remove_file(folder.path().join("part-2-of-2.film")).unwrap();
                 continue;
             }

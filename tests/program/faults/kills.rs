@@ -201,7 +201,7 @@ fn parts_killed_at_any_instant_come_to_the_same_image() {
 fn a_torn_checkpoint_is_refused_and_kept() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("render.checkpoint");
-    let arguments = RENDER.map(|word| if word == "240" { "32" } else { word });
+    let arguments = RENDER.map(|word| if word == "720" { "32" } else { word });
     finish(pathmark(folder.path(), &arguments)).with_code(0);
     let whole = fs::read(&path).unwrap();
     for length in [0, 1, 21, 22, 40, 300, whole.len() / 2, whole.len() - 33, whole.len() - 1] {

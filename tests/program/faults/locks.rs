@@ -169,7 +169,7 @@ fn a_file_that_is_no_lock_file_stays() {
     let path = folder.path().join(".pathmark.lock");
     fs::write(&path, "the user's").unwrap();
     let error = Lock::of_folder(folder.path(), "field", Sharing::Alone).unwrap_err();
-    assert!(error.exit_code() == 2 && error.to_string().contains("is no lock file"), "{error}");
+    assert!(error.exit_code() == 2 && error.to_string().contains("is not a lock file"), "{error}");
     assert_eq!(fs::read(&path).unwrap(), b"the user's");
 }
 
