@@ -59,7 +59,7 @@ pub fn check_name(path: &Path) -> Result<()> {
     if name.len() <= LONGEST_NAME {
         return Ok(());
     }
-    let problem = format!("would need a file with a name of {} bytes", name.len());
+    let problem = format!("the file name would have {} bytes", name.len());
     let error = InputError::new("output", name.to_string_lossy(), problem);
     Err(error.allowed(format!("up to {LONGEST_NAME} bytes")).into())
 }
@@ -89,7 +89,7 @@ impl Target {
                 ErrorKind::NotFound => false,
                 ErrorKind::NotADirectory => return Err(refuse("a part of the path is not a directory").into()),
                 ErrorKind::InvalidFilename => return Err(refuse("the name is too long").into()),
-                ErrorKind::InvalidInput => return Err(refuse("the name holds a zero byte").into()),
+                ErrorKind::InvalidInput => return Err(refuse("the name contains a zero byte").into()),
                 _ => return Err(Error::system("writing", path, e)),
             },
         };

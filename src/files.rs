@@ -73,7 +73,7 @@ impl Files {
     pub fn renews(&mut self, option: &str, path: &Path, is_ours: impl FnOnce(&Path) -> bool) -> Result<()> {
         self.claims(option, path)?;
         if path.exists() && !is_ours(path) {
-            let problem = "is there already, and would be overwritten";
+            let problem = "already exists and would be overwritten";
             return Err(InputError::new(option, path.display().to_string(), problem).allowed("another folder").into());
         }
         Ok(())

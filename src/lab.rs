@@ -142,7 +142,7 @@ impl Lab {
         if is_taken && self.problem.is_none() {
             let first = self.added.iter().find(|(_, known, _)| known == name);
             let owner = first.map_or_else(|| "pathmark itself".to_string(), |(_, _, at)| at.to_string());
-            let problem = format!("is a name that {owner} has taken; {at} wants it, too");
+            let problem = format!("is already used by {owner}; {at} adds it again");
             self.problem = Some(InputError::new(kind, name, problem).allowed("another name"));
         }
         self.added.push((kind, name.to_string(), at));
@@ -170,7 +170,7 @@ impl Lab {
         })?;
         match entry.discipline(parameter.as_deref()) {
             Err(StrategyError::Parameter { allowed, .. }) => {
-                Err(InputError::new("strategy", text, "has no such parameter").allowed(allowed).into())
+                Err(InputError::new("strategy", text, "has an invalid parameter").allowed(allowed).into())
             }
             _ => Ok((entry, parameter)),
         }

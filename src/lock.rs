@@ -86,7 +86,7 @@ impl Lock {
         for _ in 0..2 {
             let file = options.open(path).map_err(system)?;
             if file.metadata().map_err(system)?.len() > 0 {
-                let problem = format!("cannot be locked: {} is no lock file", path.display());
+                let problem = format!("cannot be locked: {} is not a lock file", path.display());
                 return Err(InputError::new(field, of.display().to_string(), problem).allowed("another name").into());
             }
             if try_lock(&file, path, sharing).map_err(system)? {
@@ -95,7 +95,7 @@ impl Lock {
         }
         let problem = "is being written by another process";
         Err(InputError::new(field, of.display().to_string(), problem)
-            .allowed("another name, or when it is done")
+            .allowed("another name, or this one when that process has ended")
             .into())
     }
 }

@@ -28,8 +28,8 @@ pub(super) struct Axes {
     what: What,
     #[command(flatten)]
     schedule: Options<false>,
-    /// Clamp bright light: `subpixel`, the mean of each subpixel to 1 as smallpt does, or `recursion`, what each recursion returns as report B
-    /// does; `recursion:10` clamps to 10. Biased
+    /// Clamp bright light: `subpixel` clamps the mean of each subpixel to 1, as smallpt does; `recursion` clamps the radiance that each
+    /// recursion returns, as report B does; `recursion:10` clamps to 10. Biased
     #[arg(long, value_name = "CLAMP", help_heading = "Image")]
     pub(super) clamp: Option<String>,
 }
@@ -67,7 +67,7 @@ fn device_option() -> Arg {
 const CACHE: &str = "cache";
 
 fn cache_option() -> Arg {
-    let about = "Keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next time; the time to build is not recorded then";
+    let about = "Keep the hierarchies of scenes with 4096 or more primitives in this folder, and reuse them the next time; the build time of such scenes is not recorded";
     let option = Arg::new(CACHE).long(CACHE).value_name("FOLDER").help(about).help_heading("Output");
     option.value_parser(value_parser!(PathBuf))
 }
@@ -132,7 +132,7 @@ impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
         let options = Self { values: Self::axes().filter_map(given).collect(), cache };
         match (device, options.value("kernel")) {
             (Some(id), Some(kernel)) if !kernel.starts_with(DEVICE) => {
-                let problem = format!("--device {id} is for the kernel {DEVICE}, and --kernel is {kernel}\n");
+                let problem = format!("--device {id} requires the kernel {DEVICE}, but --kernel is {kernel}\n");
                 Err(clap::Error::raw(ErrorKind::ArgumentConflict, problem))
             }
             _ => Ok(options),
@@ -158,7 +158,7 @@ fn default_estimator(lab: &Lab, scene: &str) -> Result<String> {
     }
     let names: Vec<&str> = lab.estimators().map(|entry| entry.name).collect();
     let at = read_text(Path::new(scene)).ok().and_then(|text| locate(&text, "estimator", &name));
-    let error = InputError::new("estimator", name, "there is none of that name");
+    let error = InputError::new("estimator", name, "there is no such estimator");
     Err(error.allowed(names.join(", ")).in_file(scene, at).into())
 }
 
@@ -168,14 +168,14 @@ fn check_for_workload(settings: &Settings) -> Result<()> {
     base.spec.estimator.clear();
     let mut of_light = AXES.iter().filter(|axis| axis.of_light);
     if let Some(folder) = &settings.cache {
-        let problem = format!("has no meaning for {}, which is a workload", settings.scene);
+        let problem = format!("does not apply to {}, which is a workload", settings.scene);
         return Err(InputError::new(CACHE, folder.display().to_string(), problem).allowed("none").into());
     }
     match of_light.find(|axis| axis.show(settings) != axis.show(&base)) {
         None => Ok(()),
         Some(axis) => {
             let (value, problem) =
-                (axis.show(settings), format!("has no meaning for {}, which is a workload", settings.scene));
+                (axis.show(settings), format!("does not apply to {}, which is a workload", settings.scene));
             Err(InputError::new(axis.name, value, problem).allowed("none").into())
         }
     }
@@ -189,7 +189,7 @@ impl What {
         let mut settings = Settings { scene: scene.to_string(), spp, spec, cache, ..Settings::default() };
         self.apply(&mut settings)?;
         if seed > LARGEST_SEED {
-            let problem = "belongs to the references";
+            let problem = "is reserved for references";
             return Err(InputError::new("seed", seed.to_string(), problem)
                 .allowed(format!("0 to {LARGEST_SEED}"))
                 .into());

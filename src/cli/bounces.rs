@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     talk.end();
     if found.invalid > 0 {
-        talk.note(&format!("warning: {} samples were no valid radiance and are left out", found.invalid));
+        talk.note(&format!("warning: {} samples had no valid radiance and are left out", found.invalid));
     }
 
     let rows = rows(&found);
@@ -155,7 +155,7 @@ fn text(name: &str, spec: &Spec, spp: u32, found: &LightByBounce, rows: &[Row]) 
     lines.push(String::new());
     lines.push(format!("mean radiance of the image {r} {g} {b}"));
     lines.push(format!(
-        "{} paths, splits counted: {:.3} bounces in the mean, {} at most; {} % end before {REPORTED} bounces; {:.3} rays per sample",
+        "{} paths, counting splits: {:.3} bounces on average, {} at most; {} % end before {REPORTED} bounces; {:.3} rays per sample",
         found.parts(),
         found.mean_length().unwrap_or(0.0),
         found.longest().unwrap_or(0),

@@ -19,13 +19,13 @@ use std::sync::Arc;
 /// `pathmark check --thorough`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Cases by name, as in S11 A6, or by first letter; all of them and the price list of the guards if none is named
+    /// Cases by name, as in S11 A6, or by first letter [default: all of them, and the price list of the guards]
     cases: Vec<String>,
-    /// Try as many random inputs as the catalogue of hard cases asks for: minutes to hours
+    /// Try as many random inputs as the catalogue of hard cases specifies: minutes to hours
     #[arg(long)]
     thorough: bool,
-    /// Write the cases and the price list of the guards into this folder, beside the results of experiments, and a page of all of them. A price list that
-    /// is there stays
+    /// Write the cases, the price list of the guards and a page of all results into this folder, beside the results of experiments. An existing price
+    /// list is kept
     #[arg(long, value_name = "DIR", conflicts_with = "cases")]
     out: Option<PathBuf>,
     /// Print one JSON object
@@ -69,7 +69,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         if !are_priced {
             guards::write(out, &prices)?;
         }
-        print(&format!("report in {}", report::write(lab, out)?.display()))?;
+        let written = format!("report in {}", report::write(lab, out)?.display());
+        // Standard output holds one JSON object then.
+        if arguments.json {
+            talk.note(&written);
+        } else {
+            print(&written)?;
+        }
     }
     let failed: Vec<&str> = rows.iter().filter(|row| !row.pass).map(|row| row.id).collect();
     if failed.is_empty() { Ok(()) } else { Err(Error::Check(format!("hard cases {}", failed.join(", ")))) }
@@ -92,7 +98,7 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>> {
     for name in names {
         if !check::cases().any(|case| fits(case, name)) {
             let known: Vec<&str> = check::cases().map(|case| case.id).collect();
-            let error = InputError::new("case", name, "there is none of that name");
+            let error = InputError::new("case", name, "there is no such case");
             return Err(error.allowed(known.join(", ")).into());
         }
     }
@@ -147,7 +153,7 @@ fn line(row: &Row<'_>) -> String {
 
 /// The guards, two lines each.
 fn price_list(rows: &[PriceRow]) -> String {
-    let mut lines = vec!["\nWhat the guards cost, and what goes wrong without them (intervals of 95 %)\n".to_string()];
+    let mut lines = vec!["\nCost of the guards, and errors with and without them (95 % intervals)\n".to_string()];
     for row in rows {
         let times = match (row.time_ratio, row.time_ratio_low, row.time_ratio_high) {
             (Some(ratio), Some(low), Some(high)) => format!("{ratio:.2} times the time ({low:.2} to {high:.2})"),

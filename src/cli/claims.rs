@@ -13,17 +13,17 @@ use std::sync::Arc;
 /// `pathmark claims out --report A`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Folders that `reproduce` or `run` wrote. If several answer a claim, the first one counts whose conditions are the report's. The verdicts go into
+    /// Folders that `reproduce` or `run` wrote. If several answer a claim, the first one with the report's conditions counts. The verdicts go into
     /// the first folder
     #[arg(default_value = "out", value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// Only the claims of this report, printed and not written
+    /// Print only the claims of this report, and write no verdicts
     #[arg(long, value_name = "LETTER")]
     report: Option<String>,
     /// Print an array of objects
     #[arg(long)]
     json: bool,
-    /// Exit with 1 if a verdict is another one than expected
+    /// Exit with 1 if a verdict differs from the expected one
     #[arg(long)]
     strict: bool,
 }
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let unexpected: Vec<String> =
         answers.iter().filter(|a| a.is_unexpected()).map(|a| a.claim.id.to_string()).collect();
     if arguments.strict && !unexpected.is_empty() {
-        return Err(Error::Check(format!("claims {} have another verdict than expected", unexpected.join(", "))));
+        return Err(Error::Check(format!("claims {} have unexpected verdicts", unexpected.join(", "))));
     }
     Ok(())
 }

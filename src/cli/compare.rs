@@ -22,18 +22,18 @@ const LEVEL: f64 = 0.95;
 pub(super) struct Arguments {
     /// The image: a picture or a film file
     image: PathBuf,
-    /// What it is compared with, likewise
+    /// The reference: a picture or a film file
     reference: PathBuf,
-    /// A second reference that shares no samples with the first, as `pathmark reference` makes them: the error is then free of their noise, and has
+    /// A second reference that shares no samples with the first, as `pathmark reference` makes them: the error then excludes their noise, and has
     /// an interval
     half: Option<PathBuf>,
     /// Write a picture of each pixel's error
     #[arg(long, value_name = "FILE.png")]
     heatmap: Option<PathBuf>,
-    /// Error of a pixel that has the heat map's lightest colour [default: one that one pixel in a hundred exceeds]
+    /// Error that the heat map shows in its lightest colour [default: the error that 1 % of the pixels exceed]
     #[arg(long, value_name = "ERROR", requires = "heatmap")]
     scale: Option<f64>,
-    /// Write a picture of how large each pixel's difference looks: FLIP, from 0 to 1
+    /// Write a picture of each pixel's visible difference: FLIP, from 0 to 1
     #[arg(long, value_name = "FILE.png")]
     flip: Option<PathBuf>,
     /// Print one JSON object
@@ -52,7 +52,7 @@ fn shared_samples(inputs: &[(&PathBuf, Option<FilmKey>)]) -> Result<Option<Strin
             if (&key.scene_hash, key.seed) != (&other.scene_hash, other.seed) {
                 continue;
             }
-            let problem = "is the seed of both, so that they share samples and look more alike than they are";
+            let problem = "is the seed of both images, so they share samples and look more alike than they are";
             if picture::is_film(path) && picture::is_film(other_path) {
                 return Err(InputError::new("seed", key.seed.to_string(), problem)
                     .allowed("two different seeds")
@@ -112,7 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
             _ => heatmap(images[0], images[1], arguments.scale)?,
         };
         image_io::write(path, &map.to_image())?;
-        remarks.push(format!("{}: from 0, dark, to {:.4}, light", path.display(), map.scale));
+        remarks.push(format!("{}: from 0 (dark) to {:.4} (light)", path.display(), map.scale));
     }
     if arguments.json {
         let mut told = object(&lines);
@@ -148,8 +148,13 @@ fn cross(image: &Image, first: &Image, second: &Image) -> Result<Vec<Line>> {
     let rel_mse = cross_rel_mse(image, first, second)?;
     Ok(vec![
         Line { name: "mse", value: mean, interval, about: "mean squared error, free of the references' noise (95 %)" },
-        Line { name: "rmse", value: rmse, interval: interval.map(of_roots), about: "its root; NaN if it is negative" },
-        Line { name: "rel-mse", value: rel_mse, interval: None, about: "over the squared reference, likewise" },
+        Line { name: "rmse", value: rmse, interval: interval.map(of_roots), about: "root of mse; NaN if negative" },
+        Line {
+            name: "rel-mse",
+            value: rel_mse,
+            interval: None,
+            about: "mse relative to the squared reference, free of the references' noise",
+        },
     ])
 }
 

@@ -13,10 +13,10 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A film file or an image
     input: PathBuf,
-    /// The image: .png, .ppm and .bmp for looking at, .exr, .pfm and .hdr for linear radiance
+    /// The image: .png, .ppm and .bmp for viewing, .exr, .pfm and .hdr for linear radiance
     #[arg(short = 'o', long, value_name = "FILE")]
     output: PathBuf,
-    /// Scale what .png, .ppm and .bmp show so that the brightest channel of the image is 1
+    /// Scale .png, .ppm and .bmp files so that the brightest channel of the image is 1
     #[arg(long)]
     auto_exposure: bool,
 }

@@ -14,15 +14,15 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// The old measurement: the folder of an experiment, or a file of rows
     old: PathBuf,
-    /// The new one
+    /// The new measurement, likewise
     new: PathBuf,
-    /// Exit with 1 if a cell got slower by more than this for certain; changes below it count as the same
+    /// Exit with 1 if a cell is certainly slower by more than this; smaller changes count as the same
     #[arg(long, value_name = "SHARE", default_value = "2%", allow_hyphen_values = true)]
     fail_above: String,
-    /// Whether cells that nobody can tell make it fail
+    /// Whether undecided cells make the command fail
     #[arg(long, value_enum, default_value_t = Undecided::Pass)]
     undecided: Undecided,
-    /// Compare what was counted instead of times: jobs, paths, rays, tests of boxes and primitives, and instructions after
+    /// Compare counts instead of times: jobs, paths, rays, tests of boxes and primitives, and instructions after
     /// `run --count-instructions`. Counts have no noise
     #[arg(long)]
     counts: bool,
@@ -35,10 +35,10 @@ pub(super) struct Arguments {
 
 #[derive(Args)]
 struct AcrossOptions {
-    /// Compare measurements of two machines all the same
+    /// Compare even if the measurements are of two machines
     #[arg(long)]
     across_machines: bool,
-    /// Compare builds whose images have other bits all the same
+    /// Compare even if the images of the two builds differ in some bits
     #[arg(long)]
     across_revisions: bool,
 }
@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         let counts = [Change::Slower, Change::Faster, Change::Same, Change::Undecided]
             .map(|change| format!("{} {}", count(change), change.name()));
         let percent = 100.0 * limit;
-        print(&format!("{}; same and slower are told at {percent} %", counts.join(", ")))?;
+        print(&format!("{}; the limit between same and slower is {percent} %", counts.join(", ")))?;
     }
     remark(&found, talk);
     if slower > 0 {
@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, talk: &Talk) -> Result<()> {
         return Err(Error::Check(problem));
     }
     if undecided > 0 && arguments.undecided == Undecided::Fail {
-        let problem = format!("{} cannot be decided: more repetitions would tell", counted(undecided, "cell"));
+        let problem = format!("{} undecided: more repetitions are needed", counted(undecided, "cell"));
         return Err(Error::Check(problem));
     }
     Ok(())
@@ -107,11 +107,13 @@ fn counts(arguments: &Arguments, limit: f64) -> Result<()> {
 fn remark(found: &Diff, talk: &Talk) {
     if !found.paired {
         talk.note(
-            "warning: not measured in turns: a change of the machine looks like one of the program (run --against)",
+            "warning: not measured in turns, so a change of the machine looks like a change of the program (run --against)",
         );
     }
     if found.stopped_by_times {
-        talk.note("warning: how often cells were repeated depended on their times (run --until), so the intervals are too narrow");
+        talk.note(
+            "warning: the repetitions of a cell depended on its times (run --until), so the intervals are too narrow",
+        );
     }
     let [old, new] = found.unmatched;
     if old + new > 0 {

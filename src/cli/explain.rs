@@ -8,7 +8,7 @@ use clap::Args;
 /// `pathmark explain drift`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A warning as a row has it, with or without its brackets [default: all of them]
+    /// A warning as it stands in a row, with or without its brackets [default: all]
     warning: Option<String>,
 }
 

@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// `pathmark list strategies --json`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// What to list [default: everything]
+    /// Kind of names to list [default: all]
     kind: Option<Kind>,
     /// Print an array of objects with name and about
     #[arg(long)]

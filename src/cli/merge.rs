@@ -24,11 +24,11 @@ pub(super) struct Arguments {
     /// The parts, in any order: files of `render --shard`, or folders of `run --shard`
     #[arg(required = true)]
     parts: Vec<PathBuf>,
-    /// The image: .png, .ppm and .bmp for looking at, .exr, .pfm and .hdr for linear radiance, .film for sums in full precision. Of a
+    /// The image: .png, .ppm and .bmp for viewing, .exr, .pfm and .hdr for linear radiance, .film for sums in full precision. For a
     /// sweep, the new folder
     #[arg(short = 'o', long, value_name = "FILE")]
     output: PathBuf,
-    /// Merge the parts that there are. The image is no other render's: no checksum is printed
+    /// Merge even if parts are missing. Such an image equals no other render, so no checksum is printed
     #[arg(long)]
     partial: bool,
     /// Print the result as one JSON object
@@ -44,19 +44,28 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 
 /// Merges the rows of sweeps from the folders of their parts.
 fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    arguments.strict.refuse("applies to parts of an image; a sweep checks its rows when it measures them")?;
     let merged = merge_sweeps(&arguments.parts, &arguments.output, arguments.partial, &command_line())?;
     let mut outs: Vec<_> = merged.iter().map(|sweep| sweep.out.clone()).collect();
     outs.dedup();
+    let (mut lines, mut sweeps) = (Vec::new(), Vec::new());
     for sweep in &merged {
         for part in &sweep.missing {
             talk.note(&format!("warning: missing: part {part} of {}", sweep.name));
         }
-        print(&format!("{} rows in {}", sweep.rows, sweep.out.join(&sweep.name).display()))?;
+        let folder = sweep.out.join(&sweep.name).display().to_string();
+        lines.push(format!("{} rows in {folder}", sweep.rows));
+        sweeps.push(json!({ "folder": folder, "rows": sweep.rows, "missing": sweep.missing }));
     }
+    let mut reports = Vec::new();
     for out in outs {
-        print(&format!("report in {}", report::write(lab, &out)?.display()))?;
+        reports.push(report::write(lab, &out)?.display().to_string());
     }
-    Ok(())
+    if arguments.json {
+        return print_json(&json!({ "sweeps": sweeps, "reports": reports }));
+    }
+    lines.extend(reports.iter().map(|report| format!("report in {report}")));
+    print(&lines.join("\n"))
 }
 
 /// Merges one image from the files of its parts.
@@ -83,7 +92,7 @@ fn image(arguments: &Arguments, talk: &Talk) -> Result<()> {
     let checksum = is_whole.then(|| merged.film.checksum());
     if as_film {
         if !is_whole {
-            let problem = "a film file is of a whole image, and parts are missing";
+            let problem = "a film file needs the whole image, but parts are missing";
             return Err(InputError::new("output", output.display().to_string(), problem).allowed("a picture").into());
         }
         write_film(output, &key, &merged.film)?;

@@ -67,7 +67,7 @@ Look inside: trace, simulate, replay, bounces, rays    Ask: list, explain, new, 
 struct Cli {
     #[command(subcommand)]
     verb: Verb,
-    /// Say nothing on standard error but errors.
+    /// Print only errors on standard error.
     #[arg(long, global = true)]
     quiet: bool,
 }
@@ -78,21 +78,21 @@ enum Verb {
     Reproduce(reproduce::Arguments),
     /// Render a scene.
     Render(render::Arguments),
-    /// Put together what `render --shard` or `run --shard` made on several machines.
+    /// Merge the parts that `render --shard` or `run --shard` wrote on several machines.
     Merge(merge::Arguments),
     /// Run one experiment.
     Run(run::Arguments),
-    /// Measure the error of an image against a reference image, or against two without their noise.
+    /// Measure the error of an image against one reference, or against two to exclude their noise.
     Compare(compare::Arguments),
     /// Rank the schedules of an experiment: which can be told apart?
     Rank(rank::Arguments),
-    /// Time the messages of the processes that mpiexec started.
+    /// Time MPI messages between the processes that mpiexec started.
     MessageCosts(message_costs::Arguments),
     /// Compare two measurements of an experiment: which cells got slower?
     Diff(diff::Arguments),
     /// Write a film or an image in another format.
     Convert(convert::Arguments),
-    /// Predict what accuracies cost in samples and seconds, and check it by paying.
+    /// Predict the samples and seconds that an accuracy costs; --pay checks the prediction by rendering.
     Price(price::Arguments),
     /// Render the two half-references of a scene.
     Reference(reference::Arguments),
@@ -104,21 +104,21 @@ enum Verb {
     Trace(trace::Arguments),
     /// Show one sample's path, bounce by bounce.
     Replay(replay::Arguments),
-    /// Show the light of an image by the bounces that it made.
+    /// Show the light and path lengths of an image by number of bounces.
     Bounces(bounces::Arguments),
-    /// Time the search for what rays meet first, along the rays of paths.
+    /// Time the search for the nearest hit, along the rays of paths.
     Rays(rays::Arguments),
     /// Try the hard cases of numerics, sampling and statistics on this machine.
     Check(check::Arguments),
     /// Judge the claims of the four reports by the results in a folder.
     Claims(claims::Arguments),
-    /// Write a commented file to start an experiment or a scene from.
+    /// Write a commented starter file for an experiment or a scene.
     New(new::Arguments),
     /// Explain the warnings of rows: what each means, and what to do.
     Explain(explain::Arguments),
-    /// Show what there is to choose from.
+    /// List all names that options and files accept.
     List(list::Arguments),
-    /// Print a script that completes commands in a shell.
+    /// Print a completion script for a shell.
     Completions(completions::Arguments),
     /// Print a manual page.
     Man(man::Arguments),

@@ -10,9 +10,9 @@ use std::path::PathBuf;
 /// `pathmark new experiment mine`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// What to start
+    /// Kind of file
     kind: Kind,
-    /// Its name, or the path of its file; `.toml` is added where it is missing
+    /// Its name or path; `.toml` is added if it is missing
     name: PathBuf,
 }
 
@@ -47,10 +47,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     // An existing file is never replaced.
     let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(|e| match e.kind() {
         ErrorKind::AlreadyExists => {
-            Error::from(InputError::new("name", &shown, "is there already").allowed("a new name"))
+            Error::from(InputError::new("name", &shown, "already exists").allowed("a new name"))
         }
         _ => Error::system("creating", &path, e),
     })?;
     file.write_all(arguments.kind.text().as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
-    print(&format!("{shown} is there; edit it, then: pathmark {} {shown}", arguments.kind.verb()))
+    print(&format!("created {shown}; edit it, then run: pathmark {} {shown}", arguments.kind.verb()))
 }

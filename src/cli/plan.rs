@@ -37,7 +37,7 @@ impl Plans {
         let all = self.sum();
         let (minutes, megabytes) = ((all.seconds() / 60.0).ceil(), megabytes(&all));
         format!(
-            "about {minutes:.0} min for {} rows of {} experiments and {megabytes:.0} MB, by a pilot of {} renders; rows that are already there take no time",
+            "about {minutes:.0} min for {} rows of {} experiments and {megabytes:.0} MB, estimated by a pilot of {} renders; existing rows take no time",
             all.rows,
             self.each.len(),
             self.kinds - self.guessed
@@ -59,11 +59,11 @@ impl Plans {
         let pilot = self.kinds - self.guessed;
         print(&format!(
             "Seconds are an estimate: {pilot} small renders on one thread gave the time of a sample, and a cell's samples are divided by the processors \
-             that its threads can use. The cost of schedules, locks and other programs is not included; MB are without figures."
+             that its threads can use. The cost of schedules, locks and other programs is not included; MB exclude figures."
         ))?;
         if self.guessed > 0 {
             print(&format!(
-                "{} kinds of images were not rendered; the mean of the others stands for them.",
+                "{} kinds of images were not rendered; the estimate uses the mean of the others.",
                 self.guessed
             ))?;
         }

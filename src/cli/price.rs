@@ -52,10 +52,10 @@ pub(super) struct Arguments {
     /// Seeds of the pilot
     #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u32).range(3..=1000))]
     pilot_seeds: u32,
-    /// Seed of what is paid for; a second one is the next
+    /// Seed of the first render of --pay; the second render uses the next seed
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Render each goal with two seeds, and print what it took and gave
+    /// Render each goal with two seeds, and print the measured error and time
     #[arg(long)]
     pay: bool,
     #[command(flatten)]
@@ -127,7 +127,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         }
     }
     if arguments.seed >= LARGEST_SEED / 2 {
-        let error = InputError::new("seed", arguments.seed.to_string(), "belongs to pilots and references");
+        let error = InputError::new("seed", arguments.seed.to_string(), "is reserved for pilots and references");
         return Err(error.allowed(format!("0 to {}", LARGEST_SEED / 2 - 1)).into());
     }
     let asked = arguments.axes.settings(lab, &arguments.scene, arguments.pilot_spp, arguments.seed)?;
@@ -208,7 +208,7 @@ fn soonest(row: &Row, others: Vec<(String, Estimate)>) -> Option<String> {
     let Interval { low, high, .. } = seconds.interval;
     let times = row.seconds / seconds.value;
     Some(format!(
-        "{name} would reach RMSE {} in {:.3} s ({low:.3} to {high:.3}), {times:.1} times as soon; --estimator {ALL} compares",
+        "{name} would reach RMSE {} in {:.3} s ({low:.3} to {high:.3}), {times:.1} times as fast; compare with --estimator {ALL}",
         row.rmse, seconds.value
     ))
 }
@@ -223,11 +223,11 @@ fn row(
     talk: &Talk,
 ) -> Result<Row> {
     let price = renderer.price(goal).ok_or_else(|| {
-        Error::Check(format!("{goal} has no price: the error of {} does not fall with its samples", arguments.scene))
+        Error::Check(format!("{goal} has no price: the error of {} does not fall with more samples", arguments.scene))
     })?;
     let wanted = counts.whole(price.spp.value);
     if wanted > f64::from(LARGEST_SPP) {
-        let problem = format!("takes {wanted:.0} samples per pixel, more than the {LARGEST_SPP} that there can be");
+        let problem = format!("takes {wanted:.0} samples per pixel, more than the maximum of {LARGEST_SPP}");
         return Err(InputError::new("rmse", goal.to_string(), problem).into());
     }
     let spp = wanted as u32;
@@ -279,7 +279,7 @@ fn table(settings: &Settings, arguments: &Arguments, piloted: &Piloted, rows: &[
             counted(settings.threads, "thread")
         ),
         format!(
-            "pilot of {} seeds at {} spp: {:.4} s per sample and pixel ({low:.4} to {high:.4}); intervals are of 95 %",
+            "pilot of {} seeds at {} spp: {:.4} s per sample and pixel ({low:.4} to {high:.4}); intervals have 95 % confidence",
             arguments.pilot_seeds, arguments.pilot_spp, renderer.seconds_per_spp.value
         ),
         format!(
@@ -290,7 +290,7 @@ fn table(settings: &Settings, arguments: &Arguments, piloted: &Piloted, rows: &[
         format!("{:>9}  {:>8}  {:>21}  {:>9}  {:>19}  {:>10}", "RMSE", "spp", "", "seconds", "", "half of it"),
     ];
     if tail.largest_share > LARGEST_SHARE || tail.kurtosis > LARGEST_KURTOSIS {
-        let text = "doubtful: the variance rests on few values, and a pilot that met others would give another price; try a larger --pilot-spp";
+        let text = "doubtful: few values dominate the variance, so another pilot could give another price; try a larger --pilot-spp";
         lines.insert(lines.len() - 1, text.to_string());
     }
     for row in rows {
@@ -307,7 +307,7 @@ fn table(settings: &Settings, arguments: &Arguments, piloted: &Piloted, rows: &[
             [row.paid_rmse, row.paid_seconds, row.rmse_ratio, row.seconds_ratio]
         {
             lines.push(format!(
-                "     paid  RMSE {error:.5}, {:+.1} % of what was predicted; {seconds:.3} s, {:+.1} %",
+                "     paid  RMSE {error:.5}, {:+.1} % from the prediction; {seconds:.3} s, {:+.1} %",
                 100.0 * (by_error - 1.0),
                 100.0 * (by_seconds - 1.0)
             ));
@@ -321,7 +321,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn samples_are_rounded_up_to_what_is_rendered() {
+    fn samples_are_rounded_up_to_renderable_counts() {
         let [plain, doubled] = [false, true].map(|doubled| Counts { fewest: 4, doubled });
         assert_eq!([0.1, 4.0, 5.0, 64.0, 65.0].map(|spp| plain.whole(spp)), [4.0, 4.0, 8.0, 64.0, 68.0]);
         assert_eq!([0.1, 4.0, 5.0, 64.0, 65.0].map(|spp| doubled.whole(spp)), [4.0, 4.0, 8.0, 64.0, 128.0]);
@@ -341,6 +341,6 @@ mod tests {
         assert_eq!(told(&[]), None);
         assert_eq!(told(&[("a", seconds(2.0, 1.0, 3.0))]), None, "the intervals touch");
         let text = told(&[("a", seconds(2.0, 1.0, 2.9)), ("b", seconds(0.5, 0.4, 0.6))]).unwrap();
-        assert!(text.starts_with("b would reach RMSE 0.1 in 0.500 s (0.400 to 0.600), 8.0 times as soon"), "{text}");
+        assert!(text.starts_with("b would reach RMSE 0.1 in 0.500 s (0.400 to 0.600), 8.0 times as fast"), "{text}");
     }
 }

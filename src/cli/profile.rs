@@ -13,7 +13,7 @@ pub(super) struct Choice {
     /// Larger images, up to hours
     #[arg(long)]
     full: bool,
-    /// The reports' own sizes and parameters, an hour for all experiments
+    /// The sizes and parameters of the reports; all experiments take an hour
     #[arg(long)]
     reports: bool,
 }

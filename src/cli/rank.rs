@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let least = found.least_repetitions as usize;
     if most < least {
         talk.note(&format!(
-            "{} can tell no two of them apart: it takes {least} (run --repetitions {least}), or fewer schedules (--filter)",
+            "{} cannot tell any two schedules apart: it takes {least} (run --repetitions {least}), or fewer schedules (--filter)",
             counted(most, "repetition")
         ));
     }
@@ -72,7 +72,7 @@ fn table(image: &ImageRanking) -> String {
         "them".to_string()
     };
     let fastest = match (*compared, fastest.len()) {
-        (0 | 1, _) => "too few schedules have all repetitions to tell the fastest".to_string(),
+        (0 | 1, _) => "too few schedules have all repetitions to determine the fastest".to_string(),
         (_, 0) => format!("each of {of} is slower than another one"),
         (all, left) if left == all => format!("any of {of} may be the fastest"),
         _ => format!("with 95 % confidence, the fastest of {of} is among: {}", fastest.join(", ")),

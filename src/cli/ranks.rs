@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// The options of a render by several processes.
 #[derive(Args)]
 pub(super) struct Ranks {
-    /// Render with all processes that mpiexec started, which share the jobs by this rule: static-blocks, static-cyclic, dynamic:C, guided,
+    /// Render with all processes that mpiexec started; they share the jobs by this rule: static-blocks, static-cyclic, dynamic:C, guided,
     /// trapezoid, factoring, mfac:S, weighted-factoring:W, awf-b, awf-c, adaptive-factoring, master-worker:C or working-master:C. Each process spreads its jobs over --threads by --strategy
     #[arg(long, value_name = "RULE", help_heading = "Processes",
           conflicts_with_all = ["adaptive", "shard"])]

@@ -25,10 +25,10 @@ use std::time::Instant;
 pub(super) struct Arguments {
     #[command(flatten)]
     samples: Samples,
-    /// Search so many times along all rays, on one thread
+    /// Number of searches along all rays, on one thread
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = value_parser!(u32).range(1..))]
     repetitions: u32,
-    /// Write the triangles and the rays for another program: a line of text, then numbers of 64 bits
+    /// Write the triangles and the rays for another program: a line of text, then 64-bit numbers
     #[arg(long, value_name = "FILE")]
     export: Option<PathBuf>,
     /// Print one JSON object
@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if let Some(path) = &arguments.export {
         files.writes("export", path)?;
         if scene.primitives.triangles.len() != scene.owners.len() {
-            let problem = "has spheres or planes, which the exported file has no place for";
+            let problem = "has spheres or planes, which the exported file cannot hold";
             return Err(InputError::new("scene", &scene.name, problem).allowed("a scene of triangles").into());
         }
     }
@@ -89,9 +89,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     });
     print(&format!(
         "{}, {} primitives: {} rays from vertex to vertex of {} paths\n\
-         kernel {kernel}{}{simd}, {precision}, accelerator {}: {boxes:.1} box tests and {primitives:.1} primitive tests a ray\n\
-         {} million rays a second on one thread (median of {}{spread})\n\
-         {met} rays met something, after {} in the mean",
+         kernel {kernel}{}{simd}, {precision}, accelerator {}: {boxes:.1} box tests and {primitives:.1} primitive tests per ray\n\
+         {} million rays per second on one thread (median of {}{spread})\n\
+         {met} rays hit something, at a mean distance of {}",
         scene.name,
         scene.owners.len(),
         search.count(),

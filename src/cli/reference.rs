@@ -19,7 +19,7 @@ pub(super) struct Arguments {
     /// Samples per pixel of each half
     #[arg(long, value_name = "N", required_unless_present = "until", conflicts_with = "until")]
     spp: Option<u32>,
-    /// Double both halves until the estimated RMSE of their average is at most this; goes on from what is cached
+    /// Double both halves until the estimated RMSE of their average is at most this; continues from cached halves
     #[arg(long, value_name = "RMSE", allow_negative_numbers = true)]
     until: Option<f64>,
     /// Columns and rows

@@ -27,13 +27,13 @@ pub(super) struct Arguments {
     spp: Option<u32>,
     #[command(flatten, next_help_heading = "Accuracy")]
     rounds: rounds::Until,
-    /// Give each tile of 16x16 pixels as many samples as its noise calls for, --spp on average
+    /// Adapt the samples per pixel of each tile of 16x16 pixels to its noise; --spp is the average
     #[arg(long, conflicts_with_all = ["target_error", "time_limit", "checkpoint"], help_heading = "Accuracy")]
     adaptive: bool,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1, help_heading = "Image")]
     seed: u64,
-    /// Image file: .png, .ppm and .bmp for looking at, .exr, .pfm and .hdr for linear radiance [default: SCENE.png]
+    /// Image file: .png, .ppm and .bmp for viewing, .exr, .pfm and .hdr for linear radiance [default: SCENE.png]
     #[arg(short = 'o', long = "image", value_name = "FILE", help_heading = "Output")]
     image: Option<PathBuf>,
     #[command(flatten)]
@@ -42,10 +42,10 @@ pub(super) struct Arguments {
     ranks: ranks::Ranks,
     #[command(flatten)]
     axes: Axes,
-    /// Scale what .png, .ppm and .bmp show so that the brightest channel of the image is 1; the light itself stays as it is
+    /// Scale .png, .ppm and .bmp files so that the brightest channel of the image is 1; the radiance itself does not change
     #[arg(long, help_heading = "Output")]
     auto_exposure: bool,
-    /// Write who did what when: .csv for `pathmark trace` and `pathmark simulate`
+    /// Write each job's worker, start and end: a .csv file for `pathmark trace` and `pathmark simulate`
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     trace: Option<PathBuf>,
     /// Print the record as one JSON object
@@ -128,7 +128,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 fn render_part(arguments: &Arguments, shard: Shard, setup: Setup, talk: &Talk) -> Result<()> {
     let path = arguments.image.as_deref().unwrap_or(Path::new("part"));
     if image_io::check_format(path).is_ok() {
-        let problem = "is a picture, and a part is no picture";
+        let problem = "is a picture format, but a part is not a picture";
         let error = InputError::new("image", path.display().to_string(), problem);
         return Err(error.allowed("another extension, as in part-1.film").into());
     }
@@ -149,7 +149,7 @@ fn summary(record: &Record, outcome: &Outcome) -> String {
     let what = format!("{width}x{height}, {spp} spp{light}");
     let noise = record.estimated_rmse.map_or_else(String::new, |rmse| format!(", estimated RMSE {rmse:.3e}"));
     let checksum = outcome.checksum.as_ref().map_or_else(
-        || format!("no checksum: {} gives other numbers in each run", record.sampler),
+        || format!("no checksum: {} gives different numbers in each run", record.sampler),
         |checksum| format!("checksum {checksum}"),
     );
     let rendered = outcome.rendered();

@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     /// Column and row, from the top left
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     pixel: String,
-    /// Which of the pixel's samples, from 0
+    /// Number of the pixel's sample, from 0
     #[arg(long, value_name = "K", default_value_t = 0)]
     sample: u32,
     /// Seed of the image
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     let sample = arguments.sample;
     if sample >= LARGEST_SPP {
-        let problem = "is further than any image goes";
+        let problem = "exceeds the largest sample number";
         let allowed = format!("0 to {}", LARGEST_SPP - 1);
         return Err(InputError::new("sample", sample.to_string(), problem).allowed(allowed).into());
     }
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
     }
     let Spec { width, height, seed, estimator, .. } = spec;
     let what = path.map_or_else(
-        || format!("{} is rendered in SIMD lanes, which do not tell what a path does.", precision.name()),
+        || format!("{} is rendered by SIMD lanes only, which cannot report the events of a path.", precision.name()),
         |(log, _)| table(&lines(scene, &log.events)),
     );
     let [r, g, b] = radiance;
@@ -78,9 +78,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
         "{}, {width}x{height}, {estimator}, seed {seed}: pixel {x},{y}, sample {sample}\n\n{what}\n\nradiance {r} {g} {b}\n{}",
         scene.name,
         if is_valid {
-            "This is what the image is given, bit for bit."
+            "The image receives this radiance, bit for bit."
         } else {
-            "This is no radiance: the image is given nothing, and counts it as invalid."
+            "This radiance is invalid: the image receives nothing, and counts an invalid sample."
         },
     ))
 }
@@ -98,7 +98,7 @@ fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
     let parsed = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
     let inside = parsed.filter(|(x, y)| *x < spec.width && *y < spec.height);
     inside.ok_or_else(|| {
-        let problem = if parsed.is_some() { "is outside of the image" } else { "is no pixel" };
+        let problem = if parsed.is_some() { "is outside the image" } else { "is not a pixel" };
         let allowed = format!("X,Y from 0,0 to {},{}", spec.width - 1, spec.height - 1);
         InputError::new("pixel", text, problem).allowed(allowed).into()
     })
@@ -112,7 +112,7 @@ fn path(scene: &Arc<Scene>, choice: &Choice, at: (u32, u32, u32), given: [f64; 3
     if given.map(f64::to_bits) == expected.channels().map(f64::to_bits) {
         return Ok((log, radiance));
     }
-    Err(Error::Check(format!("the path gives {radiance:?}, and the image is given {given:?}")))
+    Err(Error::Check(format!("the path gives {radiance:?}, but the image receives {given:?}")))
 }
 
 fn side(inside: bool) -> &'static str {
@@ -156,7 +156,7 @@ fn triple(values: [f64; 3]) -> String {
 
 fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let mut why = "nothing goes on from here";
+    let mut why = "no further ray";
     let mut fresh_surface = false;
     // The first ray of the path comes before any other camera ray.
     let mut has_ended = false;
@@ -198,13 +198,13 @@ fn lines(scene: &Scene, events: &[Event]) -> Vec<Line> {
                 line[5] = triple(radiance.channels());
                 lines.push(line);
             }
-            Event::Split { bounces } => lines.push(word(bounces, "splits: the other way comes later".into())),
-            Event::Escaped => why = "met nothing",
+            Event::Split { bounces } => lines.push(word(bounces, "splits: the other branch comes later".into())),
+            Event::Escaped => why = "hit nothing",
             Event::Truncated => why = "cut at the bounce limit",
-            Event::Roulette => why = "lost at roulette",
+            Event::Roulette => why = "Russian roulette",
             Event::Ended { bounces } => {
                 lines.push(word(bounces, format!("ends: {why}")));
-                why = "nothing goes on from here";
+                why = "no further ray";
                 has_ended = true;
             }
         }

@@ -23,10 +23,10 @@ use std::sync::Arc;
 pub(super) struct Arguments {
     #[command(flatten)]
     size: profile::Choice,
-    /// Folder for what comes out; an earlier run's goes to its folder `earlier`
+    /// Output folder; results of an earlier run move into its folder `earlier`
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// Go on with a run that was stopped
+    /// Resume a run that was stopped
     #[arg(long)]
     resume: bool,
     /// Print rows, estimated seconds and bytes of each experiment, and run none
@@ -145,7 +145,7 @@ fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
     let stamp = utc_now().replace(':', "-");
     if stamp.is_empty() {
         let problem = std::io::Error::other(
-            "it shows no date from 1970 to 9999, and the folder for earlier results has one in its name",
+            "its date is not within 1970 to 9999, and the folder for earlier results is named after it",
         );
         return Err(Error::system("reading", "the system's clock", problem));
     }
@@ -156,7 +156,7 @@ fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;
             let target = earlier.join(name);
             std::fs::rename(&folder, &target).map_err(|e| Error::system("moving", &folder, e))?;
-            talk.note(&format!("what was in {} is now in {}", folder.display(), target.display()));
+            talk.note(&format!("moved {} to {}", folder.display(), target.display()));
         }
     }
     Ok(())

@@ -16,10 +16,10 @@ pub(super) struct Until {
     /// Stop when the image's own RMSE in linear radiance, estimated from its samples, is below E with 95 % confidence
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     target_error: Option<f64>,
-    /// Stop before rendering takes longer than so many seconds; there is always one round
+    /// Stop before rendering takes longer than this; at least one round is rendered
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     time_limit: Option<f64>,
-    /// Keep what is rendered in this file now and then, and go on with what is in it
+    /// Save the render in this file at intervals, and resume from it if it exists
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
 }
@@ -80,7 +80,7 @@ pub(super) fn render(
     let (resumed, name) = (rounds.spp(), rounds.setup().name().to_string());
     let title = match (spp, goal.target_error, goal.time_limit_s) {
         (Some(spp), ..) => format!("{name} at {spp} spp"),
-        (_, Some(error), _) => format!("{name} until its RMSE is below {error} ({:.0} % sure)", 100.0 * CONFIDENCE),
+        (_, Some(error), _) => format!("{name} until its RMSE < {error} ({:.0} % confidence)", 100.0 * CONFIDENCE),
         (.., limit_s) => format!("{name} for {} s", limit_s.unwrap_or_default()),
     };
     talk.begin(&title, u64::from(spp.unwrap_or(0)));

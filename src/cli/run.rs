@@ -19,48 +19,48 @@ use std::sync::Arc;
 pub(super) struct Arguments {
     /// An experiment of `pathmark list experiments`, or the path of a .toml file
     experiment: String,
-    /// Folder for what comes out
+    /// Output folder
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// Go on with a sweep that was stopped
+    /// Resume a sweep that was stopped
     #[arg(long)]
     resume: bool,
-    /// After all repetitions run those cells again of which rows are doubtful, once for each; keep both
+    /// After all repetitions, run the cells with doubtful rows again, once for each such row; keep both rows
     #[arg(long)]
     rerun_doubtful: bool,
-    /// Count the instructions of each cell besides, by valgrind, which takes some fifty times as long as a repetition;
+    /// Also count the instructions of each cell with valgrind, which takes about fifty times as long as a repetition;
     /// `pathmark diff --counts` compares them
     #[arg(long)]
     count_instructions: bool,
-    /// How often each cell is run [default: what the experiment says]
+    /// Runs of each cell [default: set by the experiment]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repetitions: Option<u32>,
-    /// Other values of an axis, as in scene=my/room.toml or threads=1,2,4,8; may be given several times
+    /// Replace the values of an axis, as in scene=my/room.toml or threads=1,2,4,8; may be given several times
     #[arg(long = "set", value_name = "AXIS=VALUES")]
     values: Vec<String>,
-    /// Only cells with one of these values, as in strategy=rayon or threads=1,2; may be given several times. Serial runs
-    /// that a figure compares with stay in
+    /// Run only cells with one of these values, as in strategy=rayon or threads=1,2; may be given several times. Serial
+    /// runs that a figure compares with are kept
     #[arg(long = "filter", value_name = "AXIS=VALUES")]
     filters: Vec<String>,
-    /// Run one of N parts of the cells, as in 2/4, with the serial runs that they are compared with; `pathmark merge` puts
-    /// the folders together
+    /// Run one of N parts of the cells, as in 2/4, with the serial runs that they are compared with; `pathmark merge`
+    /// merges the folders
     #[arg(long, value_name = "I/N", allow_hyphen_values = true)]
     shard: Option<String>,
-    /// Another build of this program, which runs every repetition of every cell in turns with this one; `pathmark diff`
-    /// compares the two
+    /// Another build of this program; both builds run every repetition of every cell in turns, and `pathmark diff` compares
+    /// them
     #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
     against: Option<PathBuf>,
-    /// Go on until each speedup (without serial runs, each time) is known to within this, as 3%, and leave out the cells
-    /// that are known. With --against: until each cell is known to be slower by more than this, faster, or within it. `fastest` leaves
-    /// out schedules once another one of the image is faster, `order` those that are told apart from all others. At most 200
-    /// repetitions, or those of --repetitions; intervals allow for it
+    /// Repeat each cell until its speedup (or its time, without serial runs) is known to within this, as in 3%. With
+    /// --against: until each cell is known to be slower by more than this, faster, or within it. `fastest` stops repeating a schedule
+    /// once another one of the image is faster, `order` once it is told apart from all others. At most 200 repetitions, or
+    /// those of --repetitions; the intervals account for early stops
     #[arg(long, value_name = "SHARE|fastest|order", allow_hyphen_values = true)]
     until: Option<String>,
-    /// With --until: begin no repetition later than that, as 60s
+    /// With --until: start no repetition after this time, as in 60s
     #[arg(long, value_name = "TIME", requires = "until")]
     within: Option<String>,
-    /// Cells keep the hierarchies of scenes of 4096 primitives and more in this folder, and take them from there the next
-    /// time; the column `build_s` is empty then
+    /// Keep the hierarchies of scenes with 4096 or more primitives in this folder, and reuse them the next time; the column
+    /// `build_s` of such scenes is empty
     #[arg(long, value_name = "FOLDER", conflicts_with = "against")]
     cache: Option<PathBuf>,
     #[command(flatten)]
@@ -111,6 +111,6 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 /// Says how many rows have times in doubt, if there are any.
 pub(super) fn talk_of(doubts: &Doubts, talk: &Talk) {
     if doubts.is_any() {
-        talk.note(&format!("{doubts}; `pathmark explain` says what each means"));
+        talk.note(&format!("{doubts}; `pathmark explain` describes each"));
     }
 }

@@ -15,12 +15,12 @@ use std::path::Path;
 /// The part of an image that a machine renders.
 #[derive(Args)]
 pub(super) struct Part {
-    /// Render one of N parts, as in 2/4, into the file that -o names; rendered again, an unfinished part goes on. `auto` reads the task of a
+    /// Render one of N parts, as in 2/4, into the file that -o names; the same command resumes an unfinished part. `auto` reads the task of a
     /// SLURM array. `pathmark merge` makes the image
     #[arg(long, value_name = "I/N", allow_hyphen_values = true, help_heading = "Part", requires = "image",
           conflicts_with_all = ["target_error", "time_limit", "checkpoint", "adaptive", "trace", "auto_exposure"])]
     shard: Option<String>,
-    /// What is divided among the parts
+    /// How the image is divided into parts
     #[arg(long, value_enum, default_value_t = Cut::Samples, help_heading = "Part", requires = "shard")]
     shard_by: Cut,
 }

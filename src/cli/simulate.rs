@@ -21,31 +21,31 @@ use std::sync::Arc;
 /// `pathmark simulate run.csv --workers 1..4096`, after `pathmark render cornell --strategy serial --trace run.csv`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A trace that `render --trace` wrote, best of the strategy serial; or an experiment's folder with traces, whose measured runs
+    /// A trace that `render --trace` wrote, preferably of the strategy serial; or an experiment's folder with traces, whose measured runs
     /// are then predicted
     trace: PathBuf,
     /// Numbers of workers: a list, or A..B for A, twice A and so on up to B
     #[arg(long, value_name = "LIST", default_value = "1..4096")]
     workers: String,
-    /// Only these strategies of `pathmark list strategies`, with a parameter if wanted [default: all]
+    /// Only these strategies of `pathmark list strategies`, optionally with a parameter [default: all]
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     strategies: Vec<String>,
-    /// One core of this speed, the others having 1
+    /// Speed of one slow core; all others have speed 1
     #[arg(long, value_name = "SPEED", conflicts_with = "efficiency_cores")]
     slow_core: Option<f64>,
-    /// N fast cores, and all others of the given speed
+    /// N fast cores; all others have the given speed
     #[arg(long, value_name = "N:SPEED")]
     efficiency_cores: Option<String>,
-    /// Share of the time that the system takes in interruptions, and how long one lasts
+    /// Share of the time that the system's interruptions take, and the length of one
     #[arg(long, value_name = "SHARE[:MILLISECONDS]")]
     noise: Option<String>,
-    /// Forecast processes instead: the rules by which they share jobs, as in `render --ranks`
+    /// Forecast processes instead, which share jobs by these rules, as in `render --ranks`
     #[arg(long, value_name = "RULE", value_delimiter = ',', help_heading = "Processes")]
     ranks: Vec<String>,
     /// Numbers of processes, each with --workers threads
     #[arg(long, value_name = "LIST", default_value = "2..64", help_heading = "Processes", requires = "ranks")]
     nodes: String,
-    /// What messages cost, as `mpiexec -n 2 pathmark message-costs --json` printed it [default: what the folder has, else nothing]
+    /// Message costs, as printed by `mpiexec -n 2 pathmark message-costs --json` [default: those of the experiment's folder, or zero]
     #[arg(long, value_name = "FILE", help_heading = "Processes", requires = "ranks")]
     messages: Option<PathBuf>,
     /// Do not predict this machine first
@@ -158,7 +158,7 @@ fn messages(arguments: &Arguments, talk: &Talk) -> Result<Messages> {
     if let Some(path) = arguments.messages.as_ref().or(own.is_file().then_some(&own)) {
         return Ok(rank_forecasts::messages(&MessageCosts::read(path)?));
     }
-    talk.note("messages cost nothing here; --messages says what they cost");
+    talk.note("messages are assumed to cost nothing; --messages sets their costs");
     Ok(Messages::default())
 }
 
@@ -180,7 +180,7 @@ fn parse_workers(field: &'static str, text: &str) -> Result<Vec<usize>> {
         list
     };
     list.map(sorted).ok_or_else(|| {
-        InputError::new(field, text, "cannot be read")
+        InputError::new(field, text, "is not a valid range or list")
             .allowed(format!("1..{MOST_WORKERS}, or a list like 1,2,768"))
             .into()
     })
@@ -197,8 +197,8 @@ const MOST_WORKERS: usize = 1 << 16;
 fn hardware(arguments: &Arguments) -> Result<Hardware> {
     let speed = |field: &str, text: &str, value: Option<f64>| {
         value.filter(|speed| (SLOWEST..=1.0).contains(speed)).ok_or_else(|| {
-            let error = InputError::new(field, text, "is no speed");
-            Error::from(error.allowed(format!("{SLOWEST} to 1, 1 being a core like this one")))
+            let error = InputError::new(field, text, "is not a valid speed");
+            Error::from(error.allowed(format!("{SLOWEST} to 1, where 1 is a core like this one")))
         })
     };
     let speeds = match (&arguments.slow_core, &arguments.efficiency_cores) {
@@ -232,7 +232,7 @@ fn parse_noise(text: &str) -> Result<Noise> {
     let sensible = |&(share, milliseconds): &(f64, f64)| share <= MOST_NOISE && milliseconds >= SHORTEST_MS;
     let noise = noise.filter(sensible).and_then(|(share, milliseconds)| Noise::new(share, milliseconds * 1e-3, 1));
     noise.ok_or_else(|| {
-        InputError::new("noise", text, "cannot be read")
+        InputError::new("noise", text, "is not a valid share and length")
             .allowed(format!("SHARE[:MILLISECONDS], up to {MOST_NOISE}, from {SHORTEST_MS} ms, like 0.02:0.5"))
             .into()
     })

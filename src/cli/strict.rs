@@ -1,16 +1,21 @@
 //! `--strict`: invalid samples are always left out and reported; with this option they are also a failure.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, InputError, Result};
 use clap::Args;
 
 #[derive(Args)]
 pub(super) struct Strict {
-    /// Take invalid samples (NaN, infinite, negative) for a failure: exit code 1
+    /// Treat invalid samples (NaN, infinite, negative) as a failure: exit code 1
     #[arg(long)]
     strict: bool,
 }
 
 impl Strict {
+    /// Refuses the option where it has nothing to check, for the reason given.
+    pub(super) fn refuse(&self, problem: &str) -> Result<()> {
+        if self.strict { Err(InputError::new("strict", "true", problem).into()) } else { Ok(()) }
+    }
+
     /// Fails if there are invalid samples and the option is set.
     pub(super) fn check(&self, count: u64) -> Result<()> {
         if !self.strict || count == 0 {

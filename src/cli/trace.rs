@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 /// `pathmark trace run.csv -o run.svg`, after `pathmark render cornell --trace run.csv`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A file that `render --trace` wrote, or one of an experiment's folder `traces`
+    /// A file that `render --trace` wrote, or a file in an experiment's folder `traces`
     file: PathBuf,
-    /// Where to draw it: .svg or .png for a chart with a lane for each worker, .json for trace events that Perfetto opens
+    /// Output file: .svg or .png for a chart with a lane for each worker, .json for trace events that Perfetto opens
     #[arg(short = 'o', long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
@@ -66,7 +66,7 @@ fn writer(path: &Path) -> Result<Writer> {
             let name = |job: usize| format!("job {job}");
             Ok(chrome_trace(&trace.trace(), &timeline::name(trace), name).to_string().into_bytes())
         }),
-        _ => Err(InputError::new("output", path.display().to_string(), "has no format that a trace can be written in")
+        _ => Err(InputError::new("output", path.display().to_string(), "has an unsupported extension")
             .allowed(".svg, .png, .json")
             .into()),
     }

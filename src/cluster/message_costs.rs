@@ -66,7 +66,7 @@ impl MessageCosts {
         let text = read_text(path)?;
         serde_json::from_str(&text).map_err(|e| {
             let error = InputError::new("messages", path.display().to_string(), format!("cannot be read: {e}"));
-            error.allowed("what mpiexec -n 2 pathmark message-costs --json prints").into()
+            error.allowed("the output of mpiexec -n 2 pathmark message-costs --json").into()
         })
     }
 
@@ -105,7 +105,7 @@ impl Cluster {
     /// Times the operations; rank 0 gets the costs, the others `None`.
     pub fn message_costs(self) -> Result<Option<MessageCosts>> {
         if self.size() < 2 {
-            let error = InputError::new("ranks", self.size().to_string(), "messages need two processes");
+            let error = InputError::new("ranks", self.size().to_string(), "is too few: messages need two processes");
             return Err(error.allowed("mpiexec -n 2 pathmark message-costs").into());
         }
         let mut costs = vec![self.told(REQUEST, WAITS, &self.requests()?)?];

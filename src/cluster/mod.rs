@@ -61,7 +61,7 @@ fn failed(error: MpiError) -> Error {
             InputError::new("mpi", path.display().to_string(), problem).allowed("an MPI library").into()
         }
         MpiError::NoSymbol { library, symbol } => {
-            let problem = format!("is no MPI library, or an old one: it has no {symbol}");
+            let problem = format!("is not an MPI library, or is too old: it lacks {symbol}");
             InputError::new("mpi", library, problem).allowed("an MPI library").into()
         }
         other => Error::system("using", "MPI", io::Error::other(other)),
@@ -124,7 +124,7 @@ impl Cluster {
         match all.iter().position(|other| *other != all[0]) {
             None => Ok(()),
             Some(rank) => {
-                let problem = format!("rank {rank} would render something else than rank 0");
+                let problem = format!("rank {rank} would render something different from rank 0");
                 let error = InputError::new("ranks", rule.to_string(), problem);
                 Err(error.allowed("the same program, scene and options on all ranks").into())
             }
@@ -169,7 +169,7 @@ impl Cluster {
         }
         drop(done);
         let done =
-            wire::jobs(&words, share.plan()).ok_or_else(|| Error::Check("what a rank sent are no jobs".to_string()))?;
+            wire::jobs(&words, share.plan()).ok_or_else(|| Error::Check("a rank sent invalid jobs".to_string()))?;
         Ok(Some(Gathered { done, workers: world.size() * threads, makespan_s }))
     }
 }

@@ -48,7 +48,7 @@ impl Cluster {
         rounds.extend_by(spp, |setup, sections| {
             self.tell([u64::from(from), u64::from(spp)])?;
             let gathered = self.round(setup, rule, sections, tally)?;
-            gathered.ok_or_else(|| Error::Check("rank 0 has no jobs of the others".to_string()))
+            gathered.ok_or_else(|| Error::Check("rank 0 received no jobs from the other ranks".to_string()))
         })
     }
 

@@ -40,14 +40,14 @@ pub(super) fn check_program(program: &Path) -> Result<()> {
     };
     let is_program = fs::metadata(program).is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0);
     if !is_program {
-        return refused("is no program");
+        return refused("is not an executable program");
     }
     // An absolute path, because a name without a folder would be searched for elsewhere.
     let program = fs::canonicalize(program).map_err(|e| Error::system("finding", program, e))?;
     let help = Command::new(&program).args(["cell", "--help"]).stdin(Stdio::null()).output();
     match help {
         Ok(help) if String::from_utf8_lossy(&help.stdout).contains(CELL_ABOUT) => Ok(()),
-        Ok(_) => refused("does not know cells of a sweep"),
+        Ok(_) => refused("cannot run the cells of a sweep"),
         Err(error) => refused(&format!("cannot be started ({error})")),
     }
 }

@@ -109,7 +109,7 @@ impl CellJob {
             let said = String::from_utf8_lossy(&output.stderr);
             return Err(format!("the cell's process ended with {}: {}", output.status, said.trim()));
         }
-        serde_json::from_slice(&output.stdout).map_err(|e| format!("reading what the cell's process said: {e}"))
+        serde_json::from_slice(&output.stdout).map_err(|e| format!("reading the answer of the cell's process: {e}"))
     }
 
     fn run(&self, lab: &Lab) -> Result<Vec<Record>> {
@@ -197,7 +197,7 @@ impl CellJob {
             };
             let (size, found) = ([spec.width, spec.height], [run.image.width, run.image.height]);
             if size != found {
-                let problem = format!("is the size of the image, not {}x{}", size[0], size[1]);
+                let problem = format!("is the size of the image instead of {}x{}", size[0], size[1]);
                 return Err(InputError::new("size", format!("{}x{}", found[0], found[1]), problem).into());
             }
             if let Some(path) = &point.image {
@@ -280,7 +280,7 @@ pub fn child_main(lab: &Lab) -> Result<()> {
     let mut text = String::new();
     std::io::stdin().read_line(&mut text).map_err(|e| Error::system("reading", "standard input", e))?;
     let job: CellJob = serde_json::from_str(&text)
-        .map_err(|e| InputError::new("standard input", "", format!("is no description of a cell: {e}")))?;
+        .map_err(|e| InputError::new("standard input", "", format!("is not the description of a cell: {e}")))?;
     let wait_for_the_end = || {
         // The parent sends nothing more, so this returns when it is gone.
         let _ = std::io::copy(&mut std::io::stdin(), &mut std::io::sink());

@@ -195,7 +195,7 @@ impl Definition {
         let definition = Self::find(lab, name_or_path)?;
         let name = &definition.name;
         if Path::new(name).file_name().is_none_or(|own| *own != **name) || TAKEN.contains(&name.as_str()) {
-            let problem = format!("would be an experiment of the name `{name}`, which cannot have a folder of its own");
+            let problem = format!("names the experiment `{name}`, which cannot be the name of its folder");
             return Err(InputError::new("experiment", name_or_path, problem).allowed("another file name").into());
         }
         Ok(definition)
@@ -276,7 +276,7 @@ impl Definition {
             return Ok(Some((table.estimator.clone(), spp)));
         }
         let problem = format!("each half-reference needs {times} times the samples of the largest spp");
-        let error = InputError::new(REFERENCE_SPP, spp.to_string(), problem).allowed(format!("from {needed}"));
+        let error = InputError::new(REFERENCE_SPP, spp.to_string(), problem).allowed(format!("at least {needed}"));
         Err(self.located(profile, error))
     }
 

@@ -105,8 +105,8 @@ pub fn parse_share(field: &str, text: &str) -> Result<f64> {
         None => text.parse(),
     };
     parsed.ok().filter(|share| share.is_finite() && *share >= 0.0).ok_or_else(|| {
-        let error = InputError::new(field, text, "is no share by which something may get slower");
-        error.allowed("numbers from 0, as 0.03 or 3%").into()
+        let error = InputError::new(field, text, "is not a valid share");
+        error.allowed("numbers from 0, such as 0.03 or 3%").into()
     })
 }
 
@@ -160,7 +160,7 @@ fn check_images([before, after]: &[Side; 2], new: &Path) -> Result<()> {
     let is_other = |row: &&Record| old.get(row.cell.as_str()).is_some_and(|checksum| *checksum != row.checksum);
     let Some(row) = after.rows.iter().filter(has_image).find(is_other) else { return Ok(()) };
     let problem =
-        format!("has another image than the old measurement in {}: the builds are of two revisions", row.cell);
+        format!("has another image than the old measurement in {}: the builds have different revisions", row.cell);
     let error = InputError::new("new", new.display().to_string(), problem);
     Err(error.allowed("builds whose images have the same bits, or --across-revisions").into())
 }
@@ -169,8 +169,8 @@ fn check_images([before, after]: &[Side; 2], new: &Path) -> Result<()> {
 /// that differ in more than `across` allows.
 pub fn diff(old: &Path, new: &Path, limit: f64, across: Across) -> Result<Diff> {
     if !(limit.is_finite() && limit >= 0.0) {
-        let error = InputError::new("fail-above", limit.to_string(), "is no share by which something may get slower");
-        return Err(error.allowed("numbers from 0, as 0.03 or 3%").into());
+        let error = InputError::new("fail-above", limit.to_string(), "is not a valid share");
+        return Err(error.allowed("numbers from 0, such as 0.03 or 3%").into());
     }
     let sides = sides(old, new, across.machines)?;
     let both = |of: fn(&RunFile) -> bool| sides.iter().all(|side| side.run.as_ref().is_some_and(of));

@@ -89,12 +89,12 @@ impl External {
     fn check(&self) -> Result<()> {
         for placeholder in ["{spp}", "{seed}", "{out}"] {
             if !self.command.iter().any(|word| word.contains(placeholder)) {
-                let problem = format!("has no place for {placeholder}");
+                let problem = format!("lacks the placeholder {placeholder}");
                 return Err(InputError::new("command", self.command.join(" "), problem).into());
             }
         }
         if self.spp.is_empty() || self.seed.is_empty() || self.spp.contains(&0) || self.fewest_spp == 0 {
-            let problem = "needs samples and seeds, and no 0 among the samples";
+            let problem = "needs seeds, and sample counts of at least 1";
             return Err(InputError::new("external", &self.name, problem).into());
         }
         crate::image_io::check_format(Path::new(&format!("image.{}", self.format))).map(|_| ())
@@ -157,7 +157,7 @@ impl Definition {
                     // Curves share their first points, and a list may name a value twice.
                     Some(known) if known.external == cell.external => {}
                     Some(_) => {
-                        let problem = "is the name of another program of the same images";
+                        let problem = "is also the name of another program for the same images";
                         return Err(
                             self.located(profile, InputError::new("name", &cell.settings.spec.estimator, problem))
                         );

@@ -159,7 +159,7 @@ pub fn check_until(rmse: f64) -> Result<()> {
     if rmse.is_finite() && rmse > 0.0 {
         return Ok(());
     }
-    let error = InputError::new("until", rmse.to_string(), "is no error that can be reached");
+    let error = InputError::new("until", rmse.to_string(), "must be a positive number");
     Err(error.allowed("finite numbers above 0").into())
 }
 
@@ -189,6 +189,6 @@ pub fn refine_reference(
             return Ok(halves);
         }
     }
-    let error = InputError::new("until", rmse.to_string(), "takes more samples than an image can have");
-    Err(error.allowed(format!("what {LARGEST_SPP} samples can reach")).into())
+    let error = InputError::new("until", rmse.to_string(), "needs more samples than an image can have");
+    Err(error.allowed(format!("errors that {LARGEST_SPP} samples per pixel can reach")).into())
 }

@@ -75,7 +75,7 @@ fn count(job: &CellJob, program: &Path) -> std::result::Result<u64, String> {
     if !output.status.success() {
         return Err(format!("{COUNTER} ended with {}: {}", output.status, said.trim()));
     }
-    collected(&said).ok_or_else(|| format!("{COUNTER} told no count"))
+    collected(&said).ok_or_else(|| format!("{COUNTER} reported no count"))
 }
 
 /// The total in callgrind's last lines: `==7== Collected : 1234`.
@@ -117,14 +117,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_total_is_found_in_what_the_counter_says() {
+    fn the_total_is_found_in_the_counters_output() {
         let said = "==12== Callgrind\n==12== Events    : Ir\n==12== Collected : 1066254367\n==12== \n==12== I   refs:      1,066,254,367\n";
         assert_eq!(collected(said), Some(1_066_254_367));
         assert_eq!((collected("==12== Collected : "), collected("")), (None, None));
     }
 
     #[test]
-    fn what_is_written_is_read_and_a_bad_row_is_named() {
+    fn written_rows_are_read_and_a_bad_row_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let rows = folder.path().join("records.csv");
         assert!(read(&rows).unwrap().is_empty());

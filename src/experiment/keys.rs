@@ -6,25 +6,25 @@ use crate::measure::AXES;
 /// Key and meaning of all fields except the axes.
 const KEYS: &[(&str, &str)] = &[
     ("title", "heading of its section [required]"),
-    ("question", "what is asked [required]"),
+    ("question", "question that it answers [required]"),
     ("figures", "names of `pathmark list figures` [required]"),
-    ("analysis", "how to read the figures; empty lines part paragraphs"),
+    ("analysis", "how to read the figures; empty lines separate paragraphs"),
     ("chapter", "chapter of the page: accuracy, scheduling, hard-inputs or effects"),
-    ("place", "place among the chapter's experiments"),
-    ("in-short", "number of the finding that stands at the beginning of the page"),
-    ("keep", "what stays beside the rows: images, traces, calibration, messages"),
-    ("unverified", "true for samplers that give other numbers in each run, so that no checksum can be expected"),
-    ("requires", "what not every build has: openmp"),
+    ("place", "position among the chapter's experiments"),
+    ("in-short", "number of the finding to list at the beginning of the page"),
+    ("keep", "files to keep beside the rows: images, traces, calibration, messages"),
+    ("unverified", "true: allows samplers that draw different random numbers in each run, so images have no checksum"),
+    ("requires", "optional features that the build must have: openmp"),
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
-    ("matrix.weak", "true: samples per pixel are for each thread"),
-    ("matrix.curve", "true: a row at 1, 2, 4 ... times the fewest samples on the way to each spp"),
-    ("matrix.repetitions", "the most repetitions of its cells [default: the profile's]"),
-    ("matrix.profiles", "the profiles that the matrix is for [default: all]"),
-    ("figure", "a table [figure.NAME] for what a figure is told about the experiment"),
-    ("reference", "measures errors"),
+    ("matrix.weak", "true: weak scaling, spp is multiplied by the number of workers"),
+    ("matrix.curve", "true: each render gives rows at 1, 2, 4 ... times the fewest samples, up to its spp"),
+    ("matrix.repetitions", "largest number of repetitions of its cells [default: the profile's]"),
+    ("matrix.profiles", "the profiles that use the matrix [default: all]"),
+    ("figure", "a table [figure.NAME] with the parameters of a figure"),
+    ("reference", "a table: errors are measured against a reference"),
     ("reference.estimator", "estimator of the references"),
-    ("reference.object", "measures errors on the pixels of this object, too"),
-    ("external", "another program beside the cells, under [[external]]"),
+    ("reference.object", "also measures errors on the pixels of this object"),
+    ("external", "another program to run beside the cells, under [[external]]"),
     (
         "quick",
         "the profile --quick: any axis, size, repetitions (a number, or { until = \"3 %\", at-most = 200, within = \"60 s\" }; until may be \"fastest\" or \"order\"), reference-spp [default: 320x240, 6 repetitions]",
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_required_is_missed() {
+    fn missing_required_axes_are_named() {
         let matrix: Vec<String> = REQUIRED.iter().map(|axis| value(axis)).collect();
         for (index, axis) in REQUIRED.iter().enumerate() {
             let mut left = matrix.clone();

@@ -54,7 +54,7 @@ impl Definition {
             return Err(self.located(profile, error.allowed(names.join(", "))));
         }
         if let Some((feature, takes)) = self.missing_feature() {
-            let error = InputError::new("requires", feature, "is not there");
+            let error = InputError::new("requires", feature, "is missing from this build");
             return Err(self.located(profile, error.allowed(takes)));
         }
         let mut cells = Cells::default();
@@ -103,7 +103,7 @@ impl<'a> Product<'a> {
     /// Refuses axes without a value, except the bounce limit, which may have none.
     fn check_axes(&self) -> Result<()> {
         let is_empty = |axis: &&Axis| self.written(axis).is_some_and(Vec::is_empty) && axis.name != "max-depth";
-        let problem = "is an empty axis, so there is nothing to run";
+        let problem = "has no values, so there is nothing to run";
         AXES.iter().find(is_empty).map_or(Ok(()), |axis| {
             Err(self.at_field(InputError::new(axis.name, "[]", problem).allowed("at least one value").into()))
         })
@@ -175,7 +175,7 @@ impl<'a> Product<'a> {
         if self.definition.unverified || is_deterministic(sampler) || !is_known {
             return Ok(());
         }
-        let problem = "gives other numbers in each run, and a checksum is expected here";
+        let problem = "draws different random numbers in each run, but the experiment compares checksums";
         let names: Vec<&str> = SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
         let allowed = format!("{}; or unverified = true in the definition", names.join(", "));
         Err(self.at_field(InputError::new("sampler", sampler, problem).allowed(allowed).into()))

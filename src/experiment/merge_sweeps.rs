@@ -63,7 +63,7 @@ fn parts_in(folder: &Path) -> Result<Vec<(String, Part)>> {
     }
     if parts.is_empty() {
         let allowed = "folders that `pathmark run EXPERIMENT --shard I/N --out DIR` made";
-        return Err(refused("part", folder, "has no part of a sweep").allowed(allowed).into());
+        return Err(refused("part", folder, "contains no part of a sweep").allowed(allowed).into());
     }
     Ok(parts)
 }
@@ -82,7 +82,7 @@ pub fn merge_sweeps(folders: &[PathBuf], out: &Path, partial: bool, command: &st
         let missing = check(&parts)?;
         if !missing.is_empty() && !partial {
             let problem = format!("these parts of {name} are missing: {}", missing.join(", "));
-            let allowed = "all parts, or --partial for the rows that there are";
+            let allowed = "all parts, or --partial for the available rows";
             return Err(refused("part", &parts[0].folder, problem).allowed(allowed).into());
         }
         checked.push((name, parts, missing));
@@ -119,7 +119,7 @@ fn check(parts: &[Part]) -> Result<Vec<String>> {
         }
     }
     if let Some(pair) = parts.windows(2).find(|pair| pair[0].shard == pair[1].shard) {
-        let problem = format!("is part {}, as {} is", pair[1].shard, pair[0].folder.display());
+        let problem = format!("is part {}, the same as {}", pair[1].shard, pair[0].folder.display());
         return Err(refused("part", &pair[1].folder, problem).allowed("each part once").into());
     }
     let is_there = |index: u32| parts.iter().any(|part| part.shard.index == index);
@@ -145,7 +145,7 @@ fn by_machine(parts: Vec<Part>) -> Vec<Vec<Part>> {
 fn write(parts: &[Part], out: &Path, name: &str, command: &str) -> Result<usize> {
     let folder = out.join(name);
     if folder.exists() {
-        return Err(refused("output", &folder, "is there already").allowed("another folder").into());
+        return Err(refused("output", &folder, "already exists").allowed("another folder").into());
     }
     let make = |path: &Path| fs::create_dir_all(path).map_err(|e| Error::system("creating", path, e));
     make(&folder)?;

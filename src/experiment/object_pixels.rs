@@ -11,7 +11,7 @@ fn index(scene: &Scene, object: &str) -> Result<u32> {
         return Ok(index);
     }
     let names: Vec<&str> = scene.objects.iter().map(|own| own.name.as_str()).collect();
-    let problem = format!("is no object of {}", scene.name);
+    let problem = format!("is not an object of {}", scene.name);
     Err(InputError::new("object", object, problem).allowed(names.join(", ")).into())
 }
 
@@ -19,7 +19,7 @@ fn index(scene: &Scene, object: &str) -> Result<u32> {
 pub(super) fn check_object(setup: &Setup, object: &str) -> Result<()> {
     match setup.scene() {
         Some((scene, _)) => index(scene, object).map(|_| ()),
-        None => Err(InputError::new("object", object, "is asked for in a workload, which has none").into()),
+        None => Err(InputError::new("object", object, "cannot be used with a workload, which has no objects").into()),
     }
 }
 
@@ -67,6 +67,6 @@ mod tests {
         let disk = std::f64::consts::PI / 4.0 * width * height;
         assert!((places.len() as f64 / disk - 1.0).abs() < 0.1, "{} pixels in {width} x {height}", places.len());
         let error = check_object(&setup, "ball").unwrap_err().to_string();
-        assert!(error.contains("is no object of cornell") && error.contains("mirror ball, glass ball"), "{error}");
+        assert!(error.contains("is not an object of cornell") && error.contains("mirror ball, glass ball"), "{error}");
     }
 }

@@ -63,7 +63,7 @@ impl Pilot {
         let law = law_of(&settings.spec.sampler);
         let fewest = lab.prepare(with_seed(settings, self.spp, PILOT_SEEDS))?.fewest_spp();
         if !self.spp.is_multiple_of(fewest) {
-            let problem = format!("is no multiple of {fewest}, the fewest samples that make an image");
+            let problem = format!("is not a multiple of {fewest}, the fewest samples that make an image");
             return Err(InputError::new("pilot-spp", self.spp.to_string(), problem).into());
         }
         let count = if law == Law::Independent { 1 } else { POINTS };
@@ -101,7 +101,7 @@ impl Pilot {
             Some(((curves, seconds_per_spp), tail)) => {
                 Ok(Piloted { renderer: Renderer { curves, law, seconds_per_spp }, tail, doubts })
             }
-            None => Err(Error::Check("the pilot's seeds say nothing about error and time".to_string())),
+            None => Err(Error::Check("the pilot's seeds give no estimate of error and time".to_string())),
         }
     }
 }

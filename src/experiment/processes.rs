@@ -97,12 +97,12 @@ pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
         (None, None) => return Ok(()),
         (Some(ranks), Some(rule)) => (ranks, rule),
         (Some(ranks), None) => {
-            let error = InputError::new("ranks", ranks.to_string(), "processes need a rule by which they share jobs");
-            return Err(error.allowed("rank-rule beside it").into());
+            let error = InputError::new("ranks", ranks.to_string(), "needs a rule by which the processes share jobs");
+            return Err(error.allowed("ranks together with rank-rule").into());
         }
         (None, Some(rule)) => {
-            let error = InputError::new("rank-rule", rule, "shares jobs among processes, and there are none");
-            return Err(error.allowed("ranks beside it").into());
+            let error = InputError::new("rank-rule", rule, "shares jobs among processes, but there are none");
+            return Err(error.allowed("rank-rule together with ranks").into());
         }
     };
     if ranks == 0 {
@@ -112,6 +112,6 @@ pub(super) fn check_processes(lab: &Lab, settings: &Settings) -> Result<()> {
     if settings.output == Settings::default().output {
         return Ok(());
     }
-    let problem = "is no output of processes, which send their pieces to the first";
+    let problem = "does not work with several processes, which send their pieces to rank 0";
     Err(InputError::new("output", &settings.output, problem).allowed(Settings::default().output).into())
 }

@@ -103,7 +103,7 @@ pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Rank
     }
     images.retain(|_, schedules| schedules.compared.len() + schedules.shown.len() > 1);
     if images.is_empty() {
-        let problem = "has no two schedules of one image, so there is nothing to rank";
+        let problem = "contains no image with two schedules, so there is nothing to rank";
         let error = InputError::new("folder", folder.display().to_string(), problem);
         return Err(error.allowed("the folder of an experiment with several schedules").into());
     }

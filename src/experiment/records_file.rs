@@ -78,7 +78,7 @@ fn check_columns(text: &str, path: &Path) -> Result<()> {
     }
     let is_lacking = |column: &&Column| !head.iter().any(|name| name == column.name);
     let lacking: Vec<&str> = COLUMNS.iter().filter(is_lacking).map(|column| column.name).collect();
-    let problem = "was written with other columns, so this version of the program can add no rows to it";
+    let problem = "was written with other columns, so this version of the program cannot add rows to it";
     let error = InputError::new("records", lacking.join(", "), problem).allowed("another --out");
     Err(error.in_file(path.display().to_string(), Some((1, 1))).into())
 }
@@ -114,7 +114,7 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
             broken(column.unwrap_or("row"), &e)
         })?;
         if !seen.insert((record.cell.clone(), record.repetition)) {
-            let problem = format!("stands there twice for repetition {}", record.repetition);
+            let problem = format!("occurs twice for repetition {}", record.repetition);
             return Err(InputError::new("cell", &record.cell, problem).in_file(&file, line).into());
         }
         records.push(record);
@@ -128,7 +128,7 @@ impl RecordsFile {
         let create = || step(Step::Create).and_then(|()| OpenOptions::new().write(true).create_new(true).open(path));
         let file = create().map_err(|e| match e.kind() {
             std::io::ErrorKind::AlreadyExists => {
-                let problem = "is there already: `--resume` goes on with it, another `--out` starts anew";
+                let problem = "already exists: `--resume` continues it, another `--out` starts a new sweep";
                 InputError::new("records", path.display().to_string(), problem).into()
             }
             _ => Error::system("creating", path, e),

@@ -86,7 +86,7 @@ impl Reference {
     /// Refuses a reference that cannot be rendered, before any file is made.
     pub fn check(&self, lab: &Lab) -> Result<()> {
         if !is_deterministic(&self.sampler) {
-            let problem = "gives other numbers in each run, and a reference must be what its name says";
+            let problem = "draws different random numbers in each run, but a reference must be reproducible";
             let names: Vec<&str> =
                 SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
             return Err(InputError::new("sampler", &self.sampler, problem).allowed(names.join(", ")).into());

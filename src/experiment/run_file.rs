@@ -65,9 +65,7 @@ impl RunFile {
         if self.definition_hash != now.definition_hash {
             let problem = "was edited since these rows were measured";
             return Err(InputError::new("experiment", "", problem)
-                .allowed(
-                    "another --out for the new text, or the old text, which stands beside the rows as experiment.toml",
-                )
+                .allowed("another --out for the new text, or the old text, kept beside the rows as experiment.toml")
                 .in_file(path.display().to_string(), None)
                 .into());
         }
@@ -88,10 +86,12 @@ impl RunFile {
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));
         match pairs.into_iter().find(|(_, old, new)| old != new) {
             None => Ok(()),
-            Some((name, old, new)) => Err(InputError::new(name, old, "is what the rows were measured with")
-                .allowed(format!("{new} as it is now, or another --out"))
-                .in_file(path.display().to_string(), None)
-                .into()),
+            Some((name, old, new)) => {
+                Err(InputError::new(name, old, format!("is the value of the existing rows, but it is now {new}"))
+                    .allowed("the same value, or another --out")
+                    .in_file(path.display().to_string(), None)
+                    .into())
+            }
         }
     }
 }

@@ -118,7 +118,7 @@ impl<'a> Sweep<'a> {
             let rows = folder_against(&options.out, &definition.name).join("records.csv");
             files.claims("out", &rows)?;
             if rows.exists() {
-                let error = InputError::new("out", rows.display().to_string(), "is there already");
+                let error = InputError::new("out", rows.display().to_string(), "already exists");
                 return Err(error.allowed("another --out").into());
             }
         }
@@ -156,7 +156,7 @@ impl<'a> Sweep<'a> {
         }
         let messages = folder.join(MESSAGES);
         if definition.keeps(Keep::Messages) && !messages.is_file() && !write_messages(&messages)? {
-            progress.note("there is no mpiexec, so nobody knows what messages cost");
+            progress.note("there is no mpiexec, so the costs of messages are not measured");
         }
         let references = references(definition, wanted, options, progress)?;
         let programs = folder.join("external");
@@ -234,7 +234,7 @@ impl<'a> Sweep<'a> {
         let blocks = doubtful.iter().map(|(_, lack)| *lack).max().unwrap_or(0);
         let total = doubtful.iter().map(|(index, lack)| self.cells[*index].weight * u64::from(*lack)).sum();
         let mut units = 0;
-        progress.begin(&format!("{}, what is doubtful again", self.definition.name), total);
+        progress.begin(&format!("{}, doubtful cells again", self.definition.name), total);
         for block in 0..blocks {
             let open: HashSet<usize> =
                 doubtful.iter().filter(|(_, lack)| *lack > block).map(|(index, _)| *index).collect();
@@ -353,7 +353,7 @@ fn check_new(folder: &Path, rows: &Path) -> Result<()> {
     let Ok(mut entries) = std::fs::read_dir(folder) else { return Ok(()) };
     match entries.find_map(std::result::Result::ok) {
         Some(entry) if !rows.exists() => {
-            let problem = format!("is not empty, and no sweep wrote what is in it: {}", entry.file_name().display());
+            let problem = format!("contains {}, but no rows of a sweep", entry.file_name().display());
             Err(InputError::new("out", folder.display().to_string(), problem).allowed("another --out").into())
         }
         _ => Ok(()),
@@ -381,7 +381,7 @@ fn references<'a>(
 fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Result<()> {
     for (option, path) in [("out", Some(&options.out)), ("cache", options.cache.as_ref())] {
         if let Some(path) = path.filter(|path| path.to_str().is_none()) {
-            let problem = "is not UTF-8 text, which the cells of a sweep are told it in";
+            let problem = "is not UTF-8 text, which the processes of cells require";
             return Err(InputError::new(option, path.to_string_lossy(), problem).into());
         }
     }

@@ -35,7 +35,7 @@ impl SweepShard {
         // If all cells are serial, they are compared with nothing and are divided themselves.
         let (baselines, divided) = if others.is_empty() { (Vec::new(), serial) } else { (serial, others) };
         if self.count as usize > divided.len() {
-            let problem = format!("there are {} cells to divide", divided.len());
+            let problem = format!("there are only {} cells to divide", divided.len());
             let error = InputError::new("shard", self.to_string(), problem);
             return Err(error.allowed(format!("at most {} parts", divided.len())).into());
         }

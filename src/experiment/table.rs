@@ -75,7 +75,7 @@ impl<const PROFILE: bool> Table<PROFILE> {
 #[serde(
     untagged,
     deny_unknown_fields,
-    expecting = "neither a number nor { until = \"3 %\", at-most = 200, within = \"60 s\" }"
+    expecting = "expected a number or { until = \"3 %\", at-most = 200, within = \"60 s\" }"
 )]
 enum Repetitions {
     Count(u32),
@@ -107,7 +107,7 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
 struct Values(&'static Axis);
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "neither a number of threads nor \"all\"")]
+#[serde(untagged, expecting = "expected a number of threads or \"all\"")]
 enum Threads {
     Count(usize),
     Word(ThreadsWord),

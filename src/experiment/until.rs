@@ -65,7 +65,7 @@ impl Until {
     /// Parses a goal (`3%`, `0.03`, `fastest` or `order`) and a time (`60s`).
     pub fn parse(goal: &str, within: Option<&str>) -> Result<Self> {
         let length = |text: &str| -> Result<Duration> {
-            let wrong = || InputError::new("within", text, "is no length of time").allowed("60s, or 2min");
+            let wrong = || InputError::new("within", text, "is not a duration").allowed("60s, or 2min");
             Ok(humantime::parse_duration(text).map_err(|_| wrong())?)
         };
         let within = within.map(length).transpose()?;
@@ -88,7 +88,7 @@ impl Until {
         };
         if let Some(until) = until.as_ref().filter(|until| until.goal.is_of_schedules()) {
             is_of_all_schedules(options).map_err(|problem| {
-                InputError::new("until", &until.text, problem).allowed("a share, as 3%, or --repetitions")
+                InputError::new("until", &until.text, problem).allowed("a share such as 3%, or --repetitions")
             })?;
         }
         Ok(until)
@@ -110,8 +110,8 @@ impl Options {
 /// Checks that a sweep compares all schedules of its images with each other; the error says why it does not.
 fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static str> {
     match (&options.against, &options.shard) {
-        (Some(_), _) => Err("compares schedules with each other, and --against compares each with another build"),
-        (_, Some(_)) => Err("compares all schedules of an image, and a part of a sweep has only some of them"),
+        (Some(_), _) => Err("compares schedules with each other, but --against compares each with another build"),
+        (_, Some(_)) => Err("compares all schedules of an image, but a part of a sweep has only some of them"),
         (None, None) => Ok(()),
     }
 }
@@ -120,11 +120,11 @@ fn is_of_all_schedules(options: &Options) -> std::result::Result<(), &'static st
 fn share(text: &str) -> Result<f64> {
     let wrong = |problem: &str| {
         let error = InputError::new("until", text, problem);
-        error.allowed("fastest, order, or a share above 0, as 3%")
+        error.allowed("fastest, order, or a share above 0, such as 3%")
     };
     let share = parse_share("until", text).map_err(|_| wrong("is neither a goal nor a share"))?;
     if share <= 0.0 {
-        return Err(wrong("would never be reached: no interval of times has no width").into());
+        return Err(wrong("cannot be reached: every interval of times is wider than 0").into());
     }
     Ok(share)
 }
@@ -234,7 +234,7 @@ mod tests {
 
     /// An interval that holds at every look needs at least eight values; with eight it spans all of them.
     #[test]
-    fn what_is_known_is_known_to_within_the_limit() {
+    fn known_speedups_are_within_the_limit() {
         let (drift, twice) = ([1.0, 2.0, 1.0, 3.0, 1.0, 2.0, 1.0, 2.0], [2.0, 4.0, 2.0, 6.0, 2.0, 4.0, 2.0, 4.0]);
         let seven = &twice[..7];
         let decisions = noted(&[("serial", &drift), ("steady", &twice), ("seven", seven), ("alone", &drift)]);

@@ -40,7 +40,7 @@ impl Definition {
 fn set(table: &mut Table, pair: &str) -> Result<()> {
     let names: Vec<&str> = AXES.iter().map(|axis| axis.name).chain([REFERENCE_SPP]).collect();
     let Some((name, values)) = pair.split_once('=') else {
-        let problem = "has no =, so that it is not clear which values it gives to which axis";
+        let problem = "lacks the = between axis and values";
         return Err(InputError::new("set", pair, problem).allowed("AXIS=VALUE,VALUE...").into());
     };
     if name == REFERENCE_SPP {

@@ -68,7 +68,7 @@ impl SumFile {
                 check_size(width, height)?;
                 let size = (u64::from(width) * u64::from(height) * PIXEL_BYTES as u64).checked_mul(images as u64);
                 if size != Some(body.file.limit()) {
-                    return Err(self.broken(path, "does not have as many pixels as its header says"));
+                    return Err(self.broken(path, "does not have the number of pixels in its header"));
                 }
                 (0..images).map(|_| body.film(width, height, unreadable)).collect::<Result<_>>()?
             }
@@ -105,7 +105,7 @@ impl SumFile {
     }
 
     fn truncated(&self, path: &Path) -> Error {
-        self.broken(path, "is truncated or damaged: its checksum does not hold")
+        self.broken(path, "is truncated or damaged: its checksum does not match")
     }
 
     fn no_header(&self, path: &Path, why: &serde_json::Error) -> Error {

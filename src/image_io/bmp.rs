@@ -11,7 +11,7 @@ use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
     name: "bmp",
-    about: "what a display shows, 8 bits, uncompressed",
+    about: "display values, 8 bits, uncompressed",
     linear: false,
     forbidden_width: None,
     decode,
@@ -23,7 +23,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     // The file length in the header reveals both a cut and appended bytes.
     let declared = bytes.get(2..6).and_then(|field| field.try_into().ok()).map(u32::from_le_bytes);
     if declared.map(u64::from) != Some(bytes.len() as u64) {
-        return Err("its length is not the one that its header tells".into());
+        return Err("its length differs from the length in its header".into());
     }
     let decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
     codec::from_display(codec::decode(decoder, bytes.len())?)

@@ -30,9 +30,9 @@ pub(super) const MAX_METADATA: u64 = 64 << 20;
 /// Checks that Pathmark reads and writes pictures of this size.
 pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {
     if width == 0 || height == 0 {
-        Err(format!("{width} x {height} pixels are none"))
+        Err(format!("a picture of {width} x {height} pixels is empty"))
     } else if width > MAX_SIDE || height > MAX_SIDE || width * height > MAX_PIXELS {
-        Err(format!("{width} x {height} pixels are more than {MAX_SIDE} a side or {MAX_PIXELS} in all"))
+        Err(format!("{width} x {height} pixels are more than {MAX_SIDE} per side or {MAX_PIXELS} in all"))
     } else {
         Ok(())
     }
@@ -43,7 +43,7 @@ pub(super) fn check_size(width: u64, height: u64) -> Decoded<()> {
 pub(super) fn check_claim(width: u64, height: u64, length: usize) -> Decoded<()> {
     check_size(width, height)?;
     if width * height / MAX_PIXELS_PER_BYTE > length as u64 {
-        return Err(format!("{width} x {height} pixels cannot come from {length} bytes"));
+        return Err(format!("{width} x {height} pixels cannot come from a file of {length} bytes"));
     }
     Ok(())
 }

@@ -35,7 +35,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_largest_stays() {
+    fn images_without_a_largest_value_stay() {
         assert_eq!(auto_exposed(&Image::new(3, 2)), Image::new(3, 2));
         let tiny = Image { width: 1, height: 1, pixels: vec![[5e-324, 0.0, 0.0]] };
         assert_eq!(auto_exposed(&tiny).pixels, [[1.0, 0.0, 0.0]]);

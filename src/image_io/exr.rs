@@ -27,7 +27,7 @@ pub(super) const FORMAT: Format = Format {
 const UNSUPPORTED: u32 = 0x800 | 0x1000;
 
 fn decode(bytes: &[u8]) -> Decoded<Image> {
-    check_header(bytes).ok_or("its header is damaged, or it is deep or of several parts")??;
+    check_header(bytes).ok_or("its header is damaged, or it is a deep or multi-part file")??;
     let mut source = Cursor::new(bytes);
     let decoder = OpenExrDecoder::with_alpha_preference(&mut source, Some(false)).map_err(|e| e.to_string())?;
     let image = codec::decode(decoder, bytes.len())?;

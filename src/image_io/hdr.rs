@@ -15,7 +15,7 @@ use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
     name: "hdr",
-    about: "linear radiance, 8 bits and a common exponent",
+    about: "linear radiance, 8 bits per channel with a shared exponent",
     linear: true,
     forbidden_width: Some(UNREADABLE_WIDTH),
     decode,
@@ -54,7 +54,7 @@ fn encode(image: &Image) -> Result<Vec<u8>> {
     let mut samples = Vec::with_capacity(image.pixels.len() * 12);
     for (index, &pixel) in image.pixels.iter().enumerate() {
         if !pixel.iter().all(|value| (0.0..TOO_LARGE).contains(value)) {
-            return Err(bad_pixel(image, index, "does not fit into a hdr picture, which holds 0 to 1.7e38"));
+            return Err(bad_pixel(image, index, "does not fit in an hdr picture, which stores 0 to 1.7e38"));
         }
         samples.extend(round(pixel).into_iter().flat_map(f32::to_ne_bytes));
     }

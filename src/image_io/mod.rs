@@ -66,7 +66,7 @@ pub fn check_format(path: &Path) -> Result<&'static Format> {
     let extension = path.extension().unwrap_or_default();
     FORMATS.iter().find(|format| extension.eq_ignore_ascii_case(format.name)).ok_or_else(|| {
         let names: Vec<_> = FORMATS.iter().map(|format| format.name).collect();
-        let problem = "the extension names no picture format";
+        let problem = "the extension does not name a picture format";
         InputError::new("image", path.display().to_string(), problem).allowed(names.join(", ")).into()
     })
 }
@@ -77,8 +77,8 @@ pub fn check_picture(path: &Path, width: u32, height: u32) -> Result<&'static Fo
     let size = format!("{width}x{height}");
     codec::check_size(u64::from(width), u64::from(height)).map_err(|e| InputError::new("size", &size, e))?;
     if format.forbidden_width == Some(width) {
-        let problem = format!("is not a size that a {} picture can have", format.name);
-        return Err(InputError::new("size", size, problem).allowed(format!("any other width than {width}")).into());
+        let problem = format!("is not a valid size for a {} picture", format.name);
+        return Err(InputError::new("size", size, problem).allowed(format!("any width except {width}")).into());
     }
     Ok(format)
 }
@@ -115,7 +115,7 @@ fn bytes_of(path: &Path) -> Result<(&'static Format, Vec<u8>)> {
         return Err(refused(path, "is not a regular file".into()));
     }
     if metadata.len() > codec::MAX_FILE_LENGTH {
-        return Err(refused(path, format!("{} bytes are more than a picture can have", metadata.len())));
+        return Err(refused(path, format!("{} bytes are too many for a picture", metadata.len())));
     }
     Ok((format, fs::read(path).map_err(|e| Error::system("reading", path, e))?))
 }

@@ -10,7 +10,7 @@ use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
     name: "png",
-    about: "what a display shows, 8 bits, compressed, with notes",
+    about: "display values, 8 bits, compressed, with notes",
     linear: false,
     forbidden_width: None,
     decode,
@@ -25,7 +25,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     // The decoder stops after the last row. Without this check, a file that is cut off or continued after that row
     // would pass.
     if !bytes.ends_with(&END) {
-        return Err("it does not end where a PNG ends".into());
+        return Err("it does not end with the end chunk of a PNG".into());
     }
     let decoder = PngDecoder::with_limits(Cursor::new(bytes), codec::limits()).map_err(|e| e.to_string())?;
     codec::from_display(codec::decode(decoder, bytes.len())?)

@@ -12,7 +12,7 @@ use crate::error::{InputError, Result};
 
 pub(super) const FORMAT: Format = Format {
     name: "ppm",
-    about: "what a display shows, 8 bits, uncompressed",
+    about: "display values, 8 bits, uncompressed",
     linear: false,
     forbidden_width: None,
     decode,

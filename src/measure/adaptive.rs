@@ -34,18 +34,19 @@ impl Setup {
             return Ok(());
         }
         if self.scene().is_none() {
-            let problem = format!("has no meaning for {}, which is a workload", self.name());
+            let problem = format!("does not apply to {}, which is a workload", self.name());
             return Err(InputError::new("adaptive", "true", problem).allowed("false").into());
         }
         if let Some(rule) = rank_rule {
-            let problem = "shares out jobs whose samples are the same in every pixel";
-            return Err(InputError::new("rank-rule", rule, problem).allowed("none where samples are adaptive").into());
+            let problem =
+                "cannot be combined with adaptive samples: it needs the same number of samples in every pixel";
+            return Err(InputError::new("rank-rule", rule, problem).allowed("no rule with adaptive samples").into());
         }
         if *spp >= FEWEST_SPP && spp.is_multiple_of(SUBPIXELS) {
             return Ok(());
         }
-        let problem = "cannot be shared out over an image";
-        let allowed = format!("multiples of {SUBPIXELS} from {FEWEST_SPP} on where samples are adaptive");
+        let problem = "cannot be distributed by adaptive sampling";
+        let allowed = format!("multiples of {SUBPIXELS} from {FEWEST_SPP} with adaptive samples");
         Err(InputError::new("spp", spp.to_string(), problem).allowed(allowed).into())
     }
 

@@ -172,7 +172,7 @@ mod tests {
     /// Without workers the device renders all remaining pieces, from the last one backwards, one after the other in its
     /// lane.
     #[test]
-    fn a_device_renders_what_is_left() {
+    fn a_device_renders_the_remaining_pieces() {
         let plan = Decomposition::parse("tiles:4x4").unwrap().plan(40, 20, &(0..16));
         let (claims, ledger) = (Claims::new(plan.len(), true), Ledger::new(plan.len()));
         assert!(claims.take(7));

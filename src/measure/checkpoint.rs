@@ -68,7 +68,7 @@ impl Header {
         let FilmKey { width, height, spp, .. } = header.film;
         let owns = |x, y| header.part.is_none_or(|part| part.shard.owns(x, y));
         let film = GrowingFilm::from_parts(width, height, parts, owns).filter(|film| film.spp() == spp);
-        let film = film.ok_or_else(|| refused(path, "does not have the samples that its header says"))?;
+        let film = film.ok_or_else(|| refused(path, "does not contain the samples that its header states"))?;
         Ok((header, film))
     }
 }
@@ -100,7 +100,8 @@ impl Checkpoint {
     pub fn open(path: &Path, rounds: &Rounds, target_error: Option<f64>) -> Result<(Self, Option<Saved>)> {
         let setup = rounds.setup();
         if !setup.is_deterministic() {
-            let problem = format!("is of no use: {} gives other numbers in each run", setup.settings().spec.sampler);
+            let problem =
+                format!("cannot be used: {} draws different random numbers in each run", setup.settings().spec.sampler);
             return Err(refused(path, &problem).into());
         }
         let lock = Lock::of_file(path, FILE.field)?;
@@ -116,7 +117,7 @@ impl Checkpoint {
             ..found.clone()
         };
         if let Some(difference) = difference(&found, &mine) {
-            return Err(refused(path, &format!("is of another render: {difference}"))
+            return Err(refused(path, &format!("belongs to another render: {difference}"))
                 .allowed("another name, or the same settings")
                 .into());
         }

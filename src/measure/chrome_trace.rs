@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn events_have_what_the_format_asks_for() {
+    fn events_have_all_fields_of_the_format() {
         let span = |worker, start_s, stop_s| JobSpan { worker, start_s, stop_s };
         let trace =
             Trace { jobs: vec![span(0, 0.5, 1.5), span(1, 0.25, 0.25), span(0, 0.0, 0.5), span(1, 0.25, 1.25)] };

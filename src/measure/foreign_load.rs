@@ -47,7 +47,7 @@ mod tests {
 
     /// The load itself is unknown; the test only checks that it is a share.
     #[test]
-    fn what_others_take_is_a_share() {
+    fn foreign_load_is_a_share() {
         let load = ForeignLoad::begin();
         while load.begun.elapsed().as_secs_f64() < 0.05 {
             std::hint::spin_loop();

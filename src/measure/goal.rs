@@ -64,11 +64,11 @@ impl Goal {
         let spec = &rounds.setup().settings().spec;
         let pixels = spec.width as usize * spec.height as usize;
         if self.target_error.is_some() && pixels < FEWEST_PIXELS {
-            let problem = format!("has too few pixels for its noise to be known; {FEWEST_PIXELS} are needed");
+            let problem = format!("has too few pixels to estimate the noise; at least {FEWEST_PIXELS} are needed");
             return Err(InputError::new("size", format!("{}x{}", spec.width, spec.height), problem).into());
         }
         if let Some(spp) = self.spp.filter(|spp| *spp < rounds.spp()) {
-            let problem = format!("is less than the checkpoint has: {}", rounds.spp());
+            let problem = format!("is less than the {} samples per pixel of the checkpoint", rounds.spp());
             return Err(InputError::new("spp", spp.to_string(), problem).into());
         }
         Ok(())
@@ -89,9 +89,9 @@ impl Goal {
         }
         let wanted = f64::from(spp) * bound / (target * target);
         if wanted > f64::from(LARGEST_SPP) {
-            let problem = format!("would take some {wanted:.0} samples per pixel");
+            let problem = format!("needs about {wanted:.0} samples per pixel");
             return Err(InputError::new("target-error", target.to_string(), problem)
-                .allowed(format!("what {LARGEST_SPP} samples can reach"))
+                .allowed(format!("errors that {LARGEST_SPP} samples per pixel can reach"))
                 .into());
         }
         let wanted = (wanted.ceil() as u32).next_multiple_of(multiple);

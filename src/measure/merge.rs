@@ -37,7 +37,7 @@ struct Found {
 impl Found {
     fn of(path: &Path) -> Result<Self> {
         let header = Header::of(path)?;
-        let part = header.part.ok_or_else(|| refused(path, "is a checkpoint of a whole image, and no part of one"))?;
+        let part = header.part.ok_or_else(|| refused(path, "is a checkpoint of a whole image, not of a part"))?;
         Ok(Self { path: path.to_path_buf(), header, part })
     }
 
@@ -77,14 +77,14 @@ pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
         }
     }
     if let Some(pair) = parts.windows(2).find(|pair| pair[0].part.shard == pair[1].part.shard) {
-        let problem = format!("is part {}, as {} is", pair[1].part.shard, pair[0].path.display());
+        let problem = format!("is part {}, the same as {}", pair[1].part.shard, pair[0].path.display());
         return Err(refused(&pair[1].path, &problem).allowed("each part once").into());
     }
     let (count, cut, spp) = (first.part.shard.count(), first.part.shard.cut(), first.part.spp);
     let missing = missing(&parts, count);
     if !missing.is_empty() && !partial {
-        let problem = format!("of {count} parts these are missing or not finished: {}", missing.join(", "));
-        let allowed = "all parts, or --partial for an image of what there is";
+        let problem = format!("these of {count} parts are missing or not finished: {}", missing.join(", "));
+        let allowed = "all parts, or --partial for an image of the available samples";
         return Err(InputError::new("part", first.path.display().to_string(), problem).allowed(allowed).into());
     }
     let key = FilmKey { spp, ..first.header.film.clone() };
@@ -93,7 +93,7 @@ pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
     for found in &parts {
         let (header, part) = Header::read(&found.path)?;
         if header != found.header {
-            return Err(refused(&found.path, "has changed while it was read").into());
+            return Err(refused(&found.path, "changed while it was being read").into());
         }
         invalid += header.history.counts().invalid;
         match cut {

@@ -44,49 +44,49 @@ columns! {
         pub estimator: String,
         /// Name of the sampler.
         pub sampler: String,
-        /// Name of the kernel that rendered: `scalar` or `lanes`.
+        /// Name of the kernel that rendered, such as `scalar` or `lanes`.
         pub kernel: String,
-        /// Why the kernel that was asked for could not render; empty if it did.
+        /// Why the requested kernel could not render; empty if it did.
         pub kernel_fallback: String,
         /// Floating-point format of the kernel that rendered: `f64` or `f32`.
         pub precision: String,
-        /// Instruction set of the lanes; empty for the scalar kernel.
+        /// Instruction set of the lanes; empty for kernels without lanes.
         pub simd: String,
         /// Acceleration structure: `none`, `median` or `sah`.
         pub accelerator: String,
-        /// Bounces after which paths were cut; empty if only their throughput ended them.
+        /// Bounces after which paths were cut; empty if there was no limit.
         pub max_depth: Option<u16>,
-        /// Camera rays of a sample; empty for one.
+        /// Camera rays per sample; empty for one.
         pub camera_rays: Option<u16>,
         /// Russian roulette rule; empty if there was none.
         pub roulette: String,
-        /// Whether the noise of each tile decided its samples; `spp` is their mean then.
+        /// Whether the noise of each tile determined its number of samples; `spp` is then their mean.
         pub adaptive: bool,
-        /// RMSE at which the render was to stop; empty if samples or time alone decided.
+        /// RMSE at which the render was to stop; empty if there was no such goal.
         pub target_error: Option<f64>,
         /// Seconds of rendering after which the render was to stop.
         pub time_limit_s: Option<f64>,
         /// Rounds in which jobs were handed out.
         pub rounds: Option<u32>,
-        /// Clamp: `subpixel` or `recursion`, with its limit behind a colon if it is not 1; empty if there was none.
+        /// Clamp: `subpixel` or `recursion`, followed by a colon and its limit if that is not 1; empty if there was none.
         pub clamp: String,
         /// Pixel filter; empty if it was the camera's own.
         pub filter: String,
-        /// Distance below which nothing was hit; empty if there was none.
+        /// Distance below which hits were dropped; empty if there was none.
         pub epsilon: String,
-        /// Whether an option was on that changes what the image converges to.
+        /// Whether an option changed what the image converges to.
         pub biased: bool,
         /// Decomposition: how the film was cut into pieces.
         pub decomposition: String,
-        /// Name of the scheduling strategy; of processes, that within each.
+        /// Name of the scheduling strategy; with several processes, the strategy within each.
         pub strategy: String,
-        /// Output: how pieces got into the film.
+        /// Output: how workers delivered pieces to the film.
         pub output: String,
-        /// Threads that were asked for; of processes, in each.
+        /// Requested threads; with several processes, in each.
         pub threads: usize,
-        /// Processes that MPI connected; empty if one process did everything.
+        /// Number of processes connected by MPI; empty if there was one process.
         pub ranks: Option<u16>,
-        /// Rule by which the processes shared the jobs; empty if there was one.
+        /// Rule by which the processes shared the jobs; empty if there was one process.
         pub rank_rule: String,
         /// MPI library, with its version; empty if there was one process.
         pub mpi: String,
@@ -98,7 +98,7 @@ columns! {
         pub jobs: usize,
         /// Workers that did at least one job; empty, like all measurements, if the run failed.
         pub workers_used: Option<u32>,
-        /// Seconds to build the kernel and the scene's acceleration structure; empty where `--cache` may have found that.
+        /// Seconds to build the kernel and the scene's acceleration structure; empty if `--cache` may have supplied the structure.
         pub build_s: Option<f64>,
         /// Seconds of `build_s` to compile programs for devices; empty without devices.
         pub device_compile_s: Option<f64>,
@@ -106,11 +106,11 @@ columns! {
         pub device_copy_s: Option<f64>,
         /// Seconds of the pilot that estimates the cost of the pieces, where the strategy needs it.
         pub pilot_s: Option<f64>,
-        /// Seconds to make the strategy, with its pool if it keeps one.
+        /// Seconds to create the strategy, including its thread pool if it keeps one.
         pub setup_s: Option<f64>,
         /// Seconds from handing the jobs to the strategy until it returned.
         pub makespan_s: Option<f64>,
-        /// Seconds to put the pieces together.
+        /// Seconds to merge the pieces.
         pub merge_s: Option<f64>,
         /// CPU seconds in the program during the makespan, over all threads.
         pub cpu_user_s: Option<f64>,
@@ -120,9 +120,9 @@ columns! {
         pub busy_sum_s: Option<f64>,
         /// Seconds inside jobs of the busiest worker.
         pub busy_max_s: Option<f64>,
-        /// Seconds between jobs of workers that had jobs to come, over all workers, the time before the first included.
+        /// Seconds that workers spent before their first job and between jobs, over all workers.
         pub gap_sum_s: Option<f64>,
-        /// Seconds from each worker's last job to the end of the run, over all workers. With busy time and gaps it makes workers x makespan.
+        /// Seconds from each worker's last job to the end of the run, over all workers. Busy time, gaps and tails add up to workers x makespan.
         pub tail_sum_s: Option<f64>,
         /// Seconds of the shortest job.
         pub job_min_s: Option<f64>,
@@ -136,9 +136,9 @@ columns! {
         pub involuntary_switches: Option<i64>,
         /// CPU seconds of everything else on the machine during the makespan.
         pub foreign_cpu_s: Option<f64>,
-        /// Peak resident memory of the process until the last job has returned; the merge and the writing of pictures are not in it.
+        /// Peak resident memory of the process until the last job returned, without merging and writing of images.
         pub peak_rss_bytes: Option<i64>,
-        /// Paths, which is samples over all pixels.
+        /// Number of paths: the samples of all pixels.
         pub paths: Option<u64>,
         /// Rays that were traced.
         pub rays: Option<u64>,
@@ -154,7 +154,7 @@ columns! {
         pub invalid_samples: Option<u64>,
         /// RMSE in linear radiance, estimated from the samples' own variance; too large where samples are stratified.
         pub estimated_rmse: Option<f64>,
-        /// Mean squared error in linear radiance, cross form: free of the reference's noise, and so sometimes below zero.
+        /// Mean squared error in linear radiance, cross form: free of the reference's noise, so it can be negative.
         pub mse: Option<f64>,
         /// Root of `mse`; empty if `mse` is below zero.
         pub rmse: Option<f64>,
@@ -165,13 +165,13 @@ columns! {
         /// Mean squared error over the squared reference, cross form.
         pub rel_mse: Option<f64>,
         /// Mean over pixels of the variance of a pixel's mean, estimated from the samples as if they were independent. Where
-        /// subpixels or a sampler spread the samples evenly, the true error is below it.
+        /// subpixels or a sampler spread the samples evenly, the true error is smaller.
         pub variance: Option<f64>,
         /// Mean squared error, cross form, over the pixels of the object that the experiment names; NaN if the object fills no pixel.
         pub object_mse: Option<f64>,
-        /// Share of pixels whose display value is within 0.05 of the reference's in every channel: the share that is accurate.
+        /// Share of pixels whose display value is within 0.05 of the reference's in every channel.
         pub within_tolerance: Option<f64>,
-        /// Pixels that are brighter than the reference by more than 1, the display's white, in some channel.
+        /// Pixels that are brighter than the reference by more than 1, the display's white, in any channel.
         pub fireflies: Option<u64>,
         /// Mean radiance over pixels and channels.
         pub mean_radiance: Option<f64>,
@@ -179,9 +179,9 @@ columns! {
         pub black_pixels: Option<u64>,
         /// Seconds to write the image; empty if it was not kept.
         pub image_write_s: Option<f64>,
-        /// Checksum of the film; empty if the sampler draws other numbers in each run.
+        /// Checksum of the film; empty if the sampler draws different random numbers in each run.
         pub checksum: String,
-        /// Warnings, separated by semicolons; `pathmark explain` has their meaning.
+        /// Warnings, separated by semicolons; `pathmark explain` describes them.
         pub warnings: String,
         /// Why the run failed; empty if it did not.
         pub error: String,

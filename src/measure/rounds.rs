@@ -141,12 +141,11 @@ impl Setup {
     /// Refuses settings that cannot be rendered in rounds.
     pub fn check_rounds(&self) -> Result<()> {
         if self.settings().adaptive {
-            let problem =
-                "depends on the number of samples, so a render with more of them does not go on from one with fewer";
+            let problem = "cannot be rendered in rounds: the distribution of samples depends on their total number";
             return Err(InputError::new("adaptive", "true", problem).allowed("false in rounds and on curves").into());
         }
         let Some(clamp) = &self.settings().spec.clamp else { return Ok(()) };
-        let problem = "needs all samples of a pixel at once, and so cannot be rendered in rounds";
+        let problem = "needs all samples of a pixel at once, so it cannot be rendered in rounds";
         Err(InputError::new("clamp", clamp, problem).into())
     }
 }

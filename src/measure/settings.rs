@@ -80,7 +80,7 @@ pub(super) fn check_spp(spp: u32, estimator: &str, multiple: u32) -> Result<()> 
         return Err(InputError::new("spp", spp.to_string(), "is out of range").allowed(allowed).into());
     }
     if !spp.is_multiple_of(multiple) {
-        let problem = format!("is no multiple of {multiple}, which {estimator} needs for its subpixels");
+        let problem = format!("is not a multiple of {multiple}, which {estimator} needs for its subpixels");
         let near = spp.next_multiple_of(multiple);
         let below = near - multiple;
         let allowed = if below == 0 { near.to_string() } else { format!("{below} or {near}") };

@@ -320,7 +320,7 @@ impl Setup {
 
     pub(super) fn new_strategy(&self) -> Result<Box<dyn Strategy>> {
         if let Some(rule) = &self.settings.rank_rule {
-            let problem = "shares jobs among processes, and this is one";
+            let problem = "shares jobs among processes, but there is only one";
             return Err(InputError::new("rank-rule", rule, problem).allowed("an experiment, or render --ranks").into());
         }
         let threads = NonZeroUsize::new(self.settings.threads).unwrap_or(NonZeroUsize::MIN);
@@ -392,7 +392,7 @@ fn check_jobs(jobs: usize, strategy: &strategy::Entry, decomposition: &str) -> R
     if strategy.workers != Workers::PerJob || jobs <= LARGEST_THREADS {
         return Ok(());
     }
-    let problem = format!("cuts {jobs} jobs, and {} starts a thread for each", strategy.name);
+    let problem = format!("makes {jobs} jobs, and {} starts a thread for each", strategy.name);
     let allowed = format!("at most {LARGEST_THREADS} jobs");
     Err(InputError::new("decomposition", decomposition, problem).allowed(allowed).into())
 }

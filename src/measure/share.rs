@@ -172,7 +172,7 @@ impl Account {
         let before_merge = Instant::now();
         done.sort_by_key(|job| job.index);
         if !done.iter().map(|job| job.index).eq(0..plan.len()) {
-            let problem = format!("{} jobs came from all processes, and not each of {} once", done.len(), plan.len());
+            let problem = format!("the processes returned {} jobs, not each of {} once", done.len(), plan.len());
             return Err(Error::Check(problem));
         }
         let mut films = Sections::new(spec.width, spec.height, sections)?;

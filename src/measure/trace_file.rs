@@ -135,7 +135,7 @@ impl TraceFile {
         let header: TraceHeader =
             serde_json::from_str(json).map_err(|e| wrong(1, "header", "", format!("cannot be read: {e}")))?;
         if !(header.makespan_s > 0.0 && header.makespan_s.is_finite()) {
-            return Err(wrong(1, "makespan_s", &header.makespan_s.to_string(), "is no time".to_string()));
+            return Err(wrong(1, "makespan_s", &header.makespan_s.to_string(), "must be positive".to_string()));
         }
         let mut rows = Vec::new();
         for (index, row) in csv::Reader::from_reader(table).deserialize::<TraceRow>().enumerate() {
@@ -143,13 +143,13 @@ impl TraceFile {
             let row = row.map_err(|e| wrong(line, "row", "", format!("cannot be read: {e}")))?;
             let ordered = row.start_s >= 0.0 && row.stop_s >= row.start_s && row.stop_s.is_finite();
             if row.job != index {
-                return Err(wrong(line, "job", &row.job.to_string(), format!("should be {index}")));
+                return Err(wrong(line, "job", &row.job.to_string(), format!("expected {index}")));
             }
             if !ordered || row.x1 <= row.x0 || row.y1 <= row.y0 {
-                return Err(wrong(line, "row", "", "stops before it starts, or has no pixels".to_string()));
+                return Err(wrong(line, "row", "", "contains invalid times or no pixels".to_string()));
             }
             if row.worker >= header.workers {
-                let problem = format!("is no worker of a run that had {}", header.workers);
+                let problem = format!("is not a worker of this run, which had {}", header.workers);
                 return Err(wrong(line, "worker", &row.worker.to_string(), problem));
             }
             rows.try_reserve(1).map_err(|e| Error::system("reading", path, io::Error::new(OutOfMemory, e)))?;
@@ -159,7 +159,7 @@ impl TraceFile {
             return Err(wrong(2, "rows", "", "there are none".to_string()));
         }
         if header.workers as usize > rows.len() {
-            let problem = format!("cannot all have had one of {} jobs", rows.len());
+            let problem = format!("is more than the {} jobs of the trace", rows.len());
             return Err(wrong(1, "workers", &header.workers.to_string(), problem));
         }
         Ok(Self { header, rows })

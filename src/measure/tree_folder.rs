@@ -20,10 +20,10 @@ pub fn check_cache(folder: &Path) -> Result<()> {
         Ok(_) => refuse("is not a folder"),
         Err(e) => match e.kind() {
             ErrorKind::NotFound if folder_of(folder).is_dir() => Ok(()),
-            ErrorKind::NotFound => refuse("the folder above it does not exist"),
+            ErrorKind::NotFound => refuse("its parent folder does not exist"),
             ErrorKind::NotADirectory => refuse("a part of the path is not a folder"),
             ErrorKind::InvalidFilename => refuse("the name is too long"),
-            ErrorKind::InvalidInput => refuse("the name holds a zero byte"),
+            ErrorKind::InvalidInput => refuse("the name contains a zero byte"),
             _ => Err(Error::system("looking for", folder, e)),
         },
     }
@@ -45,7 +45,7 @@ impl TreeStore for TreeFolder {
     fn find(&self, key: &str, read: &mut dyn FnMut(&mut dyn Read) -> io::Result<()>) -> Result<bool> {
         let path = self.file(key);
         let damaged = |problem: &str| {
-            let problem = format!("is damaged: {problem}; without the file its hierarchy is built again");
+            let problem = format!("is damaged: {problem}; delete the file to build its hierarchy again");
             Error::from(InputError::new("cache", path.display().to_string(), problem))
         };
         match fs::metadata(&path) {

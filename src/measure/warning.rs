@@ -85,13 +85,13 @@ pub struct WarningEntry {
 pub const WARNINGS: &[WarningEntry] = &[
     WarningEntry {
         name: "workers-unused",
-        about: "Fewer threads did a job than were asked for.",
-        advice: "Cut the image into more pieces, or ask for fewer threads: some of them found no work.",
+        about: "Fewer threads ran jobs than were requested.",
+        advice: "Cut the image into more pieces, or request fewer threads: some of them found no work.",
     },
     WarningEntry {
         name: "oversubscribed",
         about: "There were more workers than processors.",
-        advice: "Compare such rows with rows of as many workers only; a speedup cannot exceed the number of processors.",
+        advice: "Compare such rows only with rows of the same number of workers; a speedup cannot exceed the number of processors.",
     },
     WarningEntry {
         name: "foreign-load",
@@ -105,23 +105,23 @@ pub const WARNINGS: &[WarningEntry] = &[
     },
     WarningEntry {
         name: "slowed",
-        about: "The run needed 15 % more processor time than the cell's earlier rows, for the same work.",
+        about: "The run needed over 15 % more processor time than the median of the cell's earlier rows, for the same work.",
         advice: "The clock was lower, or a virtual machine's host put two processors on one core: run again on a quiet machine.",
     },
     WarningEntry {
         name: "too-short",
-        about: "The run took less than 5 ms, so starting threads and reading the clock matter.",
-        advice: "Take a larger image or more samples per pixel.",
+        about: "The run took less than 5 ms, so starting threads and reading the clock affect the time.",
+        advice: "Use a larger image or more samples per pixel.",
     },
     WarningEntry {
         name: "partial-subpixels",
-        about: "The samples per pixel are no multiple of 4, so the four subpixels have different numbers of samples.",
-        advice: "Take a multiple of 4 samples per pixel with smallpt's box, or accept that the pixel filter is not symmetric.",
+        about: "The samples per pixel are not a multiple of 4, so the four subpixels have different numbers of samples.",
+        advice: "Use a multiple of 4 samples per pixel with smallpt's box, or accept that the pixel filter is not symmetric.",
     },
     WarningEntry {
         name: "target-missed",
-        about: "The time limit ended the render before its error was as small as asked for.",
-        advice: "Allow more time, or ask for a larger error.",
+        about: "The time limit ended the render before it reached the target error.",
+        advice: "Allow more time, or set a larger target error.",
     },
     WarningEntry {
         name: "resumed",
@@ -131,11 +131,11 @@ pub const WARNINGS: &[WarningEntry] = &[
     WarningEntry {
         name: "biased",
         about: "An option changes what the image converges to: a clamp, a bounce limit, an epsilon or another pixel filter.",
-        advice: "Compare the image with renders under the same option only.",
+        advice: "Compare the image only with renders under the same option.",
     },
     WarningEntry {
         name: "escaped",
-        about: "Rays left a scene that is closed.",
+        about: "Rays left a closed scene.",
         advice: "Look for gaps between the walls; `pathmark replay` shows single paths.",
     },
     WarningEntry {
@@ -155,22 +155,22 @@ pub const WARNINGS: &[WarningEntry] = &[
     },
     WarningEntry {
         name: "no-program",
-        about: "The other program that was to be run is not on this machine.",
+        about: "The other program is not installed on this machine.",
         advice: "Install it, or start `pathmark` in the folder of its sources; the report leaves its rows out.",
     },
     WarningEntry {
         name: "no-device",
-        about: "The row is for a GPU, and neither CUDA nor OpenCL finds one.",
+        about: "The row needs a GPU, but neither CUDA nor OpenCL finds one.",
         advice: "`pathmark list devices` says which libraries are missing; the report leaves the row out.",
     },
     WarningEntry {
         name: "no-date",
         about: "The system's clock shows no date from 1970 to 9999.",
-        advice: "Set the clock; durations are measured with another clock and are right.",
+        advice: "Set the clock; durations are measured with another clock and are correct.",
     },
     WarningEntry {
         name: "debug-build",
-        about: "The program was built without the optimisation of a release.",
+        about: "The program was built without release optimisation.",
         advice: "Measure with `cargo run --release`.",
     },
 ];

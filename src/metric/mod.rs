@@ -78,7 +78,7 @@ pub const METRICS: &[Entry] = &[
     displayed("psnr", "peak signal-to-noise ratio of display values, in dB", f64::INFINITY, pointwise::psnr),
     displayed(
         "flip",
-        "how large the difference looks, 0 to 1, when flipping between both on a display (Andersson and others 2020)",
+        "visible difference, 0 to 1, when flipping between both on a display (Andersson and others 2020)",
         0.0,
         flip::flip,
     ),
@@ -98,7 +98,7 @@ fn check_sizes(test: &Image, reference: &Image) -> Result<()> {
     let size = |image: &Image| format!("{}x{}", image.width, image.height);
     if size(test) != size(reference) {
         let problem = format!("the reference is {}", size(reference));
-        return Err(InputError::new("size", size(test), problem).allowed("pictures of one size").into());
+        return Err(InputError::new("size", size(test), problem).allowed("pictures of the same size").into());
     }
     Ok(())
 }

@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_reach_what_they_must() {
+    fn ranges_include_their_required_values() {
         let range = Range::of(&Axis::linear("e").including([0.0, 1.0]), [0.8, 0.9]).unwrap();
         assert_eq!(range.place(0.0), Some(0.0));
         assert!(range.place(1.0).unwrap() < 1.0);

@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_written_is_read_and_compared() {
+    fn written_rows_are_read_and_compared() {
         let folder = tempfile::tempdir().unwrap();
         let rows = [
             row("scheduling", "serial", "1", 2.0),

@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_part_is_needed_where_it_tells_apart_what_the_others_do_not() {
+    fn a_part_is_needed_where_it_alone_tells_rows_apart() {
         let parts: [Part<[&'static str; 3]>; 2] = [|thing| thing[1].to_string(), |thing| thing[2].to_string()];
         let needed_of = |things: &[[&'static str; 3]]| {
             let found = needed(&things.iter().collect::<Vec<_>>(), |thing| thing[0].to_string(), &parts);

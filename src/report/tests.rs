@@ -204,7 +204,7 @@ fn of_unknown_names(each: usize) -> Vec<Record> {
 }
 
 #[test]
-fn what_the_program_does_not_know_is_drawn() {
+fn unknown_names_are_drawn() {
     let shown = [
         ("speedup", &["my-pool-0", "my-pool-1"][..]),
         ("schedules", &["my-pool-0", "my-scene"]),
@@ -308,7 +308,7 @@ fn options_reach_the_figure_of_any_experiment() {
 }
 
 #[test]
-fn every_built_in_experiment_tells_its_figures_what_they_know() {
+fn every_built_in_experiment_gives_its_figures_known_options() {
     for (name, text) in EXPERIMENTS {
         let definition = Definition::from_text(&Lab::built_in(), name, &format!("{name}.toml"), text).unwrap();
         check_figures(&definition).unwrap_or_else(|error| panic!("{name}: {error}"));

@@ -115,7 +115,7 @@ fn files_that_are_no_meshes_are_refused() {
 
 /// Windows line ends, normals, missing texture coordinates, polygons, materials and comments are no mistakes.
 #[test]
-fn what_is_not_used_is_not_judged() {
+fn unused_statements_of_a_mesh_are_not_judged() {
     let full = "# a square\r\nmtllib none.mtl\r\no square\r\nv -1 -1 0 1.0\r\nv 1 -1 0\r\nv 1 1 0\r\nv -1 1 0\r\n\
                 vt 0 0\r\nusemtl none\r\ns off\r\nf 1/-5/7 2/9/9 3//3 4\r\n";
     finish(pathmark(folder(SCENE, Some(full.as_bytes())).path(), &ARGUMENTS)).with_code(0);

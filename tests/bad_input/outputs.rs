@@ -45,7 +45,7 @@ fn an_output_that_cannot_be_is_refused_before_rendering() {
 /// /proc refuses new files even from root.
 #[cfg(target_os = "linux")]
 #[test]
-fn what_the_system_refuses_is_the_systems() {
+fn refusals_of_the_system_are_system_errors() {
     let folder = tempfile::tempdir().unwrap();
     refused(folder.path(), &[LONG.as_slice(), &["-o", "/proc/image.png"]].concat(), 3, &["writing /proc/image.png"]);
     let cases: &[&[&str]] = &[

@@ -94,7 +94,7 @@ fn a_name_that_can_be_no_file_is_the_users_to_mend() {
 /// The next write into a folder removes the file of a killed writer. It keeps a living writer's file, and the file of
 /// another host that may be living: where locks do not reach from host to host, only the file's age tells.
 #[test]
-fn the_next_writer_removes_what_killed_ones_left() {
+fn the_next_writer_removes_files_of_killed_writers() {
     let directory = tempfile::tempdir().unwrap();
     let (root, at) = (directory.path(), |name: &str| directory.path().join(name));
     let another = |boot: &str| at(&format!(".pathmark-{boot}-AbCdEf.tmp"));
@@ -194,7 +194,7 @@ mod unix {
     }
 
     #[test]
-    fn what_is_no_plain_file_is_not_replaced_by_one() {
+    fn special_files_are_not_replaced_by_plain_files() {
         // The socket stands for /dev/null: replacing that as superuser would take it from the whole machine.
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("socket");

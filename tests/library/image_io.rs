@@ -55,7 +55,7 @@ fn same(pixel: [f64; 3], expected: [f64; 3]) {
 }
 
 #[test]
-fn every_format_gives_back_what_it_can_hold() {
+fn every_format_gives_back_the_values_it_can_hold() {
     for (width, height) in [(1, 1), (5, 3), (8, 2), (40, 21)] {
         let image = sample(width, height);
         for format in FORMATS {
@@ -81,7 +81,7 @@ fn every_format_gives_back_what_it_can_hold() {
 }
 
 #[test]
-fn linear_formats_keep_what_a_display_clips() {
+fn linear_formats_keep_values_that_a_display_clips() {
     let mut image = Image::new(2, 1);
     image.pixels = vec![[1e-3, 12.5, 3000.0], [-2.0, f64::INFINITY, f64::MIN_POSITIVE]];
     for format in ["exr", "pfm"] {
@@ -346,7 +346,7 @@ fn a_transparent_picture_is_refused_and_an_opaque_one_read() {
 }
 
 #[test]
-fn what_is_no_picture_file_is_refused() {
+fn files_that_are_no_pictures_are_refused() {
     let directory = directory();
     let cases: [(PathBuf, u8); 3] = [
         (directory.path().join("missing.png"), 2),

@@ -67,7 +67,7 @@ fn the_relative_error_is_relative() {
 }
 
 #[test]
-fn display_metrics_see_what_a_display_shows() {
+fn display_metrics_see_displayed_values() {
     let reference = Image::new(12, 12);
     let test = map(&reference, |_| tone_map::linear(0.1));
     assert_close(value("rmse-display", &test, &reference), 0.1);
@@ -285,7 +285,7 @@ fn cie_lightness(pixel: [u8; 3]) -> f64 {
 }
 
 #[test]
-fn a_heatmap_chooses_its_scale_and_marks_what_is_no_number() {
+fn a_heatmap_chooses_its_scale_and_marks_missing_numbers() {
     let reference = Image::new(100, 2);
     let mut test = map(&reference, |_| 0.5);
     test.pixels[7] = [1000.0; 3];

@@ -35,7 +35,7 @@ fn every_strategy_and_decomposition_gives_the_same_result() {
 }
 
 #[test]
-fn a_row_says_what_was_done_and_nothing_of_light() {
+fn a_row_describes_the_work_and_no_light() {
     let setup = Setup::prepare(settings("mandelbrot", "rayon", "rows")).unwrap();
     let row = Record::new(&setup, &setup.run(None).unwrap(), Measured::default());
     assert_eq!((row.scene.as_str(), row.kernel.as_str(), row.jobs), ("mandelbrot", "workload", 9));
@@ -45,7 +45,7 @@ fn a_row_says_what_was_done_and_nothing_of_light() {
 
 /// Another seed changes the result of a workload that draws random numbers.
 #[test]
-fn seeds_change_what_is_drawn() {
+fn seeds_change_the_drawn_numbers() {
     let checksum = |seed: u64| {
         let mut settings = settings("costs-exponential", "serial", "rows");
         settings.spec.seed = seed;

@@ -63,7 +63,7 @@ fn a_damaged_file_is_refused_and_left_alone() {
     for (damaged, problem) in cases {
         fs::write(&file, &damaged).unwrap();
         let refused = render(folder.path(), &[]).with_code(2);
-        let words = [file.file_name().unwrap().to_str().unwrap(), problem, "without the file"];
+        let words = [file.file_name().unwrap().to_str().unwrap(), problem, "delete the file"];
         assert!(words.iter().all(|word| refused.err.contains(word)), "{words:?}: {}", refused.err);
         assert!(fs::read(&file).unwrap() == damaged && !folder.path().join("x.pfm").exists());
     }
@@ -73,7 +73,7 @@ fn a_damaged_file_is_refused_and_left_alone() {
 }
 
 #[test]
-fn what_can_be_no_folder_is_refused_before_any_work() {
+fn impossible_folders_are_refused_before_any_work() {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
     fs::write(folder.path().join("file"), "mine").unwrap();

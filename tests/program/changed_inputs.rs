@@ -53,7 +53,7 @@ fn rows(folder: &Path) -> Vec<BTreeMap<String, String>> {
 }
 
 #[test]
-fn what_changes_under_a_sweep_fails_its_rows() {
+fn inputs_that_change_under_a_sweep_fail_its_rows() {
     let deeds = [
         ("the scene", "echo >> scene.toml"),
         ("its base", "echo >> base.toml"),

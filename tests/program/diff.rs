@@ -51,7 +51,7 @@ pub(crate) fn json(finished: &Finished) -> Value {
 }
 
 #[test]
-fn what_got_slower_fails_and_what_did_not_passes() {
+fn slower_cells_fail_and_others_pass() {
     let folder = tempfile::tempdir().unwrap();
     base(folder.path());
     let verdicts = |name: &str, factor: f64, only: &'static str, options: &[&str], code: i32| {
@@ -80,7 +80,7 @@ fn what_got_slower_fails_and_what_did_not_passes() {
 }
 
 #[test]
-fn what_cannot_be_told_is_undecided() {
+fn too_little_evidence_is_undecided() {
     let folder = tempfile::tempdir().unwrap();
     base(folder.path());
     // Times that scatter by half decide nothing about a change by a tenth.
@@ -93,7 +93,7 @@ fn what_cannot_be_told_is_undecided() {
 }
 
 #[test]
-fn what_does_not_compare_is_refused() {
+fn folders_that_do_not_compare_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     base(folder.path());
     let refused = |arguments: &[&str], said: &[&str]| {

@@ -246,7 +246,7 @@ fn bounces_are_printed_and_written() {
 }
 
 #[test]
-fn what_cannot_be_replayed_is_refused() {
+fn traces_that_cannot_be_replayed_are_refused() {
     for (arguments, field) in [
         (["--pixel", "64,0", "--size", "64x48"], "pixel = 64,0"),
         (["--pixel", "0,48", "--size", "64x48"], "pixel = 0,48"),

@@ -88,7 +88,7 @@ fn a_rank_that_dies_ends_the_run() {
 /// A render by ranks resumes from the checkpoint that it left when one of them was killed. With other ranks, another
 /// rule and another library, it gives the image of one undisturbed process.
 #[test]
-fn what_killed_ranks_have_rendered_is_gone_on_with() {
+fn ranks_continue_the_render_of_killed_ranks() {
     if !has_launcher() {
         return;
     }

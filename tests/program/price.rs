@@ -35,7 +35,7 @@ fn half_the_error_is_predicted_to_cost_four_times_as_much() {
 /// interval bounds the prediction's error. The rest is the noise of two images of 1728 pixels, a standard deviation of
 /// about 3 %.
 #[test]
-fn paying_gives_what_was_predicted() {
+fn paying_meets_the_prediction() {
     for (estimator, sampler) in [("bsdf", "independent"), ("smallpt", "sobol")] {
         let rows = rows(&[
             "--size",
@@ -78,7 +78,7 @@ fn every_estimator_is_priced_in_one_array() {
 }
 
 #[test]
-fn what_cannot_be_priced_is_refused() {
+fn renders_without_a_price_are_refused() {
     for (arguments, field) in [
         (["--rmse", "0"].as_slice(), "rmse"),
         (&["--rmse", "0.1,-1"], "rmse"),

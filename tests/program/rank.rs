@@ -39,7 +39,7 @@ fn schedules_of_one_speed_share_a_group_and_others_do_not() {
 }
 
 #[test]
-fn filters_leave_fewer_schedules_and_fewer_repetitions_say_what_it_takes() {
+fn filters_leave_fewer_schedules_and_few_repetitions_tell_how_many_are_needed() {
     let folder = tempfile::tempdir().unwrap();
     base(folder.path());
     let two = json(&run(folder.path(), &["rank", "base/tiny", "--filter", "threads=2", "--json"], 0));
@@ -51,7 +51,7 @@ fn filters_leave_fewer_schedules_and_fewer_repetitions_say_what_it_takes() {
 }
 
 #[test]
-fn what_cannot_be_ranked_is_refused() {
+fn folders_without_a_ranking_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     base(folder.path());
     let refused = |arguments: &[&str], said: &str| {
@@ -59,7 +59,7 @@ fn what_cannot_be_ranked_is_refused() {
         assert!(finished.err.contains(said), "{said} is not in {}", finished.err);
     };
     refused(&["nowhere"], "nowhere");
-    refused(&["base/tiny", "--filter", "threads=7"], "no two schedules");
+    refused(&["base/tiny", "--filter", "threads=7"], "no image with two schedules");
     refused(&["base/tiny", "--filter", "mood=good"], "mood");
     fs::remove_file(folder.path().join("base/tiny/machine.toml")).unwrap();
     refused(&["base/tiny"], "machine.toml");

@@ -138,7 +138,7 @@ fn every_library_gives_the_image_of_one_process() {
 }
 
 #[test]
-fn what_ranks_cannot_do_is_refused() {
+fn options_that_ranks_lack_are_refused() {
     if !has_launcher() {
         return;
     }
@@ -167,7 +167,7 @@ fn what_ranks_cannot_do_is_refused() {
 
 /// Rank 0 alone prints the costs of messages; each median lies within its interval.
 #[test]
-fn what_messages_cost_is_told() {
+fn message_costs_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let alone = finish(pathmark(folder.path(), &["message-costs", "--mpi", "/etc/passwd"])).with_code(2);
     assert!(alone.err.contains("/etc/passwd"), "{}", alone.err);

@@ -110,7 +110,7 @@ fn a_failed_row_is_run_again() {
 /// A cell with a doubtful row runs once more, in a new repetition together with the serial run that it is compared
 /// with. All rows stay. Rows that would always be doubtful are not run again.
 #[test]
-fn what_is_doubtful_runs_again() {
+fn doubtful_cells_run_again() {
     let (folder, records) = prepared(TINY);
     finish(pathmark(folder.path(), &RUN)).with_code(0);
     let doubtful = rows(&records).iter().position(|row| row["strategy"] == "static-blocks").unwrap();
@@ -134,7 +134,7 @@ fn what_is_doubtful_runs_again() {
 }
 
 #[test]
-fn resuming_what_is_done_changes_no_row() {
+fn resuming_a_finished_sweep_changes_no_row() {
     let (folder, records) = prepared(TINY);
     finish(pathmark(folder.path(), &RUN)).with_code(0);
     let before = fs::read(&records).unwrap();

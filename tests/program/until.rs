@@ -70,7 +70,7 @@ fn repetitions_go_on_until_speedups_are_known_also_after_a_stop() {
 
 /// Only one cell's times scatter: that cell and the serial run continue, all others stop.
 #[test]
-fn what_is_known_is_left_out_and_what_it_is_compared_with_is_not() {
+fn known_cells_are_left_out_and_their_baselines_are_not() {
     let folder = tempfile::tempdir().unwrap();
     write_tiny(folder.path(), TINY);
     let out = folder.path().join("out");

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn t_interval_covers_what_it_says() {
+    fn t_interval_covers_at_its_level() {
         // 4000 samples of five normal values; the simulation's standard deviation is 0.34 %.
         let mut generator = Pcg64Dxsm::new(11, 5);
         let hits = (0..4000)

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_of_what_was_measured() {
+    fn thresholds_beyond_the_measured_range_are_bounds() {
         assert_eq!(metg(&bare(&[(1e-6, 0.6), (1e-3, 0.9)]), HALF, 0.95), Metg::Below(1e-6));
         assert_eq!(metg(&bare(&[(1e-6, 0.1), (1e-3, 0.4)]), HALF, 0.95), Metg::Above(1e-3));
         assert_eq!(metg(&bare(&[(1e-6, 0.5)]), HALF, 0.95), Metg::Below(1e-6));

@@ -145,7 +145,7 @@ mod tests {
     /// Intervals of nominal 95 % have a coverage of 95 +- 1.5 % for a variation of at most 0.3 and at least ten seeds,
     /// and elsewhere the documented coverage. The standard deviation of a simulation is 0.5 %.
     #[test]
-    fn intervals_cover_what_is_stated() {
+    fn intervals_cover_at_their_stated_level() {
         for (shape, seeds, of_gamma, of_log_normal) in STATED {
             let found = [coverage(gamma, shape, seeds), coverage(log_normal, shape, seeds)];
             for (found, stated) in found.into_iter().zip([of_gamma, of_log_normal]) {

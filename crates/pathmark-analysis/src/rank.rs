@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn ties_share_a_rank_and_what_does_not_vary_has_no_rank() {
+    fn ties_share_a_rank_and_constant_values_have_none() {
         let tied = spearman(&[(1.0, 1.0), (1.0, 1.0), (2.0, 2.0)]).unwrap();
         assert!((tied.rho - 1.0).abs() < 1e-15);
         assert_eq!(spearman(&[(1.0, 1.0), (1.0, 2.0), (1.0, 3.0)]), None);

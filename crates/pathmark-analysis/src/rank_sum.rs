@@ -115,7 +115,7 @@ mod tests {
     /// The times of 4000 pairs of samples scatter strongly to one side. The interval contains the factor with the
     /// stated confidence, within four standard errors in either direction.
     #[test]
-    fn coverage_is_what_is_stated() {
+    fn coverage_is_as_stated() {
         const TRIALS: u32 = 4000;
         let mut random = Pcg64Dxsm::seed_from_u64(7);
         let mut times = |count: usize, factor: f64| -> Vec<f64> {
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_time_has_no_ratio() {
+    fn invalid_times_have_no_ratio() {
         for (old, new) in
             [(vec![1.0], vec![1.0, 2.0]), (vec![1.0, 0.0], vec![1.0, 2.0]), (vec![1.0, f64::NAN], vec![1.0; 2])]
         {

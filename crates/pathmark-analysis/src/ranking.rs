@@ -173,7 +173,7 @@ mod tests {
 
     /// Two candidates share a group unless their order is established, and no group is a subset of another.
     #[test]
-    fn groups_say_what_the_pairs_say() {
+    fn groups_agree_with_pairs() {
         let mut generator = Pcg64Dxsm::new(3, 1);
         for _ in 0..200 {
             let mut told = BTreeSet::new();

@@ -114,7 +114,7 @@ pub(crate) fn list() -> Vec<Listed> {
     };
     let devices = devices(driver);
     if devices.is_empty() {
-        return nothing("the driver shows no device", false);
+        return nothing("the driver reports no device", false);
     }
     let compiler = nvrtc::missing();
     let listed = devices.into_iter().enumerate().map(|(number, device)| Listed {
@@ -216,7 +216,7 @@ impl Cuda {
         let missing = |why: &str| DeviceError::Missing { id: id.clone(), why: why.to_string() };
         let driver = DRIVER.as_ref().map_err(|no_driver| missing(&no_driver.why))?;
         let all = devices(driver);
-        let device = *all.get(number).ok_or_else(|| missing(&format!("the driver shows {} devices", all.len())))?;
+        let device = *all.get(number).ok_or_else(|| missing(&format!("the driver reports {} devices", all.len())))?;
         let mut handle = null_mut();
         // SAFETY: a device that the driver has shown; its context is never given back.
         let code = unsafe { (driver.retain)(&raw mut handle, device) };

@@ -6,13 +6,13 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum DeviceError {
     /// No device can have this name.
-    #[error("{id} is no device (there is cuda:N, opencl:N with a number N from 0, or host)")]
+    #[error("{id} is not a device name (allowed: cuda:N or opencl:N with a number N from 0, or host)")]
     NoName {
         /// The name as it was written.
         id: String,
     },
     /// This machine has no such device.
-    #[error("there is no {id} here: {why}")]
+    #[error("{id} is not available: {why}")]
     Missing {
         /// Its name.
         id: String,
@@ -36,7 +36,7 @@ pub enum DeviceError {
         why: String,
     },
     /// The device does not round as IEEE 754 demands.
-    #[error("it does not compute as IEEE 754 demands: {operation}")]
+    #[error("it does not compute according to IEEE 754: {operation}")]
     Inexact {
         /// The operation and its operands.
         operation: String,

@@ -142,7 +142,7 @@ impl OpenCl {
         let missing = |why: &str| DeviceError::Missing { id: id.clone(), why: why.to_string() };
         let functions = LOADER.as_ref().map_err(|why| missing(why))?;
         let all = found(functions).map_err(|why| missing(&why))?;
-        let count = format!("drivers show {} devices", all.len());
+        let count = format!("the drivers report {} devices", all.len());
         let Found { handle, name, is_processor, units, is_exact } =
             all.into_iter().nth(number).ok_or_else(|| missing(&count))?;
         if !is_exact {

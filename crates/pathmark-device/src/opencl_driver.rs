@@ -125,7 +125,7 @@ pub(crate) fn found(functions: &Functions) -> std::result::Result<Vec<Found>, St
     Ok(all)
 }
 
-pub(crate) const INEXACT: &str = "it has no double precision by IEEE 754";
+pub(crate) const INEXACT: &str = "it has no IEEE 754 double precision";
 
 pub(crate) fn list() -> Vec<Listed> {
     let nothing = |why: &str, is_broken| Listed {
@@ -138,7 +138,7 @@ pub(crate) fn list() -> Vec<Listed> {
     let all = match LOADER.as_ref().map(found) {
         Err(why) => return vec![nothing(why, false)],
         Ok(Err(why)) => return vec![nothing(&why, true)],
-        Ok(Ok(all)) if all.is_empty() => return vec![nothing("no driver shows a device", false)],
+        Ok(Ok(all)) if all.is_empty() => return vec![nothing("no driver reports a device", false)],
         Ok(Ok(all)) => all,
     };
     let listed = all.into_iter().enumerate().map(|(number, device)| Listed {

@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn finds_what_is_fused_or_not_said() {
+    fn finds_fused_operations_and_undeclared_functions() {
         let ptx = "\tadd.rn.f64 %fd1, %fd2, %fd3;\n\tadd.f64 \t%fd1, %fd2, %fd3;\n\t@%p1 fma.rn.f64 %fd1, %fd2, %fd3, %fd4;\n\
                    \tadd.s64 %rd1, %rd2, %rd3;\n\tmad.lo.s32 %r1, %r2, %r3, %r4;\n\tsqrt.rn.f64 %fd1, %fd2;\n\
                    \tmul.rn.ftz.f32 %f1, %f2, %f3;\n\tld.global.f64 %fd1, [%rd1];\n\trsqrt.approx.ftz.f64 %fd1, %fd2;\n\

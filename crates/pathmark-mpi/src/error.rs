@@ -11,7 +11,7 @@ pub enum MpiError {
         tried: String,
     },
     /// The file that the user named cannot be opened as a library.
-    #[error("{} is no library that can be opened: {why}", path.display())]
+    #[error("{} cannot be opened as a library: {why}", path.display())]
     NoLibrary {
         /// The file.
         path: PathBuf,
@@ -19,7 +19,7 @@ pub enum MpiError {
         why: String,
     },
     /// The library lacks a function.
-    #[error("{library} is no MPI library, or an old one: it has no {symbol}")]
+    #[error("{library} is not an MPI library, or is too old: it has no {symbol}")]
     NoSymbol {
         /// The library's name.
         library: String,
@@ -28,7 +28,7 @@ pub enum MpiError {
     },
     /// The library of another launcher: each process would be the only one in its own world.
     #[error(
-        "the launcher started {launched} processes, and {library} knows of {known}: start them with the mpiexec of that library, or name the launcher's library"
+        "the launcher started {launched} processes, but {library} knows of {known}: start them with the mpiexec of that library, or name the launcher's library"
     )]
     WrongLauncher {
         /// Number of processes according to the launcher.
@@ -47,7 +47,7 @@ pub enum MpiError {
         code: i32,
     },
     /// A message is longer than MPI can count.
-    #[error("a message of {words} words is longer than MPI can count")]
+    #[error("a message of {words} words is too long for MPI")]
     TooLong {
         /// Its length in 64-bit words.
         words: usize,

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_library_is_an_error() {
+    fn files_that_are_no_libraries_are_errors() {
         let refused = |path: &str| World::begin(Some(Path::new(path))).err().unwrap().to_string();
         assert!(refused("/etc/passwd").contains("/etc/passwd"));
         assert!(refused("/nowhere/libmpi.so").contains("/nowhere/libmpi.so"));

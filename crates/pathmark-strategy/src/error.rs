@@ -16,7 +16,7 @@ pub enum StrategyError {
         source: io::Error,
     },
     /// The text after the strategy's name is not a valid parameter.
-    #[error("strategy {strategy} = {value}: unusable parameter (allowed: {allowed})")]
+    #[error("strategy {strategy} = {value}: invalid parameter (allowed: {allowed})")]
     Parameter {
         /// The strategy's name.
         strategy: &'static str,

@@ -122,7 +122,7 @@ fn varied(record: &Record, column: &str) -> Record {
 }
 
 #[test]
-fn every_column_of_a_row_is_sorted_into_what_tells_images_or_schedules_apart_or_neither() {
+fn every_column_distinguishes_images_or_schedules_or_neither() {
     let row = Record::default();
     let sorted: BTreeSet<&str> = IMAGE.into_iter().chain(SCHEDULE).chain(OTHER).collect();
     let own = columns(&row);
@@ -216,7 +216,7 @@ fn each_axis_has_a_column() {
 }
 
 #[test]
-fn what_is_asked_for_and_what_was_measured_have_the_same_keys() {
+fn requested_and_measured_cells_have_the_same_keys() {
     for change in [|_: &mut Settings| (), |s: &mut Settings| s.spec.sampler = "stratified".to_string()] {
         let setup = setup(change);
         let row = Record::new(&setup, &setup.run(None).unwrap(), Measured::default());

@@ -9,7 +9,7 @@ use crossbeam::channel::{Receiver, Sender, unbounded};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "channel-piece",
-    about: "a message for each piece through one channel",
+    about: "each piece is a message through one channel",
     new: |delivery| {
         let (sender, receiver) = unbounded();
         Ok(Box::new(ChannelPiece { delivery, sender, receiver }))

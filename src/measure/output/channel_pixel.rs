@@ -10,7 +10,7 @@ use crossbeam::channel::{Receiver, Sender, unbounded};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "channel-pixel",
-    about: "a message for each pixel through one channel (report D)",
+    about: "each pixel is a message through one channel (report D)",
     new: |delivery| {
         let (sender, receiver) = unbounded();
         Ok(Box::new(ChannelPixel { delivery, sender, receiver }))

@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 
 pub(super) const ENTRY: Entry = Entry {
     name: "row-progress",
-    about: "as slots, and a progress counter behind a lock at each row (report B)",
+    about: "like slots, plus a progress counter behind a lock after each row (report B)",
     new: |delivery| Ok(Box::new(RowProgress { slots: Slots::new(delivery)?, rows: Mutex::new(0) })),
 };
 

@@ -8,7 +8,7 @@ use crossbeam::atomic::AtomicCell;
 
 pub(super) const ENTRY: Entry = Entry {
     name: "slots",
-    about: "a buffer for each job, made before the run: no worker waits for another (the default)",
+    about: "one buffer per job, allocated before the run: no worker waits for another (the default)",
     new: |delivery| Ok(Box::new(Slots::new(delivery)?)),
 };
 

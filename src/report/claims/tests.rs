@@ -177,7 +177,7 @@ fn refused(evidence: &str) -> String {
 }
 
 #[test]
-fn what_a_claim_asks_for_must_exist() {
+fn everything_a_claim_asks_for_exists() {
     let rows = "experiment = \"e\"\nrows = { scene = \"cornell\" }\nlevel = 0.95\nat-least = 1.0";
     for (evidence, told) in [
         (format!("statistic = \"mode\"\n{rows}"), vec!["X.toml:11", "mode", "rank-correlation"]),

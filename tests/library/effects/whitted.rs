@@ -39,7 +39,7 @@ fn agrees_where_there_is_no_indirect_diffuse_light() {
 
 /// Whitted's estimator omits indirect diffuse light: in a closed diffuse sphere it sees only the wall's own emission.
 #[test]
-fn leaves_out_what_matte_surfaces_send_on() {
+fn leaves_out_light_from_matte_surfaces() {
     let wall = object(&sphere([0.0; 3], 1.0), &diffuse(0.5), [1.0; 3]);
     let scene = scene(&[camera([0.1, 0.2, 0.3], [1.0, 0.0, 0.0]), wall]);
     assert_eq!(mean(&render(&scene, "whitted", 4096, None), 0).0, 1.0);

@@ -31,7 +31,7 @@ const HORIZON: &str = r#"
 /// own ray has the same weight as the others, and their random numbers are independent of its own (chi-square tests of
 /// 20,000 samples, two-sided, family-wise level 1e-3).
 #[test]
-fn a_sample_has_the_mean_of_what_its_camera_rays_see() {
+fn a_sample_has_the_mean_radiance_of_its_camera_rays() {
     const SAMPLES: u32 = 20_000;
     let scene = Arc::new(Scene::from_toml(HORIZON).unwrap());
     for (sampler, kernel) in [("independent", "scalar"), ("hash", "lanes")] {

@@ -50,7 +50,7 @@ pub(crate) fn assert_same(scene: &Arc<Scene>, spec: &Spec, pieces: &[Piece]) {
     }
 }
 
-/// Whether lanes render a scene at all; [`what_lanes_cannot_do_is_told`] lists the exceptions.
+/// Whether lanes render a scene at all; [`unsupported_features_of_lanes_are_reported`] lists the exceptions.
 fn is_for_lanes(scene: &Scene, spec: &Spec) -> bool {
     choose(scene, spec).unwrap().kernel() == "lanes"
 }
@@ -222,7 +222,7 @@ fn options_have_the_scalar_kernels_bits() {
 
 /// Where lanes cannot render, the scalar kernel does, and the choice states the reason.
 #[test]
-fn what_lanes_cannot_do_is_told() {
+fn unsupported_features_of_lanes_are_reported() {
     let spec = Spec::default;
     for (scene, spec, reason) in [
         ("cornell-fog", spec(), "fog"),

@@ -53,7 +53,7 @@ proptest! {
 
     /// A ray from inside always hits the sphere, at most a diameter away, at a point of its surface.
     #[test]
-    fn a_sphere_surrounds_what_is_inside(sphere in sphere(), at in vector(1.0), direction in direction()) {
+    fn a_sphere_surrounds_its_inside(sphere in sphere(), at in vector(1.0), direction in direction()) {
         let inside = at * (0.999 / length(at).max(1.0));
         let ray = Ray { origin: sphere.center + inside * sphere.radius, direction };
         let t = meet(&sphere, &ray);
@@ -166,7 +166,7 @@ proptest! {
 
     /// Every hierarchy finds the hits that testing every primitive finds, to the bit.
     #[test]
-    fn hierarchies_find_what_there_is(
+    fn hierarchies_find_the_same_hits(
         spheres in prop::collection::vec(sphere(), 0..30), triangles in prop::collection::vec(triangle(), 1..60),
         rays in prop::collection::vec((vector(200.0), direction()), 40),
     ) {

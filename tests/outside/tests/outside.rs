@@ -31,7 +31,7 @@ fn the_front_pages_example_runs_in_the_dev_profile() {
 }
 
 #[test]
-fn the_list_shows_what_is_ours() {
+fn the_list_shows_own_entries() {
     let folder = tempfile::tempdir().unwrap();
     for (kind, name) in
         [("strategies", "relay"), ("estimators", "depth"), ("workloads", "primes"), ("experiments", "ours")]
@@ -44,7 +44,7 @@ fn the_list_shows_what_is_ours() {
 /// A sweep over this crate's pool, estimator and workload: child processes have the same tables, each scene has one
 /// checksum, and figures show them.
 #[test]
-fn experiments_compare_what_is_ours_with_the_rest() {
+fn experiments_compare_own_entries_with_built_in_ones() {
     let folder = tempfile::tempdir().unwrap();
     outside(folder.path(), &["run", "ours", "--out", "out", "--quiet"]);
     let rows = fs::read_to_string(folder.path().join("out/ours/records.csv")).unwrap();

@@ -31,7 +31,7 @@ fn every_format_is_read_back() {
 
 /// Automatic exposure is for viewing: it scales only display formats and leaves the record unchanged.
 #[test]
-fn automatic_exposure_changes_only_what_is_shown() {
+fn automatic_exposure_changes_only_the_display() {
     let folder = tempfile::tempdir().unwrap();
     let render = |image: &str, options: &[&str]| {
         let options = [&["-o", image], options].concat();
@@ -178,7 +178,7 @@ fn a_run_leaves_rows_figures_and_a_page_that_report_draws_again() {
 }
 
 #[test]
-fn pictures_say_what_they_are_of() {
+fn pictures_name_their_scene_and_settings() {
     let folder = tempfile::tempdir().unwrap();
     for (seed, output) in [("1", "a.png"), ("1", "b.exr"), ("2", "c.png")] {
         run(folder.path(), &["render", "cornell", "--size", "16x12", "--spp", "4", "--seed", seed, "-o", output]);

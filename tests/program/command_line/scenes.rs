@@ -34,7 +34,7 @@ fn an_experiment_can_take_all_scenes_with_their_own_estimators() {
 }
 
 #[test]
-fn listed_scenes_say_what_they_call_for() {
+fn listed_scenes_name_their_effects() {
     let folder = tempfile::tempdir().unwrap();
     let listed = json(&run(folder.path(), &["list", "scenes", "--json"]).out);
     let text = run(folder.path(), &["list", "scenes"]).out;

@@ -54,7 +54,7 @@ fn parts_are_merged_into_the_image() {
 }
 
 #[test]
-fn what_is_no_shard_is_refused_before_any_work() {
+fn invalid_shards_are_refused_before_any_work() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |options: &[&str], said: &[&str]| {
         let finished = finish(pathmark(folder.path(), &[SIZE.as_slice(), options].concat())).with_code(2);

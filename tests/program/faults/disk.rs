@@ -266,7 +266,7 @@ fn a_log_that_was_replaced_or_changed_takes_no_row() {
 
 /// The files written above can be read back, so the tested writers write real contents.
 #[test]
-fn what_was_written_can_be_read() {
+fn written_files_can_be_read() {
     let folder = tempfile::tempdir().unwrap();
     for (name, write) in writers() {
         write(&folder.path().join(name)).unwrap();

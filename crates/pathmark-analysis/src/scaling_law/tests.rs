@@ -136,7 +136,7 @@ fn superlinear_speedups_have_no_serial_fraction() {
 }
 
 #[test]
-fn what_says_nothing_is_refused() {
+fn points_that_decide_nothing_are_refused() {
     let open = refused(Law::Amdahl, &[(2, vec![0.7, 2.4, 1.4, 0.8, 2.6])]);
     assert!(
         matches!(open, Reason::Open { .. }) && open.to_string().contains("covers everything that s can be"),

@@ -74,7 +74,7 @@ impl Case {
 
     /// As [`Case::try_build`], but a failure is a violation.
     pub(super) fn build(&self, threads: usize, spawner: &Arc<CountedThreads>) -> Result<Box<dyn Strategy>, String> {
-        self.try_build(threads, spawner).map_err(|error| format!("it can't be made: {error}"))
+        self.try_build(threads, spawner).map_err(|error| format!("the strategy cannot be built: {error}"))
     }
 
     /// Makes the strategy with `threads` threads from an unlimited spawner.

@@ -69,7 +69,7 @@ fn dealt(case: &Case, threads: usize, deal: Deal) -> Result<(), String> {
     let hands = by_thread(case, threads, JOBS, wait)?;
     let found: BTreeSet<BTreeSet<usize>> = hands.into_values().map(BTreeSet::from_iter).collect();
     match found.difference(&shares).next() {
-        Some(other) => Err(format!("a worker ran the jobs {other:?}, which its deal gives to none")),
+        Some(other) => Err(format!("a worker ran the jobs {other:?}, a set that the deal gives to no worker")),
         None => Ok(()),
     }
 }

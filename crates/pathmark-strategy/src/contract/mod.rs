@@ -108,7 +108,7 @@ impl fmt::Display for Promise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Name => "its name fits a command line",
-            Self::Parameter => "a parameter that means nothing is refused",
+            Self::Parameter => "an invalid parameter is refused",
             Self::EachJobOnce => "each job runs exactly once",
             Self::End => "a run ends when all its jobs have",
             Self::Workers => "as many jobs run at a time as there are workers",
@@ -116,8 +116,8 @@ impl fmt::Display for Promise {
             Self::Panics => "a panic reaches the caller and the strategy works again",
             Self::Stopping => "a panic stops all workers",
             Self::NoJobLeft => "no clone of the job is left",
-            Self::NoThreadLeft => "no thread is left, and none is started in vain",
-            Self::Refusals => "a thread that is refused is an error",
+            Self::NoThreadLeft => "no thread is left, and none is started without use",
+            Self::Refusals => "a refused thread is an error",
         })
     }
 }

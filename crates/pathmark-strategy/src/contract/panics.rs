@@ -16,7 +16,7 @@ pub(super) fn thrown(strategy: &mut dyn Strategy, jobs: usize, job: Job) -> Resu
     match panic::catch_unwind(AssertUnwindSafe(|| strategy.run(jobs, job))) {
         Err(payload) => Ok(payload),
         Ok(Ok(())) => Err("no panic reaches the caller".to_owned()),
-        Ok(Err(error)) => Err(format!("no panic reaches the caller, but an error: {error}")),
+        Ok(Err(error)) => Err(format!("an error reaches the caller instead of the panic: {error}")),
     }
 }
 
@@ -72,7 +72,7 @@ pub(super) fn in_any_job(case: &Case) -> Result<(), String> {
             let payload = thrown(&mut *strategy, jobs, Arc::clone(&job))?;
             let (expected, found) = (format!("job {culprit} fails"), message(&*payload));
             if found != expected {
-                return Err(format!("what was thrown is {expected:?}, what reaches the caller is {found:?}"));
+                return Err(format!("the job threw {expected:?}, but {found:?} reaches the caller"));
             }
             runs.none_twice()?;
             if let left @ 1.. = Arc::strong_count(&job) - 1 {
@@ -112,7 +112,7 @@ pub(super) fn of_all_workers(case: &Case) -> Result<(), String> {
             // Dropped while unwinding, it would end the whole program.
             mem::forget(payload);
             if !arrived {
-                return Err("another payload reaches the caller".to_owned());
+                return Err("a different payload reaches the caller".to_owned());
             }
             case.run_each_once(&mut *strategy, 30).map_err(|found| format!("in the next run {found}"))?;
         }

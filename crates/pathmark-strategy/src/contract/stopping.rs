@@ -29,7 +29,7 @@ pub(super) fn alone(case: &Case) -> Result<(), String> {
     thrown(&mut *case.ready(1)?, JOBS, Arc::new(job))?;
     match runs.started() {
         LAST => Ok(()),
-        started => Err(format!("{} jobs were begun after it", started - LAST)),
+        started => Err(format!("{} jobs began after the panic", started - LAST)),
     }
 }
 
@@ -56,7 +56,7 @@ pub(super) fn others(case: &Case) -> Result<(), String> {
     let started = runs.started();
     if started >= jobs / 2 {
         let allowed = EACH * (jobs / 2) as u32;
-        return Err(format!("{started} jobs were begun, so the workers have not heard of it for {allowed:?}"));
+        return Err(format!("{started} jobs began, so the workers did not notice the panic for {allowed:?}"));
     }
     Ok(())
 }

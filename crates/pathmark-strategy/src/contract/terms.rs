@@ -23,9 +23,9 @@ pub(super) fn parameter(case: &Case) -> Result<(), String> {
     const NONSENSE: &str = "no-such-parameter";
     case.at(format!("{}:{NONSENSE}", case.entry.name));
     match case.entry.discipline(Some(NONSENSE)) {
-        Ok(discipline) => return Err(format!("it is taken for {discipline:?}")),
+        Ok(discipline) => return Err(format!("it is accepted as {discipline:?}")),
         Err(StrategyError::Parameter { .. }) => {}
-        Err(other) => return Err(format!("another error: {other}")),
+        Err(other) => return Err(format!("a different error is returned: {other}")),
     }
     let given = case.contract.parameter.as_deref().unwrap_or("");
     case.at(format!("{}:{given}, 1 thread", case.entry.name));

@@ -36,7 +36,7 @@ pub(super) fn none_in_vain(case: &Case) -> Result<(), String> {
         return Ok(());
     }
     Err(format!(
-        "the construction started {} threads and the runs {:?}, where there is use for {workers}",
+        "the construction started {} threads and the runs {:?}, but {workers} are needed",
         started[0],
         &started[1..]
     ))
@@ -94,10 +94,10 @@ pub(super) fn refused(case: &Case) -> Result<(), String> {
 
 fn was_told(spawner: &CountedThreads, error: Option<&StrategyError>) -> Result<(), String> {
     match error {
-        None if spawner.refusals() > 0 => Err("nobody is told".to_owned()),
+        None if spawner.refusals() > 0 => Err("no error is returned".to_owned()),
         None => Ok(()),
         Some(StrategyError::Spawn { worker, workers, .. }) if (1..=*workers).contains(worker) => Ok(()),
-        Some(other) => Err(format!("another error is told: {other}")),
+        Some(other) => Err(format!("a different error is returned: {other}")),
     }
 }
 

@@ -33,7 +33,7 @@ pub(super) fn run(case: &Arc<Case>, check: Check) -> Outcome {
             Err(RecvTimeoutError::Timeout) if case.pulse() != before => {}
             Err(RecvTimeoutError::Timeout) => {
                 return Outcome::Hangs(format!(
-                    "nothing has happened for {patience:?} (on a machine where that is no proof, ask with more patience); nothing else was tried"
+                    "no progress for {patience:?} (on a slow machine, set a longer patience); the remaining checks were skipped"
                 ));
             }
             Err(RecvTimeoutError::Disconnected) => {

@@ -15,7 +15,7 @@ use crate::{Clock, Entry, LearnedRule, Ledger, Weights};
 
 pub(super) const ENTRY: Entry = Entry::learned(
     "adaptive-factoring",
-    "chunks by mean and variance of the jobs that each worker has done (AF)",
+    "chunk sizes from the mean and variance of the job times of each worker (AF)",
     LearnedRule { size, clock: Clock::Jobs, weights: Weights::EQUAL },
 );
 

@@ -13,7 +13,7 @@ use crate::{Clock, Entry, LearnedRule, Ledger, Weights};
 
 pub(super) const ENTRY: Entry = Entry::learned(
     "awf-b",
-    "batches of p chunks, half of the jobs left, shared by speeds measured up to each batch (AWF-B)",
+    "batches of p chunks, half of the jobs left, sized by worker speeds measured before each batch (AWF-B)",
     LearnedRule { size, clock: Clock::Chunks, weights: Weights::EQUAL },
 );
 

@@ -12,7 +12,7 @@ use crate::{Clock, Entry, LearnedRule, Ledger, Weights};
 
 pub(super) const ENTRY: Entry = Entry::learned(
     "awf-c",
-    "a worker's share, by the speeds measured so far, of half of the jobs left (AWF-C)",
+    "a free worker takes its share of half of the jobs left, by the speeds measured so far (AWF-C)",
     LearnedRule { size, clock: Clock::Chunks, weights: Weights::EQUAL },
 );
 

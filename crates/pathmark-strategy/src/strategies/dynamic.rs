@@ -12,7 +12,7 @@ use crate::{ChunkRule, Discipline, Entry, Handout, Parameter};
 
 pub(super) const ENTRY: Entry = Entry {
     parameter: Some(Parameter { allowed: "a number of jobs from 1", read }),
-    ..Entry::chunks("dynamic", "whoever is free takes the next C jobs (dynamic:C; 1 if no number is given)", size)
+    ..Entry::chunks("dynamic", "a free worker takes the next C jobs (dynamic:C; C is 1 by default)", size)
 };
 
 /// Returns C for every chunk.

@@ -30,7 +30,7 @@ mod tests {
 
     /// 100 jobs on 4 workers: batches of 13, 6, 3, 2 and 1 (100 - 52 = 48, 48 - 24 = 24, 24 - 12 = 12, 12 - 8 = 4).
     #[test]
-    fn batches_halve_what_is_left() {
+    fn batches_halve_the_remaining_jobs() {
         let rule = ChunkRule { size, parameter: 1 };
         let sizes: Vec<usize> = rule.chunks(100, 4).map(|chunk| chunk.len()).collect();
         assert_eq!(sizes, [[13; 4], [6; 4], [3; 4], [2; 4], [1; 4]].concat());

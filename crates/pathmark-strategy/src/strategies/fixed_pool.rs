@@ -20,7 +20,7 @@ use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "fixed-pool",
-    "workers that outlive the run, fed with indices through a channel",
+    "a persistent pool whose workers receive indices through a channel",
     Discipline::ONE_BY_ONE,
     make,
 );

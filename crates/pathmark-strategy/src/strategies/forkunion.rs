@@ -16,7 +16,7 @@ pub(super) const ENTRY: Entry = Entry {
     threads: Threads::Library,
     ..Entry::new(
         "forkunion",
-        "whoever is free takes the next index, in a pool that never sleeps (the crate forkunion)",
+        "a free worker takes the next index, in a pool that never sleeps (the crate forkunion)",
         Discipline::ONE_BY_ONE,
         make,
     )

@@ -11,7 +11,7 @@
 
 use crate::{Entry, Handout};
 
-pub(super) const ENTRY: Entry = Entry::chunks("guided", "whoever is free takes a p-th of the jobs left (GSS)", size);
+pub(super) const ENTRY: Entry = Entry::chunks("guided", "a free worker takes 1/p of the jobs left (GSS)", size);
 
 /// Returns 1/p of the jobs left, rounded up.
 pub(super) fn size(handout: &Handout) -> usize {

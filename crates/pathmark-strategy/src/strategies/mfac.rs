@@ -15,9 +15,9 @@
 use crate::{ChunkRule, Discipline, Entry, Handout, Parameter};
 
 pub(super) const ENTRY: Entry = Entry {
-    parameter: Some(Parameter { allowed: "per cent that costs deviate from their mean, a whole number", read }),
+    parameter: Some(Parameter { allowed: "a whole number: the deviation of costs in % of their mean", read }),
     discipline: Discipline::Chunks(ChunkRule { size, parameter: 100 }),
-    ..Entry::chunks("mfac", "batches of p equal chunks, as large as the given deviation of costs allows (mFAC)", size)
+    ..Entry::chunks("mfac", "batches of p equal chunks, sized for a given deviation of job costs (mFAC)", size)
 };
 
 fn size(handout: &Handout) -> usize {

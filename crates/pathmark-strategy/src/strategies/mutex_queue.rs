@@ -16,7 +16,7 @@ use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, team};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "mutex-queue",
-    "whoever is free takes the next index from a queue behind one lock",
+    "a free worker takes the next index from a queue behind one lock",
     Discipline::ONE_BY_ONE,
     make,
 );

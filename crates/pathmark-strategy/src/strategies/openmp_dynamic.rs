@@ -16,7 +16,7 @@ pub(super) const ENTRY: Entry = Entry {
     parameter: chunk(|value| chunks(dynamic::size, value)),
     ..entry(
         "openmp-dynamic",
-        "OpenMP's schedule(dynamic, C) in libgomp (openmp-dynamic:C; 1 if no number is given)",
+        "OpenMP's schedule(dynamic, C) in libgomp (openmp-dynamic:C; C is 1 by default)",
         dynamic::ENTRY.discipline,
         |blueprint| make(blueprint, Schedule::Dynamic),
     )

@@ -16,7 +16,7 @@ pub(super) const ENTRY: Entry = Entry {
     parameter: chunk(|value| chunks(size, value)),
     ..entry(
         "openmp-guided",
-        "OpenMP's schedule(guided, C) in libgomp (openmp-guided:C; 1 if no number is given)",
+        "OpenMP's schedule(guided, C) in libgomp (openmp-guided:C; C is 1 by default)",
         guided::ENTRY.discipline,
         |blueprint| make(blueprint, Schedule::Guided),
     )

@@ -22,7 +22,7 @@ pub(super) const ENTRY: Entry = Entry {
     parameter: dynamic::ENTRY.parameter,
     ..Entry::new(
         "orx-parallel",
-        "whoever is free takes the next C jobs from an iterator (orx-parallel:C; 1 if no number is given; the crate)",
+        "a free worker takes the next C jobs from an iterator (orx-parallel:C; C is 1 by default; the crate)",
         dynamic::ENTRY.discipline,
         make,
     )

@@ -25,7 +25,7 @@ pub(super) const ENTRY: Entry = Entry {
     threads: Threads::Library,
     ..Entry::new(
         "paralight",
-        "blocks; whoever is done steals half of the largest, in a pool (the crate paralight)",
+        "blocks; an idle worker steals half of the largest, in a pool (the crate paralight)",
         Discipline::Stealing(STEALING),
         make,
     )

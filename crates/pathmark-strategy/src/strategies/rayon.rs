@@ -15,7 +15,7 @@ use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "rayon",
-    "rayon's parallel iterator in a pool of its own, split down to single jobs",
+    "rayon's parallel iterator in its own pool, split down to single jobs",
     Discipline::Halving,
     make,
 );

@@ -17,7 +17,7 @@ use crate::{Blueprint, Discipline, Entry, Job, Strategy, StrategyError, team};
 
 pub(super) const ENTRY: Entry = Entry::new(
     "shared-counter",
-    "whoever is free takes the next index from an atomic counter",
+    "a free worker takes the next index from an atomic counter",
     Discipline::ONE_BY_ONE,
     make,
 );

@@ -13,7 +13,7 @@ use std::ops::Range;
 use crate::Entry;
 
 pub(super) const ENTRY: Entry =
-    Entry::dealt("static-cyclic", "jobs dealt out to the workers like cards, fixed beforehand", cycle);
+    Entry::dealt("static-cyclic", "jobs dealt to the workers in turn, fixed beforehand", cycle);
 
 /// Returns the jobs of `worker`: every `workers`-th job from its own number on. Each index has one remainder, so it
 /// belongs to one worker.

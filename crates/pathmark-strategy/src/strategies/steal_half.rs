@@ -14,7 +14,7 @@ use crate::{Amount, Entry};
 
 pub(super) const ENTRY: Entry = entry(
     "steal-half",
-    "blocks; whoever is done steals half of a block (steal-half:VICTIM; neighbour, random or richest)",
+    "blocks; an idle worker steals half of a block (steal-half:VICTIM; neighbour, random or richest)",
     Amount::Half,
     |victim| discipline(Amount::Half, victim),
 );

@@ -13,7 +13,7 @@ use crate::{Amount, Entry};
 
 pub(super) const ENTRY: Entry = entry(
     "steal-one",
-    "blocks; whoever is done steals one job (steal-one:VICTIM; neighbour, random or richest)",
+    "blocks; an idle worker steals one job (steal-one:VICTIM; neighbour, random or richest)",
     Amount::One,
     |victim| discipline(Amount::One, victim),
 );

@@ -12,7 +12,7 @@ use crate::{Entry, Handout};
 
 pub(super) const ENTRY: Entry = Entry::chunks(
     "trapezoid",
-    "whoever is free takes a chunk that is a fixed step smaller than the last one (TSS)",
+    "a free worker takes a chunk that is smaller than the last one by a fixed step (TSS)",
     size,
 );
 

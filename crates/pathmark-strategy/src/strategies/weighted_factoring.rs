@@ -12,10 +12,10 @@
 use crate::{Clock, Discipline, Entry, LearnedRule, Ledger, Parameter, Weights};
 
 pub(super) const ENTRY: Entry = Entry {
-    parameter: Some(Parameter { allowed: "one to eight weights above 0, as 1:0.5, which workers take in turn", read }),
+    parameter: Some(Parameter { allowed: "one to eight weights above 0, as in 1:0.5, for the workers in turn", read }),
     ..Entry::learned(
         "weighted-factoring",
-        "batches of p chunks, half of the jobs left, shared by the workers' given weights (WF)",
+        "batches of p chunks, half of the jobs left, sized by the workers' given weights (WF)",
         RULE,
     )
 };

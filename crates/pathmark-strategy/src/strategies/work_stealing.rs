@@ -21,7 +21,7 @@ use crate::{Amount, Blueprint, Discipline, Entry, Job, Start, Stealing, Strategy
 
 pub(super) const ENTRY: Entry = Entry::new(
     "work-stealing",
-    "a deque for each worker; whoever runs dry steals from the others",
+    "a deque for each worker; an idle worker steals from the others",
     Discipline::Stealing(STEALING),
     make,
 );

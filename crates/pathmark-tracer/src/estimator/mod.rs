@@ -319,9 +319,9 @@ pub fn any_estimator(name: &str, options: Options) -> Option<Box<dyn AnyEstimato
 }
 
 estimators! {
-    "smallpt", "smallpt's own: glass splits at the first two vertices, roulette after the fifth" => Smallpt, Smallpt::new;
+    "smallpt", "smallpt's estimator: glass splits at the first two vertices, roulette after the fifth" => Smallpt, Smallpt::new;
     "bsdf", "the same transport without splitting: one direction at every vertex" => Bsdf, Bsdf::new;
     "nee", "next-event estimation: a shadow ray from every vertex to one light" => Path<Aimed>, nee::new;
-    "mis", "light aimed at and arrived at, weighted by the power heuristic" => Path<Aimed>, mis::new;
-    "whitted", "Whitted's of 1980: point lights, ideal mirrors and glass, nothing by way of diffuse surfaces; 10 bounces" => Whitted, Whitted::new;
+    "mis", "multiple importance sampling of lights and directions, by the power heuristic" => Path<Aimed>, mis::new;
+    "whitted", "Whitted's of 1980: point lights, ideal mirrors and glass, no diffuse interreflection; 10 bounces" => Whitted, Whitted::new;
 }

@@ -32,11 +32,11 @@ impl Roulette {
     pub const SMALLPT: Self = Self { by: By::Albedo, after: 5 };
 
     /// The values that `--roulette` allows.
-    pub const ALLOWED: &str = "albedo:N or throughput:N behind the N-th vertex, N from 0 to 65534, constant:P with the same chance P behind every vertex, 0 < P < 1, or never";
+    pub const ALLOWED: &str = "albedo:N or throughput:N after the N-th vertex, N from 0 to 65534, constant:P with survival probability P after every vertex, 0 < P < 1, or never";
 
     /// Parses `albedo:5`, `throughput:2`, `constant:0.8` or `never`.
     pub fn parse(text: &str) -> Result<Self> {
-        let unknown = || InputError::new("roulette", text, "is no rule").allowed(Self::ALLOWED);
+        let unknown = || InputError::new("roulette", text, "is not a valid rule").allowed(Self::ALLOWED);
         if text == "never" {
             return Ok(Self { by: By::Albedo, after: u16::MAX });
         }

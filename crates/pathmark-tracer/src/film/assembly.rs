@@ -116,7 +116,7 @@ mod tests {
 
     /// Tiles of any size, some of which cross the threads' bands.
     #[test]
-    fn threads_place_what_one_places() {
+    fn threads_and_one_thread_place_the_same() {
         let (width, height) = (37, 29);
         let mut tiles = Vec::new();
         for y0 in (0..height).step_by(6) {

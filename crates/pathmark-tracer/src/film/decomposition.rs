@@ -24,25 +24,25 @@ pub const DECOMPOSITIONS: &[Entry] = &[
     Entry { name: "rows", about: "one job per row of pixels (report A)", example: "rows", parse: parse_rows },
     Entry {
         name: "bands",
-        about: "N bands of rows, sizes differing by at most one (report B)",
+        about: "N bands of rows whose sizes differ by at most one (report B)",
         example: "bands:20",
         parse: parse_bands,
     },
     Entry {
         name: "grid",
-        about: "N rectangles, columns times rows being N's most nearly square factors (report D)",
+        about: "N rectangles; columns and rows are the most nearly square factors of N (report D)",
         example: "grid:16",
         parse: parse_grid,
     },
     Entry {
         name: "tiles",
-        about: "tiles of WxH pixels, handed out in scanline (if none is named), hilbert, spiral or cost order",
+        about: "tiles of WxH pixels, handed out in scanline (the default), hilbert, spiral or cost order",
         example: "tiles:32x32:hilbert",
         parse: parse_tiles,
     },
     Entry {
         name: "samples",
-        about: "tiles of WxH pixels (32x32 if none is named), each cut into jobs of B = 16, 32, 64, ... samples (report D's wish)",
+        about: "tiles of WxH pixels (32x32 by default), each cut into jobs of B = 16, 32, 64, ... samples (report D's wish)",
         example: "samples:16:32x32",
         parse: parse_samples,
     },
@@ -124,7 +124,7 @@ impl Decomposition {
             return Ok(Self { text: text.to_string(), cut });
         }
         let examples: Vec<&str> = DECOMPOSITIONS.iter().map(|entry| entry.example).collect();
-        let problem = if entry.is_some() { "cannot be read" } else { "there is no decomposition of that name" };
+        let problem = if entry.is_some() { "has invalid parameters" } else { "there is no decomposition of that name" };
         Err(InputError::new("decomposition", text, problem)
             .allowed(format!("as in {}; numbers from 1, samples in 16, 32, 64, ...", examples.join(", ")))
             .into())
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_cut_into_blocks_and_what_is_left() {
+    fn samples_are_cut_into_blocks_and_a_rest() {
         let plan = Decomposition::parse("samples:32:8x8").unwrap().plan(16, 8, &(0..80));
         let parts: Vec<(u32, Range<u32>)> =
             plan.pieces().iter().map(|piece| (piece.bounds.x0, piece.samples.clone())).collect();

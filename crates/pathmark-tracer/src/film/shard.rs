@@ -76,7 +76,7 @@ impl Shard {
     pub fn parse(text: &str, cut: ShardCut) -> Result<Self> {
         let numbers = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
         numbers.and_then(|(index, count)| Self::new(index, count, cut)).ok_or_else(|| {
-            InputError::new("shard", text, "is no part of a whole").allowed("I/N, I being 1 to N, as in 2/4").into()
+            InputError::new("shard", text, "is not a valid shard").allowed("I/N with I from 1 to N, such as 2/4").into()
         })
     }
 
@@ -100,17 +100,17 @@ impl Shard {
         let (most, problem, allowed) = match self.cut {
             ShardCut::Samples => {
                 let most = spp.div_ceil(SAMPLE_BLOCK);
-                (most, format!("{spp} samples are {most} blocks of {SAMPLE_BLOCK}"), "tiles are another way to cut")
+                (most, format!("{spp} samples are {most} blocks of {SAMPLE_BLOCK}"), "or cut by tiles")
             }
             ShardCut::Tiles => {
                 let most = width.div_ceil(TILE) * height.div_ceil(TILE);
-                (most, format!("the image has {most} tiles of {TILE}x{TILE}"), "samples are another way to cut")
+                (most, format!("the image has {most} tiles of {TILE}x{TILE}"), "or cut by samples")
             }
         };
         if self.count <= most {
             return Ok(());
         }
-        let allowed = format!("at most {most} shards; {allowed}");
+        let allowed = format!("at most {most} shards, {allowed}");
         Err(InputError::new("shard", self.to_string(), problem).allowed(allowed).into())
     }
 
@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_part_is_refused() {
+    fn invalid_shards_are_refused() {
         assert_eq!(Shard::parse("2/4", ShardCut::Tiles).unwrap(), Shard::new(2, 4, ShardCut::Tiles).unwrap());
         for text in ["0/4", "5/4", "4", "/4", "1/0", "-1/4", "1/4/2", "a/b", ""] {
             assert_eq!(Shard::parse(text, ShardCut::Samples).unwrap_err().exit_code(), 2, "{text}");

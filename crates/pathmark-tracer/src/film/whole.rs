@@ -18,7 +18,7 @@ pub fn check_size(width: u32, height: u32) -> Result<()> {
     if sides && u64::from(width) * u64::from(height) <= LARGEST_AREA {
         return Ok(());
     }
-    Err(InputError::new("size", format!("{width}x{height}"), "is not a size that an image can have")
+    Err(InputError::new("size", format!("{width}x{height}"), "is not a valid image size")
         .allowed(format!("1x1 to {LARGEST_SIDE}x{LARGEST_SIDE}, at most {LARGEST_AREA} pixels"))
         .into())
 }

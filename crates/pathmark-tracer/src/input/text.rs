@@ -40,7 +40,7 @@ pub fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
         ErrorKind::NotFound => refused(path, "there is no such file").into(),
         ErrorKind::NotADirectory => refused(path, "a part of the path is not a directory").into(),
         ErrorKind::InvalidFilename => refused(path, "the name is too long").into(),
-        ErrorKind::InvalidInput => refused(path, "the name holds a zero byte").into(),
+        ErrorKind::InvalidInput => refused(path, "the name contains a zero byte").into(),
         _ => Error::system("reading", path, e),
     })?;
     let data = file.metadata().map_err(|e| Error::system("reading", path, e))?;
@@ -48,7 +48,7 @@ pub fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
         return Err(refused(path, "is a directory").into());
     }
     if data.len() > limits.bytes {
-        return Err(refused(path, too_large("such a file", limits.bytes)).into());
+        return Err(refused(path, too_large("is too large", limits.bytes)).into());
     }
     Ok(BufReader::new(Text { file, is_regular: data.is_file(), limits, bytes: 0, line: 0 }))
 }
@@ -63,7 +63,7 @@ pub fn unreadable(path: &Path, error: io::Error) -> Error {
 
 fn too_large(what: &str, most: u64) -> String {
     let (most, unit) = if most < 1 << 20 { (most >> 10, "KiB") } else { (most >> 20, "MiB") };
-    format!("is larger than {what} can be (allowed: up to {most} {unit})")
+    format!("{what} (allowed: up to {most} {unit})")
 }
 
 fn refused(path: &Path, problem: impl Into<String>) -> InputError {
@@ -93,9 +93,9 @@ impl Read for Text {
             self.bytes += 1;
             self.line = if byte == b'\n' { 0 } else { self.line + 1 };
             let problem = if self.bytes > self.limits.bytes {
-                too_large("such a file", self.limits.bytes)
+                too_large("is too large", self.limits.bytes)
             } else if self.line >= self.limits.line {
-                too_large("a line of such a file", self.limits.line)
+                too_large("has a line that is too long", self.limits.line)
             } else {
                 continue;
             };
@@ -119,7 +119,7 @@ mod tests {
         let refusal = |path: &Path| read_text_up_to(path, 1 << 50).unwrap_err();
         assert_eq!(read_text_up_to(Path::new("/dev/null"), 0).unwrap(), "");
         assert!(refusal(Path::new("/dev/zero")).to_string().contains("byte 0 is zero"));
-        assert!(refusal(Path::new("a\0b")).to_string().contains("file = a\\0b: the name holds a zero byte"));
+        assert!(refusal(Path::new("a\0b")).to_string().contains("file = a\\0b: the name contains a zero byte"));
         assert!(refusal(&folder.path().join("x".repeat(300))).to_string().contains("too long"));
         assert!(refusal(folder.path()).to_string().contains("is a directory"));
         // The parser reports the position of a zero byte in a regular file.
@@ -137,11 +137,11 @@ mod tests {
         let path = folder.path().join("text");
         fs::write(&path, "1234\n1234\n").unwrap();
         assert_eq!(read_text_up_to(&path, 10).unwrap().len(), 10);
-        assert!(read_text_up_to(&path, 9).unwrap_err().to_string().contains("larger than such a file"));
+        assert!(read_text_up_to(&path, 9).unwrap_err().to_string().contains("is too large"));
         let lines =
             |line| open_text(&path, Limits { bytes: 10, line }).unwrap().lines().collect::<io::Result<Vec<_>>>();
         assert_eq!(lines(5).unwrap(), ["1234", "1234"]);
         let error = unreadable(&path, lines(4).unwrap_err());
-        assert!(error.exit_code() == 2 && error.to_string().contains("a line of such a file"), "{error}");
+        assert!(error.exit_code() == 2 && error.to_string().contains("a line that is too long"), "{error}");
     }
 }

@@ -314,7 +314,7 @@ fn profile(
         return Err(unknown("effects", wanted, PROFILES.iter().map(|entry| entry.name)).into());
     };
     if !profile.effects.cover(effects) {
-        let problem = format!("does not cover the scene, which calls for {}", effect_names(effects));
+        let problem = format!("does not cover the scene, which needs {}", effect_names(effects));
         return Err(InputError::new("effects", wanted, problem).allowed(fitting).into());
     }
     if !is_compiled(profile.name) {
@@ -327,19 +327,19 @@ fn profile(
 /// The options for the estimator. Options that it does not have are errors.
 fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Options> {
     if let Some(depth) = spec.max_depth.filter(|depth| is_own || *depth > estimator.largest_depth) {
-        let problem = format!("is more than {} can follow", estimator.name);
+        let problem = format!("is not supported by {}", estimator.name);
         let allowed = if is_own { "none".to_string() } else { format!("0 to {}", estimator.largest_depth) };
         return Err(InputError::new("max-depth", depth.to_string(), problem).allowed(allowed).into());
     }
     let clamp = spec.clamp.as_deref().map(Clamp::parse).transpose()?;
     if clamp.is_some_and(|clamp| clamp.what == Clamped::Recursion) && !estimator.is_one_path {
-        let problem = "follows several paths at once, whose recursions are not clamped here";
+        let problem = "follows several paths at once, but the recursion clamp supports only one";
         let single: Vec<&str> = ESTIMATORS.iter().filter(|entry| entry.is_one_path).map(|entry| entry.name).collect();
         return Err(InputError::new("estimator", estimator.name, problem).allowed(single.join(", ")).into());
     }
     let roulette = spec.roulette.as_deref().map(Roulette::parse).transpose()?;
     if let Some(rule) = spec.roulette.as_deref().filter(|_| is_own || estimator.roulette.is_none()) {
-        let problem = format!("is no option of {}, which ends no path by chance", estimator.name);
+        let problem = format!("is not supported by {}, which takes no roulette rule", estimator.name);
         return Err(InputError::new("roulette", rule, problem).allowed("none").into());
     }
     Ok(Options { max_depth: spec.max_depth, roulette, camera_rays: camera_rays(spec, estimator, is_own)? })
@@ -372,8 +372,8 @@ fn epsilon(spec: &Spec) -> Result<Option<f64>> {
     let Some(text) = spec.epsilon.as_deref().filter(|text| *text != "none") else { return Ok(None) };
     let parsed = text.parse().ok().filter(|distance: &f64| distance.is_finite() && *distance >= 0.0);
     let error = || {
-        InputError::new("epsilon", text, "is no distance")
-            .allowed("a number from 0 on, in the scene's lengths, or none")
+        InputError::new("epsilon", text, "is not a valid distance")
+            .allowed("a number of at least 0, in the scene's units of length, or none")
     };
     parsed.map(Some).ok_or_else(|| error().into())
 }

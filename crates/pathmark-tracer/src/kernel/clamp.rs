@@ -24,11 +24,11 @@ pub struct Clamp {
 
 impl Clamp {
     /// The values that `--clamp` allows, for error messages.
-    pub const ALLOWED: &str = "subpixel or recursion, or with a limit above 0 other than 1, like recursion:10";
+    pub const ALLOWED: &str = "subpixel or recursion, with a limit above 0 if it is not 1, as in recursion:10";
 
     /// Reads `subpixel`, `recursion` or `recursion:10`.
     pub fn parse(text: &str) -> Result<Self> {
-        let unknown = || InputError::new("clamp", text, "is no clamp").allowed(Self::ALLOWED);
+        let unknown = || InputError::new("clamp", text, "is not a valid clamp").allowed(Self::ALLOWED);
         let (what, limit) = text.split_once(':').unwrap_or((text, "1"));
         let what = match what {
             "subpixel" => Clamped::Subpixel,

@@ -81,7 +81,7 @@ pub(super) fn precision(spec: &Spec) -> Result<Precision> {
         return Err(unknown("precision", name, Precision::ALL.into_iter().map(Precision::name)).into());
     };
     if spec.kernel == SCALAR && precision != Precision::F64 {
-        let problem = "is nothing for the scalar kernel";
+        let problem = "is not supported by the scalar kernel";
         return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
     }
     Ok(precision)

@@ -118,14 +118,14 @@ pub struct Entry {
 
 /// The kernels, in the order in which they are listed.
 pub const KERNELS: &[Entry] = &[
-    Entry { name: LANES, about: "many paths side by side in SIMD lanes; what it cannot do, the scalar kernel does" },
+    Entry { name: LANES, about: "many paths side by side in SIMD lanes; falls back to the scalar kernel if needed" },
     Entry { name: SCALAR, about: "one path at a time" },
 ];
 
 /// The kernel for devices. `device` selects the first GPU, `device:ID` the device of that name, `lanes+device:ID` lanes
 /// and a device together.
 pub const DEVICE_KERNEL: Entry =
-    Entry { name: DEVICE, about: "on a device, with the bits of the others; `lanes+device:ID` renders on both" };
+    Entry { name: DEVICE, about: "on a device, bit-identical to the others; `lanes+device:ID` renders on both" };
 
 const DEVICE: &str = "device";
 const LANES: &str = "lanes";

@@ -39,12 +39,12 @@ impl Probe for Segments {
 /// fog and estimators that split paths are refused, because their rays start elsewhere.
 pub fn path_rays(scene: &Arc<Scene>, choice: &Choice, samples: &Range<u32>) -> Result<Vec<Start>> {
     if !choice.estimator.is_one_path {
-        let problem = "follows several paths at once, whose rays are not told apart";
+        let problem = "follows several paths at once and does not separate their rays";
         return Err(InputError::new("estimator", choice.estimator.name, problem).allowed("bsdf").into());
     }
     if scene.fog.is_some() {
-        return Err(InputError::new("scene", &scene.name, "has fog, in which rays start")
-            .allowed("a scene without")
+        return Err(InputError::new("scene", &scene.name, "has fog, and rays can start in it")
+            .allowed("a scene without fog")
             .into());
     }
     let inspector = Inspector::new(scene, &choice.clone().in_double_precision())?;

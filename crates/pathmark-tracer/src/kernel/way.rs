@@ -93,7 +93,7 @@ fn beside(
                 return Ok(Way::Scalar { instead_because });
             }
             _ => {
-                let problem = "is no device, and stands beside a kernel";
+                let problem = "is not a device, and only devices can follow a `+`";
                 let allowed = format!("{DEVICE}, or {DEVICE}:ID");
                 return Err(InputError::new("kernel", device, problem).allowed(allowed).into());
             }

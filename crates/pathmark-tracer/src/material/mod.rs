@@ -187,7 +187,7 @@ materials! {
     mirror::Mirror, "mirror", "ideal specular reflection";
     dielectric::Dielectric, "dielectric", "clear glass: refraction and reflection by Schlick's or the exact Fresnel term";
     polished::Polished, "polished", "a mirror over a diffuse base";
-    fresnel_mirror::FresnelMirror, "fresnel-mirror", "a mirror that absorbs what Fresnel's formula lets in";
-    conductor::Conductor, "conductor", "metal, rough by GGX or smooth, with Schlick's Fresnel term";
-    kd_ks::KdKs, "kd-ks", "a matte body under GGX facets, shared out by Fresnel's formula at the surface at large";
+    fresnel_mirror::FresnelMirror, "fresnel-mirror", "a mirror that absorbs the light that Fresnel's formula transmits";
+    conductor::Conductor, "conductor", "metal, smooth or rough (GGX), with Schlick's Fresnel term";
+    kd_ks::KdKs, "kd-ks", "a diffuse base under GGX facets, weighted by Fresnel's formula for the macroscopic normal";
 }

@@ -184,9 +184,9 @@ samplers! {
         "hash", "uniform numbers from one 64-bit hash of the address: independent down to 2^-32, and faster", "00916d15f783380b" => Hash;
     }
     spread {
-        "stratified", "4x4 jittered strata for each 16 samples, in an order of its own for each use", "0d0de625fc782297" => Stratified;
-        "sobol", "Owen-scrambled Sobol pairs, each use with a scrambling and an order of its own", "6c0274abd78ac137" => Sobol;
-        "sobol-burley", "sobol by 32-bit scramblings (Burley 2020): as even, and cheaper in lanes", "9ad64a7ff83a2dc3" => SobolBurley;
+        "stratified", "4x4 jittered strata for each 16 samples, in a separate order for each use", "0d0de625fc782297" => Stratified;
+        "sobol", "Owen-scrambled Sobol pairs, with separate scrambling and order for each use", "6c0274abd78ac137" => Sobol;
+        "sobol-burley", "sobol with 32-bit scrambling (Burley 2020): equally even, and cheaper in lanes", "9ad64a7ff83a2dc3" => SobolBurley;
     }
     stateful {
         "libc-rand", "the C library's one rand() behind its lock (report A); not deterministic" => LibcRand::new;

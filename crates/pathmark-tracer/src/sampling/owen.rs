@@ -71,7 +71,7 @@ mod tests {
 
     /// A digit's flip depends on the digits before it and on none after it, so a scrambled net is a net.
     #[test]
-    fn scrambling_keeps_what_leading_digits_share() {
+    fn scrambling_keeps_shared_leading_digits() {
         for key in 0..1000 {
             let keys = [mix(key), mix(key ^ 1 << 32)];
             for level in 0..64 {

@@ -78,7 +78,7 @@ mod tests {
 
     /// A digit's flip depends on the digits before it and on none after it, so a scrambled net is a net.
     #[test]
-    fn scrambling_keeps_what_leading_digits_share() {
+    fn scrambling_keeps_shared_leading_digits() {
         for key in 0..1000 {
             for level in 0..32 {
                 let (one, other) = (mix(key + 1), mix(key + 2));

@@ -18,12 +18,12 @@ macro_rules! features {
 
 features! {
     Hierarchy, HIERARCHY, "hierarchy", "a bounding volume hierarchy over the primitives";
-    Background, BACKGROUND, "background", "radiance of rays that meet nothing";
-    PointLight, POINT_LIGHT, "point-light", "lights without a size, by inverse squares";
+    Background, BACKGROUND, "background", "radiance of rays that hit nothing";
+    PointLight, POINT_LIGHT, "point-light", "point lights with inverse-square falloff";
     Lens, LENS, "lens", "a thin lens";
-    Fog, FOG, "fog", "a homogeneous medium that absorbs, scatters and glows";
+    Fog, FOG, "fog", "a homogeneous medium that absorbs, scatters and emits";
     Compound, COMPOUND, "compound", "objects that are made of several primitives";
-    AngularEmission, ANGULAR_EMISSION, "angular-emission", "emission by the angle to the normal";
-    Epsilon, EPSILON, "epsilon", "a distance below which nothing is hit";
-    Reach, REACH, "reach", "point lights that end after a distance";
+    AngularEmission, ANGULAR_EMISSION, "angular-emission", "emission that depends on the angle to the normal";
+    Epsilon, EPSILON, "epsilon", "a minimum distance of hits";
+    Reach, REACH, "reach", "point lights with a limited reach";
 }

@@ -53,7 +53,7 @@ const SMALLPT: Effects = Sphere::EFFECT.and(Diffuse::EFFECT).and(Mirror::EFFECT)
 const ALL: Effects = all(PRIMITIVES).and(all(MATERIALS)).and(all(FEATURES));
 
 profiles! {
-    DiffuseOnly, "diffuse", "diffuse spheres alone", Sphere::EFFECT.and(Diffuse::EFFECT);
+    DiffuseOnly, "diffuse", "only diffuse spheres", Sphere::EFFECT.and(Diffuse::EFFECT);
     SmallptEffects, "smallpt", "spheres that are diffuse, mirrors or glass", SMALLPT;
     LensEffects, "lens", "smallpt's effects through a lens", SMALLPT.and(LENS);
     FogEffects, "fog", "smallpt's effects in fog", SMALLPT.and(FOG);
@@ -61,7 +61,7 @@ profiles! {
         SMALLPT.and(Polished::EFFECT).and(Plane::EFFECT).and(BACKGROUND).and(POINT_LIGHT).and(HIERARCHY).and(COMPOUND);
     SurfaceEffects, "surfaces", "spheres, planes and triangles of every material, in a hierarchy",
         all(PRIMITIVES).and(all(MATERIALS)).and(HIERARCHY).and(COMPOUND);
-    AllEffects, "all", "every effect there is", ALL;
+    AllEffects, "all", "every effect", ALL;
 }
 
 /// The names of the effects, joined with `+`.

@@ -103,12 +103,12 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
     let mut name = source.name.clone();
     if let Some((number, given)) = number {
         let problem = match &mut draft.generator {
-            None => Err("nothing: only scenes with a generator take a number"),
+            None => Err("none, because only scenes with a generator take a number"),
             Some(generator) => generator.set_number(number),
         };
         problem.map_err(|allowed| {
             let given = format!("{name}:{given}");
-            InputError::new("scene", given, "the number behind the colon does not fit").allowed(allowed)
+            InputError::new("scene", given, "the number after the colon is not allowed").allowed(allowed)
         })?;
         name = format!("{name}:{number}");
         draft.hash.update(number.to_string().as_bytes());
@@ -274,7 +274,7 @@ fn base_of(from: &Source, base: &str, depth: usize, own: &[OwnScene]) -> Result<
     let error =
         |problem: String| InputError::new("base", base, problem).in_file(&from.file, locate(&from.text, "base", base));
     if depth == DEEPEST_BASE {
-        return Err(error(format!("is the {DEEPEST_BASE}th base of a base: they may go in a circle")).into());
+        return Err(error(format!("follows a chain of {DEEPEST_BASE} bases, which may form a circle")).into());
     }
     let source = source(base, &from.folder, own).map_err(|problem| match problem {
         Error::Input(problem) if problem.place.is_none() => {

@@ -306,7 +306,7 @@ levels! {
     Avx512: "avx512", "AVX-512 (F, DQ, VL, BW): 512-bit registers, two at a time" => avx512;
     #[cfg(target_arch = "x86_64")]
     Avx2: "avx2", "AVX2 and FMA: 256-bit registers, two at a time" => avx2;
-    Baseline: "baseline", "what the compiler makes of small arrays: SSE2 or NEON" => plain;
+    Baseline: "baseline", "small arrays that the compiler vectorises: SSE2 or NEON" => plain;
 }
 
 struct OfLevel;

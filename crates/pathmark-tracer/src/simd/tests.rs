@@ -236,7 +236,7 @@ fn lanes_are_packed<V: Float>() {
 }
 
 #[test]
-fn every_level_computes_what_one_number_does() {
+fn every_level_agrees_with_scalar_arithmetic() {
     for precision in Precision::ALL {
         assert!(levels().map(|level| on_level(level, precision, Operations)).count() >= 1);
     }

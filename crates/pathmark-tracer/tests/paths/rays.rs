@@ -23,7 +23,7 @@ fn search(scene: &str, kernel: &str, precision: &str) -> FoundRays {
 
 /// Every ray has the same hit as its path had, whichever kernel searches.
 #[test]
-fn what_paths_met_is_met() {
+fn rays_of_paths_meet_the_same_primitives() {
     for scene in ["bumpy-ball", "cornell", "spheres:300", "cornell-mesh"] {
         let scalar = search(scene, "scalar", "f64");
         assert_eq!(scalar.met, scalar.counts.rays, "{scene}");

@@ -85,7 +85,7 @@ pub(in crate::kernel) fn device_for(
     epsilon: Option<f64>,
 ) -> Result<std::result::Result<ForDevice, &'static str>> {
     if let Some(level) = &spec.simd {
-        let problem = "is for lanes, and a device has none";
+        let problem = "applies only to lanes, and a device has none";
         return Err(InputError::new("simd", level, problem).allowed("none").into());
     }
     let precision = precision(spec)?;

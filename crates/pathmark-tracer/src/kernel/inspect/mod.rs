@@ -32,11 +32,11 @@ impl Inspector {
     pub fn new(scene: &Arc<Scene>, choice: &Choice) -> Result<Self> {
         if choice.precision() != Precision::F64 {
             let name = choice.precision().name();
-            let problem = "exists in SIMD lanes alone, which do not tell what a path does";
+            let problem = "is rendered by SIMD lanes only, which cannot report the events of a path";
             return Err(InputError::new("precision", name, problem).allowed(Precision::F64.name()).into());
         }
         let Some(sampler) = keyed_sampler(choice.sampler.name) else {
-            let problem = "gives other numbers in each run, so that no sample can be had again";
+            let problem = "returns different numbers in each run, so no sample can be repeated";
             let names: Vec<&str> =
                 SAMPLERS.iter().filter(|entry| entry.deterministic).map(|entry| entry.name).collect();
             return Err(InputError::new("sampler", choice.sampler.name, problem).allowed(names.join(", ")).into());

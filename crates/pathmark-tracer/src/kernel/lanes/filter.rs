@@ -138,7 +138,7 @@ mod tests {
     /// A sure result equals the test of all spheres, to the bit, even near edges where two spheres are met at once. In
     /// walks the filter is sure of nearly all rays.
     #[test]
-    fn what_is_sure_is_right() {
+    fn sure_answers_are_right() {
         let mut scenes = 0;
         for (name, _) in SCENES {
             let scene = load(name).unwrap();

@@ -135,7 +135,7 @@ mod tests {
 
     /// Top-row rays of a small image start above the ceiling and meet the light there; rays of a larger image do not.
     #[test]
-    fn what_rays_start_outside_of_encloses_nothing() {
+    fn spheres_that_rays_start_outside_of_are_not_enclosing() {
         let scene = load("cornell").unwrap();
         let ceiling = scene.objects.iter().position(|object| object.name == "ceiling").unwrap() as u32;
         let encloses =
@@ -147,7 +147,7 @@ mod tests {
     /// up and out meets the sky at once, and so does a ray from the sky itself. A ray that goes back in meets the other
     /// side of the sky.
     #[test]
-    fn no_ray_gets_out_of_what_encloses_all() {
+    fn no_ray_leaves_an_enclosing_sphere() {
         let scene = load("sky").unwrap();
         let enclosing = scene.enclosing(&scene.camera.view(4, 4));
         assert_eq!(enclosing, [2]);

@@ -53,9 +53,9 @@ impl Workload for Costs {
         match self.0 {
             Distribution::Uniform => "spins for uniformly distributed numbers of steps",
             Distribution::Exponential => "spins for exponentially distributed numbers of steps",
-            Distribution::Bimodal => "spins for few steps, and in every tenth item for 41 times as many",
+            Distribution::Bimodal => "spins for few steps; every tenth item takes 41 times as many",
             Distribution::Giant => "spins evenly, but the middle item costs as much as all others together",
-            Distribution::Sorted => "spins for fewer and fewer steps, the dearest item first",
+            Distribution::Sorted => "spins for fewer and fewer steps; the most expensive item comes first",
         }
     }
 

@@ -15,7 +15,7 @@ pub struct Mandelbrot;
 
 impl Workload for Mandelbrot {
     fn about(&self) -> &'static str {
-        "the Mandelbrot set, at most 1000 steps a point: unequal costs, side by side"
+        "the Mandelbrot set, at most 1000 steps a point: neighbouring points with unequal costs"
     }
 
     fn run(&self, item: &Item) -> [f64; 3] {

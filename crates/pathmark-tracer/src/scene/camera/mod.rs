@@ -65,11 +65,11 @@ pub struct FilterEntry {
 
 /// The pixel filters, in the order in which they are listed.
 pub const FILTERS: &[FilterEntry] = &[
-    FilterEntry { name: "tent", about: "smallpt's: a tent over each of 2x2 subpixels", filter: Filter::Tent },
-    FilterEntry { name: "box", about: "evenly over the pixel", filter: Filter::Box },
+    FilterEntry { name: "tent", about: "smallpt's filter: a tent over each of 2x2 subpixels", filter: Filter::Tent },
+    FilterEntry { name: "box", about: "uniform over the pixel", filter: Filter::Box },
     FilterEntry {
         name: "center",
-        about: "all through the centre of the pixel, as report B does",
+        about: "every ray through the centre of the pixel (report B)",
         filter: Filter::Center,
     },
 ];
@@ -108,9 +108,9 @@ macro_rules! cameras {
 }
 
 cameras! {
-    smallpt::Smallpt, "smallpt", "smallpt's: rays start some way in front of the pinhole, a tent filter on 2x2 subpixels";
+    smallpt::Smallpt, "smallpt", "smallpt's camera: rays start in front of the pinhole, with a tent filter on 2x2 subpixels";
     pinhole::Pinhole, "pinhole", "a pinhole that looks at a point";
-    thin_lens::ThinLens, "thin-lens", "a lens that is sharp at one distance only";
+    thin_lens::ThinLens, "thin-lens", "a lens that is in focus at one distance only";
 }
 
 /// A camera set up for an image size.

@@ -35,7 +35,7 @@ impl Smallpt {
 fn view_direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::Error> {
     let d = direction(deserializer)?;
     if d.y.abs().max(d.z.abs()) < 1e-6 {
-        return Err(serde::de::Error::custom("looks along the image's own rows (allowed: a direction off the x axis)"));
+        return Err(serde::de::Error::custom("points along the image's rows (allowed: a direction off the x axis)"));
     }
     Ok(d)
 }

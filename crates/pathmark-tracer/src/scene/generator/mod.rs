@@ -81,9 +81,9 @@ macro_rules! generators {
 }
 
 generators! {
-    spheres::Spheres, "spheres", "so many diffuse balls, evenly at random in a cube, filling the same share of it";
-    clusters::Clusters, "clusters", "so many diffuse balls in dense clusters in a cube that is empty elsewhere";
-    imbalance::Imbalance, "imbalance", "a sixteenth of the image where a path costs so many rays, one elsewhere";
-    bumpy_ball::BumpyBall, "bumpy-ball", "a ball with bumps, a mesh of so many triangles or a few more";
-    furnace::Furnace, "furnace", "a closed box of that albedo in thermal equilibrium, with a mirror and a glass ball in it";
+    spheres::Spheres, "spheres", "N diffuse balls, uniformly random in a cube; they fill the same share of it for every N";
+    clusters::Clusters, "clusters", "N diffuse balls in dense clusters in an otherwise empty cube";
+    imbalance::Imbalance, "imbalance", "paths of N rays on average in a sixteenth of the image, and of one ray elsewhere";
+    bumpy_ball::BumpyBall, "bumpy-ball", "a ball with bumps: a mesh of N triangles or a few more";
+    furnace::Furnace, "furnace", "a closed box of albedo N in thermal equilibrium, with a mirror ball and a glass ball";
 }

@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_found_is_what_was_built() {
+    fn a_kept_hierarchy_equals_the_built_one() {
         let shelf = Shelf::default();
         for name in ["spheres:5000", "bumpy-ball:5000"] {
             let scene = load(name).unwrap();
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_found_is_not_built() {
+    fn a_kept_hierarchy_is_not_built_again() {
         let (scene, shelf) = (load("spheres:5000").unwrap(), Shelf::default());
         let built = found_or_built("sah", items(&scene), &shelf, |_| scene.hierarchy_by("sah", None).unwrap()).unwrap();
         let found = found_or_built("sah", items(&scene), &shelf, |_| unreachable!("it is kept")).unwrap();

@@ -96,7 +96,7 @@ macro_rules! accelerators {
 accelerators! {
     "none", "every primitive is tested" => None;
     "median", "a bounding volume hierarchy, split at the median of the widest axis" => Some(|items| build::build(items, &median::Median));
-    "sah", "a bounding volume hierarchy, split where the surface area heuristic is least" => Some(|items| build::build(items, &sah::Sah::new()));
+    "sah", "a bounding volume hierarchy, split by the surface area heuristic" => Some(|items| build::build(items, &sah::Sah::new()));
 }
 
 /// The least number of primitives for which a hierarchy is faster than testing all of them (experiment `acceleration`).

@@ -98,20 +98,22 @@ impl Hierarchy {
         let mut file = Hashed { file, hash: Sha256::new() };
         let mut magic = [0; MAGIC.len()];
         file.fill(&mut magic)?;
+        if magic != *MAGIC {
+            return Err(damaged("it has another format"));
+        }
         let [nodes, order] = [file.number()?, file.number()?];
-        let is_possible = (1..2 * items.len() as u64).contains(&nodes) && order == items.len() as u64;
-        if magic != *MAGIC || !is_possible {
-            return Err(damaged("it is of another scene"));
+        if !(1..2 * items.len() as u64).contains(&nodes) || order != items.len() as u64 {
+            return Err(damaged("it belongs to another scene"));
         }
         let [nodes, order] = [file.take_all(2 * nodes as usize)?, file.take_all(items.len())?];
         let Hashed { file, hash } = file;
         let mut told = Output::<Sha256>::default();
         file.read_exact(&mut told)?;
         if told != hash.finalize() {
-            return Err(damaged("its SHA-256 is another"));
+            return Err(damaged("its SHA-256 does not match"));
         }
         if file.read(&mut [0])? > 0 {
-            return Err(damaged("it goes on behind its SHA-256"));
+            return Err(damaged("it continues after its SHA-256"));
         }
         Self::assembled(nodes.as_chunks().0, &order, items).map_err(damaged)
     }
@@ -122,7 +124,7 @@ impl Hierarchy {
         let mut is_missing = vec![true; items.len()];
         let mut is_new = |place: &u32| is_missing.get_mut(*place as usize).is_some_and(std::mem::take);
         if !order.iter().all(&mut is_new) {
-            return Err("its primitives are others");
+            return Err("its primitives are not those of the scene");
         }
         // Levels below the root; 0 if no parent has been seen.
         let mut levels = vec![0_u8; nodes.len()];
@@ -138,7 +140,7 @@ impl Hierarchy {
             let children = levels.get_mut(at..at + 2).filter(|_| at > index && usize::from(level) < DEEPEST);
             match children {
                 Some(children) if *children == [0, 0] => children.fill(level + 1),
-                _ => return Err("a node has no children of its own"),
+                _ => return Err("a node has invalid children"),
             }
         }
         let mut all = vec![Node { faces: Bounds::EMPTY.faces(), at: 0, count: 0 }; nodes.len()];
@@ -147,7 +149,7 @@ impl Hierarchy {
         for (index, &[at, count]) in nodes.iter().enumerate().rev() {
             let (first, mut bounds) = (at as usize, Bounds::EMPTY);
             if count > 0 {
-                let own = order.get(first..first + count as usize).ok_or("a leaf has no primitives")?;
+                let own = order.get(first..first + count as usize).ok_or("a leaf has invalid primitives")?;
                 for place in own {
                     bounds = bounds.and(&items[*place as usize].bounds);
                 }
@@ -155,7 +157,7 @@ impl Hierarchy {
             } else {
                 let [[begin, middle], [next, end]] = [ranges[first], ranges[first + 1]];
                 if middle != next {
-                    return Err("leaves are not in their order");
+                    return Err("leaves are out of order");
                 }
                 bounds = bounds_of(all[first].faces).and(&bounds_of(all[first + 1].faces));
                 ranges[index] = [begin, end];
@@ -163,7 +165,7 @@ impl Hierarchy {
             all[index] = Node { faces: bounds.faces(), at, count };
         }
         if ranges.first() != Some(&[0, items.len() as u32]) {
-            return Err("leaves are not in their order");
+            return Err("leaves are out of order");
         }
         Ok(Self { nodes: all, order: order.iter().map(|place| items[*place as usize].number).collect() })
     }
@@ -230,16 +232,16 @@ pub(super) mod tests {
             Hierarchy::assembled(&nodes, &order, &items).unwrap_err()
         };
         assert!(Hierarchy::assembled(&nodes, &whole.order, &items).unwrap() == whole);
-        let children = "a node has no children of its own";
-        let (leaves, primitives) = ("leaves are not in their order", "its primitives are others");
+        let children = "a node has invalid children";
+        let (leaves, primitives) = ("leaves are out of order", "its primitives are not those of the scene");
         let errors = [
             (children, refused(0, |nodes, _, root| nodes[root][0] = 0)),
             (children, refused(last, |nodes, _, last| nodes[last][0] = nodes.len() as u32 - 1)),
             (children, refused(last, |nodes, _, last| nodes[last][0] = u32::MAX)),
             (children, refused(1, |nodes, _, first| nodes[first][0] = nodes[first + 1][0])),
             ("a node has no parent", refused(0, |nodes, _, root| nodes[root][1] = 1)),
-            ("a leaf has no primitives", refused(leaf, |nodes, _, leaf| nodes[leaf][0] = 5000)),
-            ("a leaf has no primitives", refused(leaf, |nodes, _, leaf| nodes[leaf][1] = u32::MAX)),
+            ("a leaf has invalid primitives", refused(leaf, |nodes, _, leaf| nodes[leaf][0] = 5000)),
+            ("a leaf has invalid primitives", refused(leaf, |nodes, _, leaf| nodes[leaf][1] = u32::MAX)),
             (leaves, refused(equal, |nodes, _, leaf| nodes.swap(leaf, leaf + 1))),
             (leaves, refused(leaf, |nodes, _, leaf| nodes[leaf][1] += 1)),
             (primitives, refused(0, |_, order, first| order[first] = order[first + 1])),
@@ -264,7 +266,7 @@ pub(super) mod tests {
             Hierarchy::assembled(&nodes, &order, &all[..order.len()]).map(|tree| tree.depth())
         };
         assert_eq!(chain(DEEPEST as u32), Ok(DEEPEST));
-        assert_eq!(chain(DEEPEST as u32 + 1), Err("a node has no children of its own"));
+        assert_eq!(chain(DEEPEST as u32 + 1), Err("a node has invalid children"));
     }
 
     /// A golden digest, which changes when the same primitives give another hierarchy. Then raise the number in

@@ -215,7 +215,7 @@ mod tests {
 
     /// A light outside a closed room is no target: here the room's ceiling is between.
     #[test]
-    fn what_cannot_be_reached_is_no_target() {
+    fn unreachable_lights_are_no_targets() {
         let mut scene = load("cornell").unwrap();
         let light = scene.objects.iter().position(|object| object.name == "light").unwrap();
         scene.primitives.spheres[light].center.y += 1.0;

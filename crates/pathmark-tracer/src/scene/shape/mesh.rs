@@ -81,7 +81,7 @@ impl Mesh {
             for face in model.mesh.indices.chunks_exact(3) {
                 let [Some(a), Some(b), Some(c)] = [face[0], face[1], face[2]].map(corner) else {
                     return Err(self
-                        .error(folder, "f", &face[0].to_string(), "names a vertex that is not there")
+                        .error(folder, "f", &face[0].to_string(), "refers to a vertex that does not exist")
                         .into());
                 };
                 add([a, b, c]);
@@ -118,7 +118,7 @@ impl Shape for Mesh {
             self.add_obj(files, add)?;
         }
         if primitives.triangles.len() == before {
-            return Err(self.error(files.folder, "mesh", "", "has no triangle with an area").into());
+            return Err(self.error(files.folder, "mesh", "", "has no triangle of nonzero area").into());
         }
         Ok(())
     }

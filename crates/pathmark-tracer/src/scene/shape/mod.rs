@@ -203,8 +203,8 @@ macro_rules! primitives {
 
 primitives! {
     sphere::Sphere, spheres, "sphere", "spheres";
-    plane::Plane, planes, "plane", "planes without an end";
-    triangle::Triangle, triangles, "triangle", "triangles, also those of quads and meshes";
+    plane::Plane, planes, "plane", "infinite planes";
+    triangle::Triangle, triangles, "triangle", "triangles, including those of quads and meshes";
 }
 
 macro_rules! shapes {
@@ -230,7 +230,7 @@ macro_rules! shapes {
 
 shapes! {
     Sphere, "sphere", "a sphere";
-    Plane, "plane", "a plane without an end";
+    Plane, "plane", "an infinite plane";
     Triangle, "triangle", "a triangle";
     Quad, "quad", "four corners: two triangles";
     Mesh, "mesh", "the triangles of an OBJ file, or of one of its objects";

@@ -104,7 +104,7 @@ impl<'a, R: BufRead> Essence<'a, R> {
             Some("v") => {
                 let coordinates: Vec<&str> = words.take(3).collect();
                 if coordinates.len() < 3 {
-                    return Err(error("v", &coordinates.join(" "), "is no point", "three coordinates".to_string()));
+                    return Err(error("v", &coordinates.join(" "), "is not a point", "three coordinates".to_string()));
                 }
                 let is_good = |word: &str| word.parse().is_ok_and(coordinate_limit);
                 if let Some(bad) = coordinates.iter().find(|word| !is_good(word)) {
@@ -123,17 +123,17 @@ impl<'a, R: BufRead> Essence<'a, R> {
                     let there = index.filter(|index| (1..=self.vertices).contains(&index.saturating_abs()));
                     let Some(index) = there else {
                         let allowed = match self.vertices {
-                            0 => "the number of a vertex in a line above it".to_string(),
-                            most => format!("1 to {most}, or -{most} to -1: the vertices above it"),
+                            0 => "the number of a vertex in an earlier line".to_string(),
+                            most => format!("1 to {most}, or -{most} to -1: the vertices of earlier lines"),
                         };
-                        return Err(error("f", corner, "names a vertex that is not there", allowed));
+                        return Err(error("f", corner, "refers to a vertex that does not exist", allowed));
                     };
                     let _ = write!(face, " {index}");
                     count += 1;
                 }
                 if count < 3 {
                     let corners = words.collect::<Vec<_>>().join(" ");
-                    return Err(error("f", &corners, "is no face", "at least three corners".to_string()));
+                    return Err(error("f", &corners, "is not a face", "at least three corners".to_string()));
                 }
                 self.text = face + "\n";
             }

@@ -118,7 +118,7 @@ impl<R: Read> Ply<'_, R> {
                 "vertex" => vertices = Some(self.vertices(element)?),
                 "face" => {
                     let Some(vertices) = &vertices else {
-                        return Err(self.refused("element", "face", "stands before the vertices").into());
+                        return Err(self.refused("element", "face", "comes before the vertices").into());
                     };
                     self.faces(element, vertices, &mut add)?;
                 }
@@ -167,7 +167,7 @@ impl<R: Read> Ply<'_, R> {
             text.push_str(&line);
             let written = line.trim_end();
             if self.line == 1 && written != "ply" {
-                return Err(self.refused("header", written, "is none of a PLY file").allowed("ply").into());
+                return Err(self.refused("header", written, "is not the header of a PLY file").allowed("ply").into());
             }
             if text.len() as u64 > LONGEST {
                 return Err(self.refused("header", "", "is longer than 1 MiB").into());
@@ -227,9 +227,9 @@ impl<R: Read> Ply<'_, R> {
             let ElementDef { name, count, .. } = element;
             let problem = match problem.kind() {
                 io::ErrorKind::UnexpectedEof => {
-                    format!("is not there: the file ends before the {count} that its header tells")
+                    format!("is missing: the file ends before the {count} that its header declares")
                 }
-                _ => "is not what the header tells".to_string(),
+                _ => "does not match the header".to_string(),
             };
             self.refused(name, &index.to_string(), &problem).into()
         })
@@ -240,7 +240,7 @@ impl<R: Read> Ply<'_, R> {
         for index in 0..element.count {
             let Element { position, .. } = self.next(element, index)?;
             if let Some(bad) = position.into_iter().find(|coordinate| !coordinate_limit(*coordinate)) {
-                let error = self.refused("vertex", &bad.to_string(), &format!("is a coordinate of vertex {index}"));
+                let error = self.refused("vertex", &bad.to_string(), &format!("is out of range in vertex {index}"));
                 return Err(Error::from(error.allowed("-1e100 to 1e100 in each coordinate")));
             }
             vertices.push(position.into());
@@ -255,10 +255,10 @@ impl<R: Read> Ply<'_, R> {
             let places = corners.iter().map(|corner| vertices.get(*corner as usize).copied());
             let Some(places) = places.collect::<Option<Vec<Vec3>>>().filter(|places| places.len() >= 3) else {
                 let corners = corners.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
-                let error = self.refused("face", &corners, &format!("are the corners of face {index}"));
+                let error = self.refused("face", &corners, &format!("are not valid corners of face {index}"));
                 let allowed = match vertices.len() {
-                    0 => "numbers of vertices; there are none".to_string(),
-                    count => format!("three or more numbers of vertices, 0 to {}", count - 1),
+                    0 => "vertex numbers, but the file has no vertices".to_string(),
+                    count => format!("three or more vertex numbers, 0 to {}", count - 1),
                 };
                 return Err(Error::from(error.allowed(allowed)));
             };

@@ -266,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_met_is_let_in() {
+    fn boxes_and_spheres_that_are_met_are_let_in() {
         let meetings = meetings();
         for level in levels() {
             for factor in [1.0, 1e-60, 1e60] {

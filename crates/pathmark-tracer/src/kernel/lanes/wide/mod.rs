@@ -264,7 +264,7 @@ mod tests {
     /// In double precision the result equals the scalar search's, to the bit: for rays of walks and rays close to
     /// edges, with and without a tree, with every primitive once and with every primitive twice.
     #[test]
-    fn what_is_found_is_what_the_scalar_search_finds() {
+    fn the_search_agrees_with_the_scalar_search() {
         let [mut compared, mut left] = [0, 0];
         for name in SCENES.iter().map(|(name, _)| *name).chain(["spheres:30000", "imbalance:40"]) {
             let scene = load(name).unwrap();
@@ -321,7 +321,7 @@ mod tests {
 
     /// A ray that leaves a sphere inwards meets it again, even if its computed line misses the sphere.
     #[test]
-    fn what_leaves_inwards_meets_its_own_sphere() {
+    fn rays_that_leave_inwards_meet_their_own_sphere() {
         let scene = load("spheres:2048").unwrap().accelerated("sah").unwrap();
         let starts = grazing(&scene);
         let line_passes = |(ray, from): &&Start| {

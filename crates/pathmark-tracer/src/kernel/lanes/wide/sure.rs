@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_found_is_what_the_scene_finds() {
+    fn the_search_agrees_with_the_scene() {
         let mut compared = 0;
         for name in SCENES.iter().map(|(name, _)| *name).chain(["imbalance:40"]) {
             let scene = load(name).unwrap();
@@ -165,7 +165,7 @@ mod tests {
     /// Boxes beyond the nearest hit so far are not visited. Among scattered spheres, a ray enters more of these boxes
     /// than others.
     #[test]
-    fn what_is_behind_the_nearest_is_not_tested() {
+    fn nodes_behind_the_nearest_hit_are_not_tested() {
         let scene = load("spheres:5000").unwrap().accelerated("sah").unwrap();
         let (walks, _) = walks(&scene, 1000);
         for level in levels() {

@@ -369,7 +369,7 @@ mod tests {
 
     /// If a tree is so deep that more children may wait than there is room for, all primitives are tested.
     #[test]
-    fn what_there_is_no_place_for_is_looked_at() {
+    fn primitives_beyond_the_stacks_are_tested() {
         for level in levels() {
             for precision in Precision::ALL {
                 let Sizes { register, single: width, .. } = sizes_of(level, precision);
