@@ -7,6 +7,7 @@ use crate::check::cases_file;
 use crate::check::guards::PriceRow;
 use crate::check::{self, Case, Effort, Outcome, SECTIONS};
 use crate::error::{Error, InputError, Result};
+use crate::experiment::Progress as _;
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::{Lock, Sharing};

@@ -54,6 +54,31 @@ fn parts_of_a_sweep_are_its_rows() {
     assert!(run(folder.path(), &["merge", "2-2", "1-2", "-o", "merged"], 2).contains("merged"));
 }
 
+/// Serial cells of one image are baselines of each other; without other cells each belongs to one part only.
+#[test]
+fn parts_of_serial_cells_do_not_overlap() {
+    let folder = tempfile::tempdir().unwrap();
+    let serial = TINY
+        .replace(r#"["serial", "static-blocks", "work-stealing"]"#, r#"["serial"]"#)
+        .replace("threads = [1, 2]", "threads = [1]")
+        .replace(r#"["tiles:8x8"]"#, r#"["tiles:8x8", "rows"]"#);
+    write_tiny(folder.path(), &serial);
+    for shard in ["1/2", "2/2"] {
+        let out = shard.replace('/', "-");
+        run(folder.path(), &["run", "tiny.toml", "--shard", shard, "--repetitions", "1", "--out", &out], 0);
+    }
+    let [first, second] = ["1-2", "2-2"].map(|out| rows(&folder.path().join(out)).into_keys().collect::<Vec<_>>());
+    assert_eq!((first.len(), second.len()), (1, 1));
+    assert_ne!(first, second);
+
+    let merge = ["merge", "1-2", "2-2", "-o", "merged"];
+    let refused = run(folder.path(), &[merge.as_slice(), &["--strict"]].concat(), 2);
+    assert!(refused.contains("strict = true: ") && !folder.path().join("merged").exists(), "{refused}");
+    let merged = finish(pathmark(folder.path(), &[merge.as_slice(), &["--json"]].concat())).with_code(0);
+    let merged: serde_json::Value = serde_json::from_str(&merged.out).unwrap();
+    assert_eq!((&merged["sweeps"][0]["rows"], &merged["reports"][0]), (&2.into(), &"merged/report.html".into()));
+}
+
 #[test]
 fn parts_that_make_no_sweep_are_refused() {
     let folder = tempfile::tempdir().unwrap();
