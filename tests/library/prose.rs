@@ -58,3 +58,32 @@ fn phrases_that_readers_stumbled_over_do_not_come_back() {
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
+
+/// The comment in a line of Rust.
+fn comment(line: &str) -> Option<&str> {
+    line.split_once("// ").or_else(|| line.split_once("//! ")).map(|(_, comment)| comment)
+}
+
+/// Whether a sentence in the text begins with a clause that stands for an unnamed subject.
+fn begins_without_a_subject(text: &str) -> bool {
+    let starts = text.split(". ").chain(text.split(": "));
+    !text.contains('?') && starts.into_iter().any(|sentence| sentence.starts_with("What "))
+}
+
+#[test]
+fn comments_name_their_subject() {
+    assert!(begins_without_a_subject("Boxes come first. What is left comes last."));
+    assert!(!begins_without_a_subject("Boxes come first, the rest comes last. What is a box?"));
+    let mut files = Vec::new();
+    for folder in ["src", "crates", "tests", "benches", "examples"] {
+        texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), &mut files);
+    }
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "rs"));
+    let mut found = Vec::new();
+    for file in files {
+        let text = fs::read_to_string(&file).unwrap();
+        let lines = text.lines().filter_map(comment).filter(|comment| begins_without_a_subject(comment));
+        found.extend(lines.map(|line| format!("{}: {line}", file.display())));
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
