@@ -2,7 +2,7 @@
 //!
 //! The workload is a deterministic, seeded path tracer of the smallpt family. The code keeps three axes independent:
 //! *what* is rendered ([`scene`], [`estimator`], [`sampling`], [`kernel`]), in which *pieces* ([`film`]), and *who*
-//! renders them when ([`strategy`]). They meet in [`measure`], the only place that reads a clock.
+//! renders them when ([`strategy`]). They meet in [`measure`], which times the jobs.
 //!
 //! ```
 //! use pathmark::measure::{Settings, Setup};

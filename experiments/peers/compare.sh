@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Samples per second of one thread against the C++ yardstick, in interleaved pairs: ours, theirs, theirs, ours, ...
+# Compares our samples per second on one thread with the C++ yardstick's, in interleaved pairs: ours, theirs, theirs, ours, ...
 #
 #   experiments/peers/compare.sh [PAIRS] [g++ flags; default -O3] [-- options of `pathmark render`]
 #   experiments/peers/compare.sh 15 -O3 -march=native -ffast-math -- --kernel lanes --simd avx2 --estimator bsdf

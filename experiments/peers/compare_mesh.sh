@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# A mesh against two other programs, on one thread, in interleaved pairs: ours, theirs, theirs, ours, ...
+# Compares us on a mesh with one of two other programs, on one thread, in interleaved pairs: ours, theirs, theirs, ours, ...
 #
 #   experiments/peers/compare_mesh.sh embree [PAIRS] [TRIANGLES] [-- options of `pathmark rays`]
 #   experiments/peers/compare_mesh.sh mitsuba [PAIRS] [TRIANGLES] [-- options of `pathmark render`]
 #
 # `embree`: rays per second of rtcIntersect1 with RTC_SCENE_FLAG_ROBUST, along the rays of our paths. Needs g++ and Debian's libembree-dev.
-# `mitsuba`: time to equal RMSE, from the variance between two seeds. Needs Mitsuba 3 and LLVM (mitsuba_ball.py).
-# Prints each pair's ratio, larger than 1 where we are ahead, and their median.
+# `mitsuba`: time to equal RMSE, computed from the variance between two seeds. Needs Mitsuba 3 and LLVM (mitsuba_ball.py).
+# Prints each pair's ratio, which is above 1 where we are faster, and their median.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 peer=${1:?embree or mitsuba}
@@ -25,7 +25,7 @@ cargo build --release --quiet
 program=${CARGO_TARGET_DIR:-target}/release/pathmark
 value() { sed -E "s/.*\"$1\":([0-9.e+-]+).*/\1/"; }
 
-# Each prints seconds for a fixed error: of a ray, or of an image times its mean squared error between two seeds.
+# Each function prints a cost: seconds per ray, or the seconds of an image times the mean squared error between two seeds.
 ours_embree() {
   "$program" rays "$scene" --size 256x256 --estimator bsdf --repetitions 5 --json --quiet "${options[@]}" |
     value median_rays_per_s | awk '{ print 1 / $1 }'

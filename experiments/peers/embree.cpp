@@ -1,10 +1,10 @@
-// Rays per second of Embree on one thread, along rays that `pathmark rays SCENE --export FILE` wrote:
+// Measures rays per second of Embree on one thread, with the rays that `pathmark rays SCENE --export FILE` wrote:
 //
 //   embree FILE [REPETITIONS] [robust|fast]
 //
-// rtcIntersect1 with incoherent rays, one after the other; single precision, as Embree has no other. `robust` asks for RTC_SCENE_FLAG_ROBUST.
-// Rays begin at a distance of 1e-4, as in renderers that do not know what a ray starts on.
-// Prints seconds to build, rays per second of each repetition, and how many rays met something after what sum of distances.
+// Calls rtcIntersect1 with incoherent rays, one by one, in single precision because Embree has no other. `robust` sets RTC_SCENE_FLAG_ROBUST.
+// Rays begin at a distance of 1e-4, as in renderers that do not remember the surface on which a ray starts.
+// Prints the build time in seconds, the rays per second of each repetition, the number of rays that hit, and the sum of their distances.
 #include <embree3/rtcore.h>
 
 #include <chrono>

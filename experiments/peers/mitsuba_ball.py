@@ -75,7 +75,7 @@ scene = mi.load_dict({
     "back": wall([0.7] * 3, T().translate([0, 0, -1])),
     "left": wall([0.7, 0.25, 0.2], T().translate([-1, 0, 0]).rotate([0, 1, 0], 90)),
     "right": wall([0.25, 0.45, 0.7], T().translate([1, 0, 0]).rotate([0, 1, 0], -90)),
-    # A lamp shines to both sides in Pathmark, and to one in Mitsuba.
+    # A lamp emits on both sides in Pathmark, and on one side in Mitsuba.
     "below": wall([0.0] * 3, T().translate([0, 0.9, 0]).rotate([1, 0, 0], 90).scale([0.3, 0.3, 1]), emitter=lamp),
     "above": wall([0.0] * 3, T().translate([0, 0.9001, 0]).rotate([1, 0, 0], -90).scale([0.3, 0.3, 1]), emitter=lamp),
 })

@@ -1,4 +1,4 @@
-// One operation an item: `words` has its number, `numbers` two operands, `out` gets the bits of the result.
+// One operation per item: `task` has the operation's number, `numbers` two operands, `words` 64 bits; `out` gets the bits of the result.
 FN void run_item(u32 item, GLOBAL const real *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {
     real a = numbers[2 * item], b = numbers[2 * item + 1], result = 0.0;
     float x = (float)a, y = (float)b;

@@ -1,4 +1,4 @@
-// C of 1999: for the host's compiler.
+// C99, for the host's compiler.
 #include <stdint.h>
 #include <string.h>
 typedef double real;

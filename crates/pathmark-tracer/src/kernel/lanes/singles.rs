@@ -1,6 +1,6 @@
 //! Spheres in single precision: by centre and radius if they are small, by curvature if they are as large as the scene.
 //!
-//! A centre 1e5 away leaves a coordinate of the scene exact to only seven hundredths of its unit. [`Curved`] stores
+//! A centre 1e5 away leaves a coordinate of the scene exact to only 0.008 units. [`Curved`] stores
 //! values of the scene's own size instead. For spheres that are small next to their distance from the origin it would
 //! be worse: k |x|² is that distance times the ratio of distance to radius.
 //!

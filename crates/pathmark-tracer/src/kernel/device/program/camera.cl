@@ -1,6 +1,6 @@
-// Where a path begins: `scene/camera/`.
+// Camera rays, at which paths begin: `scene/camera/`.
 
-// A ray of a sample: number 0 is that of the path.
+// A camera ray of a sample. Ray number 0 begins the path.
 FN ray camera_ray(const scene *s, u32 x, u32 y, const sample_key *key, u32 ray_number) {
     GLOBAL const stored *view = s->numbers;
     u32 filter = s->words[AT_FILTER], number = key->sample % 4U;

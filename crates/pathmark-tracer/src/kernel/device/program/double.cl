@@ -1,6 +1,6 @@
-// What double precision does in a way of its own.
+// Functions that differ in double precision.
 
-typedef double stored;  // numbers in tables, whatever the precision of the path
+typedef double stored;  // numbers in tables, in either precision of the path
 typedef double exact;   // sums of samples
 #define UNIT(bits) ((real)((bits) >> 11) * UNIT_STEP)
 #define TIMES_PLUS(a, factor, addend) ((a) * (factor) + (addend))

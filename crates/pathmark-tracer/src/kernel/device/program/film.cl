@@ -1,4 +1,4 @@
-// Sums of samples: `film/sum.rs`. An item is a pixel and a run of its samples, whose sum is a subtree of the film's.
+// Sums of samples: `film/sum.rs`. An item is a pixel and a run of its samples; their sum is a subtree of the film's sum.
 
 typedef struct { exact sum[3], square[3]; } pixel_sum;
 
@@ -16,7 +16,7 @@ FN void add_sample(pixel_sum *p, const exact *channels) {
         p->square[channel] += channels[channel] * channels[channel];
     }
 }
-// `earlier` and `later` in this order.
+// Adds `earlier` and `later`, in this order.
 FN void add_later(const pixel_sum *earlier, pixel_sum *later) {
     for (int channel = 0; channel < 3; channel++) {
         later->sum[channel] = earlier->sum[channel] + later->sum[channel];
@@ -31,7 +31,7 @@ FN u64 first_item(GLOBAL const u32 *piece) {
 FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words, GLOBAL const u32 *task, GLOBAL u64 *out) {
     scene s = scene_of(numbers, words);
     u64 place = (((u64)task[TASK_FIRST_ITEM + 1] << 32) | (u64)task[TASK_FIRST_ITEM]) + (u64)item;
-    // The last piece that begins no later.
+    // Finds the last piece that begins at or before `place`.
     GLOBAL const u32 *piece = task + TASK_TABLE;
     u32 low = 0, high = task[TASK_PIECES];
     while (high - low > 1U) {
@@ -58,7 +58,7 @@ FN void run_item(u32 item, GLOBAL const stored *numbers, GLOBAL const u32 *words
     pixel_sum block, subtrees[LEVELS];
     clear_sum(&block);
     u32 in_block = 0, blocks = 0;
-    // Neighbours take the same steps at a time: the one whose path ends begins its next sample, and waits for nobody's longer path.
+    // Neighbours take the same step at the same time. If an item's path ends, it begins its next sample and does not wait for longer paths.
     sample_key key;
     w.key = &key;
     path p;

@@ -1,4 +1,4 @@
-// What is aimed at: `scene/light/`. A light is LIGHT_NUMBERS numbers and two words, its kind and its primitive.
+// Lights at which paths aim: `scene/light/`. A light has LIGHT_NUMBERS numbers and two words, its kind and its primitive.
 
 typedef struct { vec direction; u32 primitive; real density; int found; } aim;
 
@@ -19,7 +19,7 @@ FN real per_steradian(real square, vec direction, vec normal, real area) {
     return square / (MAGNITUDE(inner(direction, normal)) * area);
 }
 
-// How directions to a sphere are chosen from a point.
+// The methods of sampling directions from a point to a sphere.
 #define WAY_NONE 0
 #define WAY_EVERYWHERE 1
 #define WAY_AREA 2
@@ -96,7 +96,7 @@ FN aim aim_at(const scene *s, vec point, standpoint from, const sample_key *key,
     return at;
 }
 
-// How likely `aim_at` was to choose the direction of a ray that met `hit`; 0 if nothing is aimed at there.
+// The density with which `aim_at` chooses the direction of a ray that met `hit`; 0 if paths do not aim at that primitive.
 FN real aimed_density(const scene *s, ray way, standpoint from, const surface_hit *hit) {
     u32 chosen = s->words[s->words[AT_LIGHT_OF] + hit->primitive];
     if (chosen == NOTHING) return 0.0;

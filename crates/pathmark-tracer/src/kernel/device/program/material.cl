@@ -1,4 +1,4 @@
-// What surfaces do with light: `material/`. An object is OBJECT_NUMBERS numbers and a word of its kind and flags.
+// Materials: how surfaces scatter light, `material/`. An object has OBJECT_NUMBERS numbers and one word, its kind and flags.
 
 typedef struct {
     vec wi;
@@ -203,7 +203,7 @@ FN bsdf_sample sample_bsdf(const surface *of, vec wo, int inside, pair p) {
     }
 }
 
-// The value per steradian for two directions; black for delta lobes.
+// The BSDF's value per steradian for two directions; black for delta lobes.
 FN rgb bsdf_value(const surface *of, vec wo, vec wi) {
     switch (of->kind) {
 #if HAS_DIFFUSE
@@ -262,7 +262,7 @@ FN real bsdf_density(const surface *of, vec wo, vec wi) {
     }
 }
 
-// Both delta lobes of a surface that reflects and transmits, each weighted by its share; 0 if it has not two.
+// Both delta lobes of a surface that reflects and transmits, each weighted by its share. Returns 0 if the surface does not have two.
 FN int two_lobes(const surface *of, vec wo, int inside, bsdf_sample *first, bsdf_sample *second) {
 #if HAS_DIELECTRIC
     if (of->kind == MATERIAL_DIELECTRIC) {
@@ -276,5 +276,5 @@ FN int two_lobes(const surface *of, vec wo, int inside, bsdf_sample *first, bsdf
     return 0;
 }
 
-// What of light from `wi` is scattered to `wo`: the value, times the cosine.
+// The share of light from `wi` that is scattered to `wo`: the BSDF's value times the cosine.
 FN rgb scattered_light(const surface *of, vec wo, vec wi) { return dimmed(bsdf_value(of, wo, wi), MAGNITUDE(wi.z)); }

@@ -1,5 +1,5 @@
-// Vectors, colours and the leaf formulas of a path: those of `math/`, operation by operation, so that results have the same bits. In single precision
-// TIMES_PLUS rounds once, in double precision twice.
+// Vectors, colours and the leaf formulas of a path. They repeat `math/` operation by operation, so the results have the same bits. TIMES_PLUS rounds
+// once in single precision and twice in double precision.
 
 typedef struct { real x, y, z; } vec;
 typedef struct { real r, g, b; } rgb;
@@ -7,7 +7,7 @@ typedef struct { vec origin, direction; } ray;
 typedef struct { vec s, t, n; } frame;
 typedef struct { real u, v; } pair;
 
-// Comparisons as Rust's `f64::max`: a number beats NaN.
+// Compares like Rust's `f64::max`: of a number and NaN, returns the number.
 FN real larger(real a, real b) { return (a < b || a != a) ? b : a; }
 
 FN vec vec_of(real x, real y, real z) { vec v; v.x = x; v.y = y; v.z = z; return v; }
@@ -128,7 +128,7 @@ FN pair concentric_disk(pair p) {
     return at;
 }
 
-// Where a ray that starts on a sphere and goes inside meets it again; `f` is its start seen from the centre.
+// Distance at which a ray that starts on a sphere and goes inside meets it again; `f` is the ray's start relative to the centre.
 FN real other_root(vec f, vec direction) { return 2.0 * MAGNITUDE(inner(f, direction)); }
 FN real first_root(vec f, vec direction, real r) {
     real b = -inner(f, direction);
@@ -138,7 +138,7 @@ FN real first_root(vec f, vec direction, real r) {
     real c = inner(f, f) - r * r;
     return (0.0 < q && c <= 0.0) ? q : c / q;
 }
-// Distance to a plane; not above zero if the ray does not meet it.
+// Distance to a plane; not above zero if the ray misses it.
 FN real plane_root(vec to_plane, vec direction, vec normal) {
     real t = inner(to_plane, normal) / inner(direction, normal);
     return t < INFINITE ? t : -1.0;
@@ -158,7 +158,7 @@ FN real power_heuristic(real a, real b) {
     return 1.0 / (1.0 + ratio * ratio);
 }
 
-// The ray's own axes: which components become x, y and z, and the shear.
+// The ray's own axes: the components that become x, y and z, and the shear.
 typedef struct { int x, y, z; real sx, sy, sz; } shear;
 FN real component(vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 FN shear axes_of(vec d) {

@@ -5,7 +5,7 @@ typedef struct { u64 rays, invalid, escaped, truncated; tests tested; } events;
 typedef struct {
     ray way;
     standpoint from;
-    int is_rival;  // whether light was aimed at from the start of the ray, whose direction had this density
+    int is_rival;  // whether the path also aimed at lights from the ray's start; `density` is that of the ray's direction
     real density;
     rgb throughput;
     u32 vertices, branch;
@@ -26,7 +26,7 @@ FN pair draw(const walk *w, const part *p, u32 purpose) {
 }
 
 #if HAS_POINT_LIGHT
-// What point lights cause at a surface.
+// The light from point lights that a surface scatters.
 FN rgb point_light(const walk *w, const surface *of, const surface_hit *hit, const frame *around, vec wo, events *e) {
     const scene *s = w->s;
     rgb radiance = grey(0.0);
@@ -78,7 +78,7 @@ FN rgb light_at(const walk *w, const part *p, rgb emission, const surface_hit *h
 }
 
 #if AIMS
-// What a shadow ray to a light adds, in parts of what the path carries.
+// The light that a shadow ray adds, before multiplication by the path's throughput.
 FN rgb aimed_light(const walk *w, const part *p, const surface *of, const surface_hit *hit, const frame *around, vec wo,
     events *e, int *found) {
     standpoint from = on_nothing();
@@ -104,7 +104,7 @@ FN rgb aimed_light(const walk *w, const part *p, const surface *of, const surfac
 }
 #endif
 
-// A path and the branches of it that wait for their turn.
+// A path and those of its branches that are not yet followed.
 typedef struct {
     part now, waiting[SPLITS + 1];
     int depth;
@@ -133,7 +133,7 @@ FN void collect(path *p, rgb radiance) {
     p->collected = mixed(p->collected, filtered(p->now.throughput, radiance));
 }
 
-// Likewise, where the path arrives at light: of what its camera ray sees, a share.
+// Like `collect`, for light that the path hits. Light that a camera ray sees directly is multiplied by the camera ray's share.
 FN void collect_arrived(const walk *w, path *p, rgb radiance) {
 #if HAS_CAMERA_RAYS
     if (p->now.vertices == 0U) radiance = dimmed(radiance, (real)w->s->numbers[VIEW_CAMERA_SHARE]);
@@ -142,7 +142,7 @@ FN void collect_arrived(const walk *w, path *p, rgb radiance) {
 }
 
 #if HAS_CAMERA_RAYS
-// What a sample sees by its other camera rays.
+// The light that a sample's other camera rays see.
 FN rgb seen_besides(const scene *s, u32 x, u32 y, const sample_key *key, events *e) {
     rgb seen = grey(0.0);
     for (u32 number = 1U; number < s->words[AT_CAMERA_RAYS]; number++) {
@@ -157,7 +157,7 @@ FN rgb seen_besides(const scene *s, u32 x, u32 y, const sample_key *key, events 
 }
 #endif
 
-// Follows the path to its next vertex; whether it goes on from there, or a branch of it does.
+// Follows the path to its next vertex. Returns whether the path or one of its branches continues.
 FN int follow(const walk *w, path *p, events *e) {
     const scene *s = w->s;
     e->rays += 1;

@@ -1,7 +1,7 @@
 // Random numbers by address, as in `sampling/`.
 
 typedef struct {
-    u64 pixel_key;  // what the numbers of a pixel or of a path have in common, by the sampler
+    u64 pixel_key;  // the key that all numbers of a pixel or of a path share, depending on the sampler
     u64 seed_key;
     u32 pixel, sample;
 } sample_key;
@@ -22,7 +22,7 @@ FN u64 reversed64(u64 x) {
 }
 FN u64 own_prefix(u64 seed_key, u64 place) { return mix64(mix64(place) ^ seed_key); }
 
-// Owen's scrambling by 64-bit products, `sampling/owen.rs`.
+// Owen scrambling by 64-bit products, `sampling/owen.rs`.
 FN u64 scramble(u64 digits, u64 a, u64 b) {
     digits ^= digits * (b << 1);
     digits = (digits + a) * ((b << 32) | (b >> 32) | 1UL);
@@ -91,7 +91,7 @@ FN u64 inside_cell(u32 cell, u64 bits) { return ((u64)cell << 62) | (bits >> 2);
 
 typedef struct { u64 first, second; } word_pair;
 
-// The two words of a use, of which numbers take the leading digits.
+// The two random words of one use; the numbers take their leading digits.
 FN word_pair words_of(GLOBAL const u32 *words, const sample_key *key, u32 bounce, u32 branch, u32 purpose) {
     u64 dimension = ((u64)(bounce & 0xFFFFU) << 32) | ((u64)branch << 16) | (u64)purpose;
     u64 word = mix64(key->pixel_key ^ dimension);

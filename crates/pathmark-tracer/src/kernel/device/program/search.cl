@@ -63,7 +63,7 @@ FN surface_hit hit_of(const scene *s, ray way, nearest found) {
     return hit;
 }
 
-// The first primitive along a ray; its number is NOTHING if there is none nearer than `limit`.
+// The first primitive along a ray; its number is NOTHING if no primitive is nearer than `limit`.
 FN surface_hit first_hit(const scene *s, ray way, standpoint from, real limit, tests *t) {
     surface_hit hit = hit_of(s, way, search(s, way, from, limit, 0, t));
 #if HAS_TRIANGLE
@@ -75,7 +75,7 @@ FN surface_hit first_hit(const scene *s, ray way, standpoint from, real limit, t
     return hit;
 }
 
-// Where a ray starts that leaves a surface along the local direction `wi`.
+// The start of a ray that leaves a surface along the local direction `wi`.
 FN standpoint leaving(const surface_hit *hit, vec wi, vec direction) {
     standpoint from;
     from.primitive = hit->primitive;

@@ -1,4 +1,4 @@
-// Rays against spheres, planes and triangles, and the search for the first of them: `scene/shape/`.
+// Rays against spheres, planes and triangles, and the search for the nearest: `scene/shape/`.
 
 #define NOTHING 0xFFFFFFFFU
 
@@ -10,7 +10,7 @@ typedef struct {
     u32 sphere_count, plane_count, triangle_count, is_tree;
 } scene;
 
-typedef struct { u32 primitive; int inside; } standpoint;  // `primitive` is NOTHING where a ray starts on none
+typedef struct { u32 primitive; int inside; } standpoint;  // `primitive` is NOTHING if the ray starts on no primitive
 typedef struct { real t; u32 primitive; } nearest;
 typedef struct { u64 boxes, primitives; } tests;
 typedef struct {
@@ -22,7 +22,7 @@ typedef struct {
 
 FN nearest nothing_nearer_than(real t) { nearest n; n.t = t; n.primitive = NOTHING; return n; }
 
-// For primitives in the order of their numbers. No number above zero is no hit.
+// For primitives in the order of their numbers. A distance that is not above zero is no hit.
 FN nearest nearer(nearest so_far, real distance, u32 primitive) {
     real ahead = distance > 0.0 ? distance : INFINITE;
     if (ahead < so_far.t) {
@@ -82,7 +82,7 @@ FN vec normal_of(const scene *s, u32 primitive, vec point) {
 #endif
 }
 
-// Distance to one primitive, from elsewhere or, if the ray starts on it, from there.
+// Distance to one primitive. The ray may start on that primitive.
 FN real distance_to(const scene *s, u32 primitive, ray way, const shear *by, standpoint from) {
     int own = from.primitive == primitive;
     u32 index = primitive;
@@ -110,7 +110,7 @@ FN void extend(real *low, real *high, real x) {
     if (x < *low) *low = x;
     if (x > *high) *high = x;
 }
-// The largest coordinate of a triangle's box, and the box.
+// Returns the largest coordinate of a triangle's box, and writes the box to `low` and `high`.
 FN real triangle_box(GLOBAL const stored *corners, real *low, real *high) {
     real largest = 0.0;
     for (int axis = 0; axis < 3; axis++) {
@@ -157,7 +157,7 @@ FN int is_triangle(const scene *s, u32 primitive) {
 }
 #endif
 
-// Distance to one primitive if it is surely hit, where `only_sure`.
+// Distance to one primitive. With `only_sure`, triangles that the ray does not surely hit count as missed.
 FN real wanted_distance(const scene *s, u32 primitive, ray way, const shear *by, standpoint from, int only_sure) {
     real t = distance_to(s, primitive, way, by, from);
 #if HAS_TRIANGLE
@@ -191,7 +191,7 @@ FN slabs slabs_of(ray way) {
     }
     return of;
 }
-// Where the ray enters a box; below zero if it does not, or only beyond `limit`.
+// Distance at which the ray enters a box; below zero if the ray misses the box or enters it beyond `limit`.
 FN real enter(const slabs *of, GLOBAL const stored *faces, real limit) {
     real first_in = 0.0, last_in = limit;
     for (int axis = 0; axis < 3; axis++) {

@@ -1,4 +1,4 @@
-// What single precision does in a way of its own. The other formulas are those of double precision, with names that end in _s.
+// Functions that differ in single precision. The other formulas are those of double precision, with names that end in _s.
 
 typedef float single;
 #define SQUARE_ROOT_S(x) SINGLE_SQUARE_ROOT(x)
@@ -15,7 +15,7 @@ FN single polynomial_s(single c0, single c1, single c2, single c3, single c4, si
     single low = FUSED(linear_s(c2, c3, x), x2, linear_s(c0, c1, x));
     return FUSED(c4, x4, low);
 }
-// Twice an area, right to the last digit but one.
+// Twice an area, correct except for the last digit.
 FN single across_s(single px, single py, single qx, single qy) {
     single product = py * qx;
     single lost = FUSED(-py, qx, product);

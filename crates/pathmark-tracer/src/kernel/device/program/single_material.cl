@@ -1,4 +1,4 @@
-// Surfaces in single precision, as lanes have them: what is diffuse, mirrors or refracts; other materials in double precision.
+// Surfaces in single precision, as in lanes: diffuse, mirror and refractive materials. Other materials use double precision.
 
 typedef struct {
     vec_s wi;

@@ -1,5 +1,5 @@
-// The search in single precision, as lanes have it: what a ray starts on is met where it is known to be met again. A hit of a triangle that rounding may
-// have made is looked for again in double precision.
+// The search in single precision, as in lanes. The primitive on which a ray starts is hit at the distance computed beforehand. If rounding may have
+// caused the hit of a triangle, the search is repeated in double precision.
 
 FN nearest_s search_s(const scene *s, ray_s way, standpoint_s from, tests *t) {
     nearest_s so_far = all_large(s, way, from);
@@ -32,7 +32,7 @@ FN nearest_s search_s(const scene *s, ray_s way, standpoint_s from, tests *t) {
     return so_far;
 }
 
-// The first primitive along a ray, and what there is to know of the point.
+// The first primitive along a ray, and the data of the hit point.
 FN surface_hit_s first_hit_s(const scene *s, ray_s way, standpoint_s from, single limit, tests *t) {
     surface_hit_s hit;
     nearest_s found = search_s(s, way, from, t);

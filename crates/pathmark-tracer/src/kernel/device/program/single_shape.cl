@@ -1,4 +1,4 @@
-// Rays against primitives in single precision, as lanes have it: large spheres by curvature, everything else by the formulas of double precision.
+// Rays against primitives in single precision, as in lanes. Large spheres use curvatures, everything else uses the formulas of double precision.
 
 typedef struct { u32 primitive; int inside; single own_root; } standpoint_s;
 typedef struct { single t; u32 primitive; } nearest_s;
@@ -33,7 +33,7 @@ FN nearest_s nearer_in_any_order_s(nearest_s so_far, single distance, u32 primit
     return so_far;
 }
 
-// The large spheres, those that enclose everything first; `GLOBAL const stored *sphere` has a normal, a curvature and an offset.
+// Tests the large spheres; those that enclose the whole scene come first. `sphere` points to a normal, a curvature and an offset.
 FN nearest_s all_large(const scene *s, ray_s way, standpoint_s from) {
     nearest_s so_far;
     so_far.t = INFINITE_S;
@@ -59,7 +59,7 @@ FN nearest_s all_large(const scene *s, ray_s way, standpoint_s from) {
     return so_far;
 }
 
-// Distance to a primitive that is no plane, no large sphere and not what the ray starts on.
+// Distance to a primitive that is neither a plane nor a large sphere nor the primitive on which the ray starts.
 FN single distance_to_s(const scene *s, u32 primitive, ray_s way, const shear_s *by) {
     if (primitive < s->sphere_count) {
         GLOBAL const stored *sphere = s->spheres + 4 * primitive;

@@ -1,4 +1,4 @@
-// A ray through the hierarchy: `scene/hierarchy/traverse.rs`. Boxes are tested in double precision, whatever that of the path.
+// A ray through the hierarchy: `scene/hierarchy/traverse.rs`. Boxes are tested in double precision, even if the path is in single precision.
 
 #if HAS_HIERARCHY
 FN nearest through_tree(const scene *s, ray way, const shear *by, standpoint from, int only_sure, nearest so_far, tests *t) {
