@@ -1,4 +1,4 @@
-//! The price list: samples and seconds to each accuracy, and how well a part of the measurements predicts the rest.
+//! The price list: samples and seconds to each accuracy, and predictions of later points from earlier ones.
 
 use super::prelude::*;
 use crate::report::contenders::{Check, Contender, contenders, missing};
