@@ -21,7 +21,7 @@ pub struct Tail {
 /// moments over all groups.
 ///
 /// A group of m samples has m - 1 free deviations, which reduces its squared deviations by a factor (m - 1)/m. Kurtosis
-/// and share are comparable between groups of one size. `None` for a value that is not finite, or without any
+/// and share stay comparable if all groups have the same size. `None` for a value that is not finite, or without any
 /// deviation.
 pub fn tail<'a>(groups: impl IntoIterator<Item = &'a [f64]>) -> Option<Tail> {
     let (mut count, mut squares, mut fourths, mut largest) = (0_u64, 0.0, 0.0, 0.0_f64);

@@ -46,7 +46,8 @@ impl Strategy for Learning {
 
 /// Returns the next chunk. The lock is released on return, so no job runs under it.
 fn next(ledger: &Mutex<Ledger>, rule: LearnedRule, worker: usize, seen: Seen) -> Option<Range<usize>> {
-    // A rule from another crate may panic here. The ledger stays valid, so the other workers continue.
+    // A rule from another crate may panic here, which stops the run. The ledger stays valid, so workers that still ask
+    // need not panic, too.
     let mut ledger = ledger.lock().unwrap_or_else(PoisonError::into_inner);
     ledger.note(worker, seen);
     rule.next(&mut ledger, worker)

@@ -92,7 +92,7 @@ impl SampleGrid {
     }
 }
 
-/// The square root of a sample's variance, averaged over a cell's pixels and channels.
+/// The square root of the mean, over a cell's pixels and channels, of a sample's variance.
 fn deviation(film: &Film, cell: &Bounds) -> f64 {
     let rows = (cell.y0..cell.y1).map(|y| (y * film.width()) as usize);
     let pixels = rows.flat_map(|start| &film.pixels()[start + cell.x0 as usize..start + cell.x1 as usize]);

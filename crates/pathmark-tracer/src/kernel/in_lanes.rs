@@ -48,8 +48,8 @@ pub(super) fn lanes_for(
     Ok(Err(match (obstacle(scene, spec, epsilon), rules, LaneSampler::find(&spec.sampler)) {
         (None, Some(rules), Some(sampler)) => {
             let is_diffuse = scene.objects.iter().all(|object| object.material.effect() == Diffuse::EFFECT);
-            // Under next-event estimation, lights take most of the time: code for diffuse surfaces alone would gain 3
-            // %, and take as long to compile as the other versions.
+            // Under next-event estimation, lights take most of the time: code for diffuse surfaces alone would gain
+            // 3 %, and take as long to compile as the other versions.
             let is_diffuse_only = is_diffuse && rules.aims.is_none() && !level.is_fallback();
             return Ok(Ok(InLanes { level, precision, rules, sampler, is_diffuse_only }));
         }

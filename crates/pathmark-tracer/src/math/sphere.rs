@@ -146,7 +146,7 @@ mod tests {
         root(sphere.curvature, b, c)
     }
 
-    /// A sphere by curvature is met where a sphere by centre and radius is met. In double precision from inside, from
+    /// A sphere by curvature is met where a sphere by centre and radius is met: in double precision from inside, from
     /// outside, near and far; in single precision to a thousandth of a unit, except at grazing angles.
     #[test]
     fn first_root_curved_is_the_first_root() {

@@ -158,7 +158,7 @@ pub trait Float: Real<Mask: Mask> + Send + Sync + 'static {
         let (zero, never) = (Self::splat(0.0), Self::splat(f64::INFINITY));
         Self::select(zero.le(near), near, Self::select(zero.le(far), far, never))
     }
-    /// The sooner of two distances ahead; infinity is sooner than no distance.
+    /// The sooner of two distances ahead; a missing distance is never sooner than infinity.
     #[must_use]
     #[inline(always)]
     fn sooner(self, other: Self) -> Self {

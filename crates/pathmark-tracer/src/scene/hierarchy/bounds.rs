@@ -77,9 +77,9 @@ impl Bounds {
     }
 }
 
-/// Returns the distance outside a box at which a ray still hits it, in units of the sum of the largest coordinates of
-/// the box and of the ray's origin. Numbers have `digits` binary digits. The padding covers the rounding errors of the
-/// box test and of the tests of its primitives: at most some 30 ulps.
+/// Returns the largest distance outside a box at which a ray still counts as hitting it, in units of the sum of the
+/// largest coordinates of the box and of the ray's origin. Numbers have `digits` binary digits. The padding covers the
+/// rounding errors of the box test and of the tests of its primitives: at most some 30 ulps.
 pub const fn padding(digits: u32) -> f64 {
     64.0 / (1_u64 << digits) as f64
 }
@@ -120,8 +120,8 @@ impl Slabs {
     /// Returns the distance at which the ray enters the box with these padded faces; `None` if it misses the box or
     /// enters it beyond `limit`.
     ///
-    /// A ray along a face gives 0 times infinity, NaN, for that axis. The comparisons then ignore the axis, so the ray
-    /// counts as inside it.
+    /// A ray along a face gives 0 times infinity, NaN, for that axis. The comparisons then keep the result of the other
+    /// axes, so the box is not missed because of this one.
     #[inline(always)]
     pub(crate) fn enter(&self, faces: &Faces, limit: f64) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, limit);

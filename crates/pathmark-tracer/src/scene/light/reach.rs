@@ -80,7 +80,7 @@ impl Walls {
             !scene.objects[owner].material.transmits()
         };
         // `height` is positive on one side and negative on the other. Returns whether all origins are on the negative
-        // side; `None` if they are on both.
+        // side; `None` if they are not all on one side.
         let side = |height: &dyn Fn(Vec3) -> f64| {
             let is_above = origins.iter().all(|origin| height(*origin) > 0.0);
             let is_below = origins.iter().all(|origin| height(*origin) < 0.0);

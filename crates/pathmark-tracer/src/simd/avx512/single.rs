@@ -26,7 +26,7 @@ register! {
         }
         #[inline(always)]
         fn pack(self, mask: Mask16, to: &mut [f32]) {
-            // Stores the whole register: some processors take a hundred cycles for a masked store.
+            // Stores the whole register: some processors take a hundred cycles to compress into memory.
             Self(op!(x86::_mm512_maskz_compress_ps(mask.0, self.0))).store(to);
         }
         #[inline(always)]

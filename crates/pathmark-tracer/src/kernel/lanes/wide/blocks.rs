@@ -194,7 +194,7 @@ fn corner<V: Float>(block: &[V::One], first: usize, ray: &Turned<V>) -> [V; 3] {
 }
 
 impl Leaf {
-    /// Whether it holds more than one block of spheres.
+    /// Whether it holds anything besides one block of spheres.
     #[inline(always)]
     pub(super) fn has_rest(&self) -> bool {
         self.spheres[0] + 1 < self.spheres[1] || self.triangles[0] < self.triangles[1]
