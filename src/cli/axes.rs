@@ -147,7 +147,7 @@ impl<const WHAT: bool> FromArgMatches for Options<WHAT> {
 
 /// The error of a verb that needs paths, for a workload.
 pub(super) fn no_paths(workload: &str) -> Error {
-    InputError::new("scene", workload, "is a workload, and has no paths").allowed("a scene").into()
+    InputError::new("scene", workload, "is a workload, which has no paths").allowed("a scene").into()
 }
 
 /// The estimator that a scene names. The layer `scene` lies below estimators, so the name is checked only here.
@@ -169,14 +169,14 @@ fn check_for_workload(settings: &Settings) -> Result<()> {
     let mut of_light = AXES.iter().filter(|axis| axis.of_light);
     if let Some(folder) = &settings.cache {
         let problem = format!("does not apply to {}, which is a workload", settings.scene);
-        return Err(InputError::new(CACHE, folder.display().to_string(), problem).allowed("none").into());
+        return Err(InputError::new(CACHE, folder.display().to_string(), problem).allowed("no folder").into());
     }
     match of_light.find(|axis| axis.show(settings) != axis.show(&base)) {
         None => Ok(()),
         Some(axis) => {
             let (value, problem) =
                 (axis.show(settings), format!("does not apply to {}, which is a workload", settings.scene));
-            Err(InputError::new(axis.name, value, problem).allowed("none").into())
+            Err(InputError::new(axis.name, value, problem).allowed("no value").into())
         }
     }
 }
@@ -215,7 +215,7 @@ impl Axes {
         let cut = self.schedule.value("decomposition").filter(|cut| *cut != "rows");
         if let Some(cut) = cut.filter(|_| settings.strategy == THREAD_PER_ROW) {
             let problem = format!("contradicts the strategy {THREAD_PER_ROW}");
-            return Err(InputError::new("decomposition", cut, problem).allowed("rows, or none").into());
+            return Err(InputError::new("decomposition", cut, problem).allowed("rows, or no value").into());
         }
         Ok(settings)
     }

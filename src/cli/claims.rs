@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     /// Print an array of objects
     #[arg(long)]
     json: bool,
-    /// Exit with 1 if a verdict differs from the expected one
+    /// Exit with code 1 if a verdict differs from the expected one
     #[arg(long)]
     strict: bool,
 }

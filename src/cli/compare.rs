@@ -75,7 +75,7 @@ struct Line {
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     if let Some(scale) = arguments.scale.filter(|scale| !(*scale > 0.0 && scale.is_finite())) {
         let error = InputError::new("scale", scale.to_string(), "must be a positive number");
-        return Err(error.allowed("an error of linear radiance, like 0.5").into());
+        return Err(error.allowed("an error of linear radiance, such as 0.5").into());
     }
     let inputs = [Some(&arguments.image), Some(&arguments.reference), arguments.half.as_ref()];
     let names = ["the image", "the reference", "the second reference"];

@@ -16,7 +16,7 @@ pub(super) struct Arguments {
     old: PathBuf,
     /// The new measurement, likewise
     new: PathBuf,
-    /// Exit with 1 if a cell is certainly slower by more than this; smaller changes count as the same
+    /// Exit with code 1 if a cell is certainly slower by more than this; smaller changes count as the same
     #[arg(long, value_name = "SHARE", default_value = "2%", allow_hyphen_values = true)]
     fail_above: String,
     /// Whether undecided cells make the command fail
@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 
 #[derive(Args)]
 struct AcrossOptions {
-    /// Compare even if the measurements are of two machines
+    /// Compare even if the measurements are from two machines
     #[arg(long)]
     across_machines: bool,
     /// Compare even if the images of the two builds differ in some bits

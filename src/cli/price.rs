@@ -123,7 +123,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     for goal in &arguments.rmse {
         if !(*goal > 0.0 && goal.is_finite()) {
             let error = InputError::new("rmse", goal.to_string(), "must be a positive number");
-            return Err(error.allowed("positive numbers, like 0.05,0.01").into());
+            return Err(error.allowed("one number or a list, as in 0.05,0.01").into());
         }
     }
     if arguments.seed >= LARGEST_SEED / 2 {
@@ -287,7 +287,7 @@ fn table(settings: &Settings, arguments: &Arguments, piloted: &Piloted, rows: &[
             100.0 * tail.largest_share,
             tail.kurtosis
         ),
-        format!("{:>9}  {:>8}  {:>21}  {:>9}  {:>19}  {:>10}", "RMSE", "spp", "", "seconds", "", "half of it"),
+        format!("{:>9}  {:>8}  {:>21}  {:>9}  {:>19}  {:>10}", "RMSE", "spp", "", "seconds", "", "half RMSE"),
     ];
     if tail.largest_share > LARGEST_SHARE || tail.kurtosis > LARGEST_KURTOSIS {
         let text = "doubtful: few values dominate the variance, so another pilot could give another price; try a larger --pilot-spp";

@@ -22,7 +22,7 @@ pub(super) struct Arguments {
     /// Double both halves until the estimated RMSE of their average is at most this; continues from cached halves
     #[arg(long, value_name = "RMSE", allow_negative_numbers = true)]
     until: Option<f64>,
-    /// Columns and rows
+    /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "512x384")]
     size: String,
     /// Estimator

@@ -50,10 +50,10 @@ pub(super) struct Arguments {
     /// them
     #[arg(long, value_name = "PROGRAM", conflicts_with_all = ["resume", "shard"])]
     against: Option<PathBuf>,
-    /// Repeat each cell until its speedup (or its time, without serial runs) is known to within this, as in 3%. With
-    /// --against: until each cell is known to be slower by more than this, faster, or within it. `fastest` stops repeating a schedule
-    /// once another one of the image is faster, `order` once it is told apart from all others. At most 200 repetitions, or
-    /// those of --repetitions; the intervals account for early stops
+    /// Repeat each cell until its speedup (or its time, without serial runs) is known to within this share, as in 3%. With
+    /// --against: until each cell is known to be slower by more than this share, faster, or the same. `fastest` stops
+    /// repeating a schedule once another schedule of the same image is faster, `order` once it can be told apart from all
+    /// others. At most 200 repetitions, or those of --repetitions; the intervals account for early stops
     #[arg(long, value_name = "SHARE|fastest|order", allow_hyphen_values = true)]
     until: Option<String>,
     /// With --until: start no repetition after this time, as in 60s

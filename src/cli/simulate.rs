@@ -181,7 +181,7 @@ fn parse_workers(field: &'static str, text: &str) -> Result<Vec<usize>> {
     };
     list.map(sorted).ok_or_else(|| {
         InputError::new(field, text, "is not a valid range or list")
-            .allowed(format!("1..{MOST_WORKERS}, or a list like 1,2,768"))
+            .allowed(format!("numbers from 1 to {MOST_WORKERS}, as in 1..64 or 1,2,768"))
             .into()
     })
 }
@@ -197,8 +197,8 @@ const MOST_WORKERS: usize = 1 << 16;
 fn hardware(arguments: &Arguments) -> Result<Hardware> {
     let speed = |field: &str, text: &str, value: Option<f64>| {
         value.filter(|speed| (SLOWEST..=1.0).contains(speed)).ok_or_else(|| {
-            let error = InputError::new(field, text, "is not a valid speed");
-            Error::from(error.allowed(format!("{SLOWEST} to 1, where 1 is a core like this one")))
+            let error = InputError::new(field, text, "has no valid speed");
+            Error::from(error.allowed(format!("a speed from {SLOWEST} to 1, where 1 is a core like this one")))
         })
     };
     let speeds = match (&arguments.slow_core, &arguments.efficiency_cores) {
@@ -206,7 +206,7 @@ fn hardware(arguments: &Arguments) -> Result<Hardware> {
         (None, Some(text)) => {
             let (performance, efficient) = text.split_once(':').unwrap_or((text, ""));
             let unreadable =
-                || InputError::new("efficiency-cores", text, "cannot be read").allowed("N:SPEED, like 8:0.5");
+                || InputError::new("efficiency-cores", text, "cannot be read").allowed("N:SPEED, as in 8:0.5");
             let performance = performance.parse().map_err(|_| unreadable())?;
             Speeds::Mixed { performance, efficient: speed("efficiency-cores", text, efficient.parse().ok())? }
         }
@@ -233,7 +233,9 @@ fn parse_noise(text: &str) -> Result<Noise> {
     let noise = noise.filter(sensible).and_then(|(share, milliseconds)| Noise::new(share, milliseconds * 1e-3, 1));
     noise.ok_or_else(|| {
         InputError::new("noise", text, "is not a valid share and length")
-            .allowed(format!("SHARE[:MILLISECONDS], up to {MOST_NOISE}, from {SHORTEST_MS} ms, like 0.02:0.5"))
+            .allowed(format!(
+                "SHARE[:MILLISECONDS], at most {MOST_NOISE} and at least {SHORTEST_MS} ms, as in 0.02:0.5"
+            ))
             .into()
     })
 }

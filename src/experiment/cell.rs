@@ -116,7 +116,7 @@ impl Cell {
         let known = pair.and_then(|(field, value)| Some((Axis::named(field)?, value)));
         known.map(|(axis, values)| values.split(',').any(|value| axis.show(&settings) == value)).ok_or_else(|| {
             let names = AXES.each_ref().map(|axis| axis.name);
-            InputError::new("filter", filter, "does not begin with a known field")
+            InputError::new("filter", filter, "does not begin with the name of an axis")
                 .allowed(format!("{}=VALUE", names.join("=VALUE, ")))
                 .into()
         })

@@ -197,7 +197,8 @@ impl CellJob {
             };
             let (size, found) = ([spec.width, spec.height], [run.image.width, run.image.height]);
             if size != found {
-                let problem = format!("is the size of the image instead of {}x{}", size[0], size[1]);
+                let problem =
+                    format!("is the size of the other program's image, which must be {}x{}", size[0], size[1]);
                 return Err(InputError::new("size", format!("{}x{}", found[0], found[1]), problem).into());
             }
             if let Some(path) = &point.image {

@@ -151,7 +151,7 @@ impl<'a> Product<'a> {
     fn add_cell(&self, mut settings: Settings, cells: &mut Cells) -> Result<()> {
         self.check_sampler(&settings.spec.sampler)?;
         if settings.spec.seed > LARGEST_SEED {
-            let error = InputError::new("seed", settings.spec.seed.to_string(), "belongs to the references");
+            let error = InputError::new("seed", settings.spec.seed.to_string(), "is reserved for references");
             return Err(self.at_field(error.allowed(format!("0 to {LARGEST_SEED}")).into()));
         }
         if self.matrix.weak {

@@ -63,9 +63,9 @@ impl RunFile {
     /// Refuses to mix rows that are not repetitions of each other: another processor, revision, profile or definition.
     pub(super) fn check_same(&self, now: &Self, path: &Path) -> Result<()> {
         if self.definition_hash != now.definition_hash {
-            let problem = "was edited since these rows were measured";
+            let problem = "is not the one that these rows were measured with";
             return Err(InputError::new("experiment", "", problem)
-                .allowed("another --out for the new text, or the old text, kept beside the rows as experiment.toml")
+                .allowed("another --out, or the old file and options; experiment.toml beside the rows has the old text")
                 .in_file(path.display().to_string(), None)
                 .into());
         }

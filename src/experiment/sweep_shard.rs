@@ -35,9 +35,9 @@ impl SweepShard {
         // If all cells are serial, they are compared with nothing and are divided themselves.
         let (baselines, divided) = if others.is_empty() { (Vec::new(), serial) } else { (serial, others) };
         if self.count as usize > divided.len() {
-            let problem = format!("there are only {} cells to divide", divided.len());
+            let problem = "there are more parts than cells to divide";
             let error = InputError::new("shard", self.to_string(), problem);
-            return Err(error.allowed(format!("at most {} parts", divided.len())).into());
+            return Err(error.allowed(format!("I/N with N at most {}", divided.len())).into());
         }
         let mine: Vec<Cell> =
             divided.into_iter().enumerate().filter(|(index, _)| own(*index)).map(|(_, cell)| cell).collect();

@@ -65,7 +65,9 @@ impl Until {
     /// Parses a goal (`3%`, `0.03`, `fastest` or `order`) and a time (`60s`).
     pub fn parse(goal: &str, within: Option<&str>) -> Result<Self> {
         let length = |text: &str| -> Result<Duration> {
-            let wrong = || InputError::new("within", text, "is not a duration").allowed("60s, or 2min");
+            let wrong = || {
+                InputError::new("within", text, "is not a duration").allowed("a number with a unit, as in 60s or 2min")
+            };
             Ok(humantime::parse_duration(text).map_err(|_| wrong())?)
         };
         let within = within.map(length).transpose()?;

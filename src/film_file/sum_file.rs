@@ -68,7 +68,7 @@ impl SumFile {
                 check_size(width, height)?;
                 let size = (u64::from(width) * u64::from(height) * PIXEL_BYTES as u64).checked_mul(images as u64);
                 if size != Some(body.file.limit()) {
-                    return Err(self.broken(path, "does not have the number of pixels in its header"));
+                    return Err(self.broken(path, "does not contain as many pixels as its header states"));
                 }
                 (0..images).map(|_| body.film(width, height, unreadable)).collect::<Result<_>>()?
             }
@@ -98,7 +98,10 @@ impl SumFile {
         let mut body = Body { file: BufReader::new(file).take(length), digest: Sha256::new() };
         let unreadable = |e: io::Error| self.unreadable(path, e);
         if body.line(self.magic.len()).map_err(unreadable)? != self.magic.as_bytes() {
-            return Err(self.broken(path, &format!("does not begin with the line \"{}\"", self.magic)));
+            return Err(self.broken(
+                path,
+                &format!("is not a {} file of this version: its first line is not \"{}\"", self.field, self.magic),
+            ));
         }
         let line = body.line(LONGEST_HEADER).map_err(unreadable)?;
         Ok((body, line))

@@ -95,9 +95,9 @@ impl RankRule {
     pub fn check(&self, ranks: usize) -> Result<()> {
         match self.way {
             Way::Asked(Master::Only, _) if ranks < 2 => {
-                let problem = format!("needs a rank besides the master, but there is only {ranks}");
+                let problem = format!("needs at least one rank besides the master, but the number of ranks is {ranks}");
                 let error = InputError::new("ranks", &self.text, problem);
-                Err(error.allowed("2 ranks or more, as by mpiexec -n 2").into())
+                Err(error.allowed("2 ranks or more, as in mpiexec -n 2").into())
             }
             _ => Ok(()),
         }
@@ -116,7 +116,7 @@ impl Lab {
             _ => None,
         };
         way.map(|way| RankRule { text: text.to_string(), way }).ok_or_else(|| {
-            let problem = "is not a rule for sharing jobs among processes";
+            let problem = "is not a valid rule for sharing jobs among processes";
             InputError::new(field, text, problem).allowed(RULES.join(", ")).into()
         })
     }

@@ -40,13 +40,13 @@ impl Setup {
         if let Some(rule) = rank_rule {
             let problem =
                 "cannot be combined with adaptive samples: it needs the same number of samples in every pixel";
-            return Err(InputError::new("rank-rule", rule, problem).allowed("no rule with adaptive samples").into());
+            return Err(InputError::new("rank-rule", rule, problem).allowed("no rule").into());
         }
         if *spp >= FEWEST_SPP && spp.is_multiple_of(SUBPIXELS) {
             return Ok(());
         }
         let problem = "cannot be distributed by adaptive sampling";
-        let allowed = format!("multiples of {SUBPIXELS} from {FEWEST_SPP} with adaptive samples");
+        let allowed = format!("multiples of {SUBPIXELS} from {FEWEST_SPP}");
         Err(InputError::new("spp", spp.to_string(), problem).allowed(allowed).into())
     }
 

@@ -83,7 +83,7 @@ pub fn merge(paths: &[PathBuf], partial: bool) -> Result<Merged> {
     let (count, cut, spp) = (first.part.shard.count(), first.part.shard.cut(), first.part.spp);
     let missing = missing(&parts, count);
     if !missing.is_empty() && !partial {
-        let problem = format!("these of {count} parts are missing or not finished: {}", missing.join(", "));
+        let problem = format!("of the image's {count} parts, some are missing or not finished: {}", missing.join(", "));
         let allowed = "all parts, or --partial for an image of the available samples";
         return Err(InputError::new("part", first.path.display().to_string(), problem).allowed(allowed).into());
     }

@@ -97,7 +97,7 @@ pub fn find(name: &str) -> Result<&'static Entry> {
 fn check_sizes(test: &Image, reference: &Image) -> Result<()> {
     let size = |image: &Image| format!("{}x{}", image.width, image.height);
     if size(test) != size(reference) {
-        let problem = format!("the reference is {}", size(reference));
+        let problem = format!("is not the size of the reference, {}", size(reference));
         return Err(InputError::new("size", size(test), problem).allowed("pictures of the same size").into());
     }
     Ok(())

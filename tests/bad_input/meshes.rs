@@ -127,8 +127,8 @@ const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\npr
 /// The same for the text of a PLY file.
 const WRONG_PLY: &[(&str, &str, usize, &[&str])] = &[
     ("ply\n", "plx\n", 1, &["header = plx", "not the header of a PLY file"]),
-    ("ascii 1.0", "morse 1.0", 2, &["header = format morse 1.0", "not understood"]),
-    ("vertex 4", "vertex four", 3, &["header = element vertex four", "not understood"]),
+    ("ascii 1.0", "morse 1.0", 2, &["header = format morse 1.0", "not a valid line"]),
+    ("vertex 4", "vertex four", 3, &["header = element vertex four", "not a valid line"]),
     ("property float z\n", "", 8, &["property = z", "x, y and z"]),
     ("float z", "list uchar float z", 9, &["property = z", "x, y and z"]),
     ("vertex_indices", "corners", 9, &["property = vertex_indices", "vertex_index"]),
@@ -141,7 +141,7 @@ const WRONG_PLY: &[(&str, &str, usize, &[&str])] = &[
     ("3 0 1 2", "3 0 1 -1", 14, &["corners of face 0", "0 to 3"]),
     ("3 0 1 2", "2 0 1", 14, &["face = 0 1", "three or more"]),
     ("3 0 1 2", "9 0 1 2", 14, &["face = 0", "does not match the header"]),
-    ("face 2", "face 3", 16, &["face = 2", "ends before the 3"]),
+    ("face 2", "face 3", 16, &["face = 2", "declares 3 of them"]),
 ];
 
 fn ply_folder(scene: &str, ply: &[u8]) -> tempfile::TempDir {
@@ -155,12 +155,12 @@ fn ply_files_that_are_no_meshes_are_refused() {
     let faces_first = PLY.replacen("vertex 4", "face 0\nproperty list uchar int vertex_indices\nelement vertex 4", 1);
     refused(ply_folder(SCENE, faces_first.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply"]);
     let points = PLY.replace("element face 2\nproperty list uchar int vertex_indices\n", "");
-    refused(ply_folder(SCENE, points.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "face", "no such list"]);
+    refused(ply_folder(SCENE, points.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "face", "no list"]);
     let endless = "ply\n".to_string() + &"comment none\n".repeat(90_000);
     refused(ply_folder(SCENE, endless.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "longer than 1 MiB"]);
     // The reader does not reserve memory for as many vertices as the header claims.
     let binary = PLY.replace("ascii", "binary_little_endian").replace("vertex 4", "vertex 9999999999");
-    refused(ply_folder(SCENE, binary.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "ends before the 9999999999"]);
+    refused(ply_folder(SCENE, binary.as_bytes()).path(), &ARGUMENTS, 2, &["thing.ply", "declares 9999999999 of them"]);
     let small = SCENE.replace("\"thing.obj\"", "\"thing.obj\", largest-mib = 1");
     refused(ply_folder(&small, &vec![b'\n'; 2 << 20]).path(), &ARGUMENTS, 2, &["thing.ply", "1 MiB"]);
     let object = SCENE.replace("\"thing.obj\"", "\"thing.obj\", object = \"circle\"");

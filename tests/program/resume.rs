@@ -160,7 +160,7 @@ fn resuming_with_another_definition_or_machine_is_refused() {
     };
     refused(&[RESUME.as_slice(), &["--full"]].concat(), "profile = quick");
     write_tiny(folder.path(), &TINY.replace("seed = [1]", "seed = [2]"));
-    refused(&RESUME, "was edited since these rows were measured");
+    refused(&RESUME, "is not the one that these rows were measured with");
     write_tiny(folder.path(), TINY);
 
     let machine = records.with_file_name("machine.toml");

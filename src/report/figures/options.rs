@@ -65,7 +65,7 @@ pub(super) fn check_tables(definition: &Definition) -> Result<()> {
     for name in definition.figure.keys() {
         if !definition.figures.contains(name) {
             let at = place(&definition.text, name);
-            return Err(InputError::new("figure", name, "is told something and not listed in `figures`")
+            return Err(InputError::new("figure", name, "has parameters, but `figures` does not list it")
                 .allowed(definition.figures.join(", "))
                 .in_file(&definition.file, at)
                 .into());

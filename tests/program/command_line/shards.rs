@@ -65,8 +65,8 @@ fn invalid_shards_are_refused_before_any_work() {
         refused(&["--shard", shard, "-o", "part.film"], &["shard", shard]);
     }
     refused(&["--shard", "1/2", "-o", "part.png"], &["image", "part.png", "not a picture"]);
-    refused(&["--shard", "1/2", "-o", "part.film", "--spp", "16"], &["shard", "1 block", "at most 1"]);
-    refused(&["--shard", "1/7", "--shard-by", "tiles", "-o", "part.film"], &["shard", "6 tiles", "at most 6"]);
+    refused(&["--shard", "1/2", "-o", "part.film", "--spp", "16"], &["shard", "blocks of 16", "at most 1"]);
+    refused(&["--shard", "1/7", "--shard-by", "tiles", "-o", "part.film"], &["shard", "tiles of 32x32", "at most 6"]);
     refused(&["--shard", "1/2"], &["--image"]);
     refused(&["--shard-by", "tiles"], &["--shard"]);
     refused(&["--shard", "1/2", "-o", "p", "--clamp", "subpixel", "--spp", "32"], &["clamp"]);

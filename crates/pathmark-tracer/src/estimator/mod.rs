@@ -323,5 +323,5 @@ estimators! {
     "bsdf", "the same transport without splitting: one direction at every vertex" => Bsdf, Bsdf::new;
     "nee", "next-event estimation: a shadow ray from every vertex to one light" => Path<Aimed>, nee::new;
     "mis", "multiple importance sampling of lights and directions, by the power heuristic" => Path<Aimed>, mis::new;
-    "whitted", "Whitted's of 1980: point lights, ideal mirrors and glass, no diffuse interreflection; 10 bounces" => Whitted, Whitted::new;
+    "whitted", "Whitted's method of 1980: point lights, ideal mirrors and glass, no diffuse interreflection; 10 bounces" => Whitted, Whitted::new;
 }

@@ -42,7 +42,7 @@ pub const DECOMPOSITIONS: &[Entry] = &[
     },
     Entry {
         name: "samples",
-        about: "tiles of WxH pixels (32x32 by default), each cut into jobs of B = 16, 32, 64, ... samples (report D's wish)",
+        about: "tiles of WxH pixels (32x32 by default), each cut into jobs of B = 16, 32, 64, ... samples (proposed by report D)",
         example: "samples:16:32x32",
         parse: parse_samples,
     },
@@ -126,7 +126,10 @@ impl Decomposition {
         let examples: Vec<&str> = DECOMPOSITIONS.iter().map(|entry| entry.example).collect();
         let problem = if entry.is_some() { "has invalid parameters" } else { "there is no decomposition of that name" };
         Err(InputError::new("decomposition", text, problem)
-            .allowed(format!("as in {}; numbers from 1, samples in 16, 32, 64, ...", examples.join(", ")))
+            .allowed(format!(
+                "for example {}; numbers are at least 1, and B of samples:B is 16, 32, 64, ...",
+                examples.join(", ")
+            ))
             .into())
     }
 

@@ -100,17 +100,17 @@ impl Shard {
         let (most, problem, allowed) = match self.cut {
             ShardCut::Samples => {
                 let most = spp.div_ceil(SAMPLE_BLOCK);
-                (most, format!("{spp} samples are {most} blocks of {SAMPLE_BLOCK}"), "or cut by tiles")
+                (most, format!("there are more parts than blocks of {SAMPLE_BLOCK} samples"), "--shard-by tiles")
             }
             ShardCut::Tiles => {
                 let most = width.div_ceil(TILE) * height.div_ceil(TILE);
-                (most, format!("the image has {most} tiles of {TILE}x{TILE}"), "or cut by samples")
+                (most, format!("there are more parts than tiles of {TILE}x{TILE} pixels"), "--shard-by samples")
             }
         };
         if self.count <= most {
             return Ok(());
         }
-        let allowed = format!("at most {most} shards, {allowed}");
+        let allowed = format!("I/N with N at most {most}, or {allowed}");
         Err(InputError::new("shard", self.to_string(), problem).allowed(allowed).into())
     }
 

@@ -340,7 +340,7 @@ fn options(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<Opti
     let roulette = spec.roulette.as_deref().map(Roulette::parse).transpose()?;
     if let Some(rule) = spec.roulette.as_deref().filter(|_| is_own || estimator.roulette.is_none()) {
         let problem = format!("is not supported by {}, which takes no roulette rule", estimator.name);
-        return Err(InputError::new("roulette", rule, problem).allowed("none").into());
+        return Err(InputError::new("roulette", rule, problem).allowed("no rule").into());
     }
     Ok(Options { max_depth: spec.max_depth, roulette, camera_rays: camera_rays(spec, estimator, is_own)? })
 }
@@ -350,7 +350,7 @@ fn camera_rays(spec: &Spec, estimator: &EstimatorEntry, is_own: bool) -> Result<
     let Some(number) = spec.camera_rays.filter(|number| *number != 1) else { return Ok(None) };
     let error = |problem: &str, allowed| InputError::new("camera-rays", number.to_string(), problem).allowed(allowed);
     if number == 0 {
-        return Err(error("must be at least 1", "1 to 65535").into());
+        return Err(error("is out of range", "1 to 65535").into());
     }
     if is_own || !estimator.shares_camera_rays {
         return Err(error(&format!("{} allows one camera ray", estimator.name), "1").into());
@@ -373,7 +373,7 @@ fn epsilon(spec: &Spec) -> Result<Option<f64>> {
     let parsed = text.parse().ok().filter(|distance: &f64| distance.is_finite() && *distance >= 0.0);
     let error = || {
         InputError::new("epsilon", text, "is not a valid distance")
-            .allowed("a number of at least 0, in the scene's units of length, or none")
+            .allowed("a number of at least 0, in the scene's units of length, or `none`")
     };
     parsed.map(Some).ok_or_else(|| error().into())
 }

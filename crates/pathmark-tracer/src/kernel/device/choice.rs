@@ -86,7 +86,7 @@ pub(in crate::kernel) fn device_for(
 ) -> Result<std::result::Result<ForDevice, &'static str>> {
     if let Some(level) = &spec.simd {
         let problem = "applies only to lanes, and a device has none";
-        return Err(InputError::new("simd", level, problem).allowed("none").into());
+        return Err(InputError::new("simd", level, problem).allowed("no instruction set").into());
     }
     let precision = precision(spec)?;
     let id = chosen(&spec.kernel)?;

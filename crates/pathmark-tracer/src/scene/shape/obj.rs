@@ -109,7 +109,7 @@ impl<'a, R: BufRead> Essence<'a, R> {
                 let is_good = |word: &str| word.parse().is_ok_and(coordinate_limit);
                 if let Some(bad) = coordinates.iter().find(|word| !is_good(word)) {
                     let allowed = "-1e100 to 1e100 in each coordinate".to_string();
-                    return Err(error("v", bad, "is out of range", allowed));
+                    return Err(error("v", bad, "is not a number in the allowed range", allowed));
                 }
                 self.vertices += 1;
                 // Writing to a string cannot fail.

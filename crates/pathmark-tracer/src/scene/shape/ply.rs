@@ -180,7 +180,8 @@ impl<R: Read> Ply<'_, R> {
         self.header = header.map_err(|problem| {
             let line = problem.line().unwrap_or(1);
             let written = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
-            InputError::new("header", written, "is not understood").in_file(self.name, Some((line, 1)))
+            InputError::new("header", written, "is not a valid line of a PLY header")
+                .in_file(self.name, Some((line, 1)))
         })?;
         self.judge_header()?;
         self.has_lines = self.header.encoding == Encoding::Ascii;
@@ -196,7 +197,7 @@ impl<R: Read> Ply<'_, R> {
             property("vertex", name).is_some_and(|property| matches!(property.data_type, PropertyType::Scalar(_)))
         };
         if let Some(missing) = ["x", "y", "z"].iter().find(|name| !is_number(name)) {
-            let problem = "the element `vertex` has no such number";
+            let problem = "the element `vertex` has no number with this name";
             return Err(self.refused("property", missing, problem).allowed("x, y and z").into());
         }
         let is_list = |name: &str| {
@@ -204,7 +205,7 @@ impl<R: Read> Ply<'_, R> {
             matches!(property, Some(PropertyType::List(_, of)) if !matches!(of, ScalarType::Float | ScalarType::Double))
         };
         if !CORNERS.into_iter().any(is_list) {
-            let problem = "the element `face` has no such list of whole numbers";
+            let problem = "the element `face` has no list of whole numbers with this name";
             return Err(self.refused("property", CORNERS[0], problem).allowed(CORNERS.join(" or ")).into());
         }
         Ok(())
@@ -227,7 +228,7 @@ impl<R: Read> Ply<'_, R> {
             let ElementDef { name, count, .. } = element;
             let problem = match problem.kind() {
                 io::ErrorKind::UnexpectedEof => {
-                    format!("is missing: the file ends before the {count} that its header declares")
+                    format!("is missing: the header declares {count} of them, but the file ends earlier")
                 }
                 _ => "does not match the header".to_string(),
             };
@@ -255,7 +256,7 @@ impl<R: Read> Ply<'_, R> {
             let places = corners.iter().map(|corner| vertices.get(*corner as usize).copied());
             let Some(places) = places.collect::<Option<Vec<Vec3>>>().filter(|places| places.len() >= 3) else {
                 let corners = corners.iter().map(u32::to_string).collect::<Vec<_>>().join(" ");
-                let error = self.refused("face", &corners, &format!("are not valid corners of face {index}"));
+                let error = self.refused("face", &corners, &format!("is not a valid list of corners of face {index}"));
                 let allowed = match vertices.len() {
                     0 => "vertex numbers, but the file has no vertices".to_string(),
                     count => format!("three or more vertex numbers, 0 to {}", count - 1),
