@@ -12,6 +12,18 @@ use std::collections::hash_map::Entry;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// Creates a folder that the user gave as `field`, with its parents; nothing happens if it exists.
+pub fn create_folder(field: &str, folder: &Path) -> Result<()> {
+    let is_file = folder.ancestors().any(Path::is_file);
+    fs::create_dir_all(folder).map_err(|e| {
+        if is_file {
+            let problem = "is a file or lies in one; a folder is needed";
+            return InputError::new(field, folder.display().to_string(), problem).into();
+        }
+        Error::system("creating", folder, e)
+    })
+}
+
 /// The use of a file by a command.
 #[derive(Debug)]
 enum Use {

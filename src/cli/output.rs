@@ -2,6 +2,7 @@
 //! `pathmark list | head -1` is no failure.
 
 use crate::error::{Error, Result};
+use crate::files::create_folder;
 use crate::lock::{Lock, Sharing};
 use serde::Serialize;
 use serde_json::Value;
@@ -10,7 +11,7 @@ use std::path::Path;
 
 /// Creates a folder of results if it is missing, and locks it against other processes as `sharing` says.
 pub(super) fn lock_folder(out: &Path, sharing: Sharing) -> Result<Lock> {
-    std::fs::create_dir_all(out).map_err(|e| Error::system("creating", out, e))?;
+    create_folder("out", out)?;
     Lock::of_folder(out, "out", sharing)
 }
 

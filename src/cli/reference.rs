@@ -2,9 +2,9 @@
 
 use super::output::print;
 use super::progress::Talk;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::experiment::{Reference, ReferenceError, check_until, refine_reference, render_reference};
-use crate::files::Files;
+use crate::files::{Files, create_folder};
 use crate::lab::Lab;
 use crate::measure::parse_size;
 use clap::Args;
@@ -57,7 +57,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     for path in reference.paths(lab, &arguments.out)? {
         files.claims("out", &path)?;
     }
-    std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
+    create_folder("out", &arguments.out)?;
     let halves = match arguments.until {
         Some(rmse) => refine_reference(lab, &reference, rmse, &arguments.out, talk)?,
         None => render_reference(lab, &reference, &arguments.out, talk)?,

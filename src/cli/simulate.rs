@@ -6,7 +6,7 @@ use super::run::talk_of;
 use crate::cluster::MessageCosts;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{MESSAGES, Progress, read_calibration};
-use crate::files::Files;
+use crate::files::{Files, create_folder};
 use crate::lab::Lab;
 use crate::measure::{Doubts, ForeignLoad, SERIAL, Settings, Setup, TraceFile, available_threads, calibrate};
 use crate::report::rank_forecasts::{self, RankPlan};
@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     for name in own {
         files.claims("out", &arguments.out.join(name))?;
     }
-    std::fs::create_dir_all(&arguments.out).map_err(|e| Error::system("creating", &arguments.out, e))?;
+    create_folder("out", &arguments.out)?;
     // Overheads calibrated with the trace explain it better than those of this machine now.
     let calibrated = arguments.trace.join("calibration.csv");
     let rows = if calibrated.is_file() && arguments.strategies.is_empty() {

@@ -16,6 +16,10 @@ use std::path::Path;
 
 const PIXEL_BYTES: usize = 52;
 const DIGEST_BYTES: usize = 32;
+/// In bytes.
+const LONGEST_MAGIC: usize = 64;
+/// First words of checkpoints and of parts of images, whatever their version.
+const CHECKPOINT: &[u8] = b"pathmark checkpoint";
 /// In bytes; a header holds only names and numbers.
 const LONGEST_HEADER: usize = 1 << 16;
 
@@ -97,11 +101,15 @@ impl SumFile {
         };
         let mut body = Body { file: BufReader::new(file).take(length), digest: Sha256::new() };
         let unreadable = |e: io::Error| self.unreadable(path, e);
-        if body.line(self.magic.len()).map_err(unreadable)? != self.magic.as_bytes() {
-            return Err(self.broken(
-                path,
-                &format!("is not a {} file of this version: its first line is not \"{}\"", self.field, self.magic),
-            ));
+        let (first, magic) = (body.line(LONGEST_MAGIC).map_err(unreadable)?, self.magic.as_bytes());
+        if first != magic {
+            let is_part = first.starts_with(CHECKPOINT) && !magic.starts_with(CHECKPOINT);
+            let reason = if is_part {
+                "it is a checkpoint or a part of an image, and `pathmark merge` makes images from parts".to_string()
+            } else {
+                format!("its first line is not \"{}\"", self.magic)
+            };
+            return Err(self.broken(path, &format!("is not a {} file of this version: {reason}", self.field)));
         }
         let line = body.line(LONGEST_HEADER).map_err(unreadable)?;
         Ok((body, line))

@@ -98,7 +98,9 @@ impl Setup {
         let decomposition = Decomposition::parse(&settings.decomposition)?;
         let (strategy, parameter) = lab.strategy_named(&settings.strategy).map_err(|error| match error {
             // Report A's name for a strategy together with its pieces is allowed too.
-            Error::Input(input) if !lab.strategies().iter().any(|entry| entry.name == input.value) => {
+            Error::Input(input)
+                if !lab.strategies().iter().any(|entry| input.value.split(':').next() == Some(entry.name)) =>
+            {
                 let allowed = format!("{}, {THREAD_PER_ROW}", input.allowed);
                 input.allowed(allowed).into()
             }

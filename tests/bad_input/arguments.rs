@@ -13,7 +13,7 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--output", "pigeon"], &["output", "pigeon", "slots"]),
     (&["--strategy", ""], &["strategy", "work-stealing"]),
     (&["--decomposition", "hexagons"], &["decomposition", "hexagons", "tiles:32x32"]),
-    (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "from 1"]),
+    (&["--decomposition", "tiles:0x8"], &["decomposition", "tiles:0x8", "at least 1"]),
     (&["--decomposition", "tiles:8x8:zigzag"], &["decomposition", "zigzag", "hilbert"]),
     (&["--decomposition", "bands:-1"], &["decomposition", "bands:-1"]),
     (&["--decomposition", "grid:99999999999999999999"], &["decomposition", "grid:9999", "grid:16"]),

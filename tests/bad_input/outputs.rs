@@ -69,7 +69,7 @@ fn an_output_folder_that_is_a_file_is_refused() {
     ];
     for arguments in cases {
         println!("{arguments:?}");
-        refused(folder.path(), arguments, 3, &["file"]);
+        refused(folder.path(), arguments, 2, &["out = file: ", "folder"]);
     }
     refused(folder.path(), &["report", "file"], 2, &["folder", "file"]);
 }

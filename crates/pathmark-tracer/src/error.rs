@@ -117,7 +117,12 @@ impl InputError {
         if !is_name(&self.value) {
             return None;
         }
-        let names = self.allowed.split(", ").filter(|name| is_name(name) && !name.contains(' '));
+        // If the name is right, its parameter is wrong, and the same name would not help.
+        let head = |text: &str| text.split_once(':').map(|(head, _)| head.to_string());
+        let right = head(&self.value);
+        let is_right = |name: &str| right.is_some() && (head(name) == right || right.as_deref() == Some(name));
+        let is_other = |name: &&str| is_name(name) && !name.contains(' ') && !is_right(name);
+        let names = self.allowed.split(", ").filter(is_other);
         let rated = names.map(|name| (strsim::normalized_damerau_levenshtein(&self.value, name), name));
         let (similarity, name) = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
         (SIMILAR..1.0).contains(&similarity).then_some(name)
@@ -145,5 +150,20 @@ impl fmt::Display for InputError {
             write!(f, " (allowed: {})", self.allowed)?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_suggested_only_for_wrong_names() {
+        let meant = |value: &str| {
+            InputError::new("decomposition", value, "is wrong").allowed("rows, bands:20").meant().map(String::from)
+        };
+        assert_eq!(meant("rws").as_deref(), Some("rows"));
+        assert_eq!(meant("band:0").as_deref(), Some("bands:20"));
+        assert_eq!((meant("bands:0"), meant("rows:1")), (None, None));
     }
 }

@@ -85,6 +85,12 @@ fn field_and_value(text: &str, span: &Range<usize>) -> (String, String) {
         let header = inside.split([']', '\n']).next().unwrap_or("");
         return (header.trim().to_string(), String::new());
     }
+    // A name inside a header, as `fish` in `[camera.fish]`: the header is the field.
+    let begun = line.trim_start_matches('[');
+    if begun.len() < line.len() && begun.starts_with(char::is_alphabetic) && begun.chars().all(is_key) {
+        let rest = text[span.start..].split([']', '\n']).next().unwrap_or("");
+        return (format!("{begun}{rest}"), String::new());
+    }
     let owner = before.rfind('=').map(|at| before[..at].trim_end()).unwrap_or_default();
     let start = owner.char_indices().rev().find(|(_, c)| !is_key(*c)).map_or(0, |(at, c)| at + c.len_utf8());
     let field = owner[start..].to_string();
@@ -150,5 +156,7 @@ mod tests {
         assert!(inline.starts_with("f.toml:2:") && inline.contains(" one = { x = 1 }: is wrong"), "{inline}");
         let value = said("title = 'a'\n[table]\none = [\n  [0.5],\n]\n");
         assert!(value.starts_with("f.toml:3:") && value.contains(" one = ["), "{value}");
+        let (text, span) = ("base = 'a'\n[camera.fish]\nx = 1\n", 19..23);
+        assert_eq!((&text[span.clone()], field_and_value(text, &span).0.as_str()), ("fish", "camera.fish"));
     }
 }
