@@ -118,10 +118,8 @@ impl InputError {
             return None;
         }
         // If the name is right, its parameter is wrong, and the same name would not help.
-        let head = |text: &str| text.split_once(':').map(|(head, _)| head.to_string());
-        let right = head(&self.value);
-        let is_right = |name: &str| right.is_some() && (head(name) == right || right.as_deref() == Some(name));
-        let is_other = |name: &&str| is_name(name) && !name.contains(' ') && !is_right(name);
+        let right = self.value.split_once(':').map(|(name, _)| name);
+        let is_other = |name: &&str| is_name(name) && !name.contains(' ') && name.split(':').next() != right;
         let names = self.allowed.split(", ").filter(is_other);
         let rated = names.map(|name| (strsim::normalized_damerau_levenshtein(&self.value, name), name));
         let (similarity, name) = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
