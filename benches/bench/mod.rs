@@ -48,10 +48,10 @@ pub(crate) fn run(name: &str, units: &[(&str, &str)], cases: impl FnOnce(&mut Cr
             own = others;
         }
     }
-    let foreign = load.share().map(|(share, seconds)| {
-        format!(" Other programs took {:.1} % of the processors in these {seconds:.0} s.", 100.0 * share)
-    });
-    println!("\n{}.{}", Machine::look().line(), foreign.unwrap_or_default());
+    println!("\n{}.", Machine::look().line());
+    if let Some(shares) = load.shares() {
+        println!("During these cases {shares}.");
+    }
     println!(
         "Cases ran one after the other, so a drift of the machine is in the tables; `pathmark run thread-scaling`"
     );

@@ -11,7 +11,7 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// Versions of the columns that can be read. The older ones only lack columns that may be empty.
-const READABLE: [u32; 3] = [7, 8, SCHEMA];
+const READABLE: [u32; 4] = [7, 8, 9, SCHEMA];
 
 /// An open file of records, locked against a second sweep.
 pub struct RecordsFile {

@@ -21,6 +21,7 @@ const SINCE: &[(u32, &[&str])] = &[
     (7, &["ranks", "rank_rule", "mpi"]),
     (8, &["device_compile_s", "device_copy_s"]),
     (9, &["camera_rays"]),
+    (10, &["steal_s"]),
 ];
 
 impl Column {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// The warnings about the time of a run; the others concern its image.
-const REASONS: [&str; 4] = ["foreign-load", "slowed", "drift", TOO_SHORT];
+const REASONS: [&str; 5] = ["foreign-load", "steal", "slowed", "drift", TOO_SHORT];
 /// The warning that another run would get as well.
 const TOO_SHORT: &str = "too-short";
 

@@ -1,44 +1,58 @@
-//! Foreign load: the processor time that other programs take during a measurement.
+//! Foreign load: the processor time that other programs, and the host of a virtual machine, take during a measurement.
 
 use super::available_threads;
 use super::usage::Usage;
+use std::fmt;
 use std::time::Instant;
 
-/// Above this share of the processors' time, other programs count as a disturbance of the measurement.
+/// Above this share of the processors' time, others count as a disturbance of the measurement.
 pub(super) const FOREIGN_SHARE: f64 = 0.05;
 
-/// The processor time of other programs since a start time.
+/// The processor time of others since a start time.
 #[derive(Debug, Clone, Copy)]
 pub struct ForeignLoad {
     begun: Instant,
-    /// CPU seconds of all other programs on the machine until the start.
-    before_s: Option<f64>,
+    before: Option<Usage>,
+}
+
+/// The shares of the processors' time that others took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForeignShares {
+    /// Other programs' share.
+    pub programs: f64,
+    /// The share that the host of a virtual machine gave to others while this machine had work.
+    pub host: f64,
+    /// Elapsed seconds.
+    pub seconds: f64,
 }
 
 impl ForeignLoad {
     /// Begins to measure.
     pub fn begin() -> Self {
-        Self { begun: Instant::now(), before_s: foreign_s() }
+        Self { begun: Instant::now(), before: Usage::now() }
     }
 
-    /// The share of the processors' time that other programs have taken since, and the elapsed seconds; `None` if the
-    /// system does not report it.
-    pub fn share(&self) -> Option<(f64, f64)> {
+    /// The shares since; `None` if the system does not report them.
+    pub fn shares(&self) -> Option<ForeignShares> {
         let seconds = self.begun.elapsed().as_secs_f64();
-        let taken_s = (foreign_s()? - self.before_s?).max(0.0);
-        Some((taken_s / (seconds * available_threads() as f64), seconds))
+        let taken = Usage::now()?.since(&self.before?);
+        let capacity_s = seconds * available_threads() as f64;
+        Some(ForeignShares { programs: taken.foreign_s? / capacity_s, host: taken.steal_s? / capacity_s, seconds })
     }
 
-    /// A warning, if they took so much that they disturbed the measurement.
+    /// A warning, if others took so much that they disturbed the measurement.
     pub fn warning(&self) -> Option<String> {
-        let (share, seconds) = self.share().filter(|(share, _)| *share > FOREIGN_SHARE)?;
-        let percent = 100.0 * share;
-        Some(format!("warning: other programs took {percent:.0} % of the processors in these {seconds:.0} s"))
+        let shares = self.shares().filter(|shares| shares.programs.max(shares.host) > FOREIGN_SHARE)?;
+        Some(format!("warning: {shares}"))
     }
 }
 
-fn foreign_s() -> Option<f64> {
-    Usage::now()?.foreign_s
+impl fmt::Display for ForeignShares {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [programs, host] = [self.programs, self.host].map(|share| 100.0 * share);
+        write!(f, "other programs took {programs:.1} % of the processors in these {:.0} s", self.seconds)?;
+        if host < 0.05 { Ok(()) } else { write!(f, ", and the host of this virtual machine {host:.1} %") }
+    }
 }
 
 #[cfg(test)]
@@ -52,8 +66,16 @@ mod tests {
         while load.begun.elapsed().as_secs_f64() < 0.05 {
             std::hint::spin_loop();
         }
-        if let Some((share, seconds)) = load.share() {
-            assert!(share >= 0.0 && seconds >= 0.05, "{share} {seconds}");
+        if let Some(shares) = load.shares() {
+            assert!(shares.programs >= 0.0 && shares.host >= 0.0 && shares.seconds >= 0.05, "{shares:?}");
         }
+    }
+
+    #[test]
+    fn the_host_is_told_apart_from_programs() {
+        let shares = ForeignShares { programs: 0.031, host: 0.12, seconds: 4.2 };
+        let told = "other programs took 3.1 % of the processors in these 4 s";
+        assert_eq!(shares.to_string(), format!("{told}, and the host of this virtual machine 12.0 %"));
+        assert_eq!(ForeignShares { host: 0.0, ..shares }.to_string(), told);
     }
 }

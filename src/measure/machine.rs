@@ -1,13 +1,22 @@
 //! The machine and the build of a measurement: seconds mean nothing without them.
 
+use super::processor::{instruction_sets, model_numbers};
 use serde::{Deserialize, Serialize};
 use std::fs;
+use sysinfo::{CpuRefreshKind, MemoryRefreshKind, RefreshKind, System};
 
 /// Facts about the machine and the build. Unknown text is `unknown`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
-    /// Processor model.
+    /// Name of the processor.
     pub cpu: String,
+    /// The maker's numbers of the processor, such as family, model and stepping: one name may stand for many models.
+    /// Rows of older versions do not have them.
+    #[serde(default)]
+    pub cpu_model: String,
+    /// Instruction sets of the processor. Rows of older versions do not have them.
+    #[serde(default)]
+    pub cpu_features: String,
     /// Processors that this process may use.
     pub processors: usize,
     /// Physical cores; 0 if the system does not report them.
@@ -47,37 +56,40 @@ fn built_with(fact: &str) -> String {
     fact.to_string()
 }
 
-/// The values of `key: value` lines, one for each line that has the key.
-fn values<'a>(text: &'a str, key: &'a str) -> impl Iterator<Item = &'a str> {
-    text.lines().filter_map(move |line| {
-        let (found, value) = line.split_once(':')?;
-        (found.trim() == key).then(|| value.trim())
-    })
+/// The kernel's name.
+const KERNEL: &str = if cfg!(target_os = "linux") { "Linux" } else { std::env::consts::OS };
+
+/// Load averages over 1, 5 and 15 minutes.
+fn load_average() -> String {
+    let load = System::load_average().ok();
+    or_unknown(load.map(|load| format!("{:.2} {:.2} {:.2}", load.one, load.five, load.fifteen)))
 }
 
 impl Machine {
-    /// The machine in a few words, for figures.
+    /// The machine in a few words, for figures and for the question whether two folders come from one machine.
     pub fn line(&self) -> String {
-        format!("{} processors, {}", self.processors, self.cpu)
+        let model = if self.cpu_model.is_empty() { String::new() } else { format!(" ({})", self.cpu_model) };
+        format!("{} processors, {}{model}", self.processors, self.cpu)
     }
 
     /// Inspects this machine and this build.
     pub fn look() -> Self {
-        let cpuinfo = read("/proc/cpuinfo").unwrap_or_default();
-        let meminfo = read("/proc/meminfo").unwrap_or_default();
-        let mut cores: Vec<(&str, &str)> = values(&cpuinfo, "physical id").zip(values(&cpuinfo, "core id")).collect();
-        cores.sort_unstable();
-        cores.dedup();
-        let kib = values(&meminfo, "MemTotal").next().and_then(|text| text.split(' ').next()?.parse::<u64>().ok());
-        let load = read("/proc/loadavg").map(|text| text.split(' ').take(3).collect::<Vec<_>>().join(" "));
+        let asked = RefreshKind::nothing()
+            .with_cpu(CpuRefreshKind::nothing())
+            .with_memory(MemoryRefreshKind::nothing().with_ram());
+        let system = System::new_with_specifics(asked).ok();
+        let name = system.as_ref().and_then(|system| Some(system.cpus().first()?.brand().trim().to_string()));
+        let kernel = System::kernel_version().ok().map(|version| format!("{KERNEL} {version}"));
         Self {
-            cpu: or_unknown(values(&cpuinfo, "model name").next().map(str::to_string)),
+            cpu: or_unknown(name),
+            cpu_model: model_numbers(&read("/proc/cpuinfo").unwrap_or_default()),
+            cpu_features: instruction_sets(),
             processors: super::available_threads(),
-            physical_cores: cores.len(),
+            physical_cores: System::physical_core_count().unwrap_or(0),
             governor: or_unknown(read("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")),
-            memory_bytes: kib.unwrap_or(0) * 1024,
-            system: or_unknown(read("/proc/sys/kernel/osrelease").map(|release| format!("Linux {release}"))),
-            load_average: or_unknown(load),
+            memory_bytes: system.as_ref().map_or(0, |system| system.total_memory()),
+            system: or_unknown(kernel),
+            load_average: load_average(),
             rustc: built_with(env!("PATHMARK_RUSTC")),
             target: built_with(env!("PATHMARK_TARGET")),
             rustflags: built_with(env!("PATHMARK_RUSTFLAGS")),
@@ -89,16 +101,49 @@ impl Machine {
 
     /// The facts that must be equal for rows to belong together: rows of another processor or revision are no
     /// repetitions.
-    pub fn identity(&self) -> [(&'static str, String); 8] {
+    pub fn identity(&self) -> [(&'static str, String); 10] {
         [
             ("rustc", self.rustc.clone()),
             ("target", self.target.clone()),
             ("rustflags", self.rustflags.clone()),
             ("cpu", self.cpu.clone()),
+            ("cpu_model", self.cpu_model.clone()),
+            ("cpu_features", self.cpu_features.clone()),
             ("processors", self.processors.to_string()),
             ("commit", self.commit.clone()),
             ("dirty", self.dirty.to_string()),
             ("profile", self.profile.clone()),
         ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn models_of_one_name_are_different_machines() {
+        let here = Machine { cpu: "AMD EPYC".to_string(), cpu_model: "family 25".to_string(), ..Machine::look() };
+        let other = Machine { cpu_model: "family 26".to_string(), ..here.clone() };
+        assert_ne!(here.identity(), other.identity());
+        assert_ne!(here.line(), other.line());
+        let newer = Machine { cpu_features: "avx512f".to_string(), ..here.clone() };
+        assert_ne!(here.identity(), newer.identity());
+    }
+
+    #[test]
+    fn the_processor_of_this_machine_is_known() {
+        let here = Machine::look();
+        assert_ne!(here.cpu, "unknown");
+        assert!(here.memory_bytes > 0 && here.processors > 0);
+    }
+
+    #[test]
+    fn machine_files_of_older_versions_are_read() {
+        let mut table = toml::Table::try_from(Machine::look()).unwrap();
+        table.remove("cpu_model");
+        table.remove("cpu_features");
+        let old: Machine = table.try_into().unwrap();
+        assert_eq!((old.cpu_model.as_str(), old.cpu_features.as_str()), ("", ""));
     }
 }

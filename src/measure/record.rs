@@ -13,7 +13,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Version of the columns.
-pub const SCHEMA: u32 = 9;
+pub const SCHEMA: u32 = 10;
 
 columns! {
     /// A row. A run that failed is a row too: `error` says why, and columns without a measurement are empty.
@@ -134,8 +134,12 @@ columns! {
         pub voluntary_switches: Option<i64>,
         /// Context switches because the system gave the processor to another thread.
         pub involuntary_switches: Option<i64>,
-        /// CPU seconds of everything else on the machine during the makespan.
+        /// CPU seconds of other programs on the machine during the makespan; up to schema 9 with `steal_s`. Empty where the
+        /// system does not report it.
         pub foreign_cpu_s: Option<f64>,
+        /// CPU seconds that a virtual machine's host gave to others during the makespan. Empty where the system does not
+        /// report it.
+        pub steal_s: Option<f64>,
         /// Peak resident memory of the process until the last job returned, without merging and writing of images.
         pub peak_rss_bytes: Option<i64>,
         /// Number of paths: the samples of all pixels.
@@ -373,6 +377,7 @@ impl Record {
             record.voluntary_switches = Some(cpu.voluntary_switches);
             record.involuntary_switches = Some(cpu.involuntary_switches);
             record.foreign_cpu_s = cpu.foreign_s;
+            record.steal_s = cpu.steal_s;
             record.peak_rss_bytes = cpu.peak_rss_bytes;
         }
         if let Some(balance) = &balance {

@@ -312,11 +312,15 @@ impl Account {
             warnings.push(Warning::TooShort);
         }
         let capacity_s = self.makespan_s * available_threads() as f64;
-        if let Some(foreign_s) = self.cpu.and_then(|usage| usage.foreign_s)
-            && foreign_s > FOREIGN_SHARE * capacity_s
-            && foreign_s > FOREIGN_LEAST_S
-        {
-            warnings.push(Warning::ForeignLoad { percent: (100.0 * foreign_s / capacity_s).round() as u32 });
+        let percent = |seconds: Option<f64>| {
+            let disturbs = |seconds: &f64| *seconds > FOREIGN_SHARE * capacity_s && *seconds > FOREIGN_LEAST_S;
+            seconds.filter(disturbs).map(|seconds| (100.0 * seconds / capacity_s).round() as u32)
+        };
+        if let Some(percent) = percent(self.cpu.and_then(|usage| usage.foreign_s)) {
+            warnings.push(Warning::ForeignLoad { percent });
+        }
+        if let Some(percent) = percent(self.cpu.and_then(|usage| usage.steal_s)) {
+            warnings.push(Warning::Steal { percent });
         }
         warnings
     }

@@ -11,20 +11,26 @@ pub(super) struct Usage {
     pub(super) voluntary_switches: i64,
     pub(super) involuntary_switches: i64,
     pub(super) peak_rss_bytes: Option<i64>,
-    /// CPU seconds of everything else on the machine: other programs, and time that a virtual machine's host gave to
-    /// others.
+    /// CPU seconds of other programs on this machine.
     pub(super) foreign_s: Option<f64>,
+    /// CPU seconds that a virtual machine's host gave to others while this machine had work for them (steal time).
+    pub(super) steal_s: Option<f64>,
 }
 
-/// CPU seconds for which the machine's processors were busy (proc(5), /proc/stat: user, nice, system, idle, iowait,
-/// irq, softirq, steal; user already includes guests). The kernel reports hundredths of a second to programs, whatever
-/// its own tick is.
-fn machine_busy_s() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/stat").ok()?;
-    let ticks: Vec<f64> =
-        text.lines().next()?.split_whitespace().skip(1).filter_map(|field| field.parse().ok()).collect();
+/// The processors' time since the machine started.
+struct ProcessorTime {
+    busy_s: f64,
+    steal_s: f64,
+}
+
+/// The machine's processor time from the text of /proc/stat (proc(5): user, nice, system, idle, iowait, irq, softirq,
+/// steal; user already includes guests). The kernel reports hundredths of a second to programs, whatever its own tick
+/// is.
+fn processor_time(stat: &str) -> Option<ProcessorTime> {
+    let fields = stat.lines().next()?.split_whitespace().skip(1);
+    let ticks: Vec<f64> = fields.filter_map(|field| field.parse().ok()).collect();
     let [user, nice, system, _, _, irq, softirq, steal, ..] = ticks[..] else { return None };
-    Some((user + nice + system + irq + softirq + steal) * 1e-2)
+    Some(ProcessorTime { busy_s: (user + nice + system + irq + softirq) * 1e-2, steal_s: steal * 1e-2 })
 }
 
 /// Peak memory of this program. getrusage's figure is not used: it survives exec and so includes the parent's.
@@ -40,10 +46,12 @@ impl Usage {
         let counted: Counted = getrusage(UsageWho::RUSAGE_SELF).ok()?;
         let user_s = counted.user_time().num_microseconds() as f64 * 1e-6;
         let system_s = counted.system_time().num_microseconds() as f64 * 1e-6;
+        let machine = std::fs::read_to_string("/proc/stat").ok().and_then(|text| processor_time(&text));
         Some(Self {
             user_s,
             system_s,
-            foreign_s: machine_busy_s().map(|busy_s| busy_s - user_s - system_s),
+            foreign_s: machine.as_ref().map(|machine| machine.busy_s - user_s - system_s),
+            steal_s: machine.map(|machine| machine.steal_s),
             voluntary_switches: counted.voluntary_context_switches(),
             involuntary_switches: counted.involuntary_context_switches(),
             peak_rss_bytes: peak_rss_bytes(),
@@ -59,6 +67,7 @@ impl Usage {
             involuntary_switches: self.involuntary_switches + later.involuntary_switches,
             peak_rss_bytes: self.peak_rss_bytes.max(later.peak_rss_bytes),
             foreign_s: self.foreign_s.zip(later.foreign_s).map(|(a, b)| a + b),
+            steal_s: self.steal_s.zip(later.steal_s).map(|(a, b)| a + b),
         }
     }
 
@@ -71,6 +80,19 @@ impl Usage {
             involuntary_switches: self.involuntary_switches - before.involuntary_switches,
             peak_rss_bytes: self.peak_rss_bytes,
             foreign_s: self.foreign_s.zip(before.foreign_s).map(|(after, before)| (after - before).max(0.0)),
+            steal_s: self.steal_s.zip(before.steal_s).map(|(after, before)| (after - before).max(0.0)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steal_is_apart_from_the_time_of_programs() {
+        let time = processor_time("cpu  100 20 30 400 50 6 7 89 0 0\ncpu0 1 2 3\n").unwrap();
+        assert!((time.busy_s - 1.63).abs() < 1e-12 && (time.steal_s - 0.89).abs() < 1e-12);
+        assert!(processor_time("cpu 1 2 3").is_none() && processor_time("").is_none());
     }
 }

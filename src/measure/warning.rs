@@ -25,6 +25,11 @@ pub enum Warning {
         /// Their share of all processors' time.
         percent: u32,
     },
+    /// A virtual machine's host gave processors to others at the same time.
+    Steal {
+        /// Its share of all processors' time.
+        percent: u32,
+    },
     /// The time differs from earlier rows of the same cell.
     Drift {
         /// By how much longer (or shorter, if negative) than the median so far.
@@ -95,8 +100,13 @@ pub const WARNINGS: &[WarningEntry] = &[
     },
     WarningEntry {
         name: "foreign-load",
-        about: "Other programs, or the host of a virtual machine, used more than 5 % of the processors during the run.",
+        about: "Other programs used more than 5 % of the processors during the run; up to schema 9 also the host of a virtual machine.",
         advice: "Close other programs and run the experiment again; trust ratios within a repetition more than seconds.",
+    },
+    WarningEntry {
+        name: "steal",
+        about: "The host of a virtual machine gave more than 5 % of the processors' time to others during the run.",
+        advice: "Run the experiment again at another hour, or on a machine of your own; trust ratios within a repetition more than seconds.",
     },
     WarningEntry {
         name: "drift",
@@ -181,6 +191,7 @@ impl fmt::Display for Warning {
             Self::WorkersUnused { asked, used } => write!(f, "workers-unused({used} of {asked})"),
             Self::Oversubscribed { workers, processors } => write!(f, "oversubscribed({workers} on {processors})"),
             Self::ForeignLoad { percent } => write!(f, "foreign-load({percent} %)"),
+            Self::Steal { percent } => write!(f, "steal({percent} %)"),
             Self::Drift { percent } => write!(f, "drift({percent:+} %)"),
             Self::Slowed { percent } => write!(f, "slowed({percent:+} % CPU)"),
             Self::TooShort => f.write_str("too-short"),
@@ -214,6 +225,7 @@ mod tests {
             Warning::WorkersUnused { asked: 2, used: 1 },
             Warning::Oversubscribed { workers: 2, processors: 1 },
             Warning::ForeignLoad { percent: 6 },
+            Warning::Steal { percent: 7 },
             Warning::Drift { percent: 30 },
             Warning::Slowed { percent: 20 },
             Warning::TooShort,
@@ -235,6 +247,7 @@ mod tests {
                 Warning::WorkersUnused { .. }
                 | Warning::Oversubscribed { .. }
                 | Warning::ForeignLoad { .. }
+                | Warning::Steal { .. }
                 | Warning::Drift { .. }
                 | Warning::Slowed { .. }
                 | Warning::TooShort

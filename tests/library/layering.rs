@@ -214,8 +214,8 @@ fn no_file_silences_a_lint() {
 fn files_hold_one_idea() {
     let lines = |file: &PathBuf| fs::read_to_string(file).unwrap().lines().count();
     let files = FOLDERS.into_iter().flat_map(rust_files);
-    let long: Vec<_> = files.filter(|file| lines(file) > 400).collect();
-    assert!(long.is_empty(), "more than 400 lines: {long:?}");
+    let long: Vec<_> = files.filter(|file| lines(file) > 600).collect();
+    assert!(long.is_empty(), "more than 600 lines: {long:?}");
 }
 
 /// `rustfmt` does not see modules that a macro declares.

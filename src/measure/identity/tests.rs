@@ -40,7 +40,7 @@ const SCHEDULE: [&str; 11] = [
 ];
 
 /// Columns that identify the row, follow from the others, or hold measurements.
-const OTHER: [&str; 58] = [
+const OTHER: [&str; 59] = [
     "mpi",
     "object_mse",
     "within_tolerance",
@@ -77,6 +77,7 @@ const OTHER: [&str; 58] = [
     "voluntary_switches",
     "involuntary_switches",
     "foreign_cpu_s",
+    "steal_s",
     "peak_rss_bytes",
     "paths",
     "rays",
