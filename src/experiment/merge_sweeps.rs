@@ -109,7 +109,7 @@ fn check(parts: &[Part]) -> Result<Vec<String>> {
             let mut facts = vec![("parts", part.shard.count.to_string()), ("profile", profile.clone())];
             facts.push(("definition", definition_hash.clone()));
             facts.push(("cache", part.run.cached.to_string()));
-            facts.extend(machine.identity().into_iter().filter(|(name, _)| !["cpu", "processors"].contains(name)));
+            facts.extend(machine.build());
             facts
         };
         let differs = facts(part).into_iter().zip(facts(first)).find(|(found, expected)| found.1 != expected.1);

@@ -101,15 +101,22 @@ impl Machine {
 
     /// The facts that must be equal for rows to belong together: rows of another processor or revision are no
     /// repetitions.
-    pub fn identity(&self) -> [(&'static str, String); 10] {
-        [
-            ("rustc", self.rustc.clone()),
-            ("target", self.target.clone()),
-            ("rustflags", self.rustflags.clone()),
+    pub fn identity(&self) -> Vec<(&'static str, String)> {
+        let hardware = [
             ("cpu", self.cpu.clone()),
             ("cpu_model", self.cpu_model.clone()),
             ("cpu_features", self.cpu_features.clone()),
             ("processors", self.processors.to_string()),
+        ];
+        self.build().into_iter().chain(hardware).collect()
+    }
+
+    /// The facts of the build among them: parts of one sweep may run on several machines, but with one build.
+    pub fn build(&self) -> [(&'static str, String); 6] {
+        [
+            ("rustc", self.rustc.clone()),
+            ("target", self.target.clone()),
+            ("rustflags", self.rustflags.clone()),
             ("commit", self.commit.clone()),
             ("dirty", self.dirty.to_string()),
             ("profile", self.profile.clone()),
