@@ -2,6 +2,7 @@
 
 mod angular_emission;
 mod camera;
+mod coincident;
 mod extent;
 mod feature;
 mod fog;
