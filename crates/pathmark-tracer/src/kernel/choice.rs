@@ -37,6 +37,8 @@ pub struct Choice {
     /// Store in which hierarchies are looked up and kept.
     trees: Option<Arc<dyn TreeStore>>,
     pub(super) way: Way,
+    /// Factor for all lengths, a power of two.
+    factor: f64,
 }
 
 impl Choice {
@@ -161,12 +163,13 @@ impl Choice {
 
     /// Floating-point format of the computation.
     pub fn precision(&self) -> Precision {
-        match &self.way {
-            Way::Lanes(lanes) => lanes.precision,
-            Way::Device(device) => device.precision,
-            Way::Beside { own, .. } => own.lanes().map_or(Precision::F64, |lanes| lanes.precision),
-            Way::Scalar { .. } => Precision::F64,
-        }
+        self.way.precision()
+    }
+
+    /// The scene in the lengths of the computation, and their factor.
+    pub(super) fn scaled(&self, scene: &Arc<Scene>) -> (Arc<Scene>, f64) {
+        let is_scaled = self.factor != 1.0;
+        (if is_scaled { Arc::new(scene.scaled(self.factor)) } else { Arc::clone(scene) }, self.factor)
     }
 
     /// Reason why the scalar kernel replaces the requested one; empty if it does not.
@@ -258,6 +261,10 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
     }
     let epsilon = epsilon(spec)?;
     let way = way_for(scene, spec, rules, epsilon)?;
+    let factor = match way.precision() {
+        Precision::F64 => 1.0,
+        Precision::F32 => scene.factor_in_single_precision()?,
+    };
     let scan = match way.lanes() {
         None => Scan::OneByOne,
         Some(chosen) => {
@@ -295,6 +302,7 @@ pub fn choose_among(scene: &Scene, spec: &Spec, own: &[OwnEstimator]) -> Result<
         accelerator,
         trees: None,
         way,
+        factor,
     })
 }
 

@@ -158,7 +158,8 @@ pub fn inspect(scene: &Arc<Scene>, spec: &Spec) -> Result<Inspector> {
 }
 
 /// Builds the kernel for a scene, with its accelerator.
-pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>> {
+pub fn construct(unscaled: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>> {
+    let (scene, _) = &choice.scaled(unscaled);
     match &choice.way {
         Way::Lanes(chosen) => return Ok(Box::new(Lanes::new(scene, choice, *chosen)?)),
         Way::Device(chosen) => {
@@ -169,7 +170,7 @@ pub fn construct(scene: &Arc<Scene>, choice: &Choice) -> Result<Box<dyn Kernel>>
             let prepared = prepared(scene, choice)?;
             let devices =
                 devices.iter().map(|device| OnDevice::new(&prepared, choice, device)).collect::<Result<_>>()?;
-            return Ok(Box::new(Beside { own: construct(scene, &choice.by(own))?, devices }));
+            return Ok(Box::new(Beside { own: construct(unscaled, &choice.by(own))?, devices }));
         }
         Way::Scalar { .. } => {}
     }

@@ -77,7 +77,8 @@ pub struct RaySearch {
 }
 
 enum Way {
-    Lanes { lanes: Box<Lanes>, rays: Numbers },
+    /// `unit` is the length of the lanes' rays in those of the scene.
+    Lanes { lanes: Box<Lanes>, rays: Numbers, unit: f64 },
     Scalar { scene: Arc<Scene>, rays: Vec<Start> },
 }
 
@@ -87,9 +88,11 @@ impl RaySearch {
         let count = rays.len();
         let way = match choice.way.lanes().copied() {
             Some(chosen) => {
-                let lanes = Box::new(Lanes::new(scene, choice, chosen)?);
-                let rays = lanes.side_by_side(&rays);
-                Way::Lanes { lanes, rays }
+                let (scene, factor) = choice.scaled(scene);
+                let lanes = Box::new(Lanes::new(&scene, choice, chosen)?);
+                let scaled = |(ray, from): &Start| (Ray { origin: ray.origin * factor, ..*ray }, *from);
+                let rays = lanes.side_by_side(&rays.iter().map(scaled).collect::<Vec<_>>());
+                Way::Lanes { lanes, rays, unit: 1.0 / factor }
             }
             None => Way::Scalar { scene: prepared(scene, choice)?, rays },
         };
@@ -104,7 +107,10 @@ impl RaySearch {
     /// Searches along all rays.
     pub fn run(&self) -> FoundRays {
         match &self.way {
-            Way::Lanes { lanes, rays } => lanes.search(rays, self.count),
+            Way::Lanes { lanes, rays, unit } => {
+                let found = lanes.search(rays, self.count);
+                FoundRays { distance: found.distance * unit, ..found }
+            }
             Way::Scalar { scene, rays } => {
                 let (mut found, mut tests) = (FoundRays::default(), Tests::default());
                 for (ray, from) in rays {

@@ -7,7 +7,7 @@ use super::{DEVICE, DEVICE_KERNEL, KERNELS, LANES, SCALAR, Spec};
 use crate::error::{InputError, Result};
 use crate::estimator::PathRules;
 use crate::scene::Scene;
-use crate::simd::LEVELS;
+use crate::simd::{LEVELS, Precision};
 
 /// A kernel and the settings that it is built from.
 #[derive(Clone)]
@@ -33,6 +33,16 @@ pub(super) enum Way {
 }
 
 impl Way {
+    /// Floating-point format of the computation.
+    pub(super) fn precision(&self) -> Precision {
+        match self {
+            Self::Lanes(lanes) => lanes.precision,
+            Self::Device(device) => device.precision,
+            Self::Beside { own, .. } => own.precision(),
+            Self::Scalar { .. } => Precision::F64,
+        }
+    }
+
     /// The settings of the lanes, if there are any.
     pub(super) fn lanes(&self) -> Option<&InLanes> {
         match self {

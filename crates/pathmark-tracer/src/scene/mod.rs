@@ -2,6 +2,8 @@
 
 mod angular_emission;
 mod camera;
+mod coincident;
+mod extent;
 mod feature;
 mod fog;
 mod generator;
@@ -238,14 +240,6 @@ impl Scene {
         self.primitives.spheres.len() == self.owners.len()
     }
 
-    /// Returns the scale of a scene of spheres: the camera's distance from the origin, or the smallest distance from
-    /// the origin to a sphere's far side, if that is larger.
-    pub fn size(&self) -> f64 {
-        let length = |v: Vec3| dot(v, v).sqrt();
-        let reaches = self.primitives.spheres.iter().map(|sphere| length(sphere.center) + sphere.radius);
-        reaches.fold(f64::INFINITY, f64::min).max(length(self.camera.position))
-    }
-
     /// Returns the opaque spheres that no path leaves, because all camera rays start well inside them; none if the
     /// camera has a lens.
     pub fn enclosing(&self, view: &View) -> Vec<u32> {
@@ -306,6 +300,7 @@ impl Scene {
         scene.primitives = scene.primitives.scaled(factor);
         scene.point_lights = scene.point_lights.iter().map(|light| light.scaled(factor)).collect();
         scene.fog = scene.fog.map(|fog| fog.scaled(factor));
+        scene.hierarchy = scene.hierarchy.map(|hierarchy| hierarchy.scaled(factor));
         scene.lights = None;
         scene
     }

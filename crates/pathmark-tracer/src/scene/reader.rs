@@ -147,6 +147,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         epsilon: None,
     };
     add_parts(&mut scene, draft.parts, &mut draft.hash)?;
+    scene.resolve_coincident();
     scene.hash = draft.hash.finish();
     Ok(scene)
 }

@@ -1,4 +1,5 @@
-//! Spheres in single precision: by centre and radius if they are small, by curvature if they are as large as the scene.
+//! Spheres in single precision: by centre and radius if they are small, by curvature if they are as large as the scene
+//! ([`Scene::large_spheres`]).
 //!
 //! A centre 1e5 away leaves a coordinate of the scene exact to only 0.008 units. [`Curved`] stores
 //! values of the scene's own size instead. For spheres that are small next to their distance from the origin it would
@@ -34,12 +35,11 @@ fn splat<V: Float>(v: Vec3<f32>) -> Vec3<V> {
 
 impl Singles {
     pub(super) fn of(scene: &Scene, enclosing_all: &[u32]) -> Self {
-        let size = scene.size();
         let (mut enclosing, mut curved, mut centred) = (Vec::new(), Vec::new(), Vec::new());
-        for (sphere, number) in scene.primitives.spheres.iter().zip(0_u32..) {
+        for ((sphere, is_large), number) in scene.primitives.spheres.iter().zip(scene.large_spheres()).zip(0_u32..) {
             let is_enclosing = enclosing_all.contains(&number);
             let number = number as f32;
-            if sphere.radius < size {
+            if !is_large {
                 centred.push((number, single(sphere.center), sphere.radius as f32));
             } else {
                 let Curved { normal, curvature, offset } = Curved::of(sphere.center, sphere.radius);

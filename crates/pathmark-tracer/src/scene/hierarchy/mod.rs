@@ -183,6 +183,13 @@ impl Hierarchy {
         &self.order
     }
 
+    /// Returns the tree with every length multiplied by `factor`.
+    #[must_use]
+    pub(super) fn scaled(mut self, factor: f64) -> Self {
+        self.nodes.iter_mut().flat_map(|node| node.faces.as_flattened_mut()).for_each(|face| *face *= factor);
+        self
+    }
+
     /// Levels below the root.
     pub fn depth(&self) -> usize {
         let mut deepest = 0;

@@ -110,8 +110,8 @@ impl Primitives {
         let distance = self.sure_distances(ray, from, digits);
         let none = Nearest::than(limit);
         if let Some(hierarchy) = hierarchy {
-            let endless = self.endless::<AllEffects>(ray, from, none);
-            return hierarchy.nearest(ray, endless, tests, distance);
+            let beside = self.endless::<AllEffects>(ray, from, none).or_own(from, &distance);
+            return hierarchy.nearest(ray, beside, tests, distance);
         }
         let all = 0..self.counts().iter().sum::<usize>() as u32;
         all.fold(none, |nearest, primitive| nearest.or_in_any_order(distance(primitive), primitive))

@@ -264,6 +264,16 @@ impl Nearest {
         let wins = ahead < self.t || (ahead == self.t && comes_first);
         if wins { Self { t: ahead, primitive } } else { self }
     }
+
+    /// Likewise, for the primitive on which a ray starts and leads inside. Its start may be rounded to outside the box
+    /// of that primitive, so a search in a hierarchy begins with it.
+    #[inline(always)]
+    pub(crate) fn or_own(self, from: Option<Standpoint>, distance: impl FnOnce(u32) -> f64) -> Self {
+        match from {
+            Some(Standpoint { primitive, inside: true }) => self.or_in_any_order(distance(primitive), primitive),
+            _ => self,
+        }
+    }
 }
 
 impl Primitives {
@@ -282,10 +292,10 @@ impl Primitives {
         if X::EFFECTS.cover(HIERARCHY)
             && let Some(hierarchy) = hierarchy
         {
-            let endless = self.endless::<X>(ray, from, none);
             let prepared = Self::prepare(ray);
-            return hierarchy
-                .nearest(ray, endless, tests, |primitive| self.distance::<X>(primitive, ray, &prepared, from));
+            let distance = |primitive| self.distance::<X>(primitive, ray, &prepared, from);
+            let beside = self.endless::<X>(ray, from, none).or_own(from, distance);
+            return hierarchy.nearest(ray, beside, tests, distance);
         }
         self.scan::<X>(ray, from, none, |_| true)
     }

@@ -20,7 +20,13 @@ FN nearest search(const scene *s, ray way, standpoint from, real limit, int only
 #if HAS_TRIANGLE
         by = shear_of(way.direction);
 #endif
-        return through_tree(s, way, &by, from, only_sure, all_planes(s, way, from, so_far), t);
+        so_far = all_planes(s, way, from, so_far);
+        if (from.primitive != NOTHING && from.inside) {
+            // The start may be rounded to outside the box of its own primitive.
+            real own = wanted_distance(s, from.primitive, way, &by, from, only_sure);
+            so_far = nearer_in_any_order(so_far, own, from.primitive);
+        }
+        return through_tree(s, way, &by, from, only_sure, so_far, t);
     }
 #endif
     if (only_sure) {

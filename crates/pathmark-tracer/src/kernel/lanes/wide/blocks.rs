@@ -19,8 +19,8 @@ const OF_EXACT: usize = 4;
 const OF_TRIANGLE: usize = 10;
 /// The number in a place without a primitive; all others are at least -1.
 const NO_NUMBER: f64 = -2.0;
-/// Values in a place without a sphere: so far away that hardly any ray comes near, and none meets it.
-const NO_SPHERE: ([f64; 4], [f64; 4]) = ([1e30, 1e30, 1e30, 0.0], [f64::NAN; 4]);
+/// Values in a place without a sphere: with this radius every ray starts behind it.
+const NO_SPHERE: ([f64; 4], [f64; 4]) = ([0.0, 0.0, 0.0, f64::NEG_INFINITY], [f64::NAN; 4]);
 
 /// Blocks. Each stores the first number of all its primitives, then the second, and so on.
 pub(super) struct Blocks {

@@ -42,8 +42,9 @@ impl<V: Float> Bundle<V> {
         }
     }
 
+    /// Returns the lanes whose rays can be tested against boxes, as [`AllCoarse::fill`] does.
     #[inline(always)]
-    pub(super) fn fill(&mut self, rays: &Rays<V>, found: &Found<V>, scale: Scale, has_triangles: bool) {
+    pub(super) fn fill(&mut self, rays: &Rays<V>, found: &Found<V>, scale: Scale, has_triangles: bool) -> u32 {
         let Ray { origin, direction } = rays.ray;
         let vectors = [origin.x, origin.y, origin.z, direction.x, direction.y, direction.z, rays.from];
         for (row, vector) in self.rows.iter_mut().zip(&vectors) {
@@ -54,7 +55,7 @@ impl<V: Float> Bundle<V> {
         for (limit, nearest) in self.limits.iter_mut().zip(&self.nearest).take(V::LANES) {
             *limit = scale.limit((*nearest).into());
         }
-        self.coarse.fill(&rays.ray, scale);
+        let are_in_range = self.coarse.fill(&rays.ray, scale).bits();
         self.has_triangles = has_triangles;
         if has_triangles {
             let turned = AllTurned::of(rays);
@@ -67,6 +68,7 @@ impl<V: Float> Bundle<V> {
                 *axes = AXES[(is_x >> lane & 1 | (is_y >> lane & 1) << 1) as usize];
             }
         }
+        are_in_range
     }
 
     #[inline(always)]

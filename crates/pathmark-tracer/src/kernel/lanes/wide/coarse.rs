@@ -30,6 +30,10 @@ use crate::math::{Ray, Vec3};
 use crate::scene::{Bounds, padding};
 use crate::simd::{Float, MOST_LANES};
 
+/// Rays that start farther away, in sizes of the scene, are not tested here: single precision has no larger numbers
+/// than 2^128, and products with a direction's inverse must not exceed these on every axis at once.
+const FARTHEST: f64 = (1_u128 << 96) as f64;
+
 /// The smallest coordinate that is assumed for a box: squares of its padding must not underflow.
 const SMALLEST: f64 = 1.0 / (1_u64 << 40) as f64;
 
@@ -85,8 +89,10 @@ impl AllCoarse {
         Self { rows: [[0.0; MOST_LANES]; ROWS] }
     }
 
+    /// Returns the lanes whose rays can be tested: those that start within [`FARTHEST`] and have a direction. A box test
+    /// of any other ray may give NaN on every axis, and such a ray would meet even the boxes of missing children.
     #[inline(always)]
-    pub(super) fn fill<V: Float>(&mut self, ray: &Ray<V>, scale: Scale) {
+    pub(super) fn fill<V: Float>(&mut self, ray: &Ray<V>, scale: Scale) -> V::Mask {
         let scale = V::splat(scale.0);
         let (x, y, z) = (ray.origin.x * scale, ray.origin.y * scale, ray.origin.z * scale);
         let padding = V::splat(padding(f32::MANTISSA_DIGITS)) * x.abs().larger(y.abs()).larger(z.abs());
@@ -102,6 +108,10 @@ impl AllCoarse {
             self.put(12 + axis, origin);
         }
         self.put(15, padding);
+        let sum = |x: V, y: V, z: V| x.abs() + y.abs() + z.abs();
+        let Vec3 { x: dx, y: dy, z: dz } = ray.direction;
+        let length = sum(dx, dy, dz);
+        sum(x, y, z).lt(V::splat(FARTHEST)) & V::splat(0.5).lt(length) & length.lt(V::splat(2.0))
     }
 
     #[inline(always)]

@@ -77,10 +77,10 @@ impl<V: Float> Apart for Nearest<'_, '_, V> {
     #[inline(always)]
     fn run(self) -> (Found<V>, u32) {
         let Self { scene, wide, tables, rays, wanted, scratch, counts } = self;
-        let found = wide.nearest(rays, wanted, &tables.surfaces, scratch, counts);
+        let (found, out_of_range) = wide.nearest(rays, wanted, &tables.surfaces, scratch, counts);
         let has_triangles = wide.blocks.has_triangles;
         let left = if has_triangles { are_doubtful(scene, tables, &rays.ray, &found, wanted) } else { 0 };
-        (found, left)
+        (found, left | out_of_range)
     }
 }
 
@@ -111,7 +111,9 @@ impl Wide {
         matches!(self.search, Search::Tree(_))
     }
 
-    /// The nearest primitive along each of the `wanted` rays.
+    /// The nearest primitive along each of the `wanted` rays, and the lanes whose rays are out of range of the tree, to
+    /// be searched again. In single precision there are none of these: such a ray meets only planes and large spheres,
+    /// because the tests of all other primitives overflow.
     #[inline(always)]
     fn nearest<V: Float>(
         &self,
@@ -120,7 +122,7 @@ impl Wide {
         surfaces: &Table,
         scratch: &mut Scratch<'_, V>,
         counts: &mut Counts,
-    ) -> Found<V> {
+    ) -> (Found<V>, u32) {
         let mut found = match &self.large {
             Some(large) => large.scan(rays),
             None => Found::nothing(),
@@ -136,18 +138,19 @@ impl Wide {
         let tree = match &self.search {
             Search::All(all) => {
                 all.nearest(rays, &mut found);
-                return found;
+                return (found, 0);
             }
             Search::Tree(tree) => tree,
         };
         let Scratch { stacks, bundle } = scratch;
         let stacks = stacks.first_chunk_mut().expect("who has a tree has stacks");
-        bundle.fill(rays, &found, self.blocks.scale, self.blocks.has_triangles);
-        let mut tests = Tests::default();
+        let in_range = bundle.fill(rays, &found, self.blocks.scale, self.blocks.has_triangles);
+        let out_of_range = if V::IS_DOUBLE { wanted & !in_range } else { 0 };
+        let (wanted, mut tests) = (wanted & in_range, Tests::default());
         V::apart(Descent { tree, blocks: &self.blocks, surfaces, rays: bundle, wanted, stacks, tests: &mut tests });
         counts.box_tests += tests.boxes;
         counts.primitive_tests += tests.primitives;
-        Found { nearest: V::load(&bundle.nearest), primitive: V::load(&bundle.primitive) }
+        (Found { nearest: V::load(&bundle.nearest), primitive: V::load(&bundle.primitive) }, out_of_range)
     }
 }
 

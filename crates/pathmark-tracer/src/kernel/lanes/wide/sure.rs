@@ -24,7 +24,7 @@ impl Wide {
         let take = |nearest: Nearest, number: u32| nearest.or_in_any_order(distance(number), number);
         let planes = self.planes.iter().map(|(number, _)| *number as u32);
         let beside = self.large.iter().flat_map(Singles::numbers).chain(planes);
-        let mut nearest = beside.fold(Nearest::than(f64::INFINITY), take);
+        let mut nearest = beside.fold(Nearest::than(f64::INFINITY), take).or_own(from, &distance);
 
         let scale = self.blocks.scale.0;
         let slabs = Slabs::new(&Ray { origin: ray.origin * scale, ..*ray });

@@ -43,7 +43,7 @@ impl Tree {
             let mut bounds = [Bounds::EMPTY; MOST_LANES];
             bounds.iter_mut().zip(node).for_each(|(bounds, child)| *bounds = scale.padded(&child.bounds));
             for k in 0..6 {
-                // A missing child has a box with exchanged sides, which no ray meets.
+                // A missing child has a box with exchanged sides, which no ray in range meets.
                 let face = |bounds: &Bounds| if k < 3 { bounds.low[k] } else { bounds.high[k - 3] };
                 faces.extend(bounds[..width].iter().map(|bounds| face(bounds) as f32));
             }
@@ -362,7 +362,7 @@ mod tests {
             let rays = Rays { ray, from: V::splat(-1.0), own_root: V::splat(f64::NAN) };
             // Without a tree the table of surfaces is not read.
             let surfaces = Table::new([[0.0; 4]], Precision::F64);
-            let found = self.0.nearest(&rays, 1, &surfaces, &mut Scratch::new(&mut []), &mut Counts::default());
+            let (found, _) = self.0.nearest(&rays, 1, &surfaces, &mut Scratch::new(&mut []), &mut Counts::default());
             (found.nearest.lane(0), found.primitive.lane(0))
         }
     }

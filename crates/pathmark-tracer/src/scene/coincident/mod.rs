@@ -1,0 +1,152 @@
+//! Coincident surfaces: where two primitives are in one place, rays meet the one with the lower number.
+//!
+//! A search cannot keep this rule: rounding decides which of two equal distances is smaller, and whether a ray that
+//! starts on one of the surfaces starts in front of the other. So the hidden surface is removed when the scene is read.
+//! A sphere, a plane, or a triangle in a plane is removed as a whole. A triangle that overlaps others in its plane
+//! keeps the rest of its area.
+//!
+//! Two places are the same if they differ by no more than rounding moves a surface.
+
+mod overlap;
+
+use super::{Plane, Primitives, Scene, Sphere, Triangle};
+use crate::math::{Vec3, dot};
+use overlap::Flat;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+/// Largest distance of surfaces in one place, in units of their largest coordinate.
+const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;
+
+/// The most remarks on pairs of objects.
+const MOST_REMARKS: usize = 8;
+
+fn largest(v: Vec3) -> f64 {
+    v.x.abs().max(v.y.abs()).max(v.z.abs())
+}
+
+impl Sphere {
+    fn is_where(&self, other: &Self) -> bool {
+        let distance = largest(self.center - other.center).max((self.radius - other.radius).abs());
+        distance <= SLACK * (largest(self.center) + self.radius)
+    }
+
+    /// A number that is nearly the same for spheres in one place, and hardly ever for others.
+    fn key(&self) -> f64 {
+        self.center.x + 0.618 * self.center.y + 0.414 * self.center.z + 0.732 * self.radius
+    }
+}
+
+impl Plane {
+    fn is_where(&self, other: &Self) -> bool {
+        largest(self.normal.cross(other.normal)) <= SLACK && self.contains(other.point)
+    }
+
+    fn contains(&self, point: Vec3) -> bool {
+        dot(point - self.point, self.normal).abs() <= SLACK * (largest(point) + largest(self.point))
+    }
+
+    fn holds(&self, triangle: &Triangle) -> bool {
+        triangle.corners.iter().all(|corner| self.contains(*corner))
+    }
+}
+
+/// For each hidden sphere, the one that hides it.
+fn hidden_spheres(spheres: &[Sphere]) -> BTreeMap<usize, usize> {
+    let mut order: Vec<(f64, u32)> = spheres.iter().map(Sphere::key).zip(0..).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut hidden = BTreeMap::new();
+    for (place, (key, one)) in order.iter().enumerate() {
+        let one = *one as usize;
+        let reach = 8.0 * SLACK * (largest(spheres[one].center) + spheres[one].radius);
+        let near = order[place + 1..].iter().take_while(|(other, _)| other - key <= reach);
+        for other in near.map(|(_, other)| *other as usize).filter(|other| spheres[one].is_where(&spheres[*other])) {
+            hidden.insert(one.max(other), one.min(other));
+        }
+    }
+    hidden
+}
+
+/// For each hidden plane, the one that hides it.
+fn hidden_planes(planes: &[Plane]) -> BTreeMap<usize, usize> {
+    let hider = |plane: usize| planes[..plane].iter().position(|other| other.is_where(&planes[plane]));
+    (0..planes.len()).filter_map(|plane| Some((plane, hider(plane)?))).collect()
+}
+
+/// Removes items by their indices.
+fn without<T>(items: &mut Vec<T>, hidden: impl Fn(usize) -> bool) {
+    let mut index = 0;
+    items.retain(|_| {
+        index += 1;
+        !hidden(index - 1)
+    });
+}
+
+impl Scene {
+    /// Removes surfaces that others hide, and tells which objects they belong to.
+    pub(super) fn resolve_coincident(&mut self) {
+        let Primitives { spheres, planes, triangles, .. } = &self.primitives;
+        let [first_plane, first_triangle] = [spheres.len(), spheres.len() + planes.len()];
+        let hidden_spheres = hidden_spheres(spheres);
+        let hidden_planes = hidden_planes(planes);
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        let mut hides = |hidden: usize, hider: usize| pairs.push((self.owners[hider], self.owners[hidden]));
+        hidden_spheres.iter().for_each(|(hidden, hider)| hides(*hidden, *hider));
+        hidden_planes.iter().for_each(|(hidden, hider)| hides(first_plane + hidden, first_plane + hider));
+        // The rest of each triangle that is hidden in part or as a whole.
+        let mut rests: BTreeMap<usize, Vec<Triangle>> = BTreeMap::new();
+        for (index, triangle) in triangles.iter().enumerate() {
+            if let Some(plane) = planes.iter().position(|plane| plane.holds(triangle)) {
+                hides(first_triangle + index, first_plane + plane);
+                rests.insert(index, Vec::new());
+            }
+        }
+        let owners = &self.owners[first_triangle..];
+        let is_light = |owner: u32| !self.objects[owner as usize].emission.is_black();
+        for (hider, hidden) in Flat::overlaps(triangles, owners, is_light) {
+            let mut rest = match rests.entry(hidden) {
+                Entry::Occupied(rest) => rest,
+                Entry::Vacant(none) => none.insert_entry(vec![triangles[hidden]]),
+            };
+            *rest.get_mut() = rest.get().iter().flat_map(|part| overlap::rest(part, &triangles[hider])).collect();
+            hides(first_triangle + hidden, first_triangle + hider);
+        }
+        if pairs.is_empty() {
+            return;
+        }
+        self.tell(pairs);
+        let is_hidden = |number: usize| {
+            hidden_spheres.contains_key(&number)
+                || number.checked_sub(first_plane).is_some_and(|plane| hidden_planes.contains_key(&plane))
+        };
+        let parts = |index: usize| rests.get(&index).map_or(1, Vec::len);
+        let owners = self.owners.iter().enumerate().flat_map(|(number, owner)| {
+            let count = number.checked_sub(first_triangle).map_or(usize::from(!is_hidden(number)), parts);
+            std::iter::repeat_n(*owner, count)
+        });
+        self.owners = owners.collect();
+        let Primitives { spheres, planes, triangles, .. } = &mut self.primitives;
+        without(spheres, |index| hidden_spheres.contains_key(&index));
+        without(planes, |index| hidden_planes.contains_key(&index));
+        let whole = std::mem::take(triangles);
+        triangles.extend(whole.into_iter().enumerate().flat_map(|(index, triangle)| {
+            rests.remove(&index).unwrap_or_else(|| vec![triangle])
+        }));
+    }
+
+    /// Adds a remark for each pair of objects, of which the first one hides the second one.
+    fn tell(&mut self, mut pairs: Vec<(u32, u32)>) {
+        pairs.retain(|(hider, hidden)| hider != hidden);
+        pairs.sort_unstable();
+        pairs.dedup();
+        let name = |owner: u32| &self.objects[owner as usize].name;
+        for (hider, hidden) in pairs.iter().take(MOST_REMARKS) {
+            let (hider, hidden) = (name(*hider), name(*hidden));
+            let remark = format!("where {hider} and {hidden} coincide, rays meet {hider}, which comes first");
+            self.remarks.push(remark);
+        }
+        if let Some(more) = pairs.len().checked_sub(MOST_REMARKS + 1) {
+            self.remarks.push(format!("{} more pairs of objects coincide", more + 1));
+        }
+    }
+}
