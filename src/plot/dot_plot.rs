@@ -30,12 +30,14 @@ pub struct Dot {
     pub interval: Option<(f64, f64)>,
     /// The number of values that it was computed from, if counted.
     pub count: Option<usize>,
+    /// Whether it is drawn hollow: not comparable with the others.
+    pub hollow: bool,
 }
 
 impl Dot {
     /// A value that was computed from an unknown number of values.
     pub fn new(value: f64, interval: Option<(f64, f64)>) -> Self {
-        Self { value, interval, count: None }
+        Self { value, interval, count: None, hollow: false }
     }
 }
 
@@ -151,6 +153,9 @@ impl DotPlot {
                     marker::bar(drawing, (low, y), (high, y), look.colour);
                 }
                 marker::draw(drawing, (x(place), y), look.marker, look.colour);
+                if dot.hollow {
+                    marker::hollow(drawing, (x(place), y));
+                }
             });
             drawing.note(note(row, name, dot, (x(place), y)));
         }

@@ -26,12 +26,14 @@ pub struct Point {
     pub y_interval: Option<(f64, f64)>,
     /// The number of values that y was computed from, if counted.
     pub count: Option<usize>,
+    /// Whether it is drawn hollow: not comparable with the others.
+    pub hollow: bool,
 }
 
 impl Point {
     /// A point without intervals.
     pub fn new(x: f64, y: f64) -> Self {
-        Self { x, y, x_interval: None, y_interval: None, count: None }
+        Self { x, y, x_interval: None, y_interval: None, count: None, hollow: false }
     }
 
     /// Adds the interval of y; `None` leaves the point without one.
@@ -229,6 +231,9 @@ impl LineChart {
         for (point, &spot) in series.points.iter().zip(&spots) {
             let Some(at) = spot else { continue };
             marker::draw(drawing, at, series.look.marker, series.look.colour);
+            if point.hollow {
+                marker::hollow(drawing, at);
+            }
             for alike in self.alike(first_alike, index) {
                 drawing.note(self.note(alike, point, at));
             }

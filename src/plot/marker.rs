@@ -29,6 +29,12 @@ pub(super) fn draw(drawing: &mut Drawing, at: Place, marker: Marker, colour: Col
     }
 }
 
+/// Empties the middle of a marker. Where it has strokes instead of an area, or an empty middle already, the paper covers
+/// all but the ends.
+pub(super) fn hollow(drawing: &mut Drawing, at: Place) {
+    drawing.disc(at, RADIUS - 1.5, PAPER);
+}
+
 fn filled(drawing: &mut Drawing, at: Place, colour: Colour, corners: &[Place]) {
     let outline = |radius: f64| corners.iter().map(|c| (at.0 + radius * c.0, at.1 + radius * c.1)).collect();
     drawing.area(outline(RADIUS + 1.3), PAPER, 1.0);

@@ -2,7 +2,7 @@
 //! seconds per sample.
 
 use super::block::Block;
-use super::naming::{Part, needed};
+use super::naming::{Part, joined, needed};
 use super::results::{Results, prefixed};
 use super::rows::{Row, group};
 use super::schedule::{crew, strategy};
@@ -159,8 +159,9 @@ pub(super) fn missing(results: &Results) -> Option<Block> {
     (!list.is_empty()).then_some(Block::finding(text))
 }
 
-/// The contenders of each scene: scenes by name, contenders in the order of the estimators in the definition. Leaves
-/// out contenders without a price, such as those with a single seed.
+/// The contenders of each scene: scenes by name, with the image size if there are several, because seconds of different
+/// sizes are not compared; contenders in the order of the estimators in the definition. Leaves out contenders without a
+/// price, such as those with a single seed.
 pub(super) fn contenders(results: &Results) -> Result<BTreeMap<String, Vec<Contender>>> {
     let priced = results.rows().filter(|row| row.mse.is_some());
     let groups = group(priced, |row| {
@@ -172,9 +173,18 @@ pub(super) fn contenders(results: &Results) -> Result<BTreeMap<String, Vec<Conte
     let names = names(&groups.iter().map(|rows| rows[0]).collect::<Vec<_>>());
     let order = results.definition.estimator_names();
     let place = |row: &Row| order.iter().position(|name| *name == row.estimator).unwrap_or(order.len());
-    let mut named: BTreeMap<(&str, usize, String), Vec<&Row>> = BTreeMap::new();
+    let size = |row: &Row| format!("{}x{}", row.width, row.height);
+    let sizes = group(groups.iter().map(|rows| rows[0]), |row| &row.scene);
+    let has_several: BTreeSet<&String> = sizes
+        .into_iter()
+        .filter(|(_, rows)| rows.iter().any(|row| size(row) != size(rows[0])))
+        .map(|(scene, _)| scene)
+        .collect();
+    let mut named: BTreeMap<(String, usize, String), Vec<&Row>> = BTreeMap::new();
     for (rows, name) in groups.into_iter().zip(names) {
-        let (scene, cell) = (rows[0].scene.as_str(), &rows[0].cell);
+        let cell = &rows[0].cell;
+        let own_size = if has_several.contains(&rows[0].scene) { size(rows[0]) } else { String::new() };
+        let scene = joined([rows[0].scene.clone(), own_size]);
         if let Some(other) = named.insert((scene, place(rows[0]), name), rows) {
             let problem = format!("is not told from {} by any name that figures have", other[0].cell);
             return Err(InputError::new("cell", cell, problem).into());
@@ -182,7 +192,7 @@ pub(super) fn contenders(results: &Results) -> Result<BTreeMap<String, Vec<Conte
     }
     let mut scenes: BTreeMap<String, Vec<Contender>> = BTreeMap::new();
     for ((scene, _, name), rows) in named {
-        scenes.entry(scene.to_string()).or_default().extend(Contender::of(name, &rows));
+        scenes.entry(scene).or_default().extend(Contender::of(name, &rows));
     }
     scenes.retain(|_, contenders| !contenders.is_empty());
     Ok(scenes)

@@ -19,8 +19,8 @@ pub fn predictions(results: &Results, contenders: &[Contender]) -> Result<Vec<Pr
     let processors = results.processors();
     let costs = serial_costs(results)?;
     let modelled = |row: &Row| row.threads <= processors || row.threads == row.jobs;
-    let pairs = serial.in_order(results).filter(|(row, _)| modelled(row));
-    let runs = pairs.filter_map(|(row, serial)| {
+    let pairs = serial.in_order(results);
+    let runs = pairs.iter().filter(|(row, _)| modelled(row)).filter_map(|(row, serial)| {
         let observed = Observed {
             inflation: inflation(row.cpu_s(), serial.cpu_s()),
             decomposition: row.decomposition.clone(),

@@ -9,6 +9,9 @@ pub mod forecasts;
 mod guards;
 mod naming;
 mod page;
+mod paired;
+#[cfg(test)]
+mod pairing_tests;
 pub mod rank_forecasts;
 mod reference_image;
 mod results;

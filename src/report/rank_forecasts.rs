@@ -65,7 +65,8 @@ pub fn rank_predictions(
 ) -> Result<Vec<RankPrediction>> {
     let lab: &Lab = &results.definition.lab;
     let (serial, costs, processors) = (results.serial()?, serial_costs(results)?, results.processors());
-    let pairs = serial.in_order(results).filter(|(row, _)| row.threads <= processors);
+    let pairs = serial.in_order(results);
+    let pairs = pairs.iter().filter(|(row, _)| row.threads <= processors);
     let groups = gathered(pairs.filter_map(|(row, serial)| {
         let written = row.as_written();
         let crew = (written.ranks?, written.threads);

@@ -1,7 +1,7 @@
 //! Results of an experiment, read from its folder.
 
 use super::naming::{Part, joined, needed};
-use super::rows::{Row, group};
+use super::rows::{Row, gathered, group};
 use super::schedule::{Schedule, over_ranks, strategy};
 use super::serial::Serial;
 use super::words::Told;
@@ -181,9 +181,12 @@ impl Results {
         Ok(images)
     }
 
-    /// The row with the median time; of two middle ones, the faster.
+    /// The row with the median time; of two middle ones, the faster. It is a row of the image that most of the rows
+    /// have, because times of different images have no common order.
     pub(super) fn typical<'a>(rows: &[&'a Row]) -> Option<&'a Row> {
-        let mut timed: Vec<(f64, &Row)> = rows.iter().filter_map(|row| Some((row.makespan_s?, *row))).collect();
+        let timed = rows.iter().filter_map(|row| Some((row.makespan_s?, *row)));
+        let images = gathered(timed.map(|timed| (&timed.1.image, timed))).into_values();
+        let mut timed = images.rev().max_by_key(Vec::len)?;
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
         timed.get(timed.len().checked_sub(1)? / 2).map(|(_, row)| *row)
     }

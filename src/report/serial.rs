@@ -1,55 +1,57 @@
 //! Schedules paired with the serial runs of the same image in the same repetition.
 
+use super::paired::{Partners, Pairs, Ratio, Repeats, estimates, in_common, medians};
 use super::results::Results;
-use super::rows::{Row, unique};
+use super::rows::{Row, gathered};
 use super::schedule::Schedule;
-use super::words::Told;
-use crate::analysis::Estimate;
 use crate::analysis::confidence_sequence::Stopping;
-use crate::analysis::quantile::median;
 use crate::error::Result;
 use crate::measure::{ImageKey, ScheduleKey};
-use std::collections::BTreeMap;
-
-type Key = (ImageKey, ScheduleKey, u32);
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The schedules of an experiment, and the serial runs that they are compared with.
 pub(super) struct Serial<'a> {
     schedules: BTreeMap<&'a Schedule, Vec<&'a Row>>,
-    /// The serial runs, by image, pieces and repetition.
-    on_pieces: BTreeMap<Key, &'a Row>,
-    /// The fastest time over all pieces, by image and repetition.
-    fastest: BTreeMap<Key, f64>,
+    /// The serial runs on the same pieces.
+    on_pieces: Partners<'a>,
+    /// The fastest serial runs over all pieces.
+    fastest: Partners<'a>,
     stopping: Stopping,
+    /// Width and height of most images.
+    usual_size: Option<(u32, u32)>,
+    /// Whether lines are named by their pieces. One decomposition, with the rows of report A beside it, needs no name.
+    names_pieces: bool,
 }
 
-/// The key that a row shares with the serial run on the same pieces.
-fn with_pieces(row: &Row) -> Key {
-    row.key(|_, schedule| schedule.forget_workers())
+/// A line of a chart: the threads of its points, and the speedups of each.
+pub(super) type Line = Vec<(usize, Vec<f64>)>;
+
+/// What a row shares with the serial run on the same pieces.
+pub(super) fn with_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
+    schedule.forget_workers();
 }
 
-/// The key that a row shares with all serial runs of its image.
-fn without_pieces(row: &Row) -> Key {
-    let mut key = with_pieces(row);
-    key.1.decomposition.clear();
-    key
+/// What a row shares with all serial runs of its image.
+pub(super) fn without_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
+    schedule.forget_workers();
+    schedule.decomposition.clear();
 }
 
 impl<'a> Serial<'a> {
     pub(super) fn of(results: &'a Results) -> Result<Self> {
         let schedules = results.by_schedule();
-        let serial: Vec<&Row> =
-            schedules.iter().filter(|(s, _)| s.is_serial()).flat_map(|(_, rows)| rows.iter().copied()).collect();
-        let mut fastest = BTreeMap::new();
-        for row in &serial {
-            if let Some(time) = row.makespan_s {
-                fastest
-                    .entry(without_pieces(row))
-                    .and_modify(|least: &mut f64| *least = least.min(time))
-                    .or_insert(time);
-            }
-        }
-        Ok(Self { on_pieces: unique(serial, with_pieces)?, fastest, schedules, stopping: results.stopping() })
+        let serial = || schedules.iter().filter(|(s, _)| s.is_serial()).flat_map(|(_, rows)| rows.iter().copied());
+        let sizes = results.by(|row| (row.width, row.height)).into_iter();
+        let others = schedules.keys().filter(|schedule| !schedule.is_serial());
+        let pieces: BTreeSet<&str> = others.map(|schedule| schedule.key.decomposition.as_str()).collect();
+        Ok(Self {
+            names_pieces: pieces.len() > 2,
+            on_pieces: Partners::of(serial(), with_pieces)?,
+            fastest: Partners::fastest(serial(), without_pieces),
+            stopping: results.stopping(),
+            usual_size: sizes.max_by_key(|(_, rows)| rows.len()).map(|(size, _)| size),
+            schedules,
+        })
     }
 
     /// All schedules except the serial ones.
@@ -62,45 +64,67 @@ impl<'a> Serial<'a> {
         self.schedules.get(schedule).map_or(&[], Vec::as_slice)
     }
 
+    /// Runs with the serial runs on the same pieces.
+    pub(super) fn on_pieces(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
+        self.on_pieces.pairs(rows)
+    }
+
+    /// Runs with the fastest serial runs of their images.
+    pub(super) fn with_fastest(&self, rows: impl IntoIterator<Item = &'a Row>) -> Pairs<'a> {
+        self.fastest.pairs(rows)
+    }
+
     /// Pairs each run of a schedule with the serial run on the same pieces.
-    pub(super) fn pairs(&self, schedule: &Schedule) -> impl Iterator<Item = (&'a Row, &'a Row)> {
-        self.rows(schedule).iter().filter_map(|row| Some((*row, *self.on_pieces.get(&with_pieces(row))?)))
+    pub(super) fn pairs(&self, schedule: &Schedule) -> Pairs<'a> {
+        self.on_pieces(self.rows(schedule).iter().copied())
     }
 
     /// Pairs each run that is not serial with the serial run on the same pieces, in the order of the rows.
-    pub(super) fn in_order(&self, results: &'a Results) -> impl Iterator<Item = (&'a Row, &'a Row)> {
-        let others = results.rows().filter(|row| !row.schedule.is_serial());
-        others.filter_map(|row| Some((row, *self.on_pieces.get(&with_pieces(row))?)))
+    pub(super) fn in_order(&self, results: &'a Results) -> Pairs<'a> {
+        self.on_pieces(results.rows().filter(|row| !row.schedule.is_serial()))
     }
 
-    /// The serial runs that are paired with the runs of a schedule.
-    pub(super) fn on_pieces_of(&self, schedule: &Schedule) -> Vec<&'a Row> {
-        self.pairs(schedule).map(|(_, serial)| serial).collect()
+    /// The gains of runs over `serial` for the same image in the same repetition.
+    pub(super) fn gains(&self, rows: &[&'a Row], value: impl Fn(&Row) -> Option<f64>) -> Repeats {
+        // Prefer the serial run on the same pieces: other pieces change at least the caches.
+        let gains = self.on_pieces(rows.iter().copied()).gains(&value);
+        if gains.is_empty() { self.with_fastest(rows.iter().copied()).gains(value) } else { gains }
     }
 
-    /// The speedups of a schedule against `serial` on the same pieces, one for each image and repetition that both have.
-    pub(super) fn paired_speedups(&self, schedule: &Schedule) -> Vec<f64> {
-        self.pairs(schedule).filter_map(|(own, serial)| Some(serial.makespan_s? / own.makespan_s?)).collect()
+    /// The speedup of each schedule: the median of the ratios to `serial`.
+    pub(super) fn speedups(&self) -> Vec<(&'a Schedule, Ratio)> {
+        let own = |schedule| (schedule, self.gains(self.rows(schedule), |row| row.makespan_s));
+        estimates(self.others().map(own), self.stopping)
     }
 
-    /// The speedup of each schedule: the median of the ratios to `serial` for the same image in the same repetition.
-    pub(super) fn speedups(&self) -> Vec<(&'a Schedule, Estimate)> {
-        let speedup = |schedule: &'a Schedule| {
-            // Prefer the serial run on the same pieces: other pieces change at least the caches.
-            let mut ratios = self.paired_speedups(schedule);
-            if ratios.is_empty() {
-                let to_fastest = |row: &&Row| Some(self.fastest.get(&without_pieces(row))? / row.makespan_s?);
-                ratios = self.rows(schedule).iter().filter_map(to_fastest).collect();
-            }
-            Some((schedule, Told::median(&ratios, self.stopping)?.estimate()?))
-        };
-        self.others().filter_map(speedup).collect()
+    /// The speedups at numbers of workers that have a processor each, by line; in each line only those repetitions that
+    /// all its points have.
+    pub(super) fn lines(&self, processors: usize) -> BTreeMap<String, Line> {
+        let own = self.others().filter(|schedule| schedule.key.threads <= processors).map(|schedule| {
+            (self.line(schedule), (schedule.key.threads, self.pairs(schedule).gains(|row| row.makespan_s)))
+        });
+        gathered(own).into_iter().map(|(line, points)| (line, in_common(points))).collect()
     }
 
-    /// CPU time of a schedule over that of `serial` on the same pieces in the same repetition: the median of the
+    /// CPU time of each schedule over that of `serial` on the same pieces in the same repetition: the median of the
     /// ratios. It shows how much more the same work costs on several processors, plus the cost of the schedule itself.
-    pub(super) fn work_inflation(&self, schedule: &Schedule) -> Option<f64> {
-        let ratios = self.pairs(schedule).filter_map(|(own, serial)| Some(own.cpu_s()? / serial.cpu_s()?));
-        median(&ratios.collect::<Vec<f64>>())
+    pub(super) fn work_inflation(&self) -> BTreeMap<&'a Schedule, f64> {
+        let own = self.others().map(|schedule| (schedule, self.pairs(schedule).costs(|row| row.cpu_s())));
+        medians(own, self.stopping).into_iter().map(|(schedule, told)| (schedule, told.value)).collect()
+    }
+
+    /// A name for the schedules of a line: the strategy, with its pieces if there are several decompositions, and with
+    /// the image size if most rows have another.
+    pub(super) fn line(&self, schedule: &Schedule) -> String {
+        let name = if self.names_pieces {
+            format!("{}, {}", schedule.name, schedule.key.decomposition)
+        } else {
+            schedule.name.clone()
+        };
+        let own: BTreeSet<(u32, u32)> = self.rows(schedule).iter().map(|row| (row.width, row.height)).collect();
+        match own.first().filter(|size| own.len() == 1 && Some(**size) != self.usual_size) {
+            Some((width, height)) => format!("{name}, {width}x{height}"),
+            None => name,
+        }
     }
 }

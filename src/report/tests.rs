@@ -18,7 +18,7 @@ pub(super) fn count_pass() {
 }
 
 fn definition(figures: &[&str], more: &str) -> String {
-    let axes = "[matrix]\nscene = [\"cornell\"]\nestimator = [\"bsdf\"]\nspp = [4]\nseed = [1]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n";
+    let axes = "[matrix]\nscene = [\"cornell\"]\nestimator = [\"bsdf\", \"nee\"]\nspp = [4]\nseed = [1]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n";
     let sizes = "[quick]\nsize = [8, 6]\nrepetitions = 1\n[full]\nsize = [8, 6]\nrepetitions = 1\n";
     format!("title = \"\"\nquestion = \"\"\nanalysis = \"\"\nfigures = {figures:?}\n{more}\n{axes}{sizes}")
 }
@@ -78,13 +78,13 @@ pub(super) fn folder_of(figures: &[&str], more: &str, rows: Vec<Record>) -> Temp
 }
 
 /// The rows read back.
-fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Result<Results> {
+pub(super) fn results(figures: &[&str], more: &str, rows: Vec<Record>) -> crate::error::Result<Results> {
     let out = folder_of(figures, more, rows);
     Results::read(&Lab::built_in(), out.path(), &out.path().join("an-experiment"))
 }
 
 /// The text of all blocks.
-fn words(blocks: &[Block]) -> String {
+pub(super) fn words(blocks: &[Block]) -> String {
     let of = |block: &Block| match block {
         Block::Finding(text) => text.clone(),
         Block::Figure { figure, .. } => figure.svg().unwrap(),

@@ -1,5 +1,6 @@
 //! Numbers and intervals as text, for tables and sentences.
 
+use super::paired::Ratio;
 use super::rows::Row;
 use crate::analysis::confidence_sequence::Stopping;
 use crate::analysis::mean::{Moments, t_interval};
@@ -23,6 +24,8 @@ pub(super) struct Told {
     pub(super) interval: Option<Interval>,
     /// The number of values that it was computed from, if counted.
     pub(super) count: Option<usize>,
+    /// Whether it lacks repetitions that the values beside it have.
+    pub(super) is_partial: bool,
 }
 
 impl From<Estimate> for Told {
@@ -33,25 +36,25 @@ impl From<Estimate> for Told {
 
 impl Told {
     pub(super) fn of(value: f64, interval: Option<Interval>) -> Self {
-        Self { value, interval, count: None }
+        Self { value, interval, count: None, is_partial: false }
     }
 
     /// The median of some values with its distribution-free interval.
     pub(super) fn median(values: &[f64], stopping: Stopping) -> Option<Self> {
         let interval = stopping.median_interval(values, LEVEL);
-        Some(Self { value: median(values)?, interval, count: Some(values.len()) })
+        Some(Self { count: Some(values.len()), ..Self::of(median(values)?, interval) })
     }
 
     /// The mean of values of equal variance, with Student's interval.
     pub(super) fn mean(values: &[f64]) -> Option<Self> {
         let interval = t_interval(values, LEVEL).map(|estimate| estimate.interval);
-        Some(Self { value: Moments::of(values).mean()?, interval, count: Some(values.len()) })
+        Some(Self { count: Some(values.len()), ..Self::of(Moments::of(values).mean()?, interval) })
     }
 
     /// The same value in another unit.
     pub(super) fn times(&self, factor: f64) -> Self {
         let times = |i: Interval| Interval { low: factor * i.low, high: factor * i.high, level: i.level };
-        Self { value: factor * self.value, interval: self.interval.map(times), count: self.count }
+        Self { value: factor * self.value, interval: self.interval.map(times), ..*self }
     }
 
     /// The ends of the interval.
@@ -60,18 +63,19 @@ impl Told {
     }
 
     pub(super) fn dot(&self) -> Dot {
-        Dot { value: self.value, interval: self.bar(), count: self.count }
+        Dot { value: self.value, interval: self.bar(), count: self.count, hollow: self.is_partial }
     }
 
     /// The point above `x`.
     pub(super) fn above(&self, x: f64) -> Point {
-        Point { count: self.count, ..Point::new(x, self.value).with_y(self.bar()) }
+        Point { count: self.count, hollow: self.is_partial, ..Point::new(x, self.value).with_y(self.bar()) }
     }
+}
 
-    /// The value as an estimate, if it has an interval.
-    pub(super) fn estimate(&self) -> Option<Estimate> {
-        Some(Estimate { value: self.value, interval: self.interval? })
-    }
+/// The sentence of a caption about hollow marks; empty if there are none.
+pub(super) fn hollow(told: impl IntoIterator<Item = Told>) -> &'static str {
+    let has_some = told.into_iter().any(|told| told.is_partial);
+    if has_some { " Hollow: fewer seeds or repetitions than the others, so not comparable with them." } else { "" }
 }
 
 /// The values of those rows that have one.
@@ -95,8 +99,8 @@ pub(super) fn with_level(interval: &Interval, digits: usize) -> String {
 }
 
 /// A value, its interval and the interval's confidence.
-pub(super) fn told(estimate: &Estimate, digits: usize) -> String {
-    format!("{:.digits$}, {}", estimate.value, with_level(&estimate.interval, digits))
+pub(super) fn told(ratio: &Ratio, digits: usize) -> String {
+    format!("{:.digits$}, {}", ratio.value, with_level(&ratio.interval, digits))
 }
 
 /// The confidence of some intervals of medians, in words for a caption.

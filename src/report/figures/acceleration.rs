@@ -7,7 +7,7 @@ use crate::scene::ACCELERATORS;
 type Places<'a> = BTreeMap<u64, BTreeMap<&'a str, Vec<&'a Row>>>;
 
 /// An accelerator's gains by that number: how many times as long the yardstick takes.
-type Gains = Vec<(u64, Estimate)>;
+type Gains = Vec<(u64, Ratio)>;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let yardstick = yardstick(results, "acceleration", "none")?;
@@ -32,7 +32,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let gains =
         hierarchies().map(|(place, name)| Ok((place, name, gains(&samples, &yardstick, name, results.stopping())?)));
     blocks.extend(against_spp(results, &samples, &gains.collect::<Result<Vec<_>>>()?));
-    blocks.extend(hierarchies().flat_map(|(_, name)| marginal(&others, &yardstick, name, results.stopping())));
+    for (_, name) in hierarchies() {
+        blocks.extend(marginal(&others, &yardstick, name, results.stopping())?);
+    }
     blocks.push(table(results, &accelerators));
     Ok(blocks)
 }
@@ -49,6 +51,12 @@ fn primitives(row: &Row) -> Option<u64> {
 
 fn ns_per_ray(row: &Row) -> Option<f64> {
     Some(row.makespan_s? * 1e9 / row.rays? as f64)
+}
+
+/// What rows with and without a hierarchy share.
+fn any_accelerator(_: &mut ImageKey, schedule: &mut ScheduleKey) {
+    schedule.accelerator.clear();
+    schedule.effects.clear();
 }
 
 fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(usize, &str)]) -> Option<Block> {
@@ -71,18 +79,11 @@ fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(us
 }
 
 fn gains(places: &Places<'_>, yardstick: &str, name: &str, stopping: Stopping) -> Result<Gains> {
-    let mut gains = Vec::new();
-    for (place, rows) in places {
+    let gains = places.iter().map(|(place, rows)| {
         let of = |name: &str| rows.get(name).into_iter().flatten().copied();
-        let key = |row: &Row| {
-            row.key(|_, schedule| {
-                schedule.accelerator.clear();
-                schedule.effects.clear();
-            })
-        };
-        gains.extend(time_ratio(of(yardstick), of(name), key, stopping)?.map(|gain| (*place, gain)));
-    }
-    Ok(gains)
+        Ok((*place, ratios(of(yardstick), of(name), any_accelerator, |row| row.makespan_s)?))
+    });
+    Ok(estimates(gains.collect::<Result<Vec<_>>>()?, stopping))
 }
 
 /// A finding: the number of primitives from which a hierarchy is faster, and its gain in the largest scene that was
@@ -115,7 +116,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     if gains.iter().all(|(.., gains)| gains.is_empty()) {
         return Vec::new();
     }
-    let point = |(spp, gain): &(u64, Estimate)| Told::from(*gain).above(*spp as f64);
+    let point = |(spp, gain): &(u64, Ratio)| Told::from(*gain).above(*spp as f64);
     let series = gains
         .iter()
         .map(|(place, name, gains)| Series::new(*name, Look::nth(*place), gains.iter().map(point).collect()));
@@ -129,7 +130,8 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     let image = first.map_or_else(String::new, |row| format!("{}, {}x{}, ", row.scene, row.width, row.height));
     chart.subtitle = format!("{image}{}", results.machine_line());
     let intervals = gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| gain.interval);
-    chart.caption = format!("Median of ratios within a repetition. Bars: {}.", confidence(intervals));
+    let hollow = hollow(gains.iter().flat_map(|(.., gains)| gains).map(|(_, gain)| Told::from(*gain)));
+    chart.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
     chart.dodge = 4.0;
     let finding = |(_, name, gains): &(usize, &str, Gains)| {
         let low = gains.iter().map(|(_, gain)| gain.interval.low).fold(0.0, f64::max);
@@ -151,28 +153,30 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
 
 /// How many times as long the yardstick takes for each further sample. A difference of two times contains no fixed
 /// cost, so a fixed cost cannot bend this factor as it bends the gain at few samples.
-fn marginal(rows: &[&Row], yardstick: &str, name: &str, stopping: Stopping) -> Vec<Block> {
+fn marginal(rows: &[&Row], yardstick: &str, name: &str, stopping: Stopping) -> Result<Vec<Block>> {
+    let any_samples: Forget = |image, schedule| {
+        any_accelerator(image, schedule);
+        image.spp = 0;
+    };
     let by_size = group(rows.iter().copied(), |row| (row.width, row.height));
-    let finding = |((width, height), rows): ((u32, u32), Vec<&Row>)| {
+    let mut findings = Vec::new();
+    for ((width, height), rows) in by_size {
         let spp: BTreeSet<u32> = rows.iter().map(|row| row.spp).collect();
-        let (least, most) = (*spp.first()?, *spp.last()?);
-        let times: BTreeMap<(&str, u32, u32), f64> = rows
-            .iter()
-            .filter_map(|row| Some(((row.accelerator.as_str(), row.repetition, row.spp), row.makespan_s?)))
-            .collect();
-        let further =
-            |name, repetition| Some(times.get(&(name, repetition, most))? - times.get(&(name, repetition, least))?);
-        let repetitions: BTreeSet<u32> = rows.iter().map(|row| row.repetition).collect();
-        let ratios = repetitions.into_iter().filter_map(|n| Some(further(yardstick, n)? / further(name, n)?));
-        let ratio = Told::median(&ratios.collect::<Vec<f64>>(), stopping).filter(|_| least < most)?;
+        let Some((least, most)) = spp.first().zip(spp.last()).filter(|(least, most)| least < most) else { continue };
+        let seconds = |name: &str, spp: u32| {
+            let own = rows.iter().copied().filter(|row| row.accelerator == name && row.spp == spp);
+            Repeats::of(own, any_samples, |row| row.makespan_s)
+        };
+        let further = |name: &str| -> Result<Repeats> { Ok(seconds(name, *most)?.minus(&seconds(name, *least)?)) };
+        let Some(ratio) = further(yardstick)?.over(&further(name)?).median(stopping) else { continue };
         let interval = ratio.interval.map_or_else(String::new, |interval| format!(", {}", with_level(&interval, 2)));
-        Some(Block::finding(format!(
+        findings.push(Block::finding(format!(
             "For each sample from {least} to {most} at {width}x{height}, {yardstick} takes {:.2} times as long as {name}{interval}: \
              differences of times, in which a fixed cost has no part.",
             ratio.value
-        )))
-    };
-    by_size.into_iter().filter_map(finding).collect()
+        )));
+    }
+    Ok(findings)
 }
 
 fn table(results: &Results, accelerators: &[(usize, &str)]) -> Block {

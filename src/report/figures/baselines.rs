@@ -10,7 +10,7 @@ type Kind<'a> = (&'a Schedule, &'a str);
 struct Against<'a> {
     own: Kind<'a>,
     baseline: Kind<'a>,
-    speedup: Estimate,
+    speedup: Ratio,
 }
 
 impl Against<'_> {
@@ -36,28 +36,25 @@ fn told_kind((schedule, effects): Kind<'_>) -> String {
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let kinds: BTreeMap<Kind<'_>, Vec<&Row>> = results.by(|row| (&row.schedule, row.effects.as_str()));
     let (alone, several): (Vec<_>, Vec<_>) = kinds.iter().partition(|((schedule, _), _)| schedule.key.threads == 1);
-    let mut all = Vec::new();
+    let mut cells = Vec::new();
     for (own, rows) in several {
         for (baseline, base_rows) in &alone {
-            let pair = |row: &&Row| (row.image.clone(), row.repetition);
-            let own_times = unique(rows.iter().copied(), |row| pair(&row))?;
-            let speedups: Vec<f64> = base_rows
-                .iter()
-                .filter_map(|row| Some(row.makespan_s? / own_times.get(&pair(row))?.makespan_s?))
-                .collect();
-            if let Some(speedup) = results.median(&speedups).and_then(|told| told.estimate()) {
-                all.push(Against { own: *own, baseline: **baseline, speedup });
-            }
+            let (base, own_rows) = (base_rows.iter().copied(), rows.iter().copied());
+            cells.push(((*own, **baseline), ratios(base, own_rows, any_schedule, |row| row.makespan_s)?));
         }
     }
-    all.sort_by(|a, b| b.speedup.value.total_cmp(&a.speedup.value));
+    let all = estimates(cells, results.stopping()).into_iter();
+    let mut all: Vec<Against<'_>> =
+        all.map(|((own, baseline), speedup)| Against { own, baseline, speedup }).collect();
+    all.sort_by(|a, b| a.speedup.falling(&b.speedup));
     let dots = all.iter().map(|a| PlotRow::new(a.name(), vec![Some(Told::from(a.speedup).dot())])).collect();
     let mut plot =
         DotPlot::new("One schedule against several baselines", Axis::linear("speedup").including([1.0, 2.1]), dots);
     plot.guides = all.iter().map(Against::workers).collect::<BTreeSet<_>>().into_iter().map(guide).collect();
     plot.subtitle = results.workload();
     let intervals = all.iter().map(|against| against.speedup.interval);
-    plot.caption = format!("Median of ratios within a repetition. Bars: {}.", confidence(intervals));
+    let hollow = hollow(all.iter().map(|against| Told::from(against.speedup)));
+    plot.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
     let mut blocks = vec![Block::figure("baselines", plot)];
     blocks.extend(finding(&all));
     blocks.push(table(&all));
@@ -69,8 +66,9 @@ fn guide(workers: usize) -> (f64, String) {
 }
 
 fn finding(all: &[Against<'_>]) -> Option<Block> {
-    let most = all.first()?;
-    let least = all.last()?;
+    let mut ranked = all.iter().filter(|against| !against.speedup.is_partial);
+    let most = ranked.next()?;
+    let least = ranked.next_back().unwrap_or(most);
     let verdict = if most.is_superlinear() { "superlinear" } else { "not superlinear" };
     Some(Block::finding(format!(
         "{}: {:.2} times as fast ({}), {verdict} on {} workers; {}: {:.2} times ({}). The schedule is the same; only the baseline differs.",
@@ -85,7 +83,7 @@ fn finding(all: &[Against<'_>]) -> Option<Block> {
 }
 
 fn table(all: &[Against<'_>]) -> Block {
-    let fraction = |against: &&Against<'_>| serial_fraction_within(&against.speedup, against.workers()).map(Told::from);
+    let fraction = |against: &&Against<'_>| serial_fraction_within(&against.speedup.estimate(), against.workers()).map(Told::from);
     Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
         .column("schedule", |against| told_kind(against.own))
         .column("baseline", |against| told_kind(against.baseline))

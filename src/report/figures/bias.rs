@@ -29,11 +29,12 @@ impl Varied {
         }
     }
 
-    fn forget(self, image: &mut ImageKey) {
+    /// Clears it in an image.
+    fn forget(self) -> fn(&mut ImageKey) {
         match self {
-            Self::Epsilon => image.epsilon.clear(),
-            Self::Filter => image.filter.clear(),
-            Self::Clamp => image.clamp.clear(),
+            Self::Epsilon => |image| image.epsilon.clear(),
+            Self::Filter => |image| image.filter.clear(),
+            Self::Clamp => |image| image.clamp.clear(),
         }
     }
 
@@ -146,19 +147,15 @@ fn in_order(values: impl Iterator<Item = String>, usual: &str) -> Vec<String> {
 }
 
 fn costs(results: &Results, axis: Varied, usual: &str) -> Vec<Cost> {
-    let forgotten = |row: &Row| {
-        let mut image = row.image.clone();
-        axis.forget(&mut image);
-        image
-    };
-    // The key ignores the kernel: an approximation may exist for one kernel only, and kernels give the same image.
+    // Images are compared whatever the kernel: an approximation may exist for one kernel only, and kernels give the
+    // same image.
     let plain = results.rows().filter(|row| axis.of(&row.image).is_empty());
-    let plain: BTreeMap<ImageKey, f64> = plain.filter_map(|row| Some((forgotten(row), row.mean_radiance?))).collect();
+    let plain = Repeats::of_images(plain, axis.forget(), |row| row.mean_radiance);
     let cells = results.by(|row| (row.scene.as_str(), axis.of(&row.image), row.spp));
     let cost = |((scene, value, spp), rows): ((&str, &str, u32), Vec<&Row>)| {
-        let rows = rows.into_iter().map(|row| (row.seed, row)).collect::<BTreeMap<_, _>>().into_values();
+        let rows = rows.into_iter().map(|row| (&row.image, row)).collect::<BTreeMap<_, _>>().into_values();
         let rows: Vec<&Row> = rows.collect();
-        let light = rows.iter().filter_map(|row| Some(row.mean_radiance? / plain.get(&forgotten(row))?));
+        let light = Repeats::of_images(rows.iter().copied(), axis.forget(), |row| row.mean_radiance).over(&plain);
         let mean = |value: fn(&Row) -> Option<f64>| {
             let all = values(rows.iter().copied(), value);
             (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
@@ -167,7 +164,7 @@ fn costs(results: &Results, axis: Varied, usual: &str) -> Vec<Cost> {
             scene: scene.to_string(),
             value: if value.is_empty() { usual.to_string() } else { value.to_string() },
             spp,
-            light: Told::mean(&light.collect::<Vec<f64>>())?,
+            light: Told::mean(&light.values())?,
             rmse: mean(|row| row.rmse),
             within: mean(|row| row.within_tolerance),
             black: mean(|row| Some(row.black_pixels? as f64 / pixels(row))),

@@ -72,27 +72,26 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(blocks)
 }
 
-/// The steps of the rows with a limit, relative to the rows of the same seed without one.
+/// The steps of the rows with a limit, relative to the rows of the same image without one.
 fn steps(name: &str, rows: &[&Row]) -> Vec<Step> {
-    let radiance = |limit: Option<u16>| -> BTreeMap<u64, f64> {
-        let own = rows.iter().filter(|row| row.max_depth == limit);
-        own.filter_map(|row| Some((row.seed, row.mean_radiance?))).collect()
+    let radiance = |limit: Option<u16>| {
+        let own = rows.iter().copied().filter(|row| row.max_depth == limit);
+        Repeats::of_images(own, |image| image.max_depth = None, |row| row.mean_radiance)
     };
     let whole = radiance(None);
     let limits: BTreeSet<u16> = rows.iter().filter_map(|row| row.max_depth).collect();
     let step = |limit: u16| {
-        let (up_to, before) = (radiance(Some(limit)), limit.checked_sub(1).map(|below| radiance(Some(below))));
-        let share = |seed: &u64, value: f64| Some(value / whole.get(seed)?);
-        let running: Vec<f64> = up_to.iter().filter_map(|(seed, value)| share(seed, *value)).collect();
-        let own = up_to.iter().filter_map(|(seed, value)| {
-            let below = before.as_ref().map_or(Some(0.0), |before| before.get(seed).copied())?;
-            share(seed, value - below)
-        });
+        let up_to = radiance(Some(limit));
+        let own = match limit.checked_sub(1) {
+            Some(below) => up_to.minus(&radiance(Some(below))),
+            None => up_to.clone(),
+        };
+        let running = up_to.over(&whole).values();
         let cut = rows.iter().filter(|row| row.max_depth == Some(limit));
         let (cut, paths) = cut
             .filter_map(|row| Some((row.truncated? as f64, row.paths? as f64)))
             .fold((0.0, 0.0), |sum, row| (sum.0 + row.0, sum.1 + row.1));
-        let light = Told::mean(&own.collect::<Vec<f64>>())?;
+        let light = Told::mean(&own.over(&whole).values())?;
         let up_to = running.iter().sum::<f64>() / running.len() as f64;
         Some(Step { name: name.to_string(), limit, light, up_to, cut: cut / paths })
     };

@@ -31,8 +31,11 @@ fn radiance(rows: &[&Row]) -> Option<f64> {
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { prototype } = options(results, "clamp-bias")?;
-    let lit = || results.rows().filter(|row| row.mean_radiance.is_some());
-    let by_clamp = group(lit(), |row| (row.clamp.as_str(), row.spp));
+    let lit = results.rows().filter(|row| row.mean_radiance.is_some());
+    // One scene in one size: other images have other light.
+    let images = group(lit, |row| (&row.scene, &row.scene_hash, row.width, row.height));
+    let own = images.into_values().rev().max_by_key(Vec::len).unwrap_or_default();
+    let by_clamp = group(own, |row| (row.clamp.as_str(), row.spp));
     let of = |clamp: &'static str| by_clamp.iter().filter(move |((own, _), _)| *own == clamp);
     let plain: Vec<&Row> = of("").flat_map(|(_, rows)| rows).copied().collect();
     let last = of("subpixel").next_back().and_then(|((_, spp), rows)| Some((*spp, radiance(rows)?)));

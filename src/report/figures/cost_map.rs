@@ -4,9 +4,10 @@ use super::prelude::*;
 use crate::plot::heat_map::{HeatMap, HeatPanel, Tile};
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let groups = results.by_schedule();
-    let serial = groups.iter().find(|(schedule, _)| schedule.is_serial());
-    let Some(record) = serial.and_then(|(_, rows)| Results::typical(rows)) else { return Ok(Vec::new()) };
+    let serial = results.by(|row| &row.schedule).into_iter().filter(|(schedule, _)| schedule.is_serial());
+    // Of several decompositions, the one with the most runs of one image.
+    let typical = serial.rev().filter_map(|(_, rows)| Results::typical(&rows).map(|row| (rows.len(), row)));
+    let Some((_, record)) = typical.max_by_key(|(runs, _)| *runs) else { return Ok(Vec::new()) };
     let Some(trace) = results.trace(record)? else { return Ok(Vec::new()) };
     let (width, height) = (record.width, record.height);
     let tile = |row: &crate::measure::TraceRow| Tile {
@@ -19,7 +20,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let tiles: Vec<Tile> = trace.rows.iter().map(tile).collect();
     let costs = tiles.iter().map(|tile| tile.value);
     let (least, most) = (costs.clone().fold(f64::INFINITY, f64::min), costs.fold(0.0, f64::max));
-    let title = format!("{}, {} spp", record.decomposition, record.spp);
+    let title = joined([results.series_name(record), format!("{}, {} spp", record.decomposition, record.spp)]);
     let panel = HeatPanel { title, width, height, tiles };
     let map = HeatMap {
         title: "What a tile costs".to_string(),

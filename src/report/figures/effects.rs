@@ -49,29 +49,30 @@ impl Kind {
 
 /// The rows of a kind.
 struct Times {
-    /// CPU seconds of a sample, by repetition. Other processes on the machine disturb them less than wall time. Several
-    /// rows of one repetition are averaged.
-    by_repetition: BTreeMap<u32, f64>,
+    /// CPU seconds of a sample, without the properties in which kinds differ. Other processes on the machine disturb
+    /// them less than wall time. Several rows of one repetition are averaged.
+    sample_s: Repeats,
     rays: Option<f64>,
+}
+
+/// What rows with and without an effect share: the setting, but neither the scene nor what is chosen to fit it.
+fn setting(image: &mut ImageKey, schedule: &mut ScheduleKey) {
+    image.scene.clear();
+    image.scene_hash.clear();
+    image.max_depth = None;
+    image.roulette.clear();
+    schedule.forget_kernel();
 }
 
 impl Times {
     fn of(rows: &[&Row]) -> Self {
-        let times = gathered(rows.iter().filter_map(|row| Some((row.repetition, row.cpu_s()? / row.paths? as f64))));
-        let mean = |times: Vec<f64>| times.iter().sum::<f64>() / times.len() as f64;
+        let sample_s = Repeats::means(rows.iter().copied(), setting, |row| Some(row.cpu_s()? / row.paths? as f64));
         let rays = rows.first().and_then(|row| Some(row.rays? as f64 / row.paths? as f64));
-        Self { by_repetition: times.into_iter().map(|(repetition, times)| (repetition, mean(times))).collect(), rays }
-    }
-
-    /// The median of the ratios within a repetition.
-    fn over(&self, below: &Self, stopping: Stopping) -> Option<Estimate> {
-        let pairs = below.by_repetition.iter();
-        let ratios = pairs.filter_map(|(repetition, below)| Some(self.by_repetition.get(repetition)? / below));
-        Told::median(&ratios.collect::<Vec<f64>>(), stopping)?.estimate()
+        Self { sample_s, rays }
     }
 
     fn nanoseconds(&self) -> Option<f64> {
-        median(&self.by_repetition.values().map(|s| s * 1e9).collect::<Vec<f64>>())
+        median(&self.sample_s.values().iter().map(|s| s * 1e9).collect::<Vec<f64>>())
     }
 }
 
@@ -92,23 +93,26 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 struct Found<'a> {
     price: &'a Price,
     absent: &'a Times,
-    unused: (&'a Times, Estimate),
-    used: (&'a Times, Estimate),
+    unused: (&'a Times, Ratio),
+    used: (&'a Times, Ratio),
 }
 
 fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) -> Vec<Block> {
-    let found = prices.iter().filter_map(|price| {
-        let absent = times.get(&price.absent)?;
-        let over =
-            |kind: &Kind| times.get(kind).and_then(|times| Some((times, times.over(absent, results.stopping())?)));
-        Some(Found { price, absent, unused: over(&price.unused)?, used: over(&price.used)? })
+    let cells = prices.iter().enumerate().flat_map(|(index, price)| {
+        let over = |kind: &Kind| Some(times.get(kind)?.sample_s.over(&times.get(&price.absent)?.sample_s));
+        [&price.unused, &price.used].map(|kind| ((index, kind), over(kind).unwrap_or_default()))
+    });
+    let ratios: BTreeMap<(usize, &Kind), Ratio> = estimates(cells, results.stopping()).into_iter().collect();
+    let found = prices.iter().enumerate().filter_map(|(index, price)| {
+        let of = |kind| Some((times.get(kind)?, *ratios.get(&(index, kind))?));
+        Some(Found { price, absent: times.get(&price.absent)?, unused: of(&price.unused)?, used: of(&price.used)? })
     });
     let found: Vec<Found<'_>> = found.collect();
     if found.is_empty() {
         return Vec::new();
     }
     let rows = found.iter().map(|found| {
-        let dot = |ratio: Estimate| Some(Told::from(ratio).dot());
+        let dot = |ratio: Ratio| Some(Told::from(ratio).dot());
         PlotRow::new(&found.price.effect, vec![dot(found.unused.1), dot(found.used.1)])
     });
     let axis = Axis::linear("processor time of a sample / without the effect").including([0.95, 1.05]);
@@ -117,8 +121,9 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
     plot.guides = vec![(1.0, "absent".to_string())];
     plot.subtitle = machine(results);
     plot.caption = format!(
-        "Median of ratios within a repetition. Bars: {}. What uses an effect is another image, with other paths.",
-        confidence(found.iter().flat_map(|found| [found.unused.1.interval, found.used.1.interval]))
+        "Median of ratios within a repetition. Bars: {}.{} What uses an effect is another image, with other paths.",
+        confidence(found.iter().flat_map(|found| [found.unused.1.interval, found.used.1.interval])),
+        hollow(found.iter().flat_map(|found| [found.unused.1, found.used.1]).map(Told::from)),
     );
     let place = |kind: &Kind| format!("{}, {}", kind.scene, kind.profile);
     let table = Block::table("effects-table", "The price of an effect: absent, compiled in but unused, used", &found)
@@ -138,7 +143,8 @@ fn prices(results: &Results, prices: &[Price], times: &BTreeMap<Kind, Times>) ->
 }
 
 fn generality(found: &[Found<'_>]) -> Option<Block> {
-    let dearest = found.iter().max_by(|a, b| a.unused.1.value.total_cmp(&b.unused.1.value))?;
+    let ranked = found.iter().filter(|found| !found.unused.1.is_partial);
+    let dearest = ranked.max_by(|a, b| a.unused.1.value.total_cmp(&b.unused.1.value))?;
     let beyond = found.iter().filter(|found| found.unused.1.interval.low > 1.0);
     let beyond: Vec<&str> = beyond.map(|found| found.price.effect.as_str()).collect();
     let verdict = if beyond.is_empty() {
@@ -159,7 +165,7 @@ struct Fit<'a> {
     profile: &'a str,
     fitting: Times,
     largest: Times,
-    ratio: Estimate,
+    ratio: Ratio,
 }
 
 /// Compares the rows of each scene in the largest profile with those in the smallest other one.
@@ -171,13 +177,19 @@ fn fits<'a>(results: &'a Results, largest: &str) -> Vec<Fit<'a>> {
         let names = in_table_order(by_profile.keys().copied(), PROFILES.iter().map(|entry| entry.name));
         let (_, profile) = *names.first()?;
         let fitting = Times::of(by_profile.get(profile)?);
-        let ratio = all.over(&fitting, results.stopping())?;
-        Some(Fit { scene, profile, fitting, largest: all, ratio })
+        let ratios = all.sample_s.over(&fitting.sample_s);
+        Some(((scene, profile, fitting, all), ratios))
     };
-    let mut fits: Vec<Fit<'_>> = groups.into_iter().filter_map(of_scene).collect();
-    // One accelerator for each scene is enough: the first by name.
-    fits.dedup_by(|later, first| later.scene == first.scene);
-    fits.sort_by(|a, b| b.ratio.value.total_cmp(&a.ratio.value));
+    let mut found: Vec<_> = groups.into_iter().filter_map(of_scene).collect();
+    // One accelerator for each scene is enough: the first by name that has a ratio.
+    let has_ratio = |ratios: &Repeats| ratios.median(results.stopping()).and_then(Ratio::of).is_some();
+    found.retain(|(_, ratios)| has_ratio(ratios));
+    found.dedup_by(|later, first| later.0.0 == first.0.0);
+    let fits = estimates(found, results.stopping()).into_iter();
+    let mut fits: Vec<Fit<'_>> = fits
+        .map(|((scene, profile, fitting, largest), ratio)| Fit { scene, profile, fitting, largest, ratio })
+        .collect();
+    fits.sort_by(|a, b| a.ratio.falling(&b.ratio));
     fits
 }
 
@@ -195,8 +207,9 @@ fn scenes(results: &Results, largest: &str) -> Vec<Block> {
     plot.guides = vec![(1.0, "no gain".to_string())];
     plot.subtitle = machine(results);
     plot.caption = format!(
-        "Median of ratios within a repetition, same image. Bars: {}.",
-        confidence(fits.iter().map(|fit| fit.ratio.interval))
+        "Median of ratios within a repetition, same image. Bars: {}.{}",
+        confidence(fits.iter().map(|fit| fit.ratio.interval)),
+        hollow(fits.iter().map(|fit| Told::from(fit.ratio))),
     );
     let slower: Vec<&str> = fits.iter().filter(|fit| fit.ratio.interval.high < 1.0).map(|fit| fit.scene).collect();
     let faster = fits.iter().filter(|fit| fit.ratio.interval.low > 1.0).count();

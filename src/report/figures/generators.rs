@@ -35,7 +35,7 @@ fn switches_per_second(row: &Row) -> Option<f64> {
 struct Line<'a> {
     sampler: &'a str,
     spp: u32,
-    crew: &'a str,
+    crew: String,
     rows: Vec<&'a Row>,
     seconds: Told,
 }
@@ -51,34 +51,45 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let crews: BTreeSet<(usize, String)> =
         results.by_schedule().into_keys().map(|schedule| (schedule.key.threads, crew(schedule))).collect();
     // Times of different images must not be mixed.
-    let by_sampler = results.by(|row| (row.sampler.as_str(), row.spp));
-    let several = by_sampler.keys().map(|(_, spp)| spp).collect::<BTreeSet<_>>().len() > 1;
+    let by_sampler = results.by(|row| (row.sampler.as_str(), row.spp, (row.width, row.height)));
+    let (several_spp, several_sizes) = (
+        by_sampler.keys().map(|(_, spp, _)| spp).collect::<BTreeSet<_>>().len() > 1,
+        by_sampler.keys().map(|(.., size)| size).collect::<BTreeSet<_>>().len() > 1,
+    );
     let name = |row: &Row| {
-        if several { format!("{}, {} spp", row.sampler, row.spp) } else { row.sampler.clone() }
+        let spp = if several_spp { format!("{} spp", row.spp) } else { String::new() };
+        let size = if several_sizes { format!("{}x{}", row.width, row.height) } else { String::new() };
+        joined([row.sampler.clone(), spp, size])
     };
-    let (mut dots, mut lines) = (Vec::new(), Vec::new());
-    for ((sampler, _), rows) in by_sampler {
+    let cells = by_sampler.into_iter().flat_map(|((sampler, ..), rows)| {
         let label = name(rows[0]);
-        let mut by_crew = group(rows, |row| crew(&row.schedule));
-        let mut own = Vec::new();
-        for (_, crew) in &crews {
-            let rows = by_crew.remove(crew).unwrap_or_default();
-            let seconds = results.median(&values(rows.iter().copied(), |row| row.makespan_s));
-            own.push(seconds.map(|seconds| seconds.times(1e3).dot()));
-            lines.extend(seconds.map(|seconds| Line { sampler, spp: rows[0].spp, crew, rows, seconds }));
+        let by_crew = group(rows, |row| (row.schedule.key.threads, crew(&row.schedule)));
+        by_crew.into_iter().map(move |((_, crew), rows)| {
+            let any_sampler: Forget = |image, _| image.sampler.clear();
+            let seconds = Repeats::means(rows.iter().copied(), any_sampler, |row| row.makespan_s);
+            ((label.clone(), sampler, crew, rows), seconds)
+        })
+    });
+    let (mut dots, mut lines): (Vec<PlotRow>, _) = (Vec::new(), Vec::new());
+    for ((label, sampler, crew, rows), seconds) in medians(cells, results.stopping()) {
+        if dots.last().is_none_or(|row| row.name != label) {
+            dots.push(PlotRow::new(label, vec![None; crews.len()]));
         }
-        dots.push(PlotRow::new(label, own));
+        let places = dots.iter_mut().next_back().into_iter().flat_map(|row| row.dots.iter_mut().zip(&crews));
+        places.filter(|(_, (_, name))| *name == crew).for_each(|(dot, _)| *dot = Some(seconds.times(1e3).dot()));
+        lines.push(Line { sampler, spp: rows[0].spp, crew, rows, seconds });
     }
     let plot = DotPlot::new("Time by random number generator", Axis::log("milliseconds"), dots);
     let mut plot = plot.grouped(crews.iter().map(|(_, crew)| crew));
     plot.subtitle = results.workload();
     let intervals = lines.iter().filter_map(|line| line.seconds.interval);
-    plot.caption = format!("Median. Bars: {}.", confidence(intervals));
+    let hollow = hollow(lines.iter().map(|line| line.seconds));
+    plot.caption = format!("Median. Bars: {}.{hollow}", confidence(intervals));
     let finding = compare.map_or(Ok(None), |compare| finding(results, &compare))?;
     let table = Block::table("generators-table", "Generators: medians over repetitions", &lines)
         .column("generator", |line| line.sampler.to_string())
         .column("samples per pixel", |line| line.spp.to_string())
-        .column("threads", |line| line.crew.to_string())
+        .column("threads", |line| line.crew.clone())
         .told("median seconds", Decimals(4), |line| line.seconds)
         .number("switches per second", Decimals(0), |line| line.typical(switches_per_second))
         .number("CPU / wall", Decimals(2), |line| line.typical(|row| Some(row.cpu_s()? / row.makespan_s?)))
@@ -94,8 +105,7 @@ fn finding(results: &Results, Compare { shared, own }: &Compare) -> Result<Optio
         rows.filter(|row| !row.schedule.is_thread_per_row()).collect()
     };
     let ratio = |sampler: &str| {
-        let key = |row: &Row| row.key(|_, schedule| schedule.threads = 0);
-        time_ratio(of(sampler, 2), of(sampler, 1), key, results.stopping())
+        time_ratio(of(sampler, 2), of(sampler, 1), |_, schedule| schedule.threads = 0, results.stopping())
     };
     let (Some(slowed), Some(free)) = (ratio(shared)?, ratio(own)?) else { return Ok(None) };
     let Some(switches) = typical(of(shared, 2), switches_per_second) else { return Ok(None) };

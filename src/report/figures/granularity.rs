@@ -2,6 +2,7 @@
 
 use super::prelude::*;
 use crate::analysis::metg::{Grain, HALF, Metg, metg};
+use crate::report::serial::Serial;
 
 /// The options of this figure.
 #[derive(Deserialize, Default)]
@@ -11,64 +12,66 @@ pub(super) struct Options {
     compare: Option<[String; 2]>,
 }
 
-/// Seconds of the serial program on each image: per job by decomposition, of the fastest run by repetition, of all work
-/// by decomposition and repetition.
+/// The serial runs, and the seconds of their jobs.
 struct Baseline<'a> {
+    serial: Serial<'a>,
     per_job: BTreeMap<(&'a ImageKey, &'a str), f64>,
-    best: BTreeMap<(&'a ImageKey, u32), f64>,
-    work: BTreeMap<(&'a ImageKey, &'a str, u32), f64>,
     processors: usize,
 }
 
 impl<'a> Baseline<'a> {
-    fn of(results: &'a Results) -> Self {
-        let (mut jobs, mut best, mut work) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
-        for row in results.rows().filter(|row| row.schedule.is_serial()) {
-            let Some((busy_s, makespan_s)) = row.busy_sum_s.zip(row.makespan_s) else { continue };
-            let (image, pieces) = (&row.image, row.decomposition.as_str());
-            jobs.push(((image, pieces), busy_s / row.jobs as f64));
-            work.insert((image, pieces, row.repetition), busy_s);
-            let best: &mut f64 = best.entry((image, row.repetition)).or_insert(makespan_s);
-            *best = best.min(makespan_s);
-        }
+    fn of(results: &'a Results) -> Result<Self> {
+        let serial = results.rows().filter(|row| row.schedule.is_serial());
+        let jobs = serial.filter_map(|row| {
+            let key = (&row.image, row.decomposition.as_str());
+            Some((key, row.busy_sum_s? / row.jobs as f64))
+        });
         let per_job = gathered(jobs).into_iter().filter_map(|(key, times)| Some((key, median(&times)?))).collect();
-        Self { per_job, best, work, processors: results.processors() }
+        Ok(Self { serial: results.serial()?, per_job, processors: results.processors() })
     }
 
-    /// The makespan times the number of workers that can run at the same time, in seconds.
-    fn spent_s(&self, row: &Row) -> Option<f64> {
-        Some(row.threads.min(self.processors).max(1) as f64 * row.makespan_s?)
+    /// The workers that can run at the same time.
+    fn in_use(&self, row: &Row) -> f64 {
+        row.threads.min(self.processors).max(1) as f64
     }
 
-    fn efficiency(&self, row: &Row) -> Option<f64> {
-        Some(self.best.get(&(&row.image, row.repetition))? / self.spent_s(row)?)
+    /// The time of the fastest serial run over the makespan times the number of workers in use.
+    fn efficiency(&self, rows: &[&'a Row]) -> Repeats {
+        let pairs = self.serial.with_fastest(rows.iter().copied());
+        let spent = Repeats::of_rows(rows.iter().copied(), |row| Some(self.in_use(row)));
+        pairs.gains(|row| row.makespan_s).over(&spent)
     }
 
     /// Processor time per job beyond the serial work on the same pieces, in nanoseconds.
-    fn extra_ns(&self, row: &Row) -> Option<f64> {
-        let work_s = self.work.get(&(&row.image, row.decomposition.as_str(), row.repetition))?;
-        Some((self.spent_s(row)? - work_s) / row.jobs as f64 * 1e9)
+    fn extra_ns(&self, rows: Vec<&'a Row>) -> Repeats {
+        self.serial.on_pieces(rows).values(|row, serial| {
+            let extra_s = self.in_use(row) * row.makespan_s? - serial.busy_sum_s?;
+            Some(extra_s / row.jobs as f64 * 1e9)
+        })
     }
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let baseline = Baseline::of(results);
-    let grains =
-        gathered(results.by(|row| (&row.schedule, &row.image)).into_iter().filter_map(|((schedule, image), rows)| {
-            let job_s = *baseline.per_job.get(&(image, schedule.key.decomposition.as_str()))?;
-            Some((name(results, rows[0]), (job_s, values(rows, |row| baseline.efficiency(row)))))
-        }));
-    let (mut series, mut intervals) = (Vec::new(), Vec::new());
-    for (index, (strategy, grains)) in grains.iter().enumerate() {
-        let mut grains: Vec<&Grain> = grains.iter().collect();
-        grains.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let points = grains.iter().filter_map(|(job_s, values)| {
-            let efficiency = results.median(values)?;
-            intervals.extend(efficiency.interval);
-            Some(efficiency.above(job_s * 1e6))
-        });
-        series.push(Series::new(strategy, Look::nth(index), points.collect()));
-    }
+    let baseline = Baseline::of(results)?;
+    let cells = results.by(|row| (&row.schedule, &row.image)).into_iter().filter_map(|((schedule, image), rows)| {
+        let job_s = *baseline.per_job.get(&(image, schedule.key.decomposition.as_str()))?;
+        Some(((name(results, rows[0]), job_s), baseline.efficiency(&rows)))
+    });
+    let cells: Vec<((String, f64), Repeats)> = cells.collect();
+    let efficiencies = medians(cells.clone(), results.stopping());
+    let hollow = hollow(efficiencies.iter().map(|(_, efficiency)| *efficiency));
+    let intervals = efficiencies.iter().filter_map(|(_, efficiency)| efficiency.interval).collect::<Vec<_>>();
+    let lines = gathered(efficiencies.into_iter().map(|((name, job_s), efficiency)| (name, (job_s, efficiency))));
+    let line = |(index, (strategy, mut places)): (usize, (String, Vec<(f64, Told)>))| {
+        places.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let points = places.iter().map(|(job_s, efficiency)| efficiency.above(job_s * 1e6));
+        Series::new(strategy, Look::nth(index), points.collect())
+    };
+    let series = lines.into_iter().enumerate().map(line).collect();
+    let grains = gathered(cells.into_iter().map(|((name, job_s), own)| (name, (job_s, own))));
+    let grain = |(job_s, values): (f64, Vec<f64>)| -> Grain { (job_s, values) };
+    let grains: BTreeMap<String, Vec<Grain>> =
+        grains.into_iter().map(|(name, own)| (name, in_common(own).into_iter().map(grain).collect())).collect();
     let mut chart = LineChart::new(
         "Efficiency against the size of a job",
         Axis::log("microseconds of work per job (serial)"),
@@ -76,7 +79,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         series,
     );
     chart.subtitle = results.workload();
-    chart.caption = format!("Bars: {}.", confidence(intervals));
+    chart.caption = format!("Bars: {}.{hollow}", confidence(intervals));
     chart.overlays = vec![Overlay::guide("one half: METG(50 %)", Curve::Line { intercept: HALF, slope: 0.0 })];
     let smallest = grains.iter().map(|(strategy, grains)| (strategy, in_words(&metg(grains, HALF, LEVEL))));
     let table = Block::table("metg", "Smallest job that keeps half of the processors", smallest)
@@ -95,13 +98,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// Compares two strategies on the same pieces in the same repetition, from the smallest jobs to the largest.
 fn compared(results: &Results, first: &str, second: &str) -> Result<Vec<Block>> {
     let groups = results.by(|row| (&row.image, row.decomposition.as_str(), row.threads));
-    let mut lines: Vec<(&Row, Estimate)> = Vec::new();
+    let any_strategy: Forget = |_, schedule| schedule.strategy.clear();
+    let mut cells = Vec::new();
     for rows in groups.into_values() {
         let of = |name: &str| rows.iter().copied().filter(|row| row.strategy == name).collect::<Vec<&Row>>();
-        if let Some(ratio) = time_ratio(of(first), of(second), |row| row.repetition, results.stopping())? {
-            lines.push((rows[0], ratio));
-        }
+        cells.push((rows[0], ratios(of(first), of(second), any_strategy, |row| row.makespan_s)?));
     }
+    let mut lines: Vec<(&Row, Ratio)> = estimates(cells, results.stopping());
     if lines.is_empty() {
         return Ok(Vec::new());
     }
@@ -159,16 +162,17 @@ fn overhead(results: &Results, baseline: &Baseline<'_>) -> Block {
     let extra = results.by(|row| name(results, row)).into_iter().filter_map(|(strategy, rows)| {
         let most = rows.iter().map(|row| row.jobs).max()?;
         let smallest = rows.into_iter().filter(|row| row.jobs == most);
-        Some((format!("{strategy} ({most} jobs)"), results.median(&values(smallest, |row| baseline.extra_ns(row)))?))
+        Some((format!("{strategy} ({most} jobs)"), baseline.extra_ns(smallest.collect())))
     });
-    let mut extra: Vec<(String, Told)> = extra.collect();
-    extra.sort_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    let mut extra = medians(extra, results.stopping());
+    extra.sort_by(|(_, a), (_, b)| (a.is_partial).cmp(&b.is_partial).then(a.value.total_cmp(&b.value)));
     let rows = extra.iter().map(|(name, told)| PlotRow::new(name, vec![Some(told.dot())])).collect();
     let mut plot = DotPlot::new("What a job costs beside its work", Axis::log("nanoseconds per job"), rows);
     plot.subtitle = results.workload();
     plot.caption = format!(
-        "(Processors in use × time - serial work on the same pieces) / jobs, at the most jobs measured; starting threads is in it. Bars: {}.",
-        confidence(extra.iter().filter_map(|(_, told)| told.interval))
+        "(Processors in use × time - serial work on the same pieces) / jobs, at the most jobs measured; starting threads is in it. Bars: {}.{}",
+        confidence(extra.iter().filter_map(|(_, told)| told.interval)),
+        hollow(extra.iter().map(|(_, told)| *told)),
     );
     Block::figure("overhead", plot)
 }

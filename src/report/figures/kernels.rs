@@ -28,7 +28,13 @@ struct Line<'a> {
     kernel: String,
     rows: Vec<&'a Row>,
     /// How many times as long the yardstick takes.
-    ratio: Option<Estimate>,
+    ratio: Option<Ratio>,
+}
+
+/// What rows of different kernels and precisions share.
+pub(super) fn any_kernel(image: &mut ImageKey, schedule: &mut ScheduleKey) {
+    image.precision.clear();
+    schedule.forget_kernel();
 }
 
 /// The lines of each workload. Leaves out workloads in which no kernel can be compared with the yardstick.
@@ -40,18 +46,17 @@ fn works<'a>(results: &'a Results, yardstick: &str) -> Result<Vec<Vec<Line<'a>>>
         let measured = rows.into_iter().filter(|row| row.makespan_s.is_some());
         let kernels = group(measured, |row| row.kernel_name());
         let Some(base) = kernels.get(yardstick) else { continue };
-        let mut lines = Vec::new();
-        for (kernel, rows) in &kernels {
-            let key = |row: &Row| {
-                row.key(|image, schedule| {
-                    image.precision.clear();
-                    schedule.forget_kernel();
-                })
-            };
-            let ratio = time_ratio(base.iter().copied(), rows.iter().copied(), key, results.stopping())?;
+        let gains = kernels.iter().map(|(kernel, rows)| {
+            Ok((kernel, ratios(base.iter().copied(), rows.iter().copied(), any_kernel, |row| row.makespan_s)?))
+        });
+        let gains = estimates(gains.collect::<Result<Vec<_>>>()?, results.stopping());
+        let gains: BTreeMap<&String, Ratio> = gains.into_iter().collect();
+        let line = |(kernel, rows): (&String, &Vec<&'a Row>)| {
             let name = format!("{scene}: {estimator} + {sampler}");
-            lines.push(Line { name, threads, kernel: kernel.clone(), rows: rows.clone(), ratio });
-        }
+            let ratio = gains.get(kernel).copied();
+            Line { name, threads, kernel: kernel.clone(), rows: rows.clone(), ratio }
+        };
+        let lines: Vec<Line<'_>> = kernels.iter().map(line).collect();
         if lines.iter().any(|line| line.ratio.is_some()) {
             works.push(lines);
         }
@@ -143,6 +148,7 @@ fn plot(results: &Results, works: &[Vec<Line<'_>>], yardstick: &str) -> DotPlot 
     plot.subtitle = format!("one thread, {}", results.machine_line());
     let shown = alone().flatten().filter(|line| line.kernel != yardstick);
     let intervals = shown.filter_map(|line| Some(line.ratio?.interval));
-    plot.caption = format!("Median of ratios of renders of the same image. Bars: {}.", confidence(intervals));
+    let hollow = hollow(alone().flatten().filter_map(|line| line.ratio.map(Told::from)));
+    plot.caption = format!("Median of ratios of renders of the same image. Bars: {}.{hollow}", confidence(intervals));
     plot
 }

@@ -15,15 +15,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some((own, own_rows)) = own.max_by_key(|(schedule, _)| place(schedule)) else {
         return Ok(vec![Block::finding(format!("{yardstick} was not run, so there is nothing to compare with."))]);
     };
-    let (mut ratios, stopping) = (Vec::new(), results.stopping());
-    for (schedule, rows) in schedules.iter().filter(|(s, _)| *s != own && s.key.threads == own.key.threads) {
-        if let Some(ratio) =
-            time_ratio(rows.iter().copied(), own_rows.iter().copied(), |r| (&r.image, r.repetition), stopping)?
-        {
-            ratios.push((*schedule, ratio));
-        }
-    }
-    ratios.sort_by(|a, b| a.1.value.total_cmp(&b.1.value));
+    let others = schedules.iter().filter(|(s, _)| *s != own && s.key.threads == own.key.threads);
+    let cells = others.map(|(schedule, rows)| {
+        let over_own = ratios(rows.iter().copied(), own_rows.iter().copied(), any_schedule, |row| row.makespan_s)?;
+        Ok((*schedule, over_own))
+    });
+    let mut ratios = estimates(cells.collect::<Result<Vec<_>>>()?, results.stopping());
+    ratios.sort_by(|a, b| a.1.rising(&b.1));
     let rows =
         ratios.iter().map(|(schedule, ratio)| PlotRow::new(&schedule.name, vec![Some(Told::from(*ratio).dot())]));
     let axis = Axis::linear(format!("time / time of {yardstick}")).including([0.95, 1.05]);
@@ -33,11 +31,12 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.subtitle = results.workload();
     let intervals = ratios.iter().map(|(_, ratio)| ratio.interval);
     plot.caption = format!(
-        "{} each. Median of ratios within a repetition. Bars: {}.",
+        "{} each. Median of ratios within a repetition. Bars: {}.{}",
         counted(own.key.threads, "thread"),
-        confidence(intervals)
+        confidence(intervals),
+        hollow(ratios.iter().map(|(_, ratio)| Told::from(*ratio))),
     );
-    let best = ratios.iter().find(|(schedule, _)| !schedule.name.starts_with("openmp"));
+    let best = ratios.iter().find(|(schedule, ratio)| !ratio.is_partial && !schedule.name.starts_with("openmp"));
     let finding = best.map(|(best, ratio)| {
         Block::finding(format!(
             "With {} the fastest of this program's strategies is {}: {:.3} times the time of {yardstick}, {}.",

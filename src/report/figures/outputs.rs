@@ -9,7 +9,7 @@ struct Line<'a> {
     decomposition: &'a str,
     threads: usize,
     rows: &'a [&'a Row],
-    ratio: Option<Estimate>,
+    ratio: Option<Ratio>,
 }
 
 impl Line<'_> {
@@ -23,19 +23,23 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let groups = results.by(|row| (row.output.as_str(), row.decomposition.as_str(), row.threads));
     let kinds: Vec<(&str, usize)> = results.by(|row| (row.decomposition.as_str(), row.threads)).into_keys().collect();
     let outputs = in_table_order(groups.keys().map(|(output, ..)| *output), OUTPUTS.iter().map(|entry| entry.name));
-    let mut lines = Vec::new();
+    let mut cells = Vec::new();
     for (_, output) in &outputs {
         for (decomposition, threads) in kinds.iter().copied() {
             let of = |output| groups.get(&(output, decomposition, threads)).map_or(&[][..], Vec::as_slice);
             let (rows, base) = (of(output), of(&yardstick));
-            let key = |row: &Row| row.key(|_, schedule| schedule.output.clear());
-            let ratio = if *output == yardstick {
-                None
+            let times = if *output == yardstick {
+                Repeats::default()
             } else {
-                time_ratio(rows.iter().copied(), base.iter().copied(), key, results.stopping())?
+                let any_output: Forget = |_, schedule| schedule.output.clear();
+                ratios(rows.iter().copied(), base.iter().copied(), any_output, |row| row.makespan_s)?
             };
-            lines.push(Line { output, decomposition, threads, rows, ratio });
+            cells.push((Line { output, decomposition, threads, rows, ratio: None }, times));
         }
+    }
+    let (mut lines, times): (Vec<Line<'_>>, Vec<Repeats>) = cells.into_iter().unzip();
+    for (index, ratio) in estimates(times.into_iter().enumerate(), results.stopping()) {
+        lines[index].ratio = Some(ratio);
     }
     let dot = |line: &Line<'_>| Some(Told::from(line.ratio?).dot());
     let rows = lines
@@ -52,7 +56,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     plot.guides = vec![(1.0, yardstick.clone())];
     plot.subtitle = results.workload();
     let intervals = lines.iter().filter_map(|line| Some(line.ratio?.interval));
-    plot.caption = format!("Median of ratios within a repetition. Bars: {}.", confidence(intervals));
+    let hollow = hollow(lines.iter().filter_map(|line| line.ratio.map(Told::from)));
+    plot.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
     // Not every output was tried on all pieces.
     let measured = lines.iter().filter(|line| !line.rows.is_empty());
     let table = Block::table("outputs-table", "Outputs: medians over repetitions", measured)

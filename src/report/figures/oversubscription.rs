@@ -1,6 +1,7 @@
 //! More threads than processors: from more sections of the image with a thread each, and from more threads alone.
 
 use super::prelude::*;
+use crate::report::serial::{with_pieces, without_pieces};
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields, default, rename_all = "kebab-case")]
@@ -31,21 +32,27 @@ type Lines = BTreeMap<String, Vec<Point>>;
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { claim } = options(results, "oversubscription")?;
     let (mut by_grid, mut by_threads, mut intervals) = (Vec::new(), Vec::new(), Vec::new());
-    for (schedule, rows) in results.by_schedule() {
-        let Some(time) = results.median(&values(rows.iter().copied(), |row| row.makespan_s)) else { continue };
+    let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp)).into_iter();
+    let cells = groups.map(|(key, rows)| {
+        let seconds = Repeats::of_rows(rows.iter().copied(), |row| row.makespan_s);
+        ((key, rows[0].jobs), seconds)
+    });
+    let times = medians(cells, results.stopping());
+    let hollow = hollow(times.iter().map(|(_, time)| *time));
+    for (((schedule, series, _), jobs), time) in times {
         intervals.extend(time.interval);
         let time = time.times(1e3);
-        let (jobs, threads) = (rows[0].jobs, schedule.key.threads);
+        let threads = schedule.key.threads;
         if schedule.key.decomposition.starts_with(GRID) {
             let crew = if threads == jobs { "a thread for each section" } else { "a thread for each processor" };
             let alone = claim.as_ref().is_some_and(|claim| claim.per_section == schedule.key.strategy);
             let name = if alone { crew.to_string() } else { format!("{}, {crew}", schedule.name.replace('-', " ")) };
-            by_grid.push((name, time.above(jobs as f64)));
+            by_grid.push((joined([series, name]), time.above(jobs as f64)));
         } else if !schedule.is_serial() {
-            by_threads.push((schedule.name.clone(), time.above(threads as f64)));
+            by_threads.push((joined([series, schedule.name.clone()]), time.above(threads as f64)));
         }
     }
-    let caption = format!("Median. Bars: {}.", confidence(intervals));
+    let caption = format!("Median. Bars: {}.{hollow}", confidence(intervals));
     let chart = |title: &str, axis: Axis, lines: Lines| {
         let ticks: Vec<f64> = lines.values().flatten().map(|point| point.x).collect();
         let y = Axis::linear("milliseconds").including([0.0]);
@@ -70,33 +77,19 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// each processor.
 fn finding(results: &Results, claim: &Claim) -> Result<Option<Block>> {
     let Claim { per_section, few, sections: [least, most], against } = claim;
-    let key = |row: &Row, strategy: &str, decomposition: &str| {
-        let mut key = row.key(|_, schedule| {
-            schedule.threads = 0;
-            schedule.strategy = strategy.to_string();
-        });
-        key.1.decomposition = decomposition.to_string();
-        key
-    };
     let processors = results.processors();
-    let others = results.rows().filter(|row| {
-        let is_few = row.strategy == *few && row.threads == processors;
-        row.decomposition.starts_with(GRID) && (row.strategy == *per_section || is_few)
-    });
-    let times = unique(others, |row| key(row, &row.strategy, &row.decomposition))?;
-    let own = results.rows().filter(|row| {
-        row.strategy == *per_section && row.decomposition.starts_with(GRID) && (*least..=*most).contains(&row.jobs)
-    });
-    let (mut against_sections, mut against_few) = (Vec::new(), Vec::new());
-    for row in own {
-        let ratio = |strategy: &str, decomposition: &str| {
-            Some(row.makespan_s? / times.get(&key(row, strategy, decomposition))?.makespan_s?)
-        };
-        against_sections.extend(ratio(per_section, against));
-        against_few.extend(ratio(few, &row.decomposition));
-    }
-    let in_words = |ratios: &[f64]| {
-        let Told { value, interval, .. } = results.median(ratios)?;
+    let of = |strategy: &str| -> Vec<&Row> {
+        results.rows().filter(|row| row.strategy == strategy && row.decomposition.starts_with(GRID)).collect()
+    };
+    let (sections, few) = (of(per_section), of(few));
+    let own = || sections.iter().copied().filter(|row| (*least..=*most).contains(&row.jobs));
+    let fewer = sections.iter().copied().filter(|row| row.decomposition == *against);
+    let few = few.into_iter().filter(|row| row.threads == processors);
+    let seconds = |row: &Row| row.makespan_s;
+    let against_sections = Partners::of(fewer, without_pieces)?.pairs(own()).costs(seconds);
+    let against_few = Partners::of(few, with_pieces)?.pairs(own()).costs(seconds);
+    let in_words = |ratios: &Repeats| {
+        let Told { value, interval, .. } = ratios.median(results.stopping())?;
         let interval = interval?;
         let verdict = match (interval.low > 1.0, interval.high < 1.0) {
             (true, _) => "longer",

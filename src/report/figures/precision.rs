@@ -1,46 +1,41 @@
 //! Gains and costs of single precision: time, error, light and failures, beside double precision.
 
+use super::kernels::any_kernel;
 use super::prelude::*;
 use crate::analysis::mean::t_interval;
 
 const DOUBLE: &str = "f64";
 const SINGLE: &str = "f32";
 
-/// The light of each image, by seed and precision.
-type Light<'a> = BTreeMap<(u64, &'a str), f64>;
-
 /// A scene with an estimator in both precisions.
 struct Pair<'a> {
     name: String,
     double: Vec<&'a Row>,
     single: Vec<&'a Row>,
-    time: Estimate,
-    /// The light of single precision over that of double, less 1.
+    time: Ratio,
+    /// The mean over seeds of the light of single precision over that of double, less 1.
     light: Option<Estimate>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
-    let mut light: BTreeMap<(&str, &str), Light<'_>> = BTreeMap::new();
-    for (row, image) in results.kept_images(|row| row.kernel_fallback.is_empty())? {
-        let seeds = light.entry((&row.scene, &row.estimator)).or_default();
-        seeds.insert((row.seed, &row.precision), image.mean().iter().sum());
-    }
+    let kept = results.kept_images(|row| row.kernel_fallback.is_empty())?.into_iter();
+    let light: BTreeMap<&ImageKey, f64> = kept.map(|(row, image)| (&row.image, image.mean().iter().sum())).collect();
+    let kinds: BTreeSet<(&str, &str)> =
+        light.keys().map(|image| (image.scene.as_str(), image.estimator.as_str())).collect();
     let rows = results.by(|row| (row.scene.as_str(), row.estimator.as_str(), row.precision.as_str()));
     let mut pairs = Vec::new();
-    for ((scene, estimator), light) in &light {
-        let of = |precision| rows.get(&(*scene, *estimator, precision)).cloned().unwrap_or_default();
+    for (scene, estimator) in kinds {
+        let of = |precision| rows.get(&(scene, estimator, precision)).cloned().unwrap_or_default();
         let (double, single) = (of(DOUBLE), of(SINGLE));
-        let key = |row: &Row| {
-            row.key(|image, schedule| {
-                image.precision.clear();
-                schedule.forget_kernel();
-            })
-        };
-        let Some(time) = time_ratio(double.iter().copied(), single.iter().copied(), key, results.stopping())? else {
-            continue;
-        };
+        let rows = [&double, &single].map(|rows| rows.iter().copied());
+        let [of_double, of_single] = rows.clone();
+        let Some(time) = time_ratio(of_double, of_single, any_kernel, results.stopping())? else { continue };
+        let lights = rows.map(|rows| {
+            Repeats::of_images(rows, |image| image.precision.clear(), |row| light.get(&row.image).copied())
+        });
+        let lighter: Vec<f64> = lights[1].over(&lights[0]).values().iter().map(|ratio| ratio - 1.0).collect();
         let name = format!("{scene}: {estimator}");
-        pairs.push(Pair { name, double, single, time, light: lighter(light) });
+        pairs.push(Pair { name, double, single, time, light: t_interval(&lighter, LEVEL) });
     }
     if pairs.is_empty() {
         return Ok(vec![Block::finding("Nothing was rendered in both precisions.")]);
@@ -74,11 +69,4 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .column("invalid samples, single", |pair| sum(&pair.single, |row| row.invalid_samples))
         .end();
     Ok(vec![Block::figure("precision", plot), table])
-}
-
-/// The mean over seeds of the light of single precision over that of double, less 1.
-fn lighter(light: &Light<'_>) -> Option<Estimate> {
-    let single = light.iter().filter(|((_, precision), _)| *precision == SINGLE);
-    let ratios = single.filter_map(|((seed, _), single)| Some(single / light.get(&(*seed, DOUBLE))? - 1.0));
-    t_interval(&ratios.collect::<Vec<f64>>(), LEVEL)
 }

@@ -5,19 +5,22 @@ pub(super) use crate::analysis::confidence_sequence::Stopping;
 pub(super) use crate::analysis::quantile::median;
 pub(super) use crate::analysis::{Estimate, Interval};
 pub(super) use crate::error::Result;
-pub(super) use crate::measure::ImageKey;
+pub(super) use crate::measure::{ImageKey, ScheduleKey};
 pub(super) use crate::plot::style::Look;
 pub(super) use crate::plot::{
     Axis, Cell, Comparison, ContactSheet, Curve, DotPlot, LineChart, Overlay, Point, Row as PlotRow, Series,
 };
 pub(super) use crate::report::block::Block;
 pub(super) use crate::report::naming::joined;
+pub(super) use crate::report::paired::{
+    Forget, Partners, Ratio, Repeats, any_schedule, estimates, in_common, medians, ratios, time_ratio,
+};
 pub(super) use crate::report::results::Results;
-pub(super) use crate::report::rows::{Row, gathered, group, ratios, time_ratio, unique};
+pub(super) use crate::report::rows::{Row, gathered, group};
 pub(super) use crate::report::schedule::Schedule;
 pub(super) use crate::report::table::Digits::{Decimals, Significant};
 pub(super) use crate::report::words::{
-    LEVEL, Told, confidence, counted, in_table_order, number, told, typical, values, with_level,
+    LEVEL, Told, confidence, counted, hollow, in_table_order, number, told, typical, values, with_level,
 };
 pub(super) use serde::Deserialize;
 pub(super) use std::collections::{BTreeMap, BTreeSet};

@@ -23,12 +23,19 @@ type Key<'a> = (String, &'a Schedule);
 /// Time and error of a schedule at some number of samples.
 struct Place<'a> {
     key: Key<'a>,
+    /// Scene and size: prices in others are not compared with its price.
+    setting: (&'a str, u32, u32),
     spp: u32,
     seconds: Told,
     mse: f64,
 }
 
 impl Place<'_> {
+    fn point(&self) -> Point {
+        let at = Point::new(self.seconds.value, self.mse.sqrt()).with_x(self.seconds.bar());
+        Point { hollow: self.seconds.is_partial, ..at }
+    }
+
     fn price(&self) -> f64 {
         self.mse * self.seconds.value
     }
@@ -37,17 +44,20 @@ impl Place<'_> {
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { goal } = options(results, "rmse-against-time")?;
     let groups = results.by(|row| ((results.series_name(row), &row.schedule), row.spp));
-    let places = groups.into_iter().filter_map(|((key, spp), rows)| {
+    let cells = groups.into_iter().map(|((key, spp), rows)| {
         let mse = one_per_seed(&rows, |row| row.mse);
         let mse = mse.iter().sum::<f64>() / mse.len() as f64;
-        let seconds = results.median(&values(rows, |row| row.rendering_s()))?;
-        (mse > 0.0).then_some(Place { key, spp, seconds, mse })
+        let setting = (rows[0].scene.as_str(), rows[0].width, rows[0].height);
+        ((key, setting, spp, mse), Repeats::of_rows(rows, |row| row.rendering_s()))
     });
+    let places = medians(cells, results.stopping()).into_iter();
+    let places = places.map(|((key, setting, spp, mse), seconds)| Place { key, setting, spp, seconds, mse });
+    let places = places.filter(|place| place.mse > 0.0);
     let places: Vec<Place<'_>> = places.collect();
     let lines = gathered(
         places
             .iter()
-            .map(|place| (&place.key, Point::new(place.seconds.value, place.mse.sqrt()).with_x(place.seconds.bar()))),
+            .map(|place| (&place.key, place.point())),
     );
     let colour = |key: &Key<'_>| format!("{}{}", key.0, key.1.name);
     let mut colours: Vec<String> = lines.keys().map(|key| colour(key)).collect();
@@ -66,8 +76,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     );
     chart.subtitle = results.workload();
     let intervals = places.iter().filter_map(|place| place.seconds.interval);
-    chart.caption = format!("Points along a line: growing samples per pixel. Bars: {}.", confidence(intervals));
-    let price = price_finding(&gathered(places.iter().map(|place| (&place.key, place.price()))), goal.0);
+    let hollow = hollow(places.iter().map(|place| place.seconds));
+    chart.caption = format!("Points along a line: growing samples per pixel. Bars: {}.{hollow}", confidence(intervals));
+    let ranked = places.iter().filter(|place| !place.seconds.is_partial);
+    let by_setting = gathered(ranked.map(|place| (place.setting, (&place.key, place.price())))).into_values();
+    let price = by_setting.rev().max_by_key(Vec::len).and_then(|prices| price_finding(&gathered(prices), goal.0));
     let table = Block::table("rmse-against-time", "Price of accuracy by schedule", &places)
         .column("schedule", |place| label(&place.key))
         .column("spp", |place| place.spp.to_string())

@@ -39,14 +39,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let cosine = rows.get(scene).map_or(&[][..], Vec::as_slice);
         let facets = facets.get(scene).map_or(&[][..], |rows| rows.as_slice());
         let ratio = |value: &dyn Fn(&Row) -> Option<f64>| {
-            let key = |row: &Row| {
-                row.key(|image, schedule| {
-                    image.scene.clear();
-                    image.scene_hash.clear();
-                    schedule.effects.clear();
-                })
+            let any_scene: Forget = |image, schedule| {
+                image.scene.clear();
+                image.scene_hash.clear();
+                schedule.effects.clear();
             };
-            ratios(facets.iter().copied(), cosine.iter().copied(), key, value).map(|ratios| results.median(&ratios))
+            let found = ratios(facets.iter().copied(), cosine.iter().copied(), any_scene, value);
+            found.map(|found| found.median(results.stopping()))
         };
         let (variance, time) = (ratio(&variance)?, ratio(&|row| row.makespan_s)?);
         pairs.push(Pair { scene, cosine, facets, variance, time });

@@ -2,7 +2,6 @@
 
 use super::prelude::*;
 use crate::analysis::scaling_law::{Fit, Law, Parameter, Point, fit};
-use crate::report::serial::Serial;
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     Ok(vec![table(results, &[Law::Amdahl, Law::Universal], "scaling-laws")?])
@@ -12,8 +11,8 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
 /// more workers do not use more of the machine.
 pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Result<Block> {
     let processors = results.processors();
-    let points = points(results, &results.serial()?);
-    let fits = points.iter().flat_map(|(name, points)| laws.iter().map(move |law| (name, law, in_words(*law, points))));
+    let lines = results.serial()?.lines(processors);
+    let fits = lines.iter().flat_map(|(name, points)| laws.iter().map(move |law| (name, law, in_words(*law, points))));
     let title = format!("Laws of speedup, up to {processors} threads on {processors} processors");
     Ok(Block::table(stem, title, fits)
         .column("strategy", |(strategy, ..)| (*strategy).to_string())
@@ -21,15 +20,6 @@ pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Resu
         .column("parameters, interval (confidence)", |(.., [parameters, _])| parameters.clone())
         .column("does it describe the points?", |(.., [_, verdict])| verdict.clone())
         .end())
-}
-
-/// The speedups of each strategy at numbers of workers that have a processor each.
-pub(super) fn points<'a>(results: &Results, serial: &Serial<'a>) -> BTreeMap<&'a str, Vec<Point>> {
-    let mut points: BTreeMap<&str, Vec<Point>> = BTreeMap::new();
-    for schedule in serial.others().filter(|schedule| schedule.key.threads <= results.processors()) {
-        points.entry(&schedule.name).or_default().push((schedule.key.threads, serial.paired_speedups(schedule)));
-    }
-    points
 }
 
 /// The parameters, and whether the law describes the points.

@@ -38,12 +38,12 @@ struct Control {
 struct Accuracy {
     /// The scene, or the properties in which the images differ.
     name: String,
-    scene: String,
-    spp: u32,
+    /// The image without its seed.
+    image: ImageKey,
     /// Mean radiance over all pixels and channels, and all seeds.
     radiance: f64,
-    /// Relative RMSE of each seed.
-    by_seed: BTreeMap<u64, f64>,
+    /// Relative RMSE of each seed, without the scene.
+    by_seed: Repeats,
     /// Root of the mean of their squares.
     error: Told,
     rays: f64,
@@ -55,7 +55,7 @@ struct Accuracy {
 impl Accuracy {
     /// CPU seconds until the image has this error, which falls with the root of the samples.
     fn price_s(&self, goal: f64) -> f64 {
-        let spp = f64::from(self.spp) * (self.error.value / goal) * (self.error.value / goal);
+        let spp = f64::from(self.image.spp) * (self.error.value / goal) * (self.error.value / goal);
         spp * self.pixels * self.sample_s
     }
 }
@@ -85,22 +85,20 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
         let images = radiances.get(&image)?;
         let radiance = images.iter().sum::<f64>() / images.len() as f64;
         let first = *rows.first()?;
-        let mse: BTreeMap<u64, f64> =
-            rows.iter().filter_map(|row| Some((row.seed, row.mse? / (radiance * radiance)))).collect();
-        let squares: Vec<f64> = mse.values().copied().collect();
+        let mse = |row: &Row| Some(row.mse? / (radiance * radiance));
+        let squares = Repeats::of_images(rows.iter().copied(), without_scene, mse).values();
         let interval = over_seeds(&squares, LEVEL).map(|error| error.rmse.interval);
         let error = Told::of((squares.iter().sum::<f64>() / squares.len() as f64).sqrt(), interval);
         let series = results.series_name(first);
         let accuracy = Accuracy {
             name: if series.is_empty() { image.scene.clone() } else { series },
-            scene: image.scene,
-            spp: first.spp,
             radiance,
-            by_seed: mse.into_iter().map(|(seed, mse)| (seed, mse.sqrt())).collect(),
+            by_seed: Repeats::of_images(rows.iter().copied(), without_scene, |row| Some(mse(row)?.sqrt())),
             error,
             rays: typical(rows.iter().copied(), |row| Some(row.rays? as f64 / row.paths? as f64))?,
             sample_s: typical(rows.iter().copied(), |row| Some(row.cpu_s()? / row.paths? as f64))?,
             pixels: f64::from(first.width) * f64::from(first.height),
+            image,
         };
         accuracy.error.value.is_finite().then_some(accuracy)
     };
@@ -110,6 +108,21 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
 /// The image without its seed.
 fn kind(row: &Row) -> ImageKey {
     ImageKey { seed: 0, ..row.image.clone() }
+}
+
+/// Clears the scene, and what a scene decides.
+fn without_scene(image: &mut ImageKey) {
+    image.scene.clear();
+    image.scene_hash.clear();
+    image.max_depth = None;
+    image.roulette.clear();
+}
+
+/// The setting of an image apart from its scene and seed. Errors in different settings are not compared.
+fn setting(scene: &Accuracy) -> ImageKey {
+    let mut image = scene.image.clone();
+    without_scene(&mut image);
+    image
 }
 
 fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
@@ -130,8 +143,9 @@ fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
 /// three times.
 fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
     let is_variant =
-        |scene: &&Accuracy| control.is_some_and(|control| [&control.diffuse, &control.mirrors].contains(&&scene.scene));
-    let others: Vec<&Accuracy> = scenes.iter().filter(|scene| !is_variant(scene)).collect();
+        |scene: &&Accuracy| control.is_some_and(|control| [&control.diffuse, &control.mirrors].contains(&&scene.image.scene));
+    let others = gathered(scenes.iter().filter(|scene| !is_variant(scene)).map(|scene| (setting(scene), scene)));
+    let others = others.into_values().rev().max_by_key(Vec::len)?;
     let pairs: Vec<(f64, f64)> = others.iter().map(|scene| (scene.rays, scene.error.value)).collect();
     let found = spearman(&pairs)?;
     let verdict = match (found.p < 1.0 - LEVEL, found.rho > 0.0) {
@@ -150,16 +164,19 @@ fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
 
 /// The ratio of the errors of two scenes, paired by seed: the mean of logarithms.
 fn error_ratio(above: &Accuracy, below: &Accuracy) -> Option<Estimate> {
-    let pairs = above.by_seed.iter().filter_map(|(seed, error)| Some(libm::log(error / below.by_seed.get(seed)?)));
-    let found = t_interval(&pairs.collect::<Vec<f64>>(), LEVEL)?;
+    let ratios = above.by_seed.over(&below.by_seed).values();
+    let found = t_interval(&ratios.into_iter().map(libm::log).collect::<Vec<f64>>(), LEVEL)?;
     let Interval { low, high, level } = found.interval;
     let interval = Interval::between(libm::exp(low), libm::exp(high), level)?;
     Some(Estimate { value: libm::exp(found.value), interval })
 }
 
 fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
-    let of = |name: &str| scenes.iter().find(|scene| scene.scene == name);
-    let (diffuse, own, mirrors) = (of(&control.diffuse)?, of(&control.glass)?, of(&control.mirrors)?);
+    let diffuse = scenes.iter().find(|scene| scene.image.scene == control.diffuse)?;
+    let of = |name: &str| {
+        scenes.iter().find(|scene| scene.image.scene == name && setting(scene) == setting(diffuse))
+    };
+    let (own, mirrors) = (of(&control.glass)?, of(&control.mirrors)?);
     let (glass, mirror) = (error_ratio(own, diffuse)?, error_ratio(mirrors, diffuse)?);
     let ratio = |found: &Estimate| {
         format!("{:.2} times ({:.2} to {:.2})", found.value, found.interval.low, found.interval.high)
@@ -183,13 +200,13 @@ fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
 }
 
 fn table(scenes: &[Accuracy], goal: f64) -> Block {
-    let variance = |scene: &Accuracy| f64::from(scene.spp) * scene.error.value * scene.error.value;
+    let variance = |scene: &Accuracy| f64::from(scene.image.spp) * scene.error.value * scene.error.value;
     Block::table("scene-accuracy-table", "Accuracy by scene, most accurate first", scenes)
         .column("scene", |scene| scene.name.clone())
         .number("mean radiance", Decimals(4), |scene| scene.radiance)
         .number("RMSE, linear", Decimals(4), |scene| scene.error.value * scene.radiance)
         .told("RMSE / mean radiance", Decimals(4), |scene| scene.error)
-        .column("seeds", |scene| scene.by_seed.len().to_string())
+        .column("seeds", |scene| scene.by_seed.values().len().to_string())
         .number("rays per sample", Decimals(2), |scene| scene.rays)
         .number("ns per sample", Decimals(0), |scene| scene.sample_s * 1e9)
         .number("efficiency, 1 / (relative variance of a sample x µs)", Decimals(4), |scene| {

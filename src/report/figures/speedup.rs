@@ -1,7 +1,6 @@
 //! Speedup against `serial`, efficiency, and the serial fraction by Karp and Flatt, which explains the missing speedup.
 
 use super::prelude::*;
-use super::scaling_laws;
 use crate::analysis::scaling_law::{Check, Fit, Fitted, Law, fit};
 use crate::analysis::speedup::{Oddity, efficiency, oddity, serial_fraction_within};
 use crate::analysis::superlinear::{Evidence, cause};
@@ -19,22 +18,28 @@ const FEW_THREADS: f64 = 16.0;
 struct Speedups<'a> {
     results: &'a Results,
     serial: Serial<'a>,
-    all: Vec<(&'a Schedule, Estimate)>,
+    all: Vec<(&'a Schedule, Ratio)>,
     /// The requested numbers of threads. A strategy with a thread for each job ignores them, so it has no position on
     /// the axis.
     asked: BTreeSet<usize>,
     processors: usize,
-    /// Width and height of most images.
-    usual_size: Option<(u32, u32)>,
+    /// The images of each schedule, without seeds. Schedules of other images are not ranked together.
+    images: BTreeMap<&'a Schedule, BTreeSet<ImageKey>>,
+    /// The images that most schedules rendered.
+    usual: BTreeSet<ImageKey>,
 }
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let serial = results.serial()?;
     let asked = results.rows().filter(|row| row.threads != row.jobs).map(|row| row.threads).collect();
     let all = serial.speedups();
-    let sizes = results.by(|row| (row.width, row.height)).into_iter();
-    let usual_size = sizes.max_by_key(|(_, rows)| rows.len()).map(|(size, _)| size);
-    let found = Speedups { results, serial, all, asked, processors: results.processors(), usual_size };
+    let images = |schedule: &Schedule| -> BTreeSet<ImageKey> {
+        serial.rows(schedule).iter().map(|row| ImageKey { seed: 0, ..row.image.clone() }).collect()
+    };
+    let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
+    let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();
+    let usual = peers.max_by_key(|(_, schedules)| schedules.len()).map(|(own, _)| own.clone()).unwrap_or_default();
+    let found = Speedups { results, serial, all, asked, processors: results.processors(), images, usual };
     let mut blocks = found.figures();
     blocks.extend(found.best()?);
     blocks.extend(found.thread_per_row());
@@ -68,10 +73,12 @@ impl Speedups<'_> {
     }
 
     fn table(&self) -> Block {
-        let fraction = |schedule: &Schedule, workers: usize| {
-            let speedup = self.results.median(&self.serial.paired_speedups(schedule))?.estimate()?;
-            serial_fraction_within(&speedup, workers).map(Told::from)
+        // Only a serial run on the same pieces differs from the schedule in nothing else.
+        let fraction = |(schedule, speedup): &(&Schedule, Ratio), workers: usize| {
+            let is_on_pieces = self.serial.pairs(schedule).iter().next().is_some();
+            serial_fraction_within(&speedup.estimate(), workers).filter(|_| is_on_pieces).map(Told::from)
         };
+        let work_inflation = self.serial.work_inflation();
         let used = |schedule: &Schedule| self.in_use(schedule.key.threads);
         let title = "Speedup against serial, efficiency and Karp-Flatt serial fraction";
         Block::table("karp-flatt", title, &self.all)
@@ -81,14 +88,19 @@ impl Speedups<'_> {
             .told("speedup", Decimals(3), |(_, speedup)| Told::from(*speedup))
             .number("efficiency per thread", Decimals(3), |(s, speedup)| efficiency(speedup.value, s.key.threads))
             .number("efficiency per processor in use", Decimals(3), |(s, speedup)| efficiency(speedup.value, used(s)))
-            .number("work inflation", Decimals(3), |(schedule, _)| self.serial.work_inflation(schedule))
-            .told("e, p = threads", Decimals(3), |(schedule, _)| fraction(schedule, schedule.key.threads))
-            .told("e, p = processors in use", Decimals(3), |(schedule, _)| fraction(schedule, used(schedule)))
+            .number("work inflation", Decimals(3), |(schedule, _)| work_inflation.get(schedule).copied())
+            .told("e, p = threads", Decimals(3), |own| fraction(own, own.0.key.threads))
+            .told("e, p = processors in use", Decimals(3), |own| fraction(own, used(own.0)))
             .column("remark", |(schedule, speedup)| self.remark(schedule, speedup))
             .end()
     }
 
-    fn remark(&self, schedule: &Schedule, speedup: &Estimate) -> String {
+    fn remark(&self, schedule: &Schedule, speedup: &Ratio) -> String {
+        let partial = if speedup.is_partial { "fewer repetitions than others: not comparable" } else { "" };
+        joined([self.oddity(schedule, speedup), partial.to_string()])
+    }
+
+    fn oddity(&self, schedule: &Schedule, speedup: &Ratio) -> String {
         let threads = schedule.key.threads;
         match oddity(&speedup.interval, self.in_use(threads)) {
             Some(Oddity::Superlinear) => format!("superlinear; {}", cause(&self.evidence(schedule))),
@@ -102,9 +114,12 @@ impl Speedups<'_> {
     fn evidence(&self, schedule: &Schedule) -> Evidence {
         let mut alone = schedule.clone();
         alone.key.threads = 1;
-        let at_one_worker = || self.results.median(&self.serial.paired_speedups(&alone))?.interval;
+        let at_one_worker =
+            || self.serial.pairs(&alone).gains(|row| row.makespan_s).median(self.results.stopping())?.interval;
         // The baseline's doubts count as well: a serial run that was delayed makes all others look fast.
-        let concerned = self.serial.rows(schedule).iter().copied().chain(self.serial.on_pieces_of(schedule));
+        let pairs = self.serial.pairs(schedule);
+        let baselines = pairs.iter().map(|(_, serial)| serial);
+        let concerned = self.serial.rows(schedule).iter().copied().chain(baselines);
         let machine = &self.results.run.machine;
         Evidence {
             at_one_worker: (schedule.key.threads > 1).then(at_one_worker).flatten(),
@@ -119,25 +134,12 @@ impl Speedups<'_> {
         confidence(self.all.iter().map(|(_, speedup)| speedup.interval))
     }
 
-    /// The strategy, with its pieces if there are several decompositions, and with the image size if most rows have
-    /// another.
-    fn line(&self, schedule: &Schedule) -> String {
-        let name = self.with_pieces(schedule);
-        let own: BTreeSet<(u32, u32)> = self.serial.rows(schedule).iter().map(|row| (row.width, row.height)).collect();
-        match own.first().filter(|size| own.len() == 1 && Some(**size) != self.usual_size) {
-            Some((width, height)) => format!("{name}, {width}x{height}"),
-            None => name,
-        }
+    fn hollow(&self) -> &'static str {
+        hollow(self.all.iter().map(|(_, speedup)| Told::from(*speedup)))
     }
 
-    fn with_pieces(&self, schedule: &Schedule) -> String {
-        let pieces = self.all.iter().map(|(schedule, _)| &schedule.key.decomposition).collect::<BTreeSet<_>>();
-        // One decomposition, with the rows of report A beside it, needs no name.
-        if pieces.len() > 2 {
-            format!("{}, {}", schedule.name, schedule.key.decomposition)
-        } else {
-            schedule.name.clone()
-        }
+    fn is_usual(&self, schedule: &Schedule) -> bool {
+        self.images.get(schedule) == Some(&self.usual)
     }
 
     /// A row for each strategy with a dot for each number of threads. A strategy with a thread for each job has one
@@ -145,16 +147,26 @@ impl Speedups<'_> {
     fn dots(&self, [title, axis, guide]: [&str; 3], value: &dyn Fn(f64, usize) -> f64) -> DotPlot {
         let threads: BTreeSet<usize> =
             self.all.iter().filter(|(s, _)| !self.has_a_thread_per_job(s)).map(|(s, _)| s.key.threads).collect();
-        let mut rows: BTreeMap<String, Vec<Option<_>>> = BTreeMap::new();
+        // Schedules of one image stand together, those of the usual image first.
+        let mut rows: BTreeMap<(bool, String), Vec<Option<_>>> = BTreeMap::new();
         for (schedule, speedup) in &self.all {
-            let dots = rows.entry(self.line(schedule)).or_insert_with(|| vec![None; threads.len() + 1]);
+            let line = (!self.is_usual(schedule), self.serial.line(schedule));
+            let dots = rows.entry(line).or_insert_with(|| vec![None; threads.len() + 1]);
             let place = threads.iter().position(|threads| *threads == schedule.key.threads).unwrap_or(threads.len());
-            dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)).dot());
+            dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)));
         }
-        let mut rows: Vec<PlotRow> = rows.into_iter().map(|(name, dots)| PlotRow::new(name, dots)).collect();
         // Sorted by the value at the most threads, because readers look for it first.
-        let at_most = |row: &PlotRow| row.dots.iter().flatten().next_back().map_or(0.0, |dot| dot.value);
-        rows.sort_by(|a, b| at_most(b).total_cmp(&at_most(a)));
+        let at_most = |dots: &[Option<Told>]| {
+            let last = dots.iter().flatten().next_back();
+            last.map(|told| (told.is_partial, -told.value)).unwrap_or_default()
+        };
+        let mut rows: Vec<_> = rows.into_iter().collect();
+        rows.sort_by(|((a, _), first), ((b, _), second)| {
+            let ((first_partial, first), (second_partial, second)) = (at_most(first), at_most(second));
+            (a, first_partial).cmp(&(b, second_partial)).then(first.total_cmp(&second))
+        });
+        let dots = |dots: Vec<Option<Told>>| dots.into_iter().map(|told| Some(told?.dot())).collect();
+        let rows: Vec<PlotRow> = rows.into_iter().map(|((_, name), own)| PlotRow::new(name, dots(own))).collect();
         let workers = if self.all.iter().any(|(schedule, _)| is_of_ranks(&schedule.name)) {
             ["worker", "workers"]
         } else {
@@ -168,7 +180,7 @@ impl Speedups<'_> {
         let mut plot = DotPlot::new(title, Axis::linear(axis).including([0.9]), rows).grouped(names);
         plot.guides = vec![(1.0, guide.to_string())];
         plot.subtitle = self.results.workload();
-        plot.caption = format!("Median of ratios within a repetition. Bars: {}.", self.confidence());
+        plot.caption = format!("Median of ratios within a repetition. Bars: {}.{}", self.confidence(), self.hollow());
         plot
     }
 
@@ -178,7 +190,7 @@ impl Speedups<'_> {
         for (schedule, speedup) in self.all.iter().filter(|(schedule, _)| !self.has_a_thread_per_job(schedule)) {
             let threads = schedule.key.threads;
             let point = Told::from(*speedup).times(value(1.0, threads)).above(threads as f64);
-            lines.entry(self.line(schedule)).or_default().push(point);
+            lines.entry(self.serial.line(schedule)).or_default().push(point);
         }
         Series::by_name(lines)
     }
@@ -200,7 +212,8 @@ impl Speedups<'_> {
         let y = Axis::linear("speedup against serial").including([0.0, processors.max(1.0) * 1.25]);
         let has_level = self.all.iter().any(|(schedule, _)| self.has_a_thread_per_job(schedule));
         let level = if has_level { " Level: a thread for each job, whatever is asked for." } else { "" };
-        let caption = &format!("Median of ratios within a repetition. Bars: {}.{level}", self.confidence());
+        let caption =
+            &format!("Median of ratios within a repetition. Bars: {}.{level}{}", self.confidence(), self.hollow());
         let mut chart = self.chart("Speedup against threads", y, self.series(&|speedup, _| speedup), caption);
         let ticks: BTreeSet<usize> =
             chart.series.iter().flat_map(|series| &series.points).map(|point| point.x as usize).collect();
@@ -219,7 +232,7 @@ impl Speedups<'_> {
 
     /// Amdahl's law where the fit passes its check, in the colours of the strategies' lines.
     fn fits(&self, series: &[Series]) -> Vec<Overlay> {
-        let overlay = |(name, points): (&str, Vec<_>)| {
+        let overlay = |(name, points): (String, Vec<_>)| {
             let Fit::Found(Fitted { parameters, check: Check::Passed { .. }, .. }) = fit(Law::Amdahl, &points, LEVEL)
             else {
                 return None;
@@ -229,13 +242,13 @@ impl Speedups<'_> {
             let line = series.iter().position(|series| series.name == name)?;
             Some(Overlay::fit(format!("{name}: Amdahl, s = {serial_share:.3}"), curve, line))
         };
-        scaling_laws::points(self.results, &self.serial).into_iter().filter_map(overlay).collect()
+        self.serial.lines(self.processors).into_iter().filter_map(overlay).collect()
     }
 
     fn efficiency_chart(&self, per_processor: &dyn Fn(f64, usize) -> f64) -> LineChart {
         let y = Axis::linear("speedup per processor in use").including([0.5, 1.05]);
-        let caption =
-            &format!("Processors in use: the smaller of threads and processors. Bars: {}.", self.confidence());
+        let (bars, hollow) = (self.confidence(), self.hollow());
+        let caption = &format!("Processors in use: the smaller of threads and processors. Bars: {bars}.{hollow}");
         let mut chart = self.chart("Efficiency against threads", y, self.series(per_processor), caption);
         chart.overlays = vec![Overlay::guide("ideal: 1", Curve::Line { intercept: 1.0, slope: 0.0 })];
         chart
@@ -244,16 +257,14 @@ impl Speedups<'_> {
     /// The fastest strategy with a thread for each processor, and whether the others are slower beyond the noise.
     fn best(&self) -> Result<Option<Block>> {
         let processors = self.processors;
-        let candidates = || self.all.iter().filter(|(s, _)| s.key.threads == processors && processors > 1);
-        let Some((best, speedup)) = candidates().max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else {
-            return Ok(None);
-        };
+        let is_candidate = |schedule: &Schedule| schedule.key.threads == processors && self.is_usual(schedule);
+        let candidates = || self.all.iter().filter(|(schedule, _)| processors > 1 && is_candidate(schedule));
+        let whole = candidates().filter(|(_, speedup)| !speedup.is_partial);
+        let Some((best, speedup)) = whole.max_by(|a, b| a.1.value.total_cmp(&b.1.value)) else { return Ok(None) };
         let (mut slower, mut open) = (Vec::new(), Vec::new());
         for (other, _) in candidates().filter(|(other, _)| other != best) {
             let rows = |schedule: &Schedule| self.serial.rows(schedule).iter().copied();
-            if let Some(ratio) =
-                time_ratio(rows(other), rows(best), |row| (&row.image, row.repetition), self.results.stopping())?
-            {
+            if let Some(ratio) = time_ratio(rows(other), rows(best), any_schedule, self.results.stopping())? {
                 let text = format!("{} ({})", other.name, told(&ratio, 3));
                 if ratio.interval.low > 1.0 { slower.push(text) } else { open.push(text) }
             }

@@ -12,8 +12,11 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     });
     let (mut overlays, mut findings, mut series, mut intervals) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (name, rows) in lines {
-        let times = group(rows, |row| row.spp).into_iter().filter_map(|(spp, rows)| {
-            let seconds = results.median(&values(rows, |row| row.makespan_s))?;
+        let cells = group(rows, |row| row.spp).into_iter();
+        let cells = cells.map(|(spp, rows)| (spp, Repeats::of_rows(rows, |row| row.makespan_s)));
+        // The fit compares them, so all come from the same repetitions.
+        let times = in_common(cells.collect()).into_iter().filter_map(|(spp, seconds)| {
+            let seconds = results.median(&seconds)?;
             intervals.extend(seconds.interval);
             Some(seconds.above(f64::from(spp)))
         });

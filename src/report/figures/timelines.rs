@@ -10,14 +10,15 @@ type Run = (String, Balance, bool);
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let processors = results.processors();
     let (mut schedules, mut runs) = (Vec::new(), Vec::<Run>::new());
-    let mut groups: Vec<_> = results.by_schedule().into_iter().collect();
-    groups.sort_by_key(|(schedule, _)| (schedule.key.threads > processors, !schedule.is_serial()));
-    for (schedule, rows) in groups {
+    let groups = results.by(|row| (&row.schedule, results.series_name(row), row.spp));
+    let mut groups: Vec<_> = groups.into_iter().collect();
+    groups.sort_by_key(|((schedule, ..), _)| (schedule.key.threads > processors, !schedule.is_serial()));
+    for ((schedule, series, _), rows) in groups {
         let Some(row) = Results::typical(&rows) else { continue };
         let Some(trace) = results.trace(row)? else { continue };
         let Some(balance) = timeline::balance(&trace) else { continue };
         schedules.push(timeline::lanes(&trace, &balance, processors));
-        runs.push((timeline::name(&trace), balance, schedule.key.threads <= processors));
+        runs.push((joined([timeline::name(&trace), series]), balance, schedule.key.threads <= processors));
     }
     let mut chart = timeline::charts(schedules, results.workload());
     chart.caption = format!("Of each schedule the run with the median time. {}", chart.caption);

@@ -1,0 +1,285 @@
+//! Every figure and table on rows of two image sizes, and on cells of different numbers of repetitions.
+
+use super::block::Block;
+use super::figures::{FIGURES, blocks};
+use super::results::Results;
+use super::tests::{row, results, words};
+use crate::measure::Record;
+
+/// How many times as long the second image takes as the first.
+#[derive(Clone, Copy)]
+struct Scales {
+    /// Factor of the times of all rows.
+    all: f64,
+    /// Factor of the times of the second size.
+    second_size: f64,
+    /// Factor of the times from each repetition to the next.
+    drift: f64,
+}
+
+/// Powers of two: they scale times without rounding, so a ratio that is right does not change in any bit.
+const PLAIN: Scales = Scales { all: 1.0, second_size: 1.0, drift: 1.0 };
+
+/// Rows of two sizes: serial, two strategies on two threads, on one thread, two samplers, kernels, outputs, profiles and
+/// accelerators, each at three numbers of samples, three seeds and three repetitions. `axis` gives the variants of a row
+/// that the figure compares.
+fn rows_of(scales: Scales, variants: &[fn(&mut Record)]) -> Vec<Record> {
+    let mut rows = Vec::new();
+    for (index, (width, factor)) in [(8, 1.0), (16, scales.second_size)].into_iter().enumerate() {
+        for (seed, spp, repetition) in
+            (1..=3u64).flat_map(|seed| [4, 8, 16].map(|spp| (seed, spp))).flat_map(|(seed, spp)| {
+                (0..3u32).map(move |repetition| (seed, spp, repetition))
+            })
+        {
+            let drift = (0..repetition).fold(1.0, |product, _| product * scales.drift);
+            for (place, variant) in variants.iter().enumerate() {
+                let mut own = Record { width, seed, spp, repetition, ..row() };
+                variant(&mut own);
+                // Times per sample differ by variant, seed and size, and a little by the number of samples.
+                let uneven = 0.3 * place as f64 + 0.01 * seed as f64 + 0.02 * index as f64 + 0.07 * f64::from(spp % 7);
+                let seconds = f64::from(spp) * (1.0 + uneven) * (scales.all * factor * drift);
+                own.makespan_s = Some(seconds);
+                own.cpu_user_s = Some(seconds * own.threads as f64);
+                own.cpu_system_s = Some(0.0);
+                own.busy_sum_s = Some(seconds);
+                own.busy_max_s = Some(seconds);
+                own.job_max_s = Some(seconds);
+                own.mse = Some(0.1 / f64::from(spp) * (1.0 + 0.1 * seed as f64));
+                rows.push(own);
+            }
+        }
+    }
+    rows
+}
+
+fn pool(row: &mut Record) {
+    (row.strategy, row.threads) = ("pool".to_string(), 2);
+}
+
+fn serial(_: &mut Record) {}
+
+/// The variants that a figure compares.
+fn variants(figure: &str) -> Vec<fn(&mut Record)> {
+    let mut variants: Vec<fn(&mut Record)> = vec![serial, pool];
+    match figure {
+        "outputs" => variants.push(|row| {
+            pool(row);
+            row.output = "locked".to_string();
+        }),
+        "acceleration" => variants.extend([
+            (|row: &mut Record| row.accelerator = "sah".to_string()) as fn(&mut Record),
+            |row| row.scene = "balls:100".to_string(),
+            |row| (row.scene, row.accelerator) = ("balls:100".to_string(), "sah".to_string()),
+        ]),
+        "kernels" | "precision" => variants.push(|row| row.precision = "f32".to_string()),
+        "effects" | "baselines" => variants.push(|row| row.effects = "all".to_string()),
+        "roughness" => variants.push(|row| row.scene = "cornell-vndf".to_string()),
+        "generators" => variants.extend([
+            (|row: &mut Record| row.sampler = "libc-rand".to_string()) as fn(&mut Record),
+            |row| {
+                pool(row);
+                row.sampler = "libc-rand".to_string();
+            },
+            |row| (row.strategy, row.threads) = ("pool".to_string(), 1),
+        ]),
+        "estimators" | "pairs" | "price-list" | "error-against-time" | "rmse-against-time" => {
+            variants.push(|row| row.estimator = "nee".to_string());
+        }
+        "roulette" => variants.push(|row| row.roulette = "albedo:2".to_string()),
+        "bias" => variants.push(|row| row.epsilon = "fixed:0.1".to_string()),
+        "clamp-bias" => variants.push(|row| row.clamp = "subpixel".to_string()),
+        "bounces" => variants.extend([
+            (|row: &mut Record| (row.max_depth, row.mean_radiance) = (Some(0), Some(0.125))) as fn(&mut Record),
+            |row| (row.max_depth, row.mean_radiance) = (Some(1), Some(0.25)),
+        ]),
+        "oversubscription" => {
+            variants = vec![
+                serial,
+                |row| (row.strategy, row.threads, row.decomposition) = ("pool".into(), 16, "grid:16".into()),
+                |row| (row.strategy, row.threads, row.decomposition) = ("few".into(), 2, "grid:16".into()),
+                |row| {
+                    (row.strategy, row.threads, row.decomposition) = ("pool".into(), 4, "grid:4".into());
+                    row.jobs = 4;
+                },
+            ];
+        }
+        "granularity" => variants.extend([
+            (|row: &mut Record| (row.decomposition, row.jobs) = ("rows".into(), 6)) as fn(&mut Record),
+            |row| {
+                pool(row);
+                (row.decomposition, row.jobs) = ("rows".into(), 6);
+            },
+            |row| (row.strategy, row.threads) = ("team".to_string(), 2),
+        ]),
+        "openmp" => variants.extend([
+            (|row: &mut Record| (row.strategy, row.threads) = ("openmp-dynamic".to_string(), 2)) as fn(&mut Record),
+            |row| (row.strategy, row.threads) = ("team".to_string(), 2),
+        ]),
+        _ => variants.extend([
+            (|row: &mut Record| (row.strategy, row.threads) = ("pool".to_string(), 1)) as fn(&mut Record),
+            |row| (row.strategy, row.threads) = ("team".to_string(), 2),
+            |row| (row.strategy, row.threads) = ("team".to_string(), 4),
+        ]),
+    }
+    variants
+}
+
+/// Options that give a figure its findings.
+fn options(figure: &str) -> &'static str {
+    match figure {
+        "generators" => "[figure.generators]\ncompare = { shared = \"libc-rand\", own = \"independent\" }",
+        "granularity" => "[figure.granularity]\ncompare = [\"pool\", \"team\"]",
+        "oversubscription" => {
+            "[figure.oversubscription.claim]\nper-section = \"pool\"\nfew = \"few\"\nsections = [16, 49]\nagainst = \"grid:4\""
+        }
+        "effects" => {
+            "[[figure.effects.price]]\neffect = \"all\"\nabsent = { scene = \"cornell\", profile = \"smallpt\" }\nunused = { scene = \"cornell\", profile = \"all\" }\nused = { scene = \"cornell\", profile = \"all\" }"
+        }
+        _ => "",
+    }
+}
+
+fn of(figure: &str, rows: Vec<Record>) -> Results {
+    results(&[figure], options(figure), rows).unwrap()
+}
+
+/// The words of findings, tables, and values that a figure carries; without drawing, whose axes follow the values.
+fn told(results: &Results) -> Vec<String> {
+    let text = |block: &Block| match block {
+        Block::Figure { figure, .. } => {
+            let svg = figure.svg().unwrap();
+            let notes = svg.lines().filter(|line| line.contains("class=\"note\""));
+            let titles = notes.filter_map(|line| line.split("<title>").nth(1)?.split("</title>").next());
+            titles.collect::<Vec<&str>>().join(" ; ")
+        }
+        other => words(std::slice::from_ref(other)),
+    };
+    let separators = |c: char| c.is_whitespace() || "(),:;=".contains(c);
+    let words = blocks(results).unwrap().iter().map(text).collect::<Vec<String>>().join(" ");
+    words.split(separators).filter(|word| !word.is_empty()).map(str::to_string).collect()
+}
+
+/// The numbers that do not change if all times get longer: ratios of times, and numbers that are no times.
+fn dimensionless(figure: &str, scales: Scales) -> Vec<String> {
+    let variants = variants(figure);
+    let [own, longer] =
+        [1.0, 1024.0].map(|all| told(&of(figure, rows_of(Scales { all, ..scales }, &variants))));
+    assert_eq!(own.len(), longer.len(), "{figure}: longer times change the number of words");
+    let same = own.into_iter().zip(longer).filter(|(a, b)| a == b).map(|(word, _)| word);
+    // A rate that rounds to zero does not change either.
+    let is_number = |word: &String| word.trim_end_matches('.').parse::<f64>().is_ok_and(|number| number != 0.0);
+    let mut numbers: Vec<String> = same.filter(is_number).collect();
+    numbers.sort();
+    numbers
+}
+
+/// A ratio of two images would be 32 times as large; one of two repetitions would follow the drift.
+#[test]
+fn no_figure_compares_two_images_or_two_repetitions() {
+    let mut silent = Vec::new();
+    for entry in FIGURES {
+        let plain = dimensionless(entry.name, PLAIN);
+        let larger = dimensionless(entry.name, Scales { second_size: 32.0, ..PLAIN });
+        assert_eq!(plain, larger, "{}: a second size that takes 32 times as long changes ratios", entry.name);
+        // The self-test compares successive repetitions.
+        if entry.name != "self-test" {
+            let drifting = dimensionless(entry.name, Scales { drift: 4.0, ..PLAIN });
+            assert_eq!(plain, drifting, "{}: times that drift between repetitions change ratios", entry.name);
+        }
+        if plain.is_empty() {
+            silent.push(entry.name);
+        }
+    }
+    // These show pictures, traces or other files beside the rows.
+    let of_files = [
+        "contact-sheet",
+        "equal-time",
+        "timelines",
+        "cost-map",
+        "forecast",
+        "ranks-forecast",
+        "message-costs",
+        "gallery",
+        "scene-accuracy",
+        "precision",
+    ];
+    assert_eq!(silent, of_files, "figures that show no ratio");
+}
+
+/// Serial runs and two strategies. A drift that begins at the third repetition halves the speedups; `early` has no
+/// later repetitions and is slower than `late` in each that both have.
+fn drifting() -> Vec<Record> {
+    let mut rows = Vec::new();
+    for repetition in 0..12 {
+        let drift = if repetition < 3 { 1.0 } else { 2.0 };
+        for (strategy, threads, seconds) in [("serial", 1, 8.0), ("late", 2, 4.0 * drift), ("early", 2, 5.0 * drift)] {
+            if strategy == "early" && repetition >= 3 {
+                continue;
+            }
+            for (effects, factor) in [("smallpt", 1.0), ("all", 1.25)] {
+                rows.push(Record {
+                    repetition,
+                    threads,
+                    strategy: strategy.to_string(),
+                    effects: effects.to_string(),
+                    makespan_s: Some(factor * seconds),
+                    cpu_user_s: Some(factor * seconds),
+                    ..row()
+                });
+            }
+        }
+    }
+    rows
+}
+
+/// `early` has a median speedup of 1.6 and `late` one of 1, but in the same repetitions `late` is faster.
+#[test]
+fn cells_with_fewer_repetitions_are_hollow_and_not_ranked() {
+    let rows = || drifting().into_iter().filter(|row| row.effects == "smallpt");
+    let svg = |blocks: &[Block], name: &str| {
+        let figure = blocks.iter().find_map(|block| match block {
+            Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
+            _ => None,
+        });
+        figure.unwrap()
+    };
+    let results = results(&["speedup", "clock"], "", rows().collect()).unwrap();
+    let found = results.serial().unwrap().speedups();
+    let found: Vec<_> = found.iter().map(|(own, ratio)| (&*own.name, ratio.value, ratio.is_partial)).collect();
+    assert_eq!(found, [("early", 1.6, true), ("late", 1.0, false)]);
+    let blocks = blocks(&results).unwrap();
+    let finding = blocks.iter().find_map(Block::as_finding).unwrap();
+    // Paired with `late`, `early` takes 1.25 times as long in the repetitions that both have.
+    assert!(finding.contains("is that of late: 1.000 times serial"), "{finding}");
+    assert!(finding.contains("take longer (ratio of times, interval): early (1.250"), "{finding}");
+    assert!(svg(&blocks, "speedup").contains("Hollow: fewer seeds"));
+    let clock = words(&blocks[blocks.len() - 2..]);
+    assert!(clock.contains("clock(), which a comment") && clock.contains("a speedup of 1.00 (median"), "{clock}");
+    assert_eq!(clock.matches("not comparable").count(), 1, "{clock}");
+}
+
+/// In the other figures that rank, too, the first place goes to `late`.
+#[test]
+fn no_figure_ranks_a_cell_with_fewer_repetitions() {
+    let sentence = |figure: &str, more: &str, rows: Vec<Record>| {
+        let results = results(&[figure], more, rows).unwrap();
+        let blocks = blocks(&results).unwrap();
+        assert!(words(&blocks).contains("Hollow: fewer seeds"), "{figure}");
+        blocks.iter().filter_map(Block::as_finding).collect::<Vec<&str>>().join("\n")
+    };
+    let plain = || drifting().into_iter().filter(|row| row.effects == "smallpt").collect::<Vec<Record>>();
+    let mut against = plain();
+    // A yardstick with a drift of its own: over all its repetitions `late` takes twice its time, `early` 1.25 times.
+    against.extend(plain().into_iter().filter(|row| row.strategy == "serial").map(|row| Record {
+        strategy: "openmp-dynamic".to_string(),
+        threads: 2,
+        makespan_s: Some(4.0),
+        ..row
+    }));
+    let openmp = sentence("openmp", "", against);
+    assert!(openmp.contains("strategies is late: 2.000 times"), "{openmp}");
+    let baselines = sentence("baselines", "", drifting());
+    assert!(baselines.contains("late on 2 threads, effects smallpt over serial, effects all: 1.25 times"), "{baselines}");
+    assert!(!baselines.contains("early"), "{baselines}");
+    assert_eq!(sentence("granularity", "", plain()), "");
+}
