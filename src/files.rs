@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 /// Creates a folder that the user gave as `field`, with its parents; nothing happens if it exists.
 pub fn create_folder(field: &str, folder: &Path) -> Result<()> {
-    let is_file = folder.ancestors().any(Path::is_file);
+    let is_file = folder.ancestors().any(|part| part.exists() && !part.is_dir());
     fs::create_dir_all(folder).map_err(|e| {
         if is_file {
             let problem = "is a file or lies in one; a folder is needed";

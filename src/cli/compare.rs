@@ -1,11 +1,11 @@
 //! `pathmark compare IMAGE REFERENCE [HALF]`: the error of an image against another, or against two references without
 //! their noise.
 
-use super::output::{number, print, print_json};
+use super::output::{counted, number, print, print_json};
 use super::picture;
 use crate::analysis::Interval;
 use crate::analysis::mean::t_interval;
-use crate::error::{InputError, Result};
+use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film_file::FilmKey;
 use crate::image_io::{self, Image};
@@ -117,7 +117,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     if arguments.json {
         let mut told = object(&lines);
         told.insert("shares_samples".to_string(), shares_samples.into());
-        return print_json(&told);
+        print_json(&told)?;
+        return check_finite(&shown, &read);
     }
     let width = lines.iter().map(|line| line.name.len()).max().unwrap_or(0);
     let line = |Line { name, value, interval, about }: &Line| {
@@ -125,7 +126,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         format!("{name:width$}  {value:<12.6}  {between}{about}")
     };
     let told: Vec<String> = lines.iter().map(line).chain(remarks).collect();
-    print(&told.join("\n"))
+    print(&told.join("\n"))?;
+    check_finite(&shown, &read)
+}
+
+/// Fails if a pixel is not a colour, and names the first: metrics that use it are NaN or infinite.
+fn check_finite(shown: &[(&PathBuf, Option<FilmKey>)], images: &[Image]) -> Result<()> {
+    for ((path, _), image) in shown.iter().zip(images) {
+        let mut odd = (0..).zip(&image.pixels).filter(|(_, pixel)| !pixel.iter().all(|value| value.is_finite()));
+        let Some((index, [r, g, b])) = odd.next() else { continue };
+        let (x, y) = (index % image.width, index / image.width);
+        let more = match odd.count() {
+            0 => String::new(),
+            count => format!(", and {} like it", counted(count, "pixel")),
+        };
+        let problem = format!("{}: pixel ({x}, {y}) = ({r}, {g}, {b}) is not finite{more}", path.display());
+        return Err(Error::Check(problem));
+    }
+    Ok(())
 }
 
 /// Every metric against one reference.

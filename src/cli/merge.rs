@@ -39,6 +39,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    if let Some(missing) = arguments.parts.iter().find(|part| !part.exists()) {
+        let error = InputError::new("part", missing.display().to_string(), "there is no such file or folder");
+        return Err(error.into());
+    }
     if arguments.parts.iter().any(|part| part.is_dir()) { sweeps(arguments, lab, talk) } else { image(arguments, talk) }
 }
 

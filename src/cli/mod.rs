@@ -41,11 +41,12 @@ mod strict;
 mod trace;
 mod whole;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, InputError, Result};
 use crate::lab::Lab;
+use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use progress::Talk;
-use std::io::ErrorKind;
+use std::io;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -132,6 +133,11 @@ impl Lab {
         out_of_memory::watch();
         let cli = match Cli::try_parse() {
             Ok(cli) => cli,
+            Err(told) if told.kind() == ErrorKind::InvalidUtf8 => {
+                let error = no_text();
+                Talk::new(false).error(&error);
+                return ExitCode::from(error.exit_code());
+            }
             Err(told) => return tell(&told),
         };
         let talk = Talk::new(cli.quiet);
@@ -145,10 +151,18 @@ impl Lab {
     }
 }
 
+/// The error for an argument that must be text and is not; clap's message does not say which. Paths of other files may
+/// be any bytes, but rows and traces keep the name of a scene or an experiment as text.
+fn no_text() -> Error {
+    let bad = std::env::args_os().skip(1).filter(|argument| argument.to_str().is_none());
+    let bad: Vec<String> = bad.map(|argument| argument.to_string_lossy().into_owned()).collect();
+    InputError::new("argument", bad.join(" "), "is not UTF-8 text").allowed("a name of UTF-8 text").into()
+}
+
 /// Prints clap's message instead of running: an error, or the requested help or version.
 fn tell(told: &clap::Error) -> ExitCode {
     match told.print() {
-        Err(e) if !told.use_stderr() && e.kind() != ErrorKind::BrokenPipe => {
+        Err(e) if !told.use_stderr() && e.kind() != io::ErrorKind::BrokenPipe => {
             let error = Error::system("writing", "standard output", e);
             Talk::new(false).error(&error);
             ExitCode::from(error.exit_code())

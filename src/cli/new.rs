@@ -39,17 +39,24 @@ impl Kind {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    if arguments.name.file_name().is_none() || arguments.name.as_os_str().as_encoded_bytes().ends_with(b"/") {
+        return Err(InputError::new("name", arguments.name.display().to_string(), "is not the name of a file").into());
+    }
     let mut path = arguments.name.clone();
     if path.extension().is_none_or(|ending| ending != "toml") {
         path.as_mut_os_string().push(".toml");
     }
     let shown = path.display().to_string();
     // An existing file is never replaced.
-    let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(|e| match e.kind() {
-        ErrorKind::AlreadyExists => {
-            Error::from(InputError::new("name", &shown, "already exists").allowed("a new name"))
-        }
-        _ => Error::system("creating", &path, e),
+    let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(|e| {
+        let problem = match e.kind() {
+            ErrorKind::AlreadyExists => "already exists",
+            ErrorKind::NotFound => "its folder does not exist",
+            ErrorKind::NotADirectory => "a part of the path is not a directory",
+            ErrorKind::InvalidFilename => "the name is too long",
+            _ => return Error::system("creating", &path, e),
+        };
+        InputError::new("name", &shown, problem).allowed("a new name in a folder that exists").into()
     })?;
     file.write_all(arguments.kind.text().as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
     print(&format!("created {shown}; edit it, then run: pathmark {} {shown}", arguments.kind.verb()))

@@ -1,6 +1,6 @@
 //! Progress of long work: a bar with the time left on a terminal, plain lines elsewhere, nothing with `--quiet`.
 
-use crate::error::Error;
+use crate::error::{Error, printable};
 use crate::experiment::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{IsTerminal, Write};
@@ -20,6 +20,11 @@ pub(super) struct Talk {
     quiet: bool,
     terminal: bool,
     work: Mutex<Work>,
+}
+
+/// A text of one or more lines for a terminal: names in it may contain control characters.
+fn safe(text: &str) -> String {
+    text.split('\n').map(printable).collect::<Vec<_>>().join("\n")
 }
 
 #[derive(Default)]
@@ -42,7 +47,7 @@ impl Talk {
 
     fn line(text: &str) {
         // Standard error may be closed; that is no reason to stop.
-        let _ = writeln!(std::io::stderr().lock(), "{text}");
+        let _ = writeln!(std::io::stderr().lock(), "{}", safe(text));
     }
 
     /// Prints the error with which the program ends.
@@ -59,7 +64,7 @@ impl Talk {
             return work();
         }
         let style = ProgressStyle::with_template(BUSY).unwrap_or_else(|_| ProgressStyle::default_spinner());
-        let bar = ProgressBar::new_spinner().with_message(title.to_string()).with_style(style);
+        let bar = ProgressBar::new_spinner().with_message(safe(title)).with_style(style);
         bar.enable_steady_tick(TICK);
         let done = work();
         bar.finish_and_clear();
@@ -73,7 +78,7 @@ impl Talk {
         let bar = self.terminal.then(|| {
             let style = ProgressStyle::with_template(template);
             let bar = ProgressBar::new(total);
-            bar.with_message(title.to_string()).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+            bar.with_message(safe(title)).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
         });
         if bar.is_none() {
             Self::line(&format!("{title} ..."));
@@ -92,7 +97,7 @@ impl Talk {
             return;
         }
         match &self.work().bar {
-            Some(bar) => bar.set_message(title.to_string()),
+            Some(bar) => bar.set_message(safe(title)),
             None => Self::line(&format!("{title} ..., {left} left in all")),
         }
     }
@@ -128,7 +133,7 @@ impl Progress for Talk {
             return;
         }
         match &self.work().bar {
-            Some(bar) => bar.println(text),
+            Some(bar) => bar.println(safe(text)),
             None => Self::line(text),
         }
     }

@@ -3,7 +3,7 @@
 use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
-use crate::error::Result;
+use crate::error::{InputError, Result};
 use crate::experiment::{ImageRanking, Place, Progress as _, Ranking, ranking};
 use crate::lab::Lab;
 use clap::Args;
@@ -25,6 +25,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
+    if arguments.folder.exists() && !arguments.folder.is_dir() {
+        let folder = arguments.folder.display().to_string();
+        return Err(InputError::new("folder", folder, "is not a folder").allowed("as in out/thread-scaling").into());
+    }
     let found = ranking(lab, &arguments.folder, &arguments.filter)?;
     if arguments.json {
         print_json(&object(&found))?;

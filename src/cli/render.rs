@@ -69,9 +69,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let path = arguments.image.clone().unwrap_or_else(|| PathBuf::from(format!("{}.png", setup.name())));
     let spec = &setup.settings().spec;
     let format = image_io::check_picture(&path, spec.width, spec.height)?;
-    for remark in setup.remarks() {
-        talk.note(remark);
-    }
+    setup.remarks().iter().for_each(|remark| talk.note(remark));
     let mut files = Files::default();
     files.reads_scene(setup.files());
     let outputs = [("image", Some(&path)), ("trace", arguments.trace.as_ref()), arguments.rounds.output()];

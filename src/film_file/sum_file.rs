@@ -10,7 +10,7 @@ use crate::film::{Film, PixelSum, check_size, room};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::{Digest, Sha256};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, ErrorKind, Read, Take};
 use std::path::Path;
 
@@ -91,11 +91,15 @@ impl SumFile {
 
     /// Opens a file and reads the line of its header.
     fn begin(&self, path: &Path) -> Result<(Body, Vec<u8>)> {
-        let file = File::open(path).map_err(|e| Error::system("reading", path, e))?;
-        let data = file.metadata().map_err(|e| Error::system("reading", path, e))?;
+        let data = fs::metadata(path).map_err(|e| match e.kind() {
+            ErrorKind::NotFound | ErrorKind::NotADirectory => self.broken(path, "there is no such file"),
+            _ => Error::system("reading", path, e),
+        })?;
+        // Checked before the file is opened: to open a pipe would wait for a writer.
         if !data.is_file() {
             return Err(self.broken(path, "is not a regular file"));
         }
+        let file = File::open(path).map_err(|e| Error::system("reading", path, e))?;
         let Some(length) = data.len().checked_sub(DIGEST_BYTES as u64) else {
             return Err(self.broken(path, &format!("is too short to be a {} file", self.field)));
         };

@@ -26,7 +26,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
         return Err("its length differs from the length in its header".into());
     }
     let decoder = BmpDecoder::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
-    codec::from_display(codec::decode(decoder, bytes.len())?)
+    codec::from_display(codec::decode(decoder, bytes.len())?, tone_map::linear)
 }
 
 fn encode(image: &Image) -> Result<Vec<u8>> {

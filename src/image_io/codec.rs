@@ -67,8 +67,8 @@ pub(super) fn decode(decoder: impl ImageDecoder, length: usize) -> Decoded<Dynam
 }
 
 #[cfg(feature = "program")]
-/// Converts display values to a picture in linear radiance.
-pub(super) fn from_display(image: DynamicImage) -> Decoded<Image> {
+/// Converts display values to a picture in linear radiance. `linear` converts a value from 0 to 1.
+pub(super) fn from_display(image: DynamicImage, linear: impl Fn(f64) -> f64) -> Decoded<Image> {
     // The background of a transparent pixel is not in the file.
     if image.color().has_alpha() && image.to_rgba16().pixels().any(|pixel| pixel[3] != u16::MAX) {
         return Err("it has transparent pixels".into());
@@ -77,9 +77,9 @@ pub(super) fn from_display(image: DynamicImage) -> Decoded<Image> {
     let deep = image.color().bytes_per_pixel() / image.color().channel_count() > 1;
     let pixels = if deep {
         let values = image.into_rgb16();
-        values.pixels().map(|pixel| pixel.0.map(|v| tone_map::linear(f64::from(v) / 65535.0))).collect()
+        values.pixels().map(|pixel| pixel.0.map(|v| linear(f64::from(v) / 65535.0))).collect()
     } else {
-        let table: Vec<_> = (0..=u8::MAX).map(|v| tone_map::linear(f64::from(v) / 255.0)).collect();
+        let table: Vec<_> = (0..=u8::MAX).map(|v| linear(f64::from(v) / 255.0)).collect();
         let values = image.into_rgb8();
         values.pixels().map(|pixel| pixel.0.map(|v| table[usize::from(v)])).collect()
     };

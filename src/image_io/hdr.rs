@@ -3,6 +3,7 @@
 //! Source: Greg Ward, "Real Pixels", Graphics Gems II, 1991. An `EXPOSURE` in the header is divided out, so that values are
 //! radiance again.
 
+use std::borrow::Cow;
 use std::io::Cursor;
 
 use image::codecs::hdr::{HdrDecoder, HdrEncoder};
@@ -31,8 +32,16 @@ const TOO_SMALL: f64 = 1e-38;
 /// width.
 const UNREADABLE_WIDTH: u32 = 32768;
 
+/// The first line as the `image` crate knows it, and the other one that files have.
+const SIGNATURE: &[u8] = b"#?RADIANCE";
+const OTHER_SIGNATURE: &[u8] = b"#?RGBE";
+
 fn decode(bytes: &[u8]) -> Decoded<Image> {
-    let mut source = Cursor::new(bytes);
+    let bytes = match bytes.strip_prefix(OTHER_SIGNATURE) {
+        Some(rest) => Cow::from([SIGNATURE, rest].concat()),
+        None => Cow::from(bytes),
+    };
+    let mut source = Cursor::new(&*bytes);
     let decoder = HdrDecoder::new(&mut source).map_err(|e| e.to_string())?;
     let metadata = decoder.metadata();
     let exposure = f64::from(metadata.exposure.unwrap_or(1.0));

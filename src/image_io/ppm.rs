@@ -33,7 +33,7 @@ fn decode(bytes: &[u8]) -> Decoded<Image> {
     if !ends {
         return Err(format!("{} bytes follow the last pixel", rest.len()));
     }
-    codec::from_display(image)
+    codec::from_display(image, tone_map::linear)
 }
 
 fn encode(image: &Image) -> Result<Vec<u8>> {

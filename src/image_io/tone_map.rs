@@ -21,6 +21,12 @@ pub fn linear(display: f64) -> f64 {
     libm::pow(display, GAMMA)
 }
 
+/// Converts an sRGB value in [0, 1] to a linear one (IEC 61966-2-1).
+#[cfg(feature = "program")]
+pub(super) fn srgb_linear(value: f64) -> f64 {
+    if value <= 0.04045 { value / 12.92 } else { libm::pow((value + 0.055) / 1.055, 2.4) }
+}
+
 /// Converts a linear value to a display value in 8 bits; `None` for NaN.
 pub fn quantise(linear: f64) -> Option<u8> {
     // Truncation of v + 1/2 rounds to the nearest step, as the source does.

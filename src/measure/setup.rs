@@ -209,9 +209,12 @@ impl Setup {
         self.scene().map_or(&[], |(scene, _)| &scene.files)
     }
 
-    /// Remarks for the scene's author on how its files were read.
-    pub fn remarks(&self) -> &[String] {
-        self.scene().map_or(&[], |(scene, _)| &scene.remarks)
+    /// Remarks for the scene's author on how its files were read, on its light, and on meshes that the camera does not
+    /// see.
+    pub fn remarks(&self) -> Vec<String> {
+        let Some((scene, _)) = self.scene() else { return Vec::new() };
+        let view = scene.camera.view(self.settings.spec.width, self.settings.spec.height);
+        scene.remarks.iter().cloned().chain(scene.unseen_meshes(&view)).collect()
     }
 
     /// The scene, and the choices that the settings make for it; `None` for a workload.

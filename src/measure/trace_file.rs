@@ -123,8 +123,9 @@ impl TraceFile {
     /// Reads a file that [`TraceFile::write`] wrote.
     pub fn read(path: &Path) -> Result<Self> {
         let mut table = open_text(path, LIMITS)?;
-        let mut first = String::new();
-        table.read_line(&mut first).map_err(|e| unreadable(path, e))?;
+        let mut first = Vec::new();
+        table.read_until(b'\n', &mut first).map_err(|e| unreadable(path, e))?;
+        let first = String::from_utf8_lossy(&first);
         let wrong = |line: usize, field: &str, value: &str, problem: String| -> Error {
             InputError::new(field, value, problem).in_file(path.display().to_string(), Some((line, 1))).into()
         };

@@ -1,6 +1,7 @@
 //! Errors, sorted by cause: the user's input (exit code 2), the system (3), or a failed check (1).
 
-use std::fmt;
+use std::borrow::Cow;
+use std::fmt::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// The result of an operation that the user's input or the system can make fail.
@@ -16,7 +17,7 @@ pub enum Error {
     #[error("check failed: {0}")]
     Check(String),
     /// The system refused an operation: disk, memory, threads, processes.
-    #[error("{action} {}: {source}", path.display())]
+    #[error("{action} {}: {source}", printable(&path.to_string_lossy()))]
     System {
         /// The attempted action, as a gerund: "writing".
         action: &'static str,
@@ -127,8 +128,28 @@ impl InputError {
     }
 }
 
+/// Returns a text with every control character escaped as in Rust: a terminal would obey it, and a line end would make
+/// one message look like two.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return text.into();
+    }
+    let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    text.chars().map(escape).collect::<String>().into()
+}
+
+/// A writer that escapes control characters.
+struct Printable<'a, 'b>(&'a mut fmt::Formatter<'b>);
+
+impl Write for Printable<'_, '_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.write_str(&printable(text))
+    }
+}
+
 impl fmt::Display for InputError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let f = &mut Printable(f);
         if let Some(place) = &self.place {
             write!(f, "{}:", place.file)?;
             if let Some((line, column)) = place.at {
@@ -154,6 +175,18 @@ impl fmt::Display for InputError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A control character of a value, a key or a file's name could colour a terminal, move its cursor or end a line.
+    #[test]
+    fn control_characters_are_escaped() {
+        let error = InputError::new("a\u{1b}[2J", "\u{7}b\n", "c\t\u{9b}31m").allowed("d\r").in_file("e\0", Some((1, 2)));
+        let expected = "e\\u{0}:1:2: a\\u{1b}[2J = \\u{7}b\\n: c\\t\\u{9b}31m (allowed: d\\r)";
+        assert_eq!(error.to_string(), expected);
+        assert_eq!(Error::from(error).to_string(), expected);
+        let system = Error::system("writing", "a\u{1b}", std::io::ErrorKind::NotFound.into());
+        assert_eq!(system.to_string(), "writing a\\u{1b}: entity not found");
+        assert!(matches!(printable("plain \u{e4}"), Cow::Borrowed(_)));
+    }
 
     #[test]
     fn names_are_suggested_only_for_wrong_names() {

@@ -5,9 +5,9 @@ mod text;
 mod toml_text;
 
 pub use numbers::{
-    albedo, coordinate_limit, direction, field_of_view, length, out_of_range, point, positive, radiance,
+    albedo, coordinate_limit, degrees, direction, field_of_view, length, out_of_range, point, positive, radiance,
     refractive_index, roughness, share,
 };
-pub use text::{Limits, Text, open_text, read_text, read_text_up_to, unreadable};
+pub use text::{BYTE_ORDER_MARK, Limits, Text, open_text, read_text, read_text_up_to, unreadable};
 pub use toml_text::parse_within;
 pub use toml_text::{locate, locate_in, parse};

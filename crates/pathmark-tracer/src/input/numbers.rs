@@ -65,6 +65,11 @@ pub fn direction<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec3, D::
     Ok((d * (1.0 / largest)).normalized())
 }
 
+/// Reads three angles in degrees.
+pub fn degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[f64; 3], D::Error> {
+    checked_triple(deserializer, |x| (-360.0..=360.0).contains(&x), "-360 to 360 degrees in each angle")
+}
+
 /// Reads a length above zero.
 pub fn length<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     checked(deserializer, |x| (SMALLEST..=LARGEST).contains(&x), "1e-100 to 1e100")

@@ -1,13 +1,17 @@
 //! The user's text files, with size limits: a device, a pipe or a wrong path is refused before it fills the memory.
 
 use crate::error::{Error, InputError, Result};
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind, Read};
+use std::os::unix::fs::FileTypeExt;
 use std::path::Path;
 
 /// Largest definition, in bytes. Every scene or experiment is far smaller, unlike a device file or a wrong path. A
 /// parsed definition takes 70 times its length in memory: more objects than fit here belong in a mesh or a generator.
 const LARGEST_DEFINITION: u64 = 3 << 20;
+
+/// Some programs begin a text with this character; it is no part of the text.
+pub const BYTE_ORDER_MARK: &str = "\u{feff}";
 
 /// Size limits of a text file.
 #[derive(Debug, Clone, Copy)]
@@ -28,14 +32,22 @@ pub fn read_text_up_to(path: &Path, most: u64) -> Result<String> {
     let mut bytes = Vec::new();
     let limits = Limits { bytes: most, line: u64::MAX };
     open_text(path, limits)?.read_to_end(&mut bytes).map_err(|e| unreadable(path, e))?;
-    String::from_utf8(bytes).map_err(|e| {
+    let mut text = String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
-        refused(path, format!("is not UTF-8 text at byte {at}")).into()
-    })
+        refused(path, format!("is not UTF-8 text at byte {at}"))
+    })?;
+    if text.starts_with(BYTE_ORDER_MARK) {
+        text.drain(..BYTE_ORDER_MARK.len());
+    }
+    Ok(text)
 }
 
 /// Opens a user's text file. [`unreadable`] converts errors from reading it.
 pub fn open_text(path: &Path, limits: Limits) -> Result<BufReader<Text>> {
+    // To open a pipe would wait for a writer, perhaps for ever.
+    if fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo()) {
+        return Err(refused(path, "is a pipe, and it may be read more than once").allowed("a file").into());
+    }
     let file = File::open(path).map_err(|e| match e.kind() {
         ErrorKind::NotFound => refused(path, "there is no such file").into(),
         ErrorKind::NotADirectory => refused(path, "a part of the path is not a directory").into(),
@@ -108,7 +120,6 @@ impl Read for Text {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs;
     use std::io::BufRead;
 
     /// A device is read only until it is clear that it holds no text.

@@ -13,6 +13,7 @@ mod light;
 mod point_light;
 mod profile;
 mod reader;
+mod remark;
 mod shape;
 mod source;
 
@@ -130,6 +131,8 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The object's index for each primitive.
     pub owners: Vec<u32>,
+    /// The indices of the objects that are meshes from files.
+    pub meshes: Vec<u32>,
     /// Lights without a size.
     pub point_lights: Vec<PointLight>,
     /// The radiance of rays that hit nothing; `None` if the scene is closed, so that there should be no such rays.

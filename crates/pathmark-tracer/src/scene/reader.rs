@@ -139,6 +139,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
         primitives: Primitives::default(),
         objects: Vec::new(),
         owners: Vec::new(),
+        meshes: Vec::new(),
         point_lights: draft.point_lights,
         background: draft.background,
         fog: draft.fog,
@@ -149,6 +150,7 @@ pub(super) fn scene_from_text(source: Source, number: Option<(f64, &str)>, own: 
     add_parts(&mut scene, draft.parts, &mut draft.hash)?;
     scene.resolve_coincident();
     scene.hash = draft.hash.finish();
+    scene.remarks.extend(scene.remarks_on_light());
     Ok(scene)
 }
 
@@ -163,9 +165,17 @@ fn add_parts(scene: &mut Scene, parts: Vec<Part>, hash: &mut Fingerprint) -> Res
     let mut owners: Vec<Vec<u32>> = vec![Vec::new(); scene.primitives.counts().len()];
     for (index, part) in (0u32..).zip(parts) {
         let before = scene.primitives.counts();
-        let mut files =
-            Files { folder: &part.source.folder, hash, read: &mut scene.files, remarks: &mut scene.remarks };
+        let mut files = Files {
+            folder: &part.source.folder,
+            object: &part.name,
+            hash,
+            read: &mut scene.files,
+            remarks: &mut scene.remarks,
+        };
         for shape in part.shapes {
+            if matches!(shape, AnyShape::Mesh(_)) {
+                scene.meshes.push(index);
+            }
             shape
                 .add_to(&mut scene.primitives, &mut files)
                 .map_err(|problem| at_object(&part.source, &part.name, problem))?;

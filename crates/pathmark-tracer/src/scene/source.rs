@@ -64,6 +64,8 @@ enum Opened {
 /// The other files of a scene; their contents become part of the scene's hash.
 pub(super) struct Files<'a> {
     pub(super) folder: &'a Folder,
+    /// The name of the object that needs them.
+    pub(super) object: &'a str,
     pub(super) hash: &'a mut Fingerprint,
     pub(super) read: &'a mut Vec<PathBuf>,
     pub(super) remarks: &'a mut Vec<String>,

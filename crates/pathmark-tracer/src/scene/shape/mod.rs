@@ -9,10 +9,13 @@
 //! equally near primitives, the one with the lowest number is hit, with any accelerator.
 
 mod doubt;
+mod foreign;
 mod mesh;
 mod obj;
+mod placement;
 mod plane;
 mod ply;
+mod polygon;
 mod quad;
 mod sphere;
 mod triangle;
@@ -233,7 +236,7 @@ shapes! {
     Plane, "plane", "an infinite plane";
     Triangle, "triangle", "a triangle";
     Quad, "quad", "four corners: two triangles";
-    Mesh, "mesh", "the triangles of an OBJ file, or of one of its objects";
+    Mesh, "mesh", "the triangles of an OBJ or PLY file, or of one object of an OBJ file";
 }
 
 impl Nearest {

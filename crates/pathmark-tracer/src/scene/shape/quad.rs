@@ -1,10 +1,12 @@
 //! A quad: four corners in order around the edge, visible from both sides. It is two triangles that share the diagonal
-//! from the first to the third corner. Its outside is the side from which the corners run counterclockwise.
+//! from the first to the third corner, or the other one if only that is inside the quad. Its outside is the side from
+//! which the corners run counterclockwise.
 //!
 //! ```toml
 //! shape = { quad = { corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]] } }
 //! ```
 
+use super::polygon::Cutter;
 use super::triangle::points;
 use super::{Primitives, Shape, Triangle};
 use crate::error::Result;
@@ -21,22 +23,30 @@ pub(in crate::scene) struct Quad {
     pub(in crate::scene) corners: [Vec3; 4],
 }
 
-fn halves([a, b, c, d]: [Vec3; 4]) -> [Triangle; 2] {
-    [Triangle { corners: [a, b, c] }, Triangle { corners: [a, c, d] }]
+/// Cuts a quad into triangles.
+fn cut(corners: [Vec3; 4]) -> (Vec<Triangle>, Cutter) {
+    let (mut halves, mut cutter) = (Vec::with_capacity(2), Cutter::default());
+    cutter.cut(&corners, |corners| halves.push(Triangle { corners }));
+    (halves, cutter)
 }
 
 /// Reads four corners; neither half may lie on a line.
 fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> std::result::Result<[Vec3; 4], D::Error> {
     let corners = points(deserializer)?;
-    if halves(corners).iter().any(Triangle::is_degenerate) {
+    let (halves, _) = cut(corners);
+    if halves.len() != 2 || halves.iter().any(Triangle::is_degenerate) {
         return Err(serde::de::Error::custom("three corners lie on a line (allowed: two triangles with an area)"));
     }
     Ok(corners)
 }
 
 impl Shape for Quad {
-    fn add_to(self, primitives: &mut Primitives, _files: &mut Files<'_>) -> Result<()> {
-        primitives.triangles.extend(halves(self.corners));
+    fn add_to(self, primitives: &mut Primitives, files: &mut Files<'_>) -> Result<()> {
+        let (halves, cutter) = cut(self.corners);
+        primitives.triangles.extend(halves);
+        for doubt in cutter.doubts() {
+            files.remark(format!("{}: {doubt}", files.object));
+        }
         Ok(())
     }
 }
