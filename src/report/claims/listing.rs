@@ -87,7 +87,7 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
         .column("low", |a| number(of(a).and_then(|found| Some(found.interval?.low))))
         .column("high", |a| number(of(a).and_then(|found| Some(found.interval?.high))))
         .column("level", |a| number(a.level()))
-        .column("rows", |a| number(of(a).map(|found| found.rows as f64)))
+        .column("values", |a| number(of(a).map(|found| found.count as f64)))
         .column("source", |a| a.source.as_ref().map_or_else(String::new, |source| source.display().to_string()))
         .column("why", |a| a.why.clone())
         .end()
@@ -156,12 +156,12 @@ fn entry(answer: &Answer<'_>, base: &Path) -> String {
     let _ = write!(text, "\n\n> {} ({})\n\n- Reported: {}\n", claim.quote, claim.place, claim.reported);
     if let Some(source) = &answer.source {
         let shown = source.strip_prefix(base).unwrap_or(source).display().to_string();
-        let rows = answer.found.map_or(0, |found| found.rows);
+        let count = answer.found.map_or(0, |found| found.count);
         let level = answer.level().filter(|level| *level < 1.0);
         let level = level.map_or_else(String::new, |level| format!(", {:.1} %", 100.0 * level));
         let _ = writeln!(
             text,
-            "- Measured: {}{level}; {}; {rows} values, [{shown}]({shown})\n- Predicted: {}",
+            "- Measured: {}{level}; {}; {count} independent values, [{shown}]({shown})\n- Predicted: {}",
             answer.measured(),
             answer.question(),
             answer.predicted()

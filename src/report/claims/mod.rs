@@ -23,7 +23,7 @@ use crate::error::Result;
 use crate::experiment::RunFile;
 use crate::files::Files;
 use crate::lab::Lab;
-use crate::measure::Doubts;
+use crate::measure::{Doubts, LeftOut};
 use listing::{CSV, MARKDOWN, is_csv, is_markdown};
 use std::path::Path;
 use std::sync::Arc;
@@ -60,6 +60,7 @@ pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
         in_short: Some(listing::in_short(&answers)),
         axes: None,
         failed: Vec::new(),
+        left_out: LeftOut::default(),
         doubts: Doubts::default(),
         rows: answered,
         run: RunFile::of_now("pathmark claims".to_string()),

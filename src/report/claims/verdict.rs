@@ -52,7 +52,7 @@ mod tests {
 
     fn of(low: f64, high: f64, predicted: [f64; 2]) -> Verdict {
         let interval = Interval::between(low, high, 0.95);
-        Verdict::of(&Found { value: 0.5 * (low + high), interval, rows: 9 }, predicted)
+        Verdict::of(&Found { value: 0.5 * (low + high), interval, count: 9 }, predicted)
     }
 
     #[test]
@@ -76,6 +76,6 @@ mod tests {
 
     #[test]
     fn a_single_value_decides_nothing() {
-        assert_eq!(Verdict::of(&Found { value: 1.0, interval: None, rows: 1 }, [0.9, 1.1]), Verdict::Open);
+        assert_eq!(Verdict::of(&Found { value: 1.0, interval: None, count: 1 }, [0.9, 1.1]), Verdict::Open);
     }
 }
