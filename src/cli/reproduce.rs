@@ -154,7 +154,9 @@ fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
         return Err(Error::system("reading", "the system's clock", problem));
     }
     let earlier = out.join("earlier").join(stamp);
-    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]) {
+    // Verdicts are of the rows beside them.
+    let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
+    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]).chain(verdicts) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;

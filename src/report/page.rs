@@ -277,6 +277,7 @@ fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
 fn part(section: &str, block: &Block) -> Result<Markup> {
     Ok(match block {
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
+        Block::Notice(text) => html! { p.notice { (prose(text)) } },
         Block::Figure { stem, figure } => html! {
             figure id={ (section) "-" (stem) } {
                 (PreEscaped(figure.svg()?))

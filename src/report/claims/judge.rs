@@ -65,12 +65,7 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
                 let mut best = answer(Verdict::NotAnswered, "The results have no such rows.");
                 for library in &mut libraries {
                     let found = library.answer(report, claim, test)?;
-                    let says_more = |verdict| match verdict {
-                        Verdict::NotAnswered => 0,
-                        Verdict::NotComparable => 1,
-                        _ => 2,
-                    };
-                    if says_more(found.verdict) > says_more(best.verdict) {
+                    if found.verdict.says() > best.verdict.says() {
                         best = found;
                     }
                 }

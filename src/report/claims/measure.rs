@@ -21,7 +21,7 @@ use crate::report::rows::Row;
 use crate::simulate::{Contender, Hardware, contenders, forecast};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// A value, its interval if there were enough values for one, and the number of independent values behind it.
+/// A value, its interval if there were enough values for one, and the number of values that the interval is computed from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
     pub(super) value: f64,

@@ -29,6 +29,22 @@ impl Verdict {
         NAMES[self as usize]
     }
 
+    /// The verdict of that name.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        let all =
+            [Self::Confirmed, Self::Refuted, Self::Open, Self::NotComparable, Self::NotAnswered, Self::Context];
+        all.into_iter().find(|verdict| verdict.name() == name)
+    }
+
+    /// How much it says about the claim: of two answers, the larger one counts.
+    pub(super) fn says(self) -> u8 {
+        match self {
+            Self::NotAnswered | Self::Context => 0,
+            Self::NotComparable => 1,
+            Self::Confirmed | Self::Refuted | Self::Open => 2,
+        }
+    }
+
     /// Compares a measurement with the ends of the prediction.
     pub(super) fn of(found: &Found, [low, high]: [f64; 2]) -> Self {
         match found.interval {

@@ -62,7 +62,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { yardstick, goal } = options(results, "kernels")?;
     let works = works(results, &yardstick)?;
     if works.is_empty() {
-        return Ok(vec![Block::finding("No two kernels rendered the same, so there is no ratio of them.")]);
+        return Ok(vec![Block::notice("No two kernels rendered the same, so there is no ratio of them.")]);
     }
     let mut blocks = vec![Block::figure("kernels", plot(results, &works, &yardstick))];
     let scenes = contenders(results)?;

@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let all: Vec<&Contender> = scenes.values().flatten().collect();
     if all.is_empty() {
         let text = "There is no price list: it takes errors against references from two seeds or more.";
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     }
     let name = |contender: &Contender| {
         if scenes.len() > 1 { format!("{}: {}", contender.image.scene, contender.name) } else { contender.name.clone() }
