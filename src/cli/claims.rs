@@ -2,7 +2,7 @@
 
 use super::output::{print, print_json};
 use crate::error::{Error, InputError, Result};
-use crate::files::Files;
+use crate::files::{Files, create_folder};
 use crate::lab::Lab;
 use crate::report::claims::{self, Answer, Report, Verdict, judge};
 use clap::Args;
@@ -13,11 +13,13 @@ use std::sync::Arc;
 /// `pathmark claims out --report A`
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Folders that `reproduce` or `run` wrote. If several answer a claim, the first one with the report's conditions counts. The verdicts go into
-    /// the first folder
+    /// Folders that `reproduce` or `run` wrote. If several answer a claim, the first one with the report's conditions counts
     #[arg(default_value = "out", value_name = "DIR")]
     folders: Vec<PathBuf>,
-    /// Print only the claims of this report, and write no verdicts
+    /// Also write all verdicts into this folder, as CLAIMS.md and claims/claims.csv. Files that answer more claims are kept
+    #[arg(long, value_name = "DIR", conflicts_with = "report")]
+    out: Option<PathBuf>,
+    /// Print only the claims of this report
     #[arg(long, value_name = "LETTER")]
     report: Option<String>,
     /// Print an array of objects
@@ -56,17 +58,20 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
             return Err(InputError::new("folder", folder.display().to_string(), "there is no such folder").into());
         }
     }
-    let first = &arguments.folders[0];
-    claims::enter("folder", first, &mut Files::default())?;
+    if let Some(out) = &arguments.out {
+        claims::enter("out", out, &mut Files::default())?;
+    }
     let answers = judge(lab, &reports, &arguments.folders)?;
+    if let Some(out) = &arguments.out {
+        claims::check_no_loss("out", &answers, out)?;
+        create_folder("out", out)?;
+        claims::save(&answers, out)?;
+    }
     if arguments.json {
         print_json(&answers.iter().map(row).collect::<Vec<_>>())?;
     } else {
         print(&answers.iter().map(line).collect::<Vec<String>>().join("\n"))?;
         print(&totals(&answers))?;
-    }
-    if arguments.report.is_none() {
-        claims::save(&answers, first)?;
     }
     let unexpected: Vec<String> =
         answers.iter().filter(|a| a.is_unexpected()).map(|a| a.claim.id.to_string()).collect();

@@ -13,6 +13,7 @@ mod convert;
 mod diff;
 mod explain;
 mod guards;
+mod letters;
 mod list;
 mod man;
 mod merge;

@@ -7,10 +7,12 @@
 //! one of them would be faster.
 
 use super::axes::Axes;
+use super::letters::letters;
 use super::output::{counted, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
 use crate::analysis::price::{Law, Price, Renderer};
+use crate::analysis::ranking::groups;
 use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{Error, InputError, Result};
@@ -20,6 +22,7 @@ use crate::lab::Lab;
 use crate::measure::{Doubts, LARGEST_SEED, LARGEST_SPP, Settings};
 use clap::Args;
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Confidence of the intervals.
@@ -83,6 +86,8 @@ struct Row {
     paid_seconds: Option<f64>,
     rmse_ratio: Option<f64>,
     seconds_ratio: Option<f64>,
+    /// With all estimators: the numbers of its groups. Two estimators that share a group cannot be told apart.
+    groups: Vec<usize>,
     /// The tail of the pilot's values.
     #[serde(flatten)]
     tail: Tail,
@@ -141,6 +146,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         priced.extend(rows);
     }
     talk_of(&doubts, talk);
+    if is_comparison {
+        arguments.rmse.iter().for_each(|goal| group(*goal, &mut priced));
+    }
     if arguments.json {
         return print_json(&priced);
     }
@@ -172,15 +180,29 @@ fn price(lab: &Lab, arguments: &Arguments, settings: &Settings, talk: &Talk) -> 
     Ok((piloted, rows))
 }
 
-/// The estimators, sorted by their seconds for each goal.
+/// Puts the estimators of a goal into groups: two share one if their intervals overlap.
+fn group(goal: f64, rows: &mut [Row]) {
+    let mut of_goal: Vec<&mut Row> = rows.iter_mut().filter(|row| row.rmse == goal).collect();
+    of_goal.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    let pairs = (0..of_goal.len()).flat_map(|a| (0..of_goal.len()).map(move |b| (a, b)));
+    let told: BTreeSet<(usize, usize)> =
+        pairs.filter(|(a, b)| of_goal[*a].seconds_high < of_goal[*b].seconds_low).collect();
+    let sets = groups(of_goal.len(), &told);
+    for (at, row) in of_goal.into_iter().enumerate() {
+        row.groups = (0..sets.len()).filter(|number| sets[*number].contains(&at)).collect();
+    }
+}
+
+/// The estimators, sorted by their seconds for each goal, with the letters of their groups.
 fn ranking(goals: &[f64], rows: &[Row]) -> String {
     let line = |goal: &f64| {
         let mut of_goal: Vec<&Row> = rows.iter().filter(|row| row.rmse == *goal).collect();
         of_goal.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        let each = of_goal.iter().map(|row| format!("{} {:.3} s", row.estimator, row.seconds));
+        let each = of_goal.iter().map(|row| format!("{} {:.3} s ({})", row.estimator, row.seconds, letters(&row.groups)));
         format!("RMSE {goal}: {}", each.collect::<Vec<_>>().join(", "))
     };
-    goals.iter().map(line).collect::<Vec<_>>().join("\n")
+    let rule = "Estimators that share a letter cannot be told apart: their intervals overlap.".to_string();
+    goals.iter().map(line).chain([rule]).collect::<Vec<_>>().join("\n")
 }
 
 /// Describes an estimator that would certainly reach the first goal sooner than the chosen one; `None` if short pilots
@@ -330,6 +352,22 @@ mod tests {
 
     fn seconds(value: f64, low: f64, high: f64) -> Estimate {
         Estimate { value, interval: Interval { low, high, level: LEVEL } }
+    }
+
+    /// Intervals that overlap leave the order open: a and b overlap, b and c do, a and c do not, and d is far from all.
+    #[test]
+    fn estimators_are_told_apart_by_disjoint_intervals() {
+        let row = |name: &str, low: f64, seconds: f64, high: f64| {
+            let estimator = name.to_string();
+            Row { estimator, rmse: 0.1, seconds, seconds_low: low, seconds_high: high, ..Row::default() }
+        };
+        let mut rows =
+            [row("d", 8.0, 9.0, 10.0), row("b", 1.9, 3.0, 4.0), row("a", 1.0, 1.5, 2.0), row("c", 3.9, 4.5, 5.0)];
+        group(0.1, &mut rows);
+        let text = ranking(&[0.1], &rows);
+        let (line, rule) = text.split_once('\n').unwrap();
+        assert_eq!(line, "RMSE 0.1: a 1.500 s (a), b 3.000 s (a b), c 4.500 s (b), d 9.000 s (c)");
+        assert!(rule.contains("cannot be told apart"), "{rule}");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! `pathmark rank DIR`: which schedules can be told apart?
 
+use super::letters::letters;
 use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
@@ -51,23 +52,13 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     Ok(())
 }
 
-/// The letter of a group: a to z, then aa, ab and so on.
-fn letter(group: usize) -> String {
-    let last = char::from(b'a' + (group % 26) as u8);
-    if group < 26 { last.to_string() } else { format!("{}{last}", letter(group / 26 - 1)) }
-}
-
-fn letters(place: &Place) -> String {
-    place.groups.iter().map(|group| letter(*group)).collect::<Vec<_>>().join(" ")
-}
-
 fn table(image: &ImageRanking) -> String {
-    let width = image.places.iter().map(|place| letters(place).len()).max().unwrap_or(0).max("groups".len());
+    let width = image.places.iter().map(|place| letters(&place.groups).len()).max().unwrap_or(0).max("groups".len());
     let head = format!("{:>8} {:>16} {:>11}  {:width$}  schedule", "ratio", "interval", "median", "groups");
     let line = |place: &Place| {
         let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
         let Place { ratio, median_s, schedule, .. } = place;
-        format!("{ratio:>8.3} {interval:>16} {:>8.1} ms  {:width$}  {schedule}", 1e3 * median_s, letters(place))
+        format!("{ratio:>8.3} {interval:>16} {:>8.1} ms  {:width$}  {schedule}", 1e3 * median_s, letters(&place.groups))
     };
     let ImageRanking { fastest, compared, places, .. } = image;
     let of = if *compared < places.len() {
@@ -99,15 +90,4 @@ fn object(found: &Ranking) -> Value {
         "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,
         "doubted_rows": found.doubts.count(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_group_has_its_letter() {
-        let found: Vec<String> = [0, 1, 25, 26, 27, 51, 52, 701, 702].into_iter().map(letter).collect();
-        assert_eq!(found, ["a", "b", "z", "aa", "ab", "az", "ba", "zz", "aaa"]);
-    }
 }

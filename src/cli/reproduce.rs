@@ -3,7 +3,7 @@
 use super::output::{lock_folder, print};
 use super::plan::Plans;
 use super::progress::Talk;
-use super::run::talk_of;
+use super::run::{rows, talk_of, tell_left_out};
 use super::whole::Whole;
 use super::{cases, command_line, guards, profile, strict::Strict};
 use crate::check::{self, Case, Effort, cases_file, guards::FOLDER};
@@ -12,7 +12,7 @@ use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Sum
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
-use crate::measure::{Doubts, utc_now};
+use crate::measure::{Doubts, LeftOut, utc_now};
 use crate::report::{self, claims};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -79,7 +79,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
     }
-    let Total { rows, failed, invalid, doubts } = run_all(&sweeps, profile, lab, talk)?;
+    let Total { rows, failed, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, talk)?;
     // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `check --out`.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
         let all: Vec<&'static Case> = check::cases().collect();
@@ -90,7 +90,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     let page = report::write(lab, &arguments.out)?;
     talk_of(&doubts, talk);
-    print(&format!("{rows} rows from {} experiments, report in {}", definitions.len(), page.display()))?;
+    tell_left_out(&left_out, talk);
+    let told = self::rows(rows, &left_out);
+    print(&format!("{told} from {} experiments, report in {}", definitions.len(), page.display()))?;
     if failed > 0 {
         return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));
     }
@@ -103,6 +105,7 @@ struct Total {
     rows: usize,
     failed: usize,
     invalid: u64,
+    left_out: LeftOut,
     doubts: Doubts,
 }
 
@@ -114,6 +117,7 @@ fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Re
         total.rows += summary.rows;
         total.failed += summary.failed;
         total.invalid += summary.invalid;
+        total.left_out.merge(&summary.left_out);
         total.doubts.merge(&summary.doubts);
     };
     if profile == Profile::Quick {
@@ -150,7 +154,9 @@ fn put_aside(out: &Path, lab: &Lab, talk: &Talk) -> Result<()> {
         return Err(Error::system("reading", "the system's clock", problem));
     }
     let earlier = out.join("earlier").join(stamp);
-    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]) {
+    // Verdicts are of the rows beside them.
+    let verdicts = Some(claims::MARKDOWN).filter(|name| claims::is_markdown(&out.join(name)));
+    for name in names.into_iter().chain([FOLDER, cases_file::FOLDER, claims::FOLDER]).chain(verdicts) {
         let folder = out.join(name);
         if folder.exists() {
             std::fs::create_dir_all(&earlier).map_err(|e| Error::system("creating", &earlier, e))?;

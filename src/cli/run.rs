@@ -8,7 +8,7 @@ use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard, Until,
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
-use crate::measure::Doubts;
+use crate::measure::{Doubts, LeftOut};
 use crate::report::{self, check_figures, figure_of_serial};
 use clap::Args;
 use std::path::PathBuf;
@@ -96,16 +96,33 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let page = report::write(lab, &arguments.out);
     // Failed rows are reported before a page that could not be written.
     if summary.failed > 0 {
+        tell_left_out(&summary.left_out, talk);
         let problem = format!("{} of {} rows failed; their column `error` says why", summary.failed, summary.rows);
         return Err(Error::Check(problem));
     }
     arguments.strict.check(summary.invalid)?;
     talk_of(&summary.doubts, talk);
+    tell_left_out(&summary.left_out, talk);
     if arguments.against.is_some() {
         let old = folder_against(&arguments.out, &definition.name);
         talk.note(&format!("pathmark diff {} {} compares the two builds", old.display(), summary.folder.display()));
     }
-    print(&format!("{} rows in {}, report in {}", summary.rows, summary.folder.display(), page?.display()))
+    print(&format!("{} in {}, report in {}", rows(summary.rows, &summary.left_out), summary.folder.display(), page?.display()))
+}
+
+/// The number of rows in words, with those that were left out.
+pub(super) fn rows(count: usize, left_out: &LeftOut) -> String {
+    match left_out.count() {
+        0 => format!("{count} rows"),
+        left => format!("{count} rows ({left} left out)"),
+    }
+}
+
+/// Names the rows that were not run, if there are any.
+pub(super) fn tell_left_out(left_out: &LeftOut, talk: &Talk) {
+    if left_out.count() > 0 {
+        talk.note(&left_out.to_string());
+    }
 }
 
 /// Says how many rows have times in doubt, if there are any.

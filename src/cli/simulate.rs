@@ -72,10 +72,19 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     }
     let costs = trace.costs_s();
     check_noise(arguments, &hardware, costs.iter().sum())?;
-    let names = match &arguments.strategies[..] {
+    // A strategy that is named twice is one.
+    let mut named: Vec<String> = Vec::new();
+    for name in &arguments.strategies {
+        if !named.contains(name) {
+            named.push(name.clone());
+        }
+    }
+    let names = match &named[..] {
         [] => lab.strategies().iter().map(|entry| entry.name.to_string()).collect(),
         // A process with one thread runs its jobs in order.
-        names if !arguments.ranks.is_empty() => [names, &[SERIAL.to_string()]].concat(),
+        names if !arguments.ranks.is_empty() && !names.iter().any(|name| name == SERIAL) => {
+            [names, &[SERIAL.to_string()]].concat()
+        }
         names => names.to_vec(),
     };
     for name in &names {
@@ -130,20 +139,20 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let (blocks, table) = if rules.is_empty() {
         contenders.push(Contender::longest_first());
         let rows = forecast(&costs, &contenders, &workers, &hardware);
-        (forecasts::forecast_blocks(&rows, &workload, hardware == Hardware::default()), "forecast.csv")
+        (forecasts::forecast_blocks(&rows, &workload, hardware == Hardware::default(), &named), "forecast.csv")
     } else {
         let messages = messages(arguments, talk)?;
         if let Some(results) = measured.as_ref().filter(|_| !arguments.no_check) {
             let predictions = rank_forecasts::rank_predictions(results, &contenders, messages)?;
             show(&rank_forecasts::rank_prediction_blocks(&predictions))?;
         }
-        let strategy = arguments.strategies.first().map_or("work-stealing", String::as_str);
+        let usual = [Settings::default().strategy];
+        let strategies = if named.is_empty() { &usual } else { &named[..] };
         let (rules, ranks, threads) = (&rules, &nodes, &workers);
-        let plan = RankPlan { rules, strategy, ranks, threads, messages, hardware };
+        let plan = RankPlan { rules, strategies, ranks, threads, messages, hardware };
         let pixels = f64::from(spec.width) * f64::from(spec.height);
         let rows = rank_forecasts::rank_forecast(&plan, &contenders, &costs, pixels);
-        let workload = format!("{workload}, {strategy} within");
-        (rank_forecasts::rank_forecast_blocks(&rows, &workload), "ranks-forecast.csv")
+        (rank_forecasts::rank_forecast_blocks(&rows, &workload, strategies), "ranks-forecast.csv")
     };
     show(&blocks)?;
     for block in &blocks {
@@ -331,7 +340,7 @@ fn predict_live(
 fn show(blocks: &[Block]) -> Result<()> {
     for block in blocks {
         match block {
-            Block::Finding(text) => print(&format!("{text}\n"))?,
+            Block::Finding(text) | Block::Notice(text) => print(&format!("{text}\n"))?,
             Block::Table { table, .. } => {
                 let (heads, rows): (Vec<String>, Vec<_>) =
                     (table.heads().map(str::to_string).collect(), table.rows().collect());

@@ -91,13 +91,16 @@ impl CellJob {
             let wrong = || format!("the cell's process gave {} rows instead of {}", rows.len(), self.points.len());
             if rows.len() == self.points.len() { Ok(rows) } else { Err(wrong()) }
         });
-        rows.unwrap_or_else(|error| {
-            let failed = |point: &PointJob| {
-                let settings = Settings { spp: point.spp, ..self.settings.clone() };
-                self.label(point, failure(&settings, &error))
-            };
-            self.points.iter().map(failed).collect()
-        })
+        rows.unwrap_or_else(|error| self.failed(&error))
+    }
+
+    /// A failed row for each point.
+    fn failed(&self, error: &str) -> Vec<Record> {
+        let failed = |point: &PointJob| {
+            let settings = Settings { spp: point.spp, ..self.settings.clone() };
+            self.label(point, failure(&settings, error))
+        };
+        self.points.iter().map(failed).collect()
     }
 
     fn child(&self, program: &Path) -> std::result::Result<Vec<Record>, String> {
@@ -115,7 +118,9 @@ impl CellJob {
     fn run(&self, lab: &Lab) -> Result<Vec<Record>> {
         let references = self.references.as_ref().map(|halves| self.read_references(halves)).transpose()?;
         if let Some((external, folder)) = &self.external {
-            return self.other_program(lab, external, folder, references.as_ref());
+            // This process did its part, so the row's error is the program's alone.
+            let rows = self.other_program(lab, external, folder, references.as_ref());
+            return Ok(rows.unwrap_or_else(|error| self.failed(&error.to_string())));
         }
         if let Some((ranks, rule)) = self.settings.ranks.zip(self.settings.rank_rule.as_deref()) {
             return self.by_processes(lab, ranks, rule, references.as_ref());
@@ -148,12 +153,15 @@ impl CellJob {
     fn without_device(&self, lab: &Lab) -> Result<Option<Vec<Record>>> {
         let setup = self.setup(lab, self.settings.spp)?;
         let is_without = setup.scene().is_some_and(|(_, choice)| choice.lacks_device());
-        let row = |point: &PointJob| {
-            let mut record = Record { spp: point.spp, ..Record::of(&setup) };
-            record.warn(&Warning::NoDevice);
-            self.label(point, record)
-        };
+        let row = |point: &PointJob| self.left_out(point, &setup, &Warning::NoDevice);
         Ok(is_without.then(|| self.points.iter().map(row).collect()))
+    }
+
+    /// The row of a point that was not run, for this reason.
+    fn left_out(&self, point: &PointJob, setup: &Setup, reason: &Warning) -> Record {
+        let mut record = Record { spp: point.spp, ..Record::of(setup) };
+        record.warn(reason);
+        self.label(point, record)
     }
 
     /// The rows of a curve. A round that ends inside a block of samples would render and time samples twice. An image
@@ -190,10 +198,10 @@ impl CellJob {
             ("height", spec.height.to_string()),
             ("folder", folder.display().to_string()),
         ];
-        let found = run_external(&filled(&external.command, &values), &out)?;
+        let found = run_external(&external.name, &filled(&external.command, &values), &out)?;
         let row = |point: &PointJob| {
             let Some(run) = &found else {
-                return Ok(self.label(point, missing_external(&self.settings, &scene.hash)));
+                return Ok(self.label(point, missing_external(&self.settings, &scene)));
             };
             let (size, found) = ([spec.width, spec.height], [run.image.width, run.image.height]);
             if size != found {
@@ -208,7 +216,7 @@ impl CellJob {
                 Some([first, second]) => Measured::against(&run.image, first, second)?,
                 None => Measured::default(),
             };
-            Ok(self.label(point, run.record(&self.settings, &scene.hash, errors)))
+            Ok(self.label(point, run.record(&self.settings, &scene, errors)))
         };
         self.points.iter().map(row).collect()
     }
@@ -217,9 +225,9 @@ impl CellJob {
     fn by_processes(&self, lab: &Lab, ranks: u16, rule: &str, references: Option<&[Image; 2]>) -> Result<Vec<Record>> {
         let row = |point: &PointJob| {
             let settings = Settings { spp: point.spp, ..self.settings.clone() };
-            let hash = self.setup(lab, point.spp)?.hash();
+            let setup = self.setup(lab, point.spp)?;
             let Some((record, image)) = run_processes(&settings, ranks, rule, self.trace.as_deref())? else {
-                return Ok(self.label(point, missing_external(&settings, &hash)));
+                return Ok(self.left_out(point, &setup, &Warning::NoProgram));
             };
             self.scene.check(&record.scene_hash)?;
             point.image.as_ref().map_or(Ok(()), |path| image_io::write(path, &image))?;

@@ -100,9 +100,15 @@ impl Reference {
         Ok([path(0)?, path(1)?])
     }
 
-    /// Whether images of these settings are measured against this reference.
-    pub(super) fn is_for(&self, settings: &Settings) -> bool {
-        self.scene == settings.scene && self.size == [settings.spec.width, settings.spec.height]
+    /// Whether images of this cell are measured against this reference: a scene is the same under each of its names.
+    pub(super) fn is_for(&self, cell: &Cell) -> bool {
+        let spec = &cell.settings.spec;
+        self.is_of(&cell.scene.hash) && self.size == [spec.width, spec.height]
+    }
+
+    /// Whether it is a reference of the scene with this hash.
+    pub fn is_of(&self, scene_hash: &str) -> bool {
+        self.version.as_ref().is_some_and(|version| version.hash == scene_hash)
     }
 
     /// Refuses names that no file can have, and a damaged film in the cache. Such a film is never replaced: it may be
@@ -124,7 +130,7 @@ pub fn wanted_references(definition: &Definition, profile: Profile, cells: &[Cel
     let mut wanted: Vec<Reference> = Vec::new();
     for cell in cells {
         let settings = &cell.settings;
-        if !wanted.iter().any(|reference| reference.is_for(settings)) {
+        if !wanted.iter().any(|reference| reference.is_for(cell)) {
             wanted.push(Reference {
                 scene: settings.scene.clone(),
                 version: Some(cell.scene.clone()),

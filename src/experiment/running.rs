@@ -7,7 +7,7 @@ use super::sweep::{Summary, Sweep};
 use super::until::{Decisions, Goal};
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
-use crate::measure::{Doubts, Record};
+use crate::measure::{Doubts, LeftOut, Record};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 
@@ -34,6 +34,8 @@ pub(super) struct Running<'a> {
     /// The next row's number, and the next repetition's.
     order: u64,
     repetition: u32,
+    /// The errors of failed rows, each of which is reported once.
+    told: HashSet<String>,
     summary: Summary,
 }
 
@@ -50,6 +52,7 @@ impl<'a> Running<'a> {
             folder: folder.clone(),
             rows: done.len(),
             failed: 0,
+            left_out: LeftOut::of(&done),
             invalid: done.iter().filter_map(|record| record.invalid_samples).sum(),
             doubts: Doubts::of(done.iter().map(|record| record.warnings.as_str())),
         };
@@ -70,6 +73,7 @@ impl<'a> Running<'a> {
             // Failed rows were dropped with their numbers, so the number of rows may be in use already.
             order: done.iter().map(|record| record.order + 1).max().unwrap_or(0),
             repetition: done.iter().map(|record| record.repetition + 1).max().unwrap_or(0),
+            told: HashSet::new(),
             summary,
         };
         let points = sweep.cells.iter().flat_map(|cell| &cell.points);
@@ -131,8 +135,12 @@ impl<'a> Running<'a> {
         self.drift.watch(&mut record);
         if !record.error.is_empty() {
             self.summary.failed += 1;
-            self.progress.note(&format!("{} repetition {}: {}", record.cell, record.repetition, record.error));
+            // A program that fails usually fails in every row.
+            if self.told.insert(record.error.clone()) {
+                self.progress.note(&format!("{} repetition {}: {}", record.cell, record.repetition, record.error));
+            }
         }
+        self.summary.left_out.add(&record);
         self.file.append(&record)?;
         self.summary.invalid += record.invalid_samples.unwrap_or(0);
         self.summary.doubts.add(&record.warnings);

@@ -21,7 +21,7 @@ use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{Doubts, Machine, Record, Settings, check_cache};
+use crate::measure::{Doubts, LeftOut, Machine, Record, Settings, check_cache};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -73,6 +73,8 @@ pub struct Summary {
     pub failed: usize,
     /// Samples that were NaN, infinite or negative, over all rows.
     pub invalid: u64,
+    /// Rows that were not run, because the machine lacks what they need.
+    pub left_out: LeftOut,
     /// Rows whose times are in doubt.
     pub doubts: Doubts,
 }
@@ -269,7 +271,7 @@ impl<'a> Sweep<'a> {
             image: is_kept.then(|| folder.join("images").join(point.image_file())),
         };
         let trace = || folder.join("traces").join(trace_file(&cell.id, repetition));
-        let halves = references.iter().find(|(of, _)| of.is_for(&cell.settings)).map(|(_, halves)| halves.clone());
+        let halves = references.iter().find(|(of, _)| of.is_for(cell)).map(|(_, halves)| halves.clone());
         CellJob {
             experiment: definition.name.clone(),
             points: cell.points.iter().map(point_job).collect(),

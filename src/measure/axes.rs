@@ -82,6 +82,11 @@ impl Axis {
         AXES.iter().find(|axis| axis.name == name)
     }
 
+    /// The columns of a row that hold its value.
+    pub(super) fn columns(&self) -> Vec<String> {
+        if self.name == "size" { vec!["width".into(), "height".into()] } else { vec![self.name.replace('-', "_")] }
+    }
+
     /// Sets its value from text.
     pub fn set(&self, settings: &mut Settings, text: &str) -> Result<()> {
         match (self.field)(settings).set(text) {

@@ -4,6 +4,7 @@ use super::Settings;
 use super::record::{Measured, Record, external_row};
 use crate::error::{Error, InputError, Result};
 use crate::image_io::{self, Image};
+use crate::scene::Scene;
 use nix::sys::resource::{UsageWho, getrusage};
 use nix::sys::time::TimeValLike;
 use std::path::Path;
@@ -29,10 +30,18 @@ fn children_s() -> Option<[f64; 2]> {
 /// Exit codes of shells, and of `env`, for a program that is missing or cannot be run.
 const NOT_THERE: [i32; 2] = [126, 127];
 
-/// Runs a command that writes `out`. `Ok(None)` if there is no such program.
-pub fn run_external(command: &[String], out: &Path) -> Result<Option<ExternalRun>> {
+/// The last line that a program wrote: of a traceback, the one that says what is wrong.
+fn last_line(said: &[u8]) -> String {
+    let said = String::from_utf8_lossy(said);
+    said.lines().rev().map(str::trim).find(|line| !line.is_empty()).unwrap_or("").chars().take(200).collect()
+}
+
+/// Runs the command of the program `name`, which writes `out`. `Ok(None)` if there is no such program. Errors name the
+/// program alone: its arguments differ from row to row.
+pub fn run_external(name: &str, command: &[String], out: &Path) -> Result<Option<ExternalRun>> {
+    let failed = |problem: String| InputError::new("external", name, problem);
     let Some((program, arguments)) = command.split_first() else {
-        return Err(InputError::new("command", "[]", "names no program").into());
+        return Err(failed("has an empty command".to_string()).into());
     };
     let (before, start) = (children_s(), Instant::now());
     let output = Command::new(program).args(arguments).stdin(Stdio::null()).output();
@@ -46,33 +55,38 @@ pub fn run_external(command: &[String], out: &Path) -> Result<Option<ExternalRun
         return Ok(None);
     }
     if !output.status.success() {
-        let said: String = String::from_utf8_lossy(&output.stderr).trim().chars().take(200).collect();
-        let problem = format!("ended with {}: {said}", output.status);
-        return Err(InputError::new("command", command.join(" "), problem).into());
+        let said = last_line(&output.stderr);
+        let said = if said.is_empty() { said } else { format!(": {said}") };
+        return Err(failed(format!("ended with {}{said}", output.status)).into());
     }
+    if !out.exists() {
+        return Err(failed("wrote no image".to_string()).into());
+    }
+    let image = image_io::read(out).map_err(|error| match error {
+        Error::Input(error) => failed(format!("wrote an image that cannot be read: {}", error.problem)).into(),
+        other => other,
+    })?;
     let cpu_s = before.zip(children_s()).map(|(before, after)| [after[0] - before[0], after[1] - before[1]]);
-    Ok(Some(ExternalRun { image: image_io::read(out)?, wall_s, cpu_s }))
+    Ok(Some(ExternalRun { image, wall_s, cpu_s }))
 }
 
 impl ExternalRun {
     /// Its row: the measurements, for settings whose estimator is the program's name.
-    pub fn record(&self, settings: &Settings, scene_hash: &str, errors: Measured) -> Record {
+    pub fn record(&self, settings: &Settings, scene: &Scene, errors: Measured) -> Record {
         Record {
-            scene_hash: scene_hash.to_string(),
             makespan_s: Some(self.wall_s),
             cpu_user_s: self.cpu_s.map(|cpu| cpu[0]),
             cpu_system_s: self.cpu_s.map(|cpu| cpu[1]),
             mean_radiance: Some(self.image.mean().iter().sum::<f64>() / 3.0),
             paths: Some(u64::from(settings.spec.width) * u64::from(settings.spec.height) * u64::from(settings.spp)),
-            ..external_row(settings, errors)
+            ..external_row(settings, scene, errors)
         }
     }
 }
 
 /// The row of a missing program: no failure, but without measurements.
-pub fn missing_external(settings: &Settings, scene_hash: &str) -> Record {
-    let mut record = external_row(settings, Measured::default());
-    record.scene_hash = scene_hash.to_string();
+pub fn missing_external(settings: &Settings, scene: &Scene) -> Record {
+    let mut record = external_row(settings, scene, Measured::default());
     record.warn(&super::Warning::NoProgram);
     record
 }

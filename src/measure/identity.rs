@@ -2,10 +2,21 @@
 //!
 //! Cells, rows, references and figures compare by these keys. A new axis is a field of one of the two; the tests compare them with the table of axes.
 
-use super::{Record, Setup};
+use super::{AXES, Axis, Record, Setup};
 use crate::film_file::FilmKey;
 use crate::kernel;
 use std::fmt;
+
+/// The columns of an image's identity, by the table of axes. The scene's name and its hash are one axis.
+pub fn image_columns() -> Vec<String> {
+    AXES.iter().filter(|axis| axis.changes_image).flat_map(Axis::columns).chain(["scene_hash".to_string()]).collect()
+}
+
+/// The columns of a schedule's identity, by the table of axes. The kernel's name and the reason for it are one axis.
+pub fn schedule_columns() -> Vec<String> {
+    let own = AXES.iter().filter(|axis| !axis.changes_image).flat_map(Axis::columns);
+    own.chain(["kernel_fallback".to_string()]).collect()
+}
 
 /// The identity of an image: rows with equal keys have equal checksums, unless the sampler draws other random numbers
 /// in each run.

@@ -8,7 +8,7 @@ use crate::image_io::Image;
 use crate::kernel::Choice;
 use crate::kernel::workload::WORKLOAD;
 use crate::metric;
-use crate::scene::Filter;
+use crate::scene::{Filter, Scene};
 use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
@@ -278,8 +278,9 @@ pub fn failure(settings: &Settings, error: &str) -> Record {
 }
 
 /// The row of another program, with its errors.
-pub(super) fn external_row(settings: &Settings, errors: Measured) -> Record {
-    described(settings).with_errors(errors)
+pub(super) fn external_row(settings: &Settings, scene: &Scene, errors: Measured) -> Record {
+    let (name, hash) = (scene.name.clone(), scene.hash.clone());
+    Record { scene: name, scene_hash: hash, ..described(settings).with_errors(errors) }
 }
 
 impl Record {

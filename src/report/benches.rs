@@ -7,7 +7,7 @@ use super::table::Digits::Decimals;
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
 use crate::experiment::{Chapter, MACHINE, RunFile, read_run_file};
-use crate::measure::Doubts;
+use crate::measure::{Doubts, LeftOut};
 use crate::plot::{Axis, Dot, DotPlot, Row};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -105,6 +105,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         in_short: None,
         axes: None,
         failed: Vec::new(),
+        left_out: LeftOut::default(),
         doubts: Doubts::default(),
         rows: rows.len(),
         run,

@@ -10,6 +10,8 @@ use std::path::Path;
 pub enum Block {
     /// The result in a sentence or two.
     Finding(String),
+    /// What is missing here, and why. It says nothing about the measurements.
+    Notice(String),
     /// A figure as SVG and PNG.
     Figure {
         /// File name without its ending.
@@ -44,6 +46,10 @@ impl Block {
         Self::Finding(text.into())
     }
 
+    pub(super) fn notice(text: impl Into<String>) -> Self {
+        Self::Notice(text.into())
+    }
+
     /// The sentence of a finding.
     pub(super) fn as_finding(&self) -> Option<&str> {
         if let Self::Finding(text) = self { Some(text) } else { None }
@@ -72,7 +78,7 @@ impl Block {
     pub(super) fn save(&self, folder: &Path) -> Result<()> {
         std::fs::create_dir_all(folder).map_err(|e| Error::system("creating", folder, e))?;
         match self {
-            Self::Finding(_) => Ok(()),
+            Self::Finding(_) | Self::Notice(_) => Ok(()),
             Self::Figure { stem, figure } => figure.save(folder, stem),
             Self::Picture { stem, png, .. } => {
                 atomic_file::write(&folder.join(format!("{stem}.png")), |file| file.write_all(png))

@@ -1,7 +1,6 @@
 //! Contenders: the ways to render a scene that an experiment compares by price. Each has error curves over seeds, and
 //! seconds per sample.
 
-use super::block::Block;
 use super::naming::{Part, joined, needed};
 use super::results::{Results, prefixed};
 use super::rows::{Row, group};
@@ -14,7 +13,7 @@ use crate::analysis::mse::over_seeds;
 use crate::analysis::price::{Law, Renderer};
 use crate::error::{InputError, Result};
 use crate::experiment::{EXTERNAL, law_of};
-use crate::measure::{ImageKey, ScheduleKey, Warning};
+use crate::measure::{ImageKey, ScheduleKey};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An estimator with a sampler and a schedule, on a scene.
@@ -122,41 +121,41 @@ pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
     for row in rows {
         seeds.entry(row.seed).or_default().entry(row.spp).or_insert(row);
     }
-    let mse = |row: &Row| row.mse.filter(|mse| *mse > 0.0);
-    let has_all = |spp: &u32| seeds.values().all(|rows| rows.get(spp).copied().and_then(mse).is_some());
-    let whole: BTreeSet<u32> =
-        rows.iter().map(|row| row.spp).collect::<BTreeSet<_>>().into_iter().filter(has_all).collect();
-    let of_seed = |rows: &BTreeMap<u32, &Row>| {
-        let own = rows.iter().filter(|(spp, _)| whole.contains(spp));
-        let curve: Curve = own.filter_map(|(spp, row)| Some((f64::from(*spp), mse(row)?))).collect();
+    let errors = group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, |row| row.mse)));
+    let has_all = |errors: &BTreeMap<u64, f64>| errors.len() == seeds.len() && errors.values().all(|mse| *mse > 0.0);
+    let whole: Vec<(u32, BTreeMap<u64, f64>)> = errors.filter(|(_, errors)| has_all(errors)).collect();
+    let of_seed = |(seed, rows): (&u64, &BTreeMap<u32, &Row>)| {
+        let curve: Curve = whole.iter().filter_map(|(spp, errors)| Some((f64::from(*spp), *errors.get(seed)?))).collect();
         let longest = rows.iter().rev().find_map(|(spp, row)| Some(row.rendering_s()? / f64::from(*spp)))?;
         Some((curve, longest))
     };
-    seeds.values().filter_map(of_seed).collect()
+    seeds.iter().filter_map(of_seed).collect()
 }
 
-/// One value per seed. All schedules and repetitions of a seed render the same image; counting them again would make
-/// intervals falsely narrow.
+/// One value per seed.
 pub(super) fn one_per_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> Vec<f64> {
-    let by_seed: BTreeMap<u64, f64> = rows.iter().filter_map(|row| Some((row.seed, value(row)?))).collect();
-    by_seed.into_values().collect()
+    by_seed(rows, value).into_values().collect()
+}
+
+/// The value of each seed. All schedules and repetitions of a seed render the same image, and images of other settings
+/// may share its samples: only seeds are independent, and more values than seeds would make intervals falsely narrow.
+/// The value of several images is their mean. An image that a seed lacks is left out for all seeds.
+fn by_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> BTreeMap<u64, f64> {
+    let mut images: BTreeMap<ImageKey, BTreeMap<u64, f64>> = BTreeMap::new();
+    for (row, value) in rows.iter().filter_map(|row| Some((row, value(row)?))) {
+        let image = ImageKey { seed: 0, ..row.image.clone() };
+        images.entry(image).or_default().entry(row.seed).or_insert(value);
+    }
+    let seeds: BTreeSet<u64> = images.values().flat_map(BTreeMap::keys).copied().collect();
+    images.retain(|_, values| values.len() == seeds.len());
+    let mean = |seed| images.values().filter_map(|values| values.get(&seed)).sum::<f64>() / images.len() as f64;
+    seeds.into_iter().filter(|_| !images.is_empty()).map(|seed| (seed, mean(seed))).collect()
 }
 
 /// The root of the mean, not the mean of roots, as the cross form requires. NaN, which charts leave out, if the mean is
 /// negative.
 pub(super) fn root_of_mean(mse: &[f64]) -> f64 {
     (mse.iter().sum::<f64>() / mse.len() as f64).sqrt()
-}
-
-/// A finding that names the other programs that were not found.
-pub(super) fn missing(results: &Results) -> Option<Block> {
-    let warning = Warning::NoProgram.to_string();
-    let absent = results.rows().filter(|row| row.warnings.contains(&warning));
-    let names: BTreeSet<&str> = absent.map(|row| row.estimator.as_str()).collect();
-    let list: Vec<&str> = names.into_iter().collect();
-    let text =
-        format!("Left out, because the program is not there: {}. The definition says how it is made.", list.join(", "));
-    (!list.is_empty()).then_some(Block::finding(text))
 }
 
 /// The contenders of each scene: scenes by name, with the image size if there are several, because seconds of different

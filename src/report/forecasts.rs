@@ -59,11 +59,11 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
     let Some((plain, told)) = all else { return Vec::new() };
     let (runs, quiet) = predictions.iter().fold((0, 0), |sum, p| (sum.0 + p.runs, sum.1 + p.undisturbed));
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    let finding = match errors(|p| p.undisturbed_ratio) {
-        None => {
-            "No run was undisturbed, so there is no telling how well the simulator predicts this machine.".to_string()
-        }
-        Some(found) => format!(
+    let block = match errors(|p| p.undisturbed_ratio) {
+        None => Block::notice(
+            "No run was undisturbed, so there is no telling how well the simulator predicts this machine.",
+        ),
+        Some(found) => Block::finding(format!(
             "{} of this machine predicted from serial runs: median absolute error {}, worst {}, bias {:+.1} %. That is over the {quiet} of {runs} runs whose CPU time was within {:.0} % of that of the serial run \
              beside them, so that it was the schedule that made their time; over all runs the median is {}, the worst {}. Told besides what CPU time each run took, which is no prediction: median {}, worst {}.",
             counted(predictions.iter().filter(|prediction| prediction.undisturbed > 0).count(), "schedule"),
@@ -75,7 +75,7 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
             percent(plain.worst_absolute),
             percent(told.median_absolute),
             percent(told.worst_absolute),
-        ),
+        )),
     };
     let off = |ratio: f64| 100.0 * (ratio - 1.0);
     let table = Block::table("predictions", "The simulator predicts this machine", predictions)
@@ -90,7 +90,7 @@ pub fn prediction_blocks(predictions: &[Prediction]) -> Vec<Block> {
         .number("error in all runs, %", Decimals(1), |p| off(p.plain_ratio))
         .number("error if told the CPU time, %", Decimals(1), |p| off(p.ratio))
         .end();
-    vec![Block::Finding(finding), table]
+    vec![block, table]
 }
 
 /// The files that the blocks of [`forecast_blocks`] are saved in.
@@ -106,10 +106,12 @@ pub const FORECAST_FILES: &[&str] = &[
 
 /// Charts of speedup, efficiency and makespan against cores, and a table of all values.
 ///
-/// Graham's bound is drawn only for equal cores, because it holds only for them.
-pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> Vec<Block> {
+/// Graham's bound is drawn only for equal cores, because it holds only for them. Every strategy that is `named` is drawn.
+pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool, named: &[String]) -> Vec<Block> {
     let mut blocks = Vec::new();
-    let shown = representatives(rows);
+    let shown = representatives(rows, named);
+    let is_whole = rows.iter().all(|row| shown.contains(&row.strategy));
+    let left_out = if is_whole { "" } else { " Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all." };
     let bound = rows.iter().map(|row| row.share_s * row.workers as f64 / row.longest_s).reduce(f64::max);
     let series = |value: Value| -> Vec<Series> {
         let points = |name: &str| {
@@ -137,7 +139,7 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool) -> 
     let charts = [("forecast-speedup", speedup), ("forecast-efficiency", efficiency), ("forecast-makespan", makespan)];
     for (stem, mut chart) in charts {
         chart.subtitle = workload.to_string();
-        chart.caption = "Simulated from the jobs of one serial run. Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all.".to_string();
+        chart.caption = format!("Simulated from the jobs of one serial run.{left_out}");
         blocks.push(Block::figure(stem, chart));
     }
     blocks.push(
@@ -177,8 +179,9 @@ fn bounds(rows: &[Forecast], first: usize, equal_cores: bool) -> Vec<Series> {
     values.into_iter().take(if equal_cores { 3 } else { 2 }).enumerate().map(line).collect()
 }
 
-/// The strategies that a chart shows: of those whose speedups are within a quarter of each other everywhere, the first.
-fn representatives(rows: &[Forecast]) -> Vec<String> {
+/// The strategies that a chart shows: those that are `named`, and of others whose speedups are within a quarter of each
+/// other everywhere, the first.
+fn representatives(rows: &[Forecast], named: &[String]) -> Vec<String> {
     let mut names: Vec<&str> = rows.iter().map(|row| row.strategy.as_str()).collect();
     names.dedup();
     let speedups =
@@ -188,8 +191,9 @@ fn representatives(rows: &[Forecast]) -> Vec<String> {
     for name in names {
         let own = speedups(name);
         let alike = |other: &Vec<f64>| other.iter().zip(&own).all(|(a, b)| (a / b - 1.0).abs() < 0.25);
-        // A strategy with a fixed number of workers, such as serial, has no line.
-        if own.len() == most && !shown.iter().any(|(_, other)| alike(other)) {
+        // A strategy with a fixed number of workers, such as serial, has no line, but a point if it is named.
+        let stands_out = || own.len() == most && !shown.iter().any(|(_, other)| alike(other));
+        if named.iter().any(|wanted| wanted == name) || stands_out() {
             shown.push((name.to_string(), own));
         }
     }

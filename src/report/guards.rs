@@ -8,7 +8,7 @@ use crate::analysis::Interval;
 use crate::check::guards::{FILE, FOLDER, PriceRow, read_prices};
 use crate::error::Result;
 use crate::experiment::{Chapter, read_run_file};
-use crate::measure::Doubts;
+use crate::measure::{Doubts, LeftOut};
 use crate::plot::{Axis, Dot, DotPlot, Row};
 use std::path::Path;
 
@@ -45,6 +45,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         in_short: None,
         axes: None,
         failed: Vec::new(),
+        left_out: LeftOut::default(),
         doubts: Doubts::default(),
         rows: rows.len(),
         run,

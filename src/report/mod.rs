@@ -43,11 +43,11 @@ const PAGE: &str = "report.html";
 /// Enters the page of a folder into the files of a command that will write it. `option` is the option that named the
 /// folder. Refuses a folder that has another file of that name.
 pub fn claim(option: &str, out: &Path, files: &mut Files) -> Result<()> {
-    files.renews(option, &out.join(PAGE), page::is_page)?;
-    claims::enter(option, out, files)
+    files.renews(option, &out.join(PAGE), page::is_page)
 }
 
-/// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path.
+/// Draws the figures of every experiment in a folder and writes `report.html` there; returns the page's path. The page
+/// shows the verdicts on claims; only the verb `claims` writes them into files.
 pub fn write(lab: &Arc<Lab>, out: &Path) -> Result<PathBuf> {
     let mut sections = Vec::new();
     for folder in experiment_folders(out)? {

@@ -5,7 +5,7 @@ use super::results::Results;
 use super::table::Table;
 use crate::error::Result;
 use crate::experiment::{Chapter, Definition, RunFile};
-use crate::measure::{Doubts, Record};
+use crate::measure::{Doubts, LeftOut, Record};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -54,7 +54,9 @@ pub(super) struct Section {
     pub(super) axes: Option<BTreeMap<String, &'static str>>,
     /// Rows that failed.
     pub(super) failed: Vec<Record>,
-    /// Number of rows that did not fail.
+    /// Rows that were not run.
+    pub(super) left_out: LeftOut,
+    /// Number of rows that were run and did not fail.
     pub(super) rows: usize,
     /// Rows whose times are in doubt.
     pub(super) doubts: Doubts,
@@ -72,8 +74,9 @@ impl Section {
         let Definition { name, title, question, analysis, chapter, place, in_short, .. } = results.definition;
         let findings = || blocks.iter().filter_map(Block::as_finding);
         let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
-        let (failed, run, chapter) = (results.failed, results.run, Some(chapter));
-        Self { name, title, question, analysis, chapter, place, in_short, axes, failed, rows, doubts, run, blocks }
+        let Results { failed, left_out, run, .. } = results;
+        let chapter = Some(chapter);
+        Self { name, title, question, analysis, chapter, place, in_short, axes, failed, left_out, rows, doubts, run, blocks }
     }
 }
 
@@ -204,7 +207,7 @@ fn sources(sections: &[Section]) -> Markup {
             details.wide open {
                 summary { "Folders" }
                 table {
-                    thead { tr { th { "folder" } th { "rows" } th { "failed" } th { "in doubt" } th { "profile" } th { "processors" } th { "processor" } th { "sources" } } }
+                    thead { tr { th { "folder" } th { "rows" } th { "failed" } th { "left out" } th { "in doubt" } th { "profile" } th { "processors" } th { "processor" } th { "sources" } } }
                     tbody {
                         @for section in runs {
                             @let machine = &section.run.machine;
@@ -212,6 +215,7 @@ fn sources(sections: &[Section]) -> Markup {
                                 td { a href={ "#" (section.name) } { (section.name) } }
                                 td { (section.rows) }
                                 td { (section.failed.len()) }
+                                td { (section.left_out.count()) }
                                 td { (section.doubts.count()) }
                                 td { (section.run.profile) }
                                 td { (machine.processors) }
@@ -236,7 +240,13 @@ fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
             @if !section.failed.is_empty() {
                 div.failed {
                     p { strong { (section.failed.len()) " rows failed." } " They are left out of figures and tables." }
-                    ul { @for record in section.failed.iter().take(10) { li { code { (record.cell) } ": " (record.error) } } }
+                    ul { @for (error, cells) in failures(&section.failed).into_iter().take(10) { li { code { (cells[0]) } @if cells.len() > 1 { " and " (cells.len() - 1) " more" } ": " (error) } } }
+                }
+            }
+            @if section.left_out.count() > 0 {
+                div.failed {
+                    p { strong { (section.left_out.count()) " rows are left out" } " of figures and tables, because they were not run." }
+                    ul { @for line in section.left_out.lines() { li { (line) } } }
                 }
             }
             @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark explain" } " says what each means." } }
@@ -252,9 +262,22 @@ fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
     })
 }
 
+/// The errors of the failed rows, each with its cells: a program that fails usually fails in every row.
+fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
+    let mut errors: Vec<(&str, Vec<&str>)> = Vec::new();
+    for record in failed {
+        match errors.iter_mut().find(|(error, _)| *error == record.error) {
+            Some((_, cells)) => cells.push(&record.cell),
+            None => errors.push((&record.error, vec![&record.cell])),
+        }
+    }
+    errors
+}
+
 fn part(section: &str, block: &Block) -> Result<Markup> {
     Ok(match block {
         Block::Finding(text) => html! { p.finding { (prose(text)) } },
+        Block::Notice(text) => html! { p.notice { (prose(text)) } },
         Block::Figure { stem, figure } => html! {
             figure id={ (section) "-" (stem) } {
                 (PreEscaped(figure.svg()?))
@@ -331,7 +354,7 @@ fn provenance(section: &Section) -> Markup {
         ("load when the sweep began", machine.load_average.clone()),
         ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
         ("sources", format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" })),
-        ("rows", format!("{} done, {} failed", section.rows, section.failed.len())),
+        ("rows", format!("{} done, {} failed, {} left out", section.rows, section.failed.len(), section.left_out.count())),
     ];
     html! {
         details open[false] {

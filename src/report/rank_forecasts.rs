@@ -43,6 +43,7 @@ pub struct RankPrediction {
 /// One row of a forecast.
 pub struct RankForecast {
     rule: String,
+    strategy: String,
     crew: Crew,
     makespan_s: f64,
     speedup: f64,
@@ -123,8 +124,8 @@ pub fn rank_prediction_blocks(predictions: &[RankPrediction]) -> Vec<Block> {
 pub struct RankPlan<'a> {
     /// Rules between ranks.
     pub rules: &'a [RankRule],
-    /// The strategy within a rank that has several threads.
-    pub strategy: &'a str,
+    /// The strategies within a rank that has several threads.
+    pub strategies: &'a [String],
     /// Numbers of ranks.
     pub ranks: &'a [usize],
     /// Numbers of threads of a rank.
@@ -140,15 +141,21 @@ pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64
     let serial_s: f64 = costs.iter().sum();
     let mut rows = Vec::new();
     for rule in plan.rules {
-        for &threads in plan.threads {
-            let Some(within) = within(contenders, plan.strategy, threads) else { continue };
+        // A rank with one thread runs its jobs in order, whatever the strategy.
+        let crews = plan.threads.iter().flat_map(|&threads| {
+            let strategies = if threads == 1 { plan.strategies.get(..1).unwrap_or_default() } else { plan.strategies };
+            strategies.iter().map(move |strategy| (threads, strategy))
+        });
+        for (threads, strategy) in crews {
+            let Some(within) = within(contenders, strategy, threads) else { continue };
             for &ranks in plan.ranks.iter().filter(|ranks| rule.check(**ranks).is_ok()) {
                 let crew = Crew { ranks, threads };
                 let cluster = Cluster { crew, within, messages: plan.messages, hardware: plan.hardware };
                 let makespan_s = cluster.makespan_s(costs, rule.way());
                 let speedup = if makespan_s > 0.0 { serial_s / makespan_s } else { 1.0 };
                 let gather_s = cluster.gather_s(PIXEL_BYTES * pixels);
-                rows.push(RankForecast { rule: rule.to_string(), crew, makespan_s, speedup, gather_s });
+                let (rule, strategy) = (rule.to_string(), within.name.clone());
+                rows.push(RankForecast { rule, strategy, crew, makespan_s, speedup, gather_s });
             }
         }
     }
@@ -158,9 +165,12 @@ pub fn rank_forecast(plan: &RankPlan<'_>, contenders: &[Contender], costs: &[f64
 /// The files that the blocks of [`rank_forecast_blocks`] are saved in.
 pub const RANK_FORECAST_FILES: &[&str] = &["ranks-forecast.svg", "ranks-forecast.png", "ranks-forecast.csv"];
 
-/// A chart of speedup against cores, and a table of all values.
-pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str) -> Vec<Block> {
-    let name = |row: &RankForecast| format!("{}, {}", row.rule, counted(row.crew.threads, "thread"));
+/// A chart of speedup against cores, and a table of all values. `strategies` are those of the plan.
+pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str, strategies: &[String]) -> Vec<Block> {
+    let name = |row: &RankForecast| match (strategies, row.crew.threads) {
+        ([_, _, ..], 2..) => format!("{}, {} by {}", row.rule, counted(row.crew.threads, "thread"), row.strategy),
+        (_, threads) => format!("{}, {}", row.rule, counted(threads, "thread")),
+    };
     let cores = |row: &RankForecast| (row.crew.ranks * row.crew.threads) as f64;
     let fewest = rows.iter().map(|row| row.crew.threads).min().unwrap_or(1);
     let most = rows.iter().map(|row| row.crew.threads).max().unwrap_or(1);
@@ -182,7 +192,7 @@ pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str) -> Vec<Block>
         series,
     );
     chart.overlays = vec![Overlay::guide("one per core", Curve::Line { intercept: 0.0, slope: 1.0 })];
-    chart.subtitle = workload.to_string();
+    chart.subtitle = format!("{workload}, {} within", strategies.join(" or "));
     let told = if fewest == most {
         String::new()
     } else {
@@ -208,6 +218,7 @@ pub fn rank_forecast_blocks(rows: &[RankForecast], workload: &str) -> Vec<Block>
         .number("speedup", Decimals(2), |row| row.speedup)
         .number("efficiency", Decimals(3), |row| row.speedup / (row.crew.ranks * row.crew.threads) as f64)
         .number("gathering, ms", Significant(3), |row| 1e3 * row.gather_s)
+        .column("strategy within", |row| row.strategy.clone())
         .end();
     finding.into_iter().chain([Block::figure("ranks-forecast", chart), table]).collect()
 }

@@ -7,11 +7,11 @@ use super::serial::Serial;
 use super::words::Told;
 use crate::analysis::confidence_sequence::Stopping;
 use crate::error::{InputError, Result};
-use crate::experiment::{Definition, Profile, RunFile, read_records, read_run_file, trace_file};
+use crate::experiment::{Definition, EXTERNAL, Profile, RunFile, read_records, read_run_file, trace_file};
 use crate::image_io::{self, Image};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{Doubts, ImageKey, Record, TraceFile};
+use crate::measure::{Doubts, ImageKey, LeftOut, Record, TraceFile};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,6 +24,8 @@ pub struct Results {
     pub run: RunFile,
     /// Rows that failed.
     pub failed: Vec<Record>,
+    /// Rows that were not run, because the machine lacked what they need.
+    pub left_out: LeftOut,
     /// The experiment's folder.
     pub folder: PathBuf,
     /// The folder that holds all experiments and the references.
@@ -43,10 +45,14 @@ impl Results {
         let path = folder.join("records.csv");
         let records = read_records(&path)?;
         check_identities(&records, &path)?;
-        let (done, failed): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|row| row.error.is_empty());
+        let (mut done, failed): (Vec<Record>, Vec<Record>) = records.into_iter().partition(|row| row.error.is_empty());
+        let left_out = LeftOut::of(&done);
+        done.retain(|row| !row.is_left_out());
+        name_scenes_alike(&mut done);
         let rows = named(done);
         let image_parts = image_parts(&rows);
-        Ok(Self { definition, run, failed, folder: folder.to_path_buf(), out: out.to_path_buf(), rows, image_parts })
+        let (folder, out) = (folder.to_path_buf(), out.to_path_buf());
+        Ok(Self { definition, run, failed, left_out, folder, out, rows, image_parts })
     }
 
     /// Reads an experiment's folder; its parent is the folder of all experiments.
@@ -55,7 +61,7 @@ impl Results {
         Self::read(lab, out, folder)
     }
 
-    /// The rows that did not fail. To call this once for each of many groups takes quadratic time; [`Results::by`]
+    /// The rows that were run and did not fail. To call this once for each of many groups takes quadratic time; [`Results::by`]
     /// takes one pass.
     pub(super) fn rows(&self) -> impl Iterator<Item = &Row> + Clone {
         #[cfg(test)]
@@ -189,6 +195,23 @@ impl Results {
         let mut timed = images.rev().max_by_key(Vec::len)?;
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
         timed.get(timed.len().checked_sub(1)? / 2).map(|(_, row)| *row)
+    }
+}
+
+/// Gives the rows of other programs the name that our own rows have for the same scene: a scene is known by its content,
+/// and a file may be named by its path or by its stem.
+fn name_scenes_alike(records: &mut [Record]) {
+    let mut names: HashMap<String, Vec<String>> = HashMap::new();
+    for record in records.iter().filter(|record| record.strategy != EXTERNAL) {
+        let known = names.entry(record.scene_hash.clone()).or_default();
+        if !known.contains(&record.scene) {
+            known.push(record.scene.clone());
+        }
+    }
+    for record in records.iter_mut().filter(|record| record.strategy == EXTERNAL) {
+        if let Some(known) = names.get(&record.scene_hash).filter(|known| !known.contains(&record.scene)) {
+            record.scene.clone_from(&known[0]);
+        }
     }
 }
 

@@ -24,7 +24,12 @@ fn listing(folder: &Path, more: &[&str]) -> Vec<serde_json::Value> {
 #[test]
 fn small_images_do_not_judge_a_report_and_are_told_as_such() {
     let folder = with_rows();
+    // The page of `run` shows the verdicts, but only `--out` writes them into files.
+    let before = snapshot(folder.path());
     let verdicts = listing(folder.path(), &[]);
+    assert_untouched(&before, &snapshot(folder.path()));
+    assert!(!folder.path().join("out/CLAIMS.md").exists() && !folder.path().join("out/claims").exists());
+    assert_eq!(listing(folder.path(), &["--out", "out"]), verdicts);
     assert_eq!(verdicts.len(), 72);
     let from_rows: Vec<&serde_json::Value> = verdicts.iter().filter(|row| row["source"].is_string()).collect();
     assert!(!from_rows.is_empty());
@@ -61,10 +66,43 @@ fn folders_and_files_that_are_not_of_it_are_refused() {
     for (arguments, told) in [
         (["claims", "out", "--report", "E"], "A, B, C, D"),
         (["claims", "nowhere", "--report", "A"], "nowhere"),
-        (["claims", "out", "--quiet", "--json"], "CLAIMS.md"),
+        (["claims", "out", "--out", "out"], "CLAIMS.md"),
     ] {
         let said = finish(pathmark(folder.path(), &arguments)).with_code(2).err;
         assert!(said.contains(told), "{said}");
     }
+    assert_untouched(&before, &snapshot(folder.path()));
+}
+
+/// Verdicts of fewer rows do not replace those of more, neither in the table nor in the text. Links lead from the folder of
+/// the verdicts to the rows.
+#[test]
+fn verdicts_are_not_replaced_by_fewer() {
+    let folder = with_rows();
+    fs::create_dir(folder.path().join("none")).unwrap();
+    listing(folder.path(), &["--out", "verdicts"]);
+    let text = fs::read_to_string(folder.path().join("verdicts/CLAIMS.md")).unwrap();
+    assert!(text.contains("(../out/thread-scaling/records.csv)"), "{text}");
+    let fewer = || finish(pathmark(folder.path(), &["claims", "none", "--out", "verdicts"]));
+    for file in ["verdicts/claims/claims.csv", "verdicts/CLAIMS.md"] {
+        let before = snapshot(folder.path());
+        let refused = fewer().with_code(2);
+        assert!(refused.err.contains(file) && refused.out.is_empty(), "{}", refused.err);
+        assert_untouched(&before, &snapshot(folder.path()));
+        fs::remove_file(folder.path().join(file)).unwrap();
+    }
+    fewer().with_code(0);
+    listing(folder.path(), &["--out", "verdicts"]);
+}
+
+/// The same rows are drawn to the same bytes, and `report` changes no file but the page and the figures.
+#[test]
+fn a_report_is_the_same_each_time() {
+    let folder = with_rows();
+    let report = || finish(pathmark(folder.path(), &["report", "out"])).with_code(0);
+    let before = snapshot(folder.path());
+    let pictures = before.keys().filter(|path| path.to_string_lossy().ends_with(".png")).count();
+    assert!(pictures > 0);
+    report();
     assert_untouched(&before, &snapshot(folder.path()));
 }

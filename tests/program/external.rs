@@ -59,23 +59,40 @@ fn a_program_that_is_not_there_is_said_and_stops_nothing() {
         let build = "build = [\"nowhere-compiler\", \"{folder}/renderer\"]\n";
         let (rows, finished) = run(folder.path(), &format!("{}{build}", table(command)));
         assert!(finished.err.contains("other is left out"), "{}", finished.err);
-        finished.with_code(0);
+        let finished = finished.with_code(0);
+        let last = finished.err.lines().last().unwrap_or_default();
+        assert_eq!(last, "left out: 2 rows of other: its program is not on this machine");
+        assert!(finished.out.contains("7 rows (2 left out)"), "{}", finished.out);
+        let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+        let box_of = "<div class=\"failed\"><p><strong>2 rows are left out</strong>";
+        assert!(page.contains(box_of) && page.contains("2 rows of other: its program is not on this machine"));
+        assert!(page.contains("5 done, 0 failed, 2 left out"), "{page}");
         assert_eq!(rows.len(), 2);
         assert!(rows.iter().all(|row| row["warnings"] == "no-program" && row["makespan_s"].is_empty()));
     }
 }
 
+/// Of a traceback the last line says what is wrong. All rows fail in the same way, so it is told once.
 #[test]
 fn one_that_fails_or_writes_another_size_is_a_failed_row() {
     for (command, why) in [
-        (r#""sh", "-c", "echo out of paint >&2; exit 3", "{out}", "{spp}", "{seed}""#, "out of paint"),
+        (
+            r#""sh", "-c", "printf 'Traceback\\n  line 3\\nout of paint\\n\\n' >&2; exit 3", "{out}", "{spp}", "{seed}""#,
+            "external = other: ended with exit status: 3: out of paint",
+        ),
+        (r#""sh", "-c", "", "{out}", "{spp}", "{seed}""#, "external = other: wrote no image"),
+        (r#""sh", "-c", "echo no picture > $0", "{out}", "{spp}", "{seed}""#, "external = other: wrote an image that cannot be read"),
         (r#""sh", "-c", "printf 'PF\\n1 1\\n-1.0\\n000000000000' > $0", "{out}", "{spp}", "{seed}""#, "1x1"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let (rows, finished) = run(folder.path(), &table(command));
-        finished.with_code(1);
+        let finished = finished.with_code(1);
         assert_eq!(rows.len(), 2);
         assert!(rows.iter().all(|row| row["error"].contains(why)), "{}", rows[0]["error"]);
+        assert!(finished.err.matches(why).count() == 1 && !finished.err.contains("Traceback"), "{}", finished.err);
+        assert!(finished.err.contains("2 of 7 rows failed"), "{}", finished.err);
+        let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
+        assert!(page.matches(why).count() == 1 && page.contains("and 1 more"), "{page}");
     }
 }
 
@@ -166,5 +183,29 @@ fn it_ends_with_the_sweep() {
             std::thread::sleep(Duration::from_millis(5));
         }
         sweep.wait().unwrap();
+    }
+}
+
+/// A scene file and its path are one scene: its rows and those of the other program share a figure, in either spelling.
+#[test]
+fn it_meets_our_own_rows_of_the_same_scene_file() {
+    let scene = "about = \"A room\"\nbase = \"cornell\"\n";
+    for spelling in ["room.toml", "./room.toml"] {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("room.toml"), scene).unwrap();
+        let (_, matrix) = TINY.split_once("[matrix]").unwrap();
+        let own = matrix.replace("[\"cornell\"]", "[\"room.toml\"]").replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
+        assert!(own.contains("room.toml"), "{own}");
+        let (own, scales) = own.split_once("[quick]").unwrap();
+        let own = own.replace("seed = [1]", "seed = [3, 4]");
+        let other = table(BLACK).replace("\"cornell\"", &format!("\"{spelling}\""));
+        let scales = scales.replacen("repetitions = 3", "repetitions = 1\nreference-spp = 40", 1);
+        let head = TINY.split_once("[matrix]").unwrap().0.replace("[\"speedup\", \"schedules\"]", "[\"error-against-time\", \"pairs\"]");
+        write_tiny(folder.path(), &format!("{head}[matrix]{own}[reference]\nestimator = \"bsdf\"\n\n{other}\n[quick]{scales}"));
+        finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
+        let halves = std::fs::read_dir(folder.path().join("out/references")).unwrap().count();
+        let pairs = std::fs::read_to_string(folder.path().join("out/tiny/figures/pairs.csv")).unwrap_or_default();
+        assert!(pairs.contains("other"), "{spelling}: {pairs}");
+        assert_eq!(halves, 2, "one reference");
     }
 }

@@ -65,12 +65,7 @@ pub fn judge<'a>(lab: &Arc<Lab>, reports: &'a [Report], folders: &[PathBuf]) -> 
                 let mut best = answer(Verdict::NotAnswered, "The results have no such rows.");
                 for library in &mut libraries {
                     let found = library.answer(report, claim, test)?;
-                    let says_more = |verdict| match verdict {
-                        Verdict::NotAnswered => 0,
-                        Verdict::NotComparable => 1,
-                        _ => 2,
-                    };
-                    if says_more(found.verdict) > says_more(best.verdict) {
+                    if found.verdict.says() > best.verdict.says() {
                         best = found;
                     }
                 }
@@ -141,7 +136,7 @@ impl<'a> Library<'a> {
         let tried = ids.iter().map(|id| self.cases.iter().find(|case| case.id == *id && case.trials > 0));
         let tried = tried.collect::<Option<Vec<&CaseRow>>>()?;
         let failed = tried.iter().filter(|case| !case.pass).count() as f64;
-        Some(Found { value: failed, interval: Interval::between(failed, failed, 1.0), rows: tried.len() })
+        Some(Found { value: failed, interval: Interval::between(failed, failed, 1.0), count: tried.len() })
     }
 
     fn price(&self, guard: &str, column: GuardColumn) -> Option<Found> {
@@ -151,7 +146,7 @@ impl<'a> Library<'a> {
             GuardColumn::ErrorWithout => (row.error_without, row.error_without_low, row.error_without_high),
             GuardColumn::TimeRatio => (row.time_ratio?, row.time_ratio_low?, row.time_ratio_high?),
         };
-        Some(Found { value, interval: Interval::between(low, high, guards::LEVEL), rows: 1 })
+        Some(Found { value, interval: Interval::between(low, high, guards::LEVEL), count: 1 })
     }
 }
 

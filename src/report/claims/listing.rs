@@ -11,14 +11,14 @@ use crate::report::table::Table;
 use std::fmt::Write;
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// Name of the verdicts' folder within the results.
 pub const FOLDER: &str = "claims";
 /// The verdicts as a table.
 pub(super) const CSV: &str = "claims.csv";
 /// The verdicts as a text. It is beside the folders of the rows, so that its links work.
-pub(super) const MARKDOWN: &str = "CLAIMS.md";
+pub const MARKDOWN: &str = "CLAIMS.md";
 
 const HEADING: &str = "# The claims of the four reports";
 
@@ -87,7 +87,7 @@ fn table(stem: &'static str, answers: &[Answer<'_>]) -> Block {
         .column("low", |a| number(of(a).and_then(|found| Some(found.interval?.low))))
         .column("high", |a| number(of(a).and_then(|found| Some(found.interval?.high))))
         .column("level", |a| number(a.level()))
-        .column("rows", |a| number(of(a).map(|found| found.rows as f64)))
+        .column("values", |a| number(of(a).map(|found| found.count as f64)))
         .column("source", |a| a.source.as_ref().map_or_else(String::new, |source| source.display().to_string()))
         .column("why", |a| a.why.clone())
         .end()
@@ -99,7 +99,7 @@ pub(super) fn is_csv(path: &Path) -> bool {
 }
 
 /// Whether a file is such a text, which a new one may replace.
-pub(super) fn is_markdown(path: &Path) -> bool {
+pub fn is_markdown(path: &Path) -> bool {
     starts_with(path, HEADING)
 }
 
@@ -117,6 +117,14 @@ fn counts(answers: &[Answer<'_>]) -> Vec<(String, Vec<usize>)> {
         answers.iter().filter(|a| a.report.report == report && a.verdict.name() == name).count()
     };
     reports.iter().map(|report| ((*report).to_string(), NAMES.map(|name| of(report, name)).to_vec())).collect()
+}
+
+/// The path of a file as seen from a folder; the path itself if either is not there.
+fn seen_from(folder: &Path, file: &Path) -> PathBuf {
+    let Some((from, to)) = folder.canonicalize().ok().zip(file.canonicalize().ok()) else { return file.to_path_buf() };
+    let shared = from.components().zip(to.components()).take_while(|(a, b)| a == b).count();
+    let up = from.components().skip(shared).map(|_| Component::ParentDir);
+    up.chain(to.components().skip(shared)).collect()
 }
 
 /// The verdicts as a text; paths of sources are relative to `base`.
@@ -155,13 +163,13 @@ fn entry(answer: &Answer<'_>, base: &Path) -> String {
     }
     let _ = write!(text, "\n\n> {} ({})\n\n- Reported: {}\n", claim.quote, claim.place, claim.reported);
     if let Some(source) = &answer.source {
-        let shown = source.strip_prefix(base).unwrap_or(source).display().to_string();
-        let rows = answer.found.map_or(0, |found| found.rows);
+        let shown = seen_from(base, source).display().to_string();
+        let count = answer.found.map_or(0, |found| found.count);
         let level = answer.level().filter(|level| *level < 1.0);
         let level = level.map_or_else(String::new, |level| format!(", {:.1} %", 100.0 * level));
         let _ = writeln!(
             text,
-            "- Measured: {}{level}; {}; {rows} values, [{shown}]({shown})\n- Predicted: {}",
+            "- Measured: {}{level}; {}; {count} values, [{shown}]({shown})\n- Predicted: {}",
             answer.measured(),
             answer.question(),
             answer.predicted()

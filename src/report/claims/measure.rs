@@ -14,29 +14,30 @@ use crate::analysis::z_test::{critical_value, z_score};
 use crate::analysis::{Estimate, Interval};
 use crate::error::{InputError, Result};
 use crate::experiment::read_calibration;
+use crate::measure::{image_columns, schedule_columns};
 use crate::report::contenders::{curves_of_seeds, one_per_seed};
 use crate::report::results::Results;
 use crate::report::rows::Row;
 use crate::simulate::{Contender, Hardware, contenders, forecast};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// A value, its interval if there were enough rows for one, and the number of rows.
+/// A value, its interval if there were enough values for one, and the number of values that the interval is computed from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
     pub(super) value: f64,
     pub(super) interval: Option<Interval>,
-    pub(super) rows: usize,
+    pub(super) count: usize,
 }
 
 impl Found {
-    fn estimate(estimate: Option<Estimate>, rows: usize) -> Option<Self> {
+    fn estimate(estimate: Option<Estimate>, count: usize) -> Option<Self> {
         let Estimate { value, interval } = estimate?;
-        Some(Self { value, interval: Some(interval), rows })
+        Some(Self { value, interval: Some(interval), count })
     }
 
     /// A counted value, which has no error.
-    fn exact(value: f64, rows: usize) -> Option<Self> {
-        (rows > 0).then(|| Self { value, interval: Interval::between(value, value, 1.0), rows })
+    fn exact(value: f64, count: usize) -> Option<Self> {
+        (count > 0).then(|| Self { value, interval: Interval::between(value, value, 1.0), count })
     }
 
     /// The median of some values. If they are too few for the level, `of_few` gives the interval; a single value has
@@ -49,7 +50,7 @@ impl Found {
     ) -> Option<Self> {
         let enough = stopping.median_interval(values, level).filter(|interval| interval.level >= level);
         let interval = enough.or_else(|| Some(of_few(values, level)?.interval));
-        Some(Self { value: median(values)?, interval, rows: values.len() })
+        Some(Self { value: median(values)?, interval, count: values.len() })
     }
 }
 
@@ -68,35 +69,6 @@ const FOLLOWERS: [(&str, &[&str]); 5] = [
     ("kernel", &["kernel_fallback", "simd", "effects", "accelerator"]),
     ("precision", &["simd", "accelerator"]),
     ("sampler", &["kernel", "kernel_fallback", "simd", "effects"]),
-];
-
-/// The columns that identify rows.
-const IDENTITY: [&str; 25] = [
-    "scene",
-    "scene_hash",
-    "estimator",
-    "sampler",
-    "width",
-    "height",
-    "spp",
-    "seed",
-    "max_depth",
-    "camera_rays",
-    "roulette",
-    "clamp",
-    "precision",
-    "adaptive",
-    "strategy",
-    "decomposition",
-    "threads",
-    "ranks",
-    "rank_rule",
-    "output",
-    "kernel",
-    "kernel_fallback",
-    "simd",
-    "effects",
-    "accelerator",
 ];
 
 impl Evidence {
@@ -143,7 +115,7 @@ impl Evidence {
                 let own: Vec<&Row> = rows.iter().map(|(row, _)| *row).collect();
                 let curves: Vec<_> = curves_of_seeds(&own).into_iter().map(|(curve, _)| curve).collect();
                 let law = SeedCurves::of_errors(&curves).and_then(|curves| power_law(&curves, level));
-                Found::estimate(law.map(|law| law.exponent), rows.len())
+                Found::estimate(law.map(|law| law.exponent), curves.len())
             }
             Kind::Z { column, over } => z(&rows, &self.rows(over), column, level),
             Kind::RankCorrelation { x, y, by } => rank_correlation(&rows, [x, y], by, level),
@@ -158,9 +130,10 @@ impl Evidence {
         let named: BTreeSet<&str> = own.columns().chain(over.columns()).collect();
         let followers = FOLLOWERS.iter().filter(|(column, _)| named.contains(column)).flat_map(|(_, others)| *others);
         let free: BTreeSet<&str> = named.iter().copied().chain(followers.copied()).collect();
+        let identity: Vec<String> =
+            image_columns().into_iter().chain(schedule_columns()).filter(|column| !free.contains(&**column)).collect();
         let key = |row: &Row, columns: &Columns| {
-            let told = IDENTITY.iter().filter(|column| !free.contains(*column));
-            (told.map(|column| text(columns, column)).collect::<Vec<String>>(), row.repetition)
+            (identity.iter().map(|column| text(columns, column)).collect::<Vec<String>>(), row.repetition)
         };
         let mut below = HashMap::new();
         for (row, columns) in self.rows(over) {
@@ -214,7 +187,7 @@ fn share(shares: &[f64], level: f64) -> Option<Found> {
     }
     let mean = shares.iter().sum::<f64>() / shares.len() as f64;
     let interval = t_interval(shares, level).map(|estimate| estimate.interval);
-    Some(Found { value: mean, interval, rows: shares.len() })
+    Some(Found { value: mean, interval, count: shares.len() })
 }
 
 /// The difference of two means over seeds in standard errors, plus or minus the normal quantile of the level.
@@ -230,7 +203,7 @@ fn z(rows: &[Pair<'_>], over: &[Pair<'_>], column: &str, level: f64) -> Option<F
     let (a, b) = (moments(rows), moments(over));
     let score = z_score(a.mean()?, a.standard_error()?, b.mean()?, b.standard_error()?)?;
     let interval = Interval::around(score, critical_value(1.0 - level)?, level);
-    Some(Found { value: score, interval, rows: rows.len() + over.len() })
+    Some(Found { value: score, interval, count: (a.count() + b.count()) as usize })
 }
 
 /// Spearman's coefficient over the means of groups, with Fisher's interval. The variance for ranks is from E. C.
@@ -253,7 +226,7 @@ fn rank_correlation(rows: &[Pair<'_>], [x, y]: [&str; 2], by: &str, level: f64) 
     // A perfect order has an infinite transform, so rho is clamped.
     let centre = libm::atanh(rho.clamp(-0.999_999, 0.999_999));
     let interval = Interval::between(libm::tanh(centre - half), libm::tanh(centre + half), level);
-    Some(Found { value: rho, interval, rows: rows.len() })
+    Some(Found { value: rho, interval, count: points.len() })
 }
 
 /// The largest number of different checksums of one image; `None` if no image has two rows.

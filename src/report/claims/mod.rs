@@ -6,6 +6,7 @@
 mod condition;
 mod definition;
 mod judge;
+mod kept;
 mod listing;
 mod measure;
 mod statistic;
@@ -15,7 +16,8 @@ mod verdict;
 
 pub use definition::{Claim, Report};
 pub use judge::{Answer, judge};
-pub use listing::{FOLDER, save};
+pub use kept::check_no_loss;
+pub use listing::{FOLDER, MARKDOWN, is_markdown, save};
 pub use verdict::Verdict;
 
 use super::page::Section;
@@ -23,8 +25,8 @@ use crate::error::Result;
 use crate::experiment::RunFile;
 use crate::files::Files;
 use crate::lab::Lab;
-use crate::measure::Doubts;
-use listing::{CSV, MARKDOWN, is_csv, is_markdown};
+use crate::measure::{Doubts, LeftOut};
+use listing::{CSV, is_csv};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -40,8 +42,7 @@ pub fn enter(option: &str, out: &Path, files: &mut Files) -> Result<()> {
     files.renews(option, &out.join(MARKDOWN), is_markdown)
 }
 
-/// The verdicts as the first section of the page, if the folder has rows for any of them. Also writes them into the
-/// folder.
+/// The verdicts as the first section of the page, if the folder has rows for any of them.
 pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
     let reports = Report::all()?;
     let answers = judge(lab, &reports, &[out.to_path_buf()])?;
@@ -49,7 +50,6 @@ pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
     if answered == 0 {
         return Ok(None);
     }
-    save(&answers, out)?;
     Ok(Some(Section {
         name: FOLDER.to_string(),
         title: "What the reports said".to_string(),
@@ -60,6 +60,7 @@ pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
         in_short: Some(listing::in_short(&answers)),
         axes: None,
         failed: Vec::new(),
+        left_out: LeftOut::default(),
         doubts: Doubts::default(),
         rows: answered,
         run: RunFile::of_now("pathmark claims".to_string()),

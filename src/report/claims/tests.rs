@@ -1,5 +1,6 @@
 use super::condition::{Columns, columns};
 use super::definition::{Evidence, Test};
+use super::measure::Found;
 use super::statistic::{Kind, Statistic};
 use super::*;
 use crate::error::Error;
@@ -16,13 +17,19 @@ fn claim(evidence: &str) -> String {
     format!("{HEAD}[[claim]]\nid = 1\n{words}{evidence}\n")
 }
 
-/// The verdict on a claim about `an-experiment` with these rows, and why.
-fn verdict(rows: &[Record], evidence: &str) -> (Verdict, String) {
+/// The answer of these rows to a claim about `an-experiment`: the verdict, the reason for it, and the measured value.
+fn answer(rows: &[Record], evidence: &str) -> (Verdict, String, Option<Found>) {
     let out = folder_of(&[], "", rows.to_vec());
     let text = claim(&format!("experiment = \"an-experiment\"\nlevel = 0.95\n{evidence}"));
     let reports = [Report::from_text("X.toml", &text).unwrap()];
     let answers = judge(&Lab::built_in(), &reports, &[out.path().to_path_buf()]).unwrap();
-    (answers[0].verdict, answers[0].why.clone())
+    (answers[0].verdict, answers[0].why.clone(), answers[0].found)
+}
+
+/// The verdict on a claim about `an-experiment` with these rows, and why.
+fn verdict(rows: &[Record], evidence: &str) -> (Verdict, String) {
+    let (verdict, why, _) = answer(rows, evidence);
+    (verdict, why)
 }
 
 /// Rows that differ by `change`, which gets the index of the row.
@@ -94,6 +101,56 @@ fn ratios_pair_rows_by_all_that_the_claim_does_not_name() {
         row.decomposition = "rows".to_string();
     }
     assert_eq!(verdict(&all, &format!("statistic = \"speedup\"\n{pool}\nat-least = 1.0")).0, Verdict::NotAnswered);
+}
+
+/// Images that differ in any setting are no partners, also if only the filter or the epsilon differs.
+#[test]
+fn ratios_pair_rows_of_the_same_image() {
+    let images: [fn(&mut Record); 3] = [|_| (), |row| row.filter = "box".to_string(), |row| row.epsilon = "1e-4".to_string()];
+    let mut all = Vec::new();
+    for (slow, change) in [1.0, 10.0, 100.0].into_iter().zip(images) {
+        for repetition in 0..6 {
+            for (strategy, seconds) in [("serial", 2.0), ("pool", 1.0)] {
+                let mut row = Record { repetition, strategy: strategy.to_string(), ..row() };
+                change(&mut row);
+                row.makespan_s = Some(about(seconds * slow, repetition));
+                all.push(row);
+            }
+        }
+    }
+    let pool = "statistic = \"speedup\"\nrows = { strategy = \"pool\" }\nover = { strategy = \"serial\" }";
+    both_ways(&all, pool, [1.99, 2.01]);
+}
+
+/// Rows of other samples per pixel, other sizes or other repetitions of a seed are no further seeds, and none of them
+/// replaces another. Seed s has the mean s at 4, 8 and 16 samples together; the shift from b to a is 1.
+#[test]
+fn only_seeds_are_independent() {
+    let mut all = Vec::new();
+    for seed in 1..=4u64 {
+        for (estimator, shift, order) in [("bsdf", 1.0, 1.0), ("mis", 0.0, -1.0)] {
+            for (spp, offset) in [(4, -1.0), (8, 0.0), (16, 1.0)] {
+                for repetition in 0..2 {
+                    let mean = 10.0 + seed as f64 + shift + order * offset;
+                    let mut row = Record { repetition, seed, spp, estimator: estimator.to_string(), ..row() };
+                    (row.mean_radiance, row.mse) = (Some(mean), Some(1.0 / f64::from(spp) / seed as f64));
+                    all.push(row);
+                }
+            }
+        }
+    }
+    let pair = "statistic = \"z\"\ncolumn = \"mean_radiance\"\nrows = { estimator = \"bsdf\" }\nover = { estimator = \"mis\" }\nwithin = [-9, 9]";
+    let found = answer(&all, pair).2.unwrap();
+    // The variance of 1, 2, 3, 4 is 5/3, so each mean has the squared standard error 5/12.
+    assert!((found.value - 1.0 / libm::sqrt(5.0 / 6.0)).abs() < 1e-12, "{found:?}");
+    assert_eq!(found.count, 8, "four seeds on either side");
+    let slope = "statistic = \"rmse-slope\"\nrows = { estimator = \"mis\" }\nwithin = [-0.6, -0.4]";
+    assert_eq!(answer(&all, slope).2.unwrap().count, 4);
+    // A second size with thrice the squared error triples no count and leaves the exponent as it is.
+    let larger = all.iter().map(|row| Record { width: 16, mse: row.mse.map(|mse| 3.0 * mse), ..row.clone() });
+    let both: Vec<Record> = larger.chain(all.clone()).collect();
+    let found = answer(&both, slope).2.unwrap();
+    assert!(found.count == 4 && (found.value + 0.5).abs() < 1e-9, "{found:?}");
 }
 
 #[test]

@@ -29,6 +29,22 @@ impl Verdict {
         NAMES[self as usize]
     }
 
+    /// The verdict of that name.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        let all =
+            [Self::Confirmed, Self::Refuted, Self::Open, Self::NotComparable, Self::NotAnswered, Self::Context];
+        all.into_iter().find(|verdict| verdict.name() == name)
+    }
+
+    /// How much it says about the claim: of two answers, the larger one counts.
+    pub(super) fn says(self) -> u8 {
+        match self {
+            Self::NotAnswered | Self::Context => 0,
+            Self::NotComparable => 1,
+            Self::Confirmed | Self::Refuted | Self::Open => 2,
+        }
+    }
+
     /// Compares a measurement with the ends of the prediction.
     pub(super) fn of(found: &Found, [low, high]: [f64; 2]) -> Self {
         match found.interval {
@@ -52,7 +68,7 @@ mod tests {
 
     fn of(low: f64, high: f64, predicted: [f64; 2]) -> Verdict {
         let interval = Interval::between(low, high, 0.95);
-        Verdict::of(&Found { value: 0.5 * (low + high), interval, rows: 9 }, predicted)
+        Verdict::of(&Found { value: 0.5 * (low + high), interval, count: 9 }, predicted)
     }
 
     #[test]
@@ -76,6 +92,6 @@ mod tests {
 
     #[test]
     fn a_single_value_decides_nothing() {
-        assert_eq!(Verdict::of(&Found { value: 1.0, interval: None, rows: 1 }, [0.9, 1.1]), Verdict::Open);
+        assert_eq!(Verdict::of(&Found { value: 1.0, interval: None, count: 1 }, [0.9, 1.1]), Verdict::Open);
     }
 }

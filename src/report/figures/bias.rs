@@ -66,7 +66,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut costs = costs(results, axis, &usual);
     if costs.is_empty() {
         let text = format!("There is nothing to compare: it takes rows with and without {}.", axis.name());
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     }
     let values = in_order(costs.iter().map(|cost| cost.value.clone()), &usual);
     let place = |cost: &Cost| values.iter().position(|value| *value == cost.value);

@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     });
     let steps: Vec<Step> = images.iter().flat_map(|(name, rows)| steps(name, rows)).collect();
     if steps.is_empty() {
-        return Ok(vec![Block::finding(
+        return Ok(vec![Block::notice(
             "There is no light by bounce: it takes rows with bounce limits and rows without.",
         )]);
     }

@@ -41,7 +41,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let last = of("subpixel").next_back().and_then(|((_, spp), rows)| Some((*spp, radiance(rows)?)));
     let (Some((largest, limit)), Some(truth)) = (last, radiance(&plain)) else {
         let text = "There is no bias to show: it takes rows with and without the clamp.";
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     };
     let known = |spp: u32| prototype.as_ref()?.bias.iter().find(|(of, _)| *of == spp).map(|(_, bias)| *bias);
     let losses = of("subpixel").filter(|((_, spp), _)| *spp < largest).filter_map(|((_, spp), rows)| {

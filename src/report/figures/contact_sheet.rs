@@ -10,7 +10,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Some(reference) = reference_image(results, None)? else {
         let text =
             "There is no contact sheet: the films of the references are not in the folder beside this experiment.";
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     };
     let images = renders(results)?;
     let Some((_, noisiest)) = images.first() else { return Ok(Vec::new()) };

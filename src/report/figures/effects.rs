@@ -84,7 +84,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     blocks.extend(scenes(results, &largest));
     if blocks.is_empty() {
         let text = "Nothing was run with and without an effect, so there is no price of one.";
-        blocks.push(Block::finding(text));
+        blocks.push(Block::notice(text));
     }
     Ok(blocks)
 }

@@ -21,7 +21,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let seconds = |record: &Row| record.makespan_s.unwrap_or(0.0);
     let longest = |images: &Vec<(&Row, Image)>| images.iter().map(|(record, _)| seconds(record)).reduce(f64::max);
     let Some(time) = kept.values().filter_map(longest).reduce(f64::min) else {
-        return Ok(vec![Block::finding("There are no images side by side: this experiment kept none.")]);
+        return Ok(vec![Block::notice("There are no images side by side: this experiment kept none.")]);
     };
     let distance = |record: &Row| (libm::log(seconds(record) / time)).abs();
     let mut cells = Vec::new();

@@ -8,7 +8,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let scenes = contenders(results)?;
     let Some((scene, first)) = scenes.iter().next() else {
         let text = "There is no error against time: it takes errors against references from two seeds or more.";
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     };
     let mut chart = LineChart::new(
         "What accuracy costs in time, by estimator and sampler",

@@ -19,7 +19,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         .map(|(scene, contenders)| PlotRow::new(scene, others.iter().map(|other| dot(contenders, other)).collect()))
         .collect();
     if rows.iter().all(|row| row.dots.iter().all(Option::is_none)) {
-        return Ok(vec![Block::finding("No two estimators were measured on the same scene.")]);
+        return Ok(vec![Block::notice("No two estimators were measured on the same scene.")]);
     }
     let found: Vec<String> = rows
         .iter()

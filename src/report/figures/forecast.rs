@@ -28,7 +28,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { cores, decomposition } = options(results, "forecast")?;
     let path = results.folder.join("calibration.csv");
     if !path.is_file() {
-        return Ok(vec![Block::finding("There is no calibration.csv, so nothing can be simulated.")]);
+        return Ok(vec![Block::notice("There is no calibration.csv, so nothing can be simulated.")]);
     }
     let mut contenders = contenders(&results.definition.lab, &read_calibration(&path)?);
     let mut blocks = prediction_blocks(&predictions(results, &contenders)?);
@@ -44,7 +44,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         if decomposition == "rows" {
             blocks.extend(claim(&rows, &costs));
         }
-        blocks.extend(forecast_blocks(&rows, &format!("{}, {of}, simulated", row.scene), true));
+        blocks.extend(forecast_blocks(&rows, &format!("{}, {of}, simulated", row.scene), true, &[]));
     }
     Ok(blocks)
 }

@@ -16,7 +16,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         }
     }
     if scenes.is_empty() {
-        return Ok(vec![Block::finding("There is no gallery: this experiment kept no images.")]);
+        return Ok(vec![Block::notice("There is no gallery: this experiment kept no images.")]);
     }
     let mut cells = Vec::new();
     for (record, image) in scenes.values() {

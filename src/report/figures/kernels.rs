@@ -3,7 +3,6 @@
 use super::prelude::*;
 use crate::analysis::versus::equal_error;
 use crate::kernel::DEVICE_KERNEL;
-use crate::measure::Warning;
 use crate::report::contenders::{Contender, contenders};
 
 #[derive(Deserialize)]
@@ -68,14 +67,9 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let Options { yardstick, goal } = options(results, "kernels")?;
     let works = works(results, &yardstick)?;
     if works.is_empty() {
-        return Ok(vec![Block::finding("No two kernels rendered the same, so there is no ratio of them.")]);
+        return Ok(vec![Block::notice("No two kernels rendered the same, so there is no ratio of them.")]);
     }
     let mut blocks = vec![Block::figure("kernels", plot(results, &works, &yardstick))];
-    let warning = Warning::NoDevice.to_string();
-    if results.rows().any(|row| row.warnings.contains(&warning)) {
-        let text = "The kernel `device` was not measured: neither CUDA nor OpenCL finds a GPU on this machine.";
-        blocks.push(Block::finding(text));
-    }
     let scenes = contenders(results)?;
     blocks.extend(scenes.iter().filter_map(|(scene, all)| finding(scene, all, &yardstick, goal.0)));
     let mut table = Block::table("kernels", "Samples and rays per second, medians", works.iter().flatten())

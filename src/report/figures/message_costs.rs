@@ -7,7 +7,7 @@ use crate::experiment::MESSAGES;
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let path = results.folder.join(MESSAGES);
     if !path.is_file() {
-        return Ok(vec![Block::finding(format!("There is no {MESSAGES}, so nobody knows what messages cost."))]);
+        return Ok(vec![Block::notice(format!("There is no {MESSAGES}, so nobody knows what messages cost."))]);
     }
     let told = MessageCosts::read(&path)?;
     let (waiting_s, rendering_s) = (told.fetch_s(), told.fetch_while_rendering_s());

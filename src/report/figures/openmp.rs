@@ -13,7 +13,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let own = schedules.iter().filter(|(schedule, _)| schedule.key.strategy == yardstick);
     let place = |schedule: &Schedule| (schedule.key.threads <= results.processors(), schedule.key.threads);
     let Some((own, own_rows)) = own.max_by_key(|(schedule, _)| place(schedule)) else {
-        return Ok(vec![Block::finding(format!("{yardstick} was not run, so there is nothing to compare with."))]);
+        return Ok(vec![Block::notice(format!("{yardstick} was not run, so there is nothing to compare with."))]);
     };
     let others = schedules.iter().filter(|(s, _)| *s != own && s.key.threads == own.key.threads);
     let cells = others.map(|(schedule, rows)| {

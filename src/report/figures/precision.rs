@@ -38,7 +38,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         pairs.push(Pair { name, double, single, time, light: t_interval(&lighter, LEVEL) });
     }
     if pairs.is_empty() {
-        return Ok(vec![Block::finding("Nothing was rendered in both precisions.")]);
+        return Ok(vec![Block::notice("Nothing was rendered in both precisions.")]);
     }
     let dots = pairs
         .iter()

@@ -1,7 +1,7 @@
 //! The price list: samples and seconds to each accuracy, and predictions of later points from earlier ones.
 
 use super::prelude::*;
-use crate::report::contenders::{Check, Contender, contenders, missing};
+use crate::report::contenders::{Check, Contender, contenders};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let all: Vec<&Contender> = scenes.values().flatten().collect();
     if all.is_empty() {
         let text = "There is no price list: it takes errors against references from two seeds or more.";
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     }
     let name = |contender: &Contender| {
         if scenes.len() > 1 { format!("{}: {}", contender.image.scene, contender.name) } else { contender.name.clone() }
@@ -38,7 +38,6 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let checks: Vec<(&Contender, Option<Check>)> =
         all.iter().map(|contender| (*contender, contender.check())).collect();
     let mut blocks = vec![Block::figure("price-list", plot)];
-    blocks.extend(missing(results));
     blocks.extend(checked(&checks));
 
     let mut table = Block::table("price-list", "Price list, intervals of 95 %", checks)

@@ -39,7 +39,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let [calibration, messages] = ["calibration.csv", MESSAGES].map(|name| results.folder.join(name));
     if !calibration.is_file() || !messages.is_file() {
         let text = format!("There is no calibration.csv or no {MESSAGES}, so no processes can be simulated.");
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     }
     let lab = &results.definition.lab;
     let contenders = contenders(lab, &read_calibration(&calibration)?);
@@ -50,15 +50,15 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         let numbers = |numbers: Vec<NonZeroUsize>| numbers.into_iter().map(NonZeroUsize::get).collect::<Vec<_>>();
         let (ranks, threads) = (numbers(ranks), numbers(threads));
         let hardware = Hardware::default();
-        let plan =
-            RankPlan { rules: &rules, strategy: &strategy, ranks: &ranks, threads: &threads, messages, hardware };
+        let strategies = &[strategy][..];
+        let plan = RankPlan { rules: &rules, strategies, ranks: &ranks, threads: &threads, messages, hardware };
         let costs = trace.costs_s();
         let settings = &trace.header.settings;
         let (spec, pieces) = (&settings.spec, &settings.decomposition);
         let pixels = f64::from(spec.width) * f64::from(spec.height);
         let rows = rank_forecast(&plan, &contenders, &costs, pixels);
         let of = format!("{}x{}, {} spp, {} {pieces}", spec.width, spec.height, settings.spp, costs.len());
-        blocks.extend(rank_forecast_blocks(&rows, &format!("{}, {of}, {strategy} within", settings.scene)));
+        blocks.extend(rank_forecast_blocks(&rows, &format!("{}, {of}", settings.scene), strategies));
     }
     Ok(blocks)
 }

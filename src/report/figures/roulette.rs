@@ -22,7 +22,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     compared.sort_by(|(a, _), (b, _)| place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal));
     let Some((best, most)) = first_largest(&compared) else {
         let text = format!("There is no comparison of rules: it takes rows with {yardstick}.");
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     };
     let lines = gathered(compared.iter().filter_map(|(contender, gain)| {
         // A rule with a constant probability begins at the first vertex; its number is not a vertex.

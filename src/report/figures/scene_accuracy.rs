@@ -65,7 +65,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut scenes = accuracies(results)?;
     if scenes.is_empty() {
         let text = "There is no accuracy by scene: it takes errors against references, and the kept images.";
-        return Ok(vec![Block::finding(text)]);
+        return Ok(vec![Block::notice(text)]);
     }
     scenes.sort_by(|a, b| a.error.value.total_cmp(&b.error.value));
     let mut blocks = vec![Block::figure("scene-accuracy", chart(results, &scenes))];

@@ -44,6 +44,33 @@ fn a_trace_has_a_row_for_each_job_and_can_be_drawn() {
     run(folder.path(), &["trace", "run.csv", "-o", "run.png"]);
 }
 
+/// Asserts that a chart has a line, or a part of one, for each of these names.
+fn drawn(chart: &Path, names: &[&str]) {
+    let chart = fs::read_to_string(chart).unwrap();
+    for name in names {
+        let is_drawn = |tag: &str| tag.contains(name) && tag.starts_with("series\" data-series=");
+        assert!(chart.split("<g class=\"").any(is_drawn), "{name} is not drawn");
+    }
+}
+
+/// Strategies that the user names are drawn, also if their lines are close, in every way to name several.
+#[test]
+fn every_strategy_that_is_named_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    traced(folder.path(), "serial", "1");
+    let simulate = ["simulate", "run.csv", "--no-check", "--workers", "1,2,4"];
+    let chosen = ["--strategies", "serial", "--strategies", "shared-counter", "--strategies", "dynamic:2,shared-counter"];
+    run(folder.path(), &[&simulate[..], &chosen].concat());
+    drawn(&folder.path().join("out/simulation/forecast-speedup.svg"), &["serial", "shared-counter", "dynamic:2"]);
+    let table = fs::read_to_string(folder.path().join("out/simulation/forecast.csv")).unwrap();
+    assert_eq!(table.lines().filter(|line| line.starts_with("shared-counter,")).count(), 3, "{table}");
+    run(folder.path(), &[&simulate[..], &chosen[2..], &["--ranks", "static-cyclic", "--nodes", "2"]].concat());
+    let within = ["4 threads by shared-counter", "4 threads by dynamic:2"];
+    drawn(&folder.path().join("out/simulation/ranks-forecast.svg"), &within);
+    let table = fs::read_to_string(folder.path().join("out/simulation/ranks-forecast.csv")).unwrap();
+    assert_eq!(table.lines().filter(|line| line.starts_with("static-cyclic,2,1,")).count(), 1, "{table}");
+}
+
 /// Predicts this machine, then forecasts others.
 #[test]
 fn a_trace_is_replayed_on_other_machines() {
@@ -57,7 +84,7 @@ fn a_trace_is_replayed_on_other_machines() {
     let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
     let expected = ["static-blocks", "shared-counter", "dynamic:2", "longest-first"];
     assert_eq!(names, expected.map(|name| [name; 3]).concat());
-    assert!(folder.path().join("forecast/forecast-speedup.svg").is_file());
+    drawn(&folder.path().join("forecast/forecast-speedup.svg"), &expected[..3]);
 
     let slower = ["simulate", "run.csv", "--no-check", "--workers", "2", "--slow-core", "0.5", "--noise", "0.02:0.5"];
     let said = run(folder.path(), &slower).out;
