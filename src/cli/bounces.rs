@@ -38,6 +38,7 @@ const REPORTED: usize = 6;
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let settings = arguments.samples.settings(lab)?;
     let setup = lab.prepare(settings)?;
+    setup.remarks().iter().for_each(|remark| talk.note(remark));
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     let spec = &setup.settings().spec;
     let mut files = Files::default();

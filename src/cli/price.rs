@@ -16,7 +16,7 @@ use crate::analysis::ranking::groups;
 use crate::analysis::tail::Tail;
 use crate::analysis::{Estimate, Interval};
 use crate::error::{Error, InputError, Result};
-use crate::experiment::{Paid, Pilot, Piloted, law_of, pay};
+use crate::experiment::{Paid, Pilot, Piloted, Progress as _, law_of, pay};
 use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{Doubts, LARGEST_SEED, LARGEST_SPP, Settings};
@@ -138,6 +138,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let asked = arguments.axes.settings(lab, &arguments.scene, arguments.pilot_spp, arguments.seed)?;
     let is_comparison = asked.spec.estimator == ALL;
     let each = if is_comparison { unbiased(lab, &asked).collect() } else { vec![asked] };
+    lab.prepare(each[0].clone())?.remarks().iter().for_each(|remark| talk.note(remark));
     let (mut priced, mut texts, mut doubts) = (Vec::new(), Vec::new(), Doubts::default());
     for settings in &each {
         let (piloted, rows) = price(lab, arguments, settings, talk)?;

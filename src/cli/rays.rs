@@ -42,6 +42,7 @@ const LEVEL: f64 = 0.95;
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let settings = arguments.samples.settings(lab)?;
     let setup = lab.prepare(settings)?;
+    setup.remarks().iter().for_each(|remark| talk.note(remark));
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
     let mut files = Files::default();
     files.reads_scene(setup.files());

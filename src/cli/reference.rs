@@ -3,7 +3,7 @@
 use super::output::print;
 use super::progress::Talk;
 use crate::error::Result;
-use crate::experiment::{Reference, ReferenceError, check_until, refine_reference, render_reference};
+use crate::experiment::{Progress as _, Reference, ReferenceError, check_until, refine_reference, render_reference};
 use crate::files::{Files, create_folder};
 use crate::lab::Lab;
 use crate::measure::parse_size;
@@ -53,7 +53,9 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     reference.check(lab)?;
     reference.check_cache(lab, &arguments.out)?;
     let mut files = Files::default();
-    files.reads_scene(&lab.load_scene(&arguments.scene)?.files);
+    let scene = lab.load_scene(&arguments.scene)?;
+    files.reads_scene(&scene.files);
+    scene.remarks_in(&scene.camera.view(width, height)).iter().for_each(|remark| talk.note(remark));
     for path in reference.paths(lab, &arguments.out)? {
         files.claims("out", &path)?;
     }

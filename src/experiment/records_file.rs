@@ -23,6 +23,10 @@ pub struct RecordsFile {
 
 /// Reads every row; a row that cannot be read is an error that names its line.
 pub fn read_records(path: &Path) -> Result<Vec<Record>> {
+    // A pipe without a writer and a device without an end would be read for ever.
+    if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        return Err(InputError::new("records", path.display().to_string(), "is not a regular file").into());
+    }
     let bytes = std::fs::read(path).map_err(|e| match e.kind() {
         std::io::ErrorKind::NotFound => {
             InputError::new("records", path.display().to_string(), "there is no such file").into()

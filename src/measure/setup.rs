@@ -214,7 +214,7 @@ impl Setup {
     pub fn remarks(&self) -> Vec<String> {
         let Some((scene, _)) = self.scene() else { return Vec::new() };
         let view = scene.camera.view(self.settings.spec.width, self.settings.spec.height);
-        scene.remarks.iter().cloned().chain(scene.unseen_meshes(&view)).collect()
+        scene.remarks_in(&view)
     }
 
     /// The scene, and the choices that the settings make for it; `None` for a workload.

@@ -10,6 +10,7 @@ mod experiment;
 mod experiments;
 mod meshes;
 mod outputs;
+mod paths;
 #[path = "../support/program.rs"]
 mod program;
 mod same_file;

@@ -127,20 +127,24 @@ const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\npr
 /// The same for the text of a PLY file.
 const WRONG_PLY: &[(&str, &str, usize, &[&str])] = &[
     ("ply\n", "plx\n", 1, &["header = plx", "not the header of a PLY file"]),
-    ("ascii 1.0", "morse 1.0", 2, &["header = format morse 1.0", "not a valid line"]),
+    ("ascii 1.0", "morse 1.0", 2, &["header = format morse 1.0", "not a valid line", "binary_little_endian"]),
+    ("ascii 1.0", "ascii 2.0", 2, &["header = format ascii 2.0", "not a known version", "1.0"]),
+    ("float y", "float x", 5, &["header = property float x", "names a property of its element again"]),
     ("vertex 4", "vertex four", 3, &["header = element vertex four", "not a valid line"]),
     ("property float z\n", "", 8, &["property = z", "x, y and z"]),
     ("float z", "list uchar float z", 9, &["property = z", "x, y and z"]),
     ("vertex_indices", "corners", 9, &["property = vertex_indices", "vertex_index"]),
     ("uchar int", "uchar float", 9, &["property = vertex_indices", "whole numbers"]),
-    ("1 1 0", "1 nan 0", 12, &["vertex = 2", "does not match the header"]),
-    ("1 1 0", "1 1e39 0", 12, &["vertex = inf", "vertex 2", "-1e100 to 1e100"]),
-    ("1 1 0", "1 one 0", 12, &["vertex = 2", "does not match the header"]),
-    ("1 1 0", "1 1", 12, &["vertex = 2", "does not match the header"]),
+    ("1 1 0", "1 nan 0", 12, &["thing.ply:12:3: y = nan", "vertex 2", "-1e100 to 1e100"]),
+    ("1 1 0", "1 1e39 0", 12, &["y = 1e39", "vertex 2", "-1e100 to 1e100"]),
+    ("1 1 0", "1 one 0", 12, &["y = one", "not a number of its type in vertex 2", "float"]),
+    ("1 1 0", "1 1", 12, &["vertex = 2", "too few numbers", "before z"]),
+    ("1 1 0", "1 1 0 7", 12, &["thing.ply:12:7: number = 7", "follows the last property of vertex 2"]),
     ("3 0 1 2", "3 0 1 4", 14, &["face = 0 1 4", "0 to 3"]),
-    ("3 0 1 2", "3 0 1 -1", 14, &["corners of face 0", "0 to 3"]),
+    ("3 0 1 2", "3 0 1 -1", 14, &["vertex_indices = -1", "in face 0", "from 0"]),
+    ("3 0 1 2", "3 0 1 2 3", 14, &["number = 3", "follows the last property of face 0"]),
     ("3 0 1 2", "2 0 1", 14, &["face = 0 1", "three or more"]),
-    ("3 0 1 2", "9 0 1 2", 14, &["face = 0", "does not match the header"]),
+    ("3 0 1 2", "9 0 1 2", 14, &["face = 0", "too few numbers", "before vertex_indices"]),
     ("face 2", "face 3", 16, &["face = 2", "declares 3 of them"]),
 ];
 
@@ -165,4 +169,64 @@ fn ply_files_that_are_no_meshes_are_refused() {
     refused(ply_folder(&small, &vec![b'\n'; 2 << 20]).path(), &ARGUMENTS, 2, &["thing.ply", "1 MiB"]);
     let object = SCENE.replace("\"thing.obj\"", "\"thing.obj\", object = \"circle\"");
     refused(ply_folder(&object, PLY.as_bytes()).path(), &ARGUMENTS, 2, &["object = circle", "no objects"]);
+}
+
+/// Placements of the mesh, and the words that the message must contain.
+const PLACEMENTS: &[(&str, &[&str])] = &[
+    ("scale = 0.0", &["scale", "0.0", "1e-100 to 1e100"]),
+    ("scale = -1.0", &["scale", "-1.0", "1e-100 to 1e100"]),
+    ("scale = nan", &["scale", "NaN", "1e-100 to 1e100"]),
+    ("scale = inf", &["scale", "inf", "1e-100 to 1e100"]),
+    ("scale = [1.0, 2.0, 1.0]", &["scale", "f64"]),
+    ("rotate = [0.0, nan, 0.0]", &["rotate", "NaN", "-360 to 360 degrees"]),
+    ("rotate = [0.0, 361.0, 0.0]", &["rotate", "361", "-360 to 360 degrees"]),
+    ("rotate = 90.0", &["rotate", "90"]),
+    ("translate = [0.0, inf, 0.0]", &["translate", "inf", "-1e100 to 1e100"]),
+];
+
+#[test]
+fn placements_that_are_none_are_refused() {
+    for (placement, said) in PLACEMENTS {
+        let scene = SCENE.replace("\"thing.obj\"", &format!("\"thing.obj\", {placement}"));
+        let message = refused(folder(&scene, Some(OBJ.as_bytes())).path(), &ARGUMENTS, 2, said);
+        assert_eq!(place(&message, "mesh.toml").map(|at| at.0), Some(11), "{message}");
+    }
+    let far = SCENE.replace("\"thing.obj\"", "\"thing.obj\", scale = 1e60");
+    let obj = OBJ.replace("v 1 1 0", "v 1e50 1 0");
+    refused(folder(&far, Some(obj.as_bytes())).path(), &ARGUMENTS, 2, &["thing.obj", "out of range", "1e100"]);
+}
+
+/// Files of other kinds are named by how they begin; a file that merely lacks faces, by its first line.
+#[test]
+fn files_of_other_kinds_are_named() {
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12345\n";
+    let cases: [(&[u8], &[&str]); 9] = [
+        (pointer.as_bytes(), &["mesh = version https://git-lfs.github.com/spec/v1", "Git LFS", "git lfs pull"]),
+        (b"\n<!DOCTYPE html>\n<html>", &["mesh = <!DOCTYPE html>", "web page"]),
+        (b"<HTML>", &["web page"]),
+        (b"solid cube\nfacet normal 0 0 1\n", &["mesh = solid cube", "STL"]),
+        (b"made by hand\0\0\0\0", &["binary file", "STL"]),
+        (b"OFF\n4 2 0\n", &["mesh = OFF", "OFF file"]),
+        (b"glTF\x02\0\0\0", &["glTF"]),
+        (b"{\"asset\": {\"version\": \"2.0\"}}", &["glTF"]),
+        (b"a poem\nof two lines\n", &["no triangle", "begins with `a poem`"]),
+    ];
+    for (bytes, said) in cases {
+        let said = [&["thing.obj"], said].concat();
+        refused(folder(SCENE, Some(bytes)).path(), &ARGUMENTS, 2, &said);
+        if !said[1].contains("triangle") && !said[1].contains("binary") {
+            refused(ply_folder(SCENE, bytes).path(), &ARGUMENTS, 2, &said[1..]);
+        }
+    }
+    refused(folder(SCENE, Some(PLY.as_bytes())).path(), &ARGUMENTS, 2, &["mesh = ply", "must end in .ply"]);
+}
+
+/// The opening of a pipe waits for its writer, which may never come.
+#[test]
+fn a_pipe_is_refused() {
+    for (name, scene) in [("thing.obj", SCENE.to_string()), ("thing.ply", SCENE.replace("thing.obj", "thing.ply"))] {
+        let folder = folder(&scene, None);
+        nix::unistd::mkfifo(&folder.path().join(name), nix::sys::stat::Mode::S_IRWXU).unwrap();
+        refused(folder.path(), &ARGUMENTS, 2, &[name, "is a pipe"]);
+    }
 }

@@ -24,7 +24,7 @@ fn directory() -> TempDir {
     tempfile::tempdir().expect("a temporary directory")
 }
 
-fn encoded(format: &str, image: &Image) -> Vec<u8> {
+pub(super) fn encoded(format: &str, image: &Image) -> Vec<u8> {
     let directory = directory();
     let path = directory.path().join("picture").with_extension(format);
     image_io::write(&path, image).expect("a picture that fits");
@@ -32,7 +32,7 @@ fn encoded(format: &str, image: &Image) -> Vec<u8> {
 }
 
 /// Reads `bytes` as a file with the extension `format`.
-fn decoded(format: &str, bytes: &[u8]) -> Result<Image, Error> {
+pub(super) fn decoded(format: &str, bytes: &[u8]) -> Result<Image, Error> {
     let directory = directory();
     let path = directory.path().join("picture").with_extension(format);
     fs::write(&path, bytes).expect("a file in a temporary directory");
@@ -40,7 +40,7 @@ fn decoded(format: &str, bytes: &[u8]) -> Result<Image, Error> {
 }
 
 /// The message of a refusal. It must be an input error, which the user can mend, and name the file.
-fn refusal(format: &str, bytes: &[u8]) -> String {
+pub(super) fn refusal(format: &str, bytes: &[u8]) -> String {
     let error = decoded(format, bytes).expect_err("a damaged file");
     assert_eq!(error.exit_code(), 2, "{error}");
     let message = error.to_string();
@@ -50,7 +50,7 @@ fn refusal(format: &str, bytes: &[u8]) -> String {
 
 /// Asserts equality to the bit.
 #[track_caller]
-fn same(pixel: [f64; 3], expected: [f64; 3]) {
+pub(super) fn same(pixel: [f64; 3], expected: [f64; 3]) {
     assert!(pixel.map(f64::to_bits) == expected.map(f64::to_bits), "{pixel:?} is not {expected:?}");
 }
 
@@ -157,6 +157,19 @@ fn hdr_divides_the_exposure_out() {
     }
 }
 
+/// The other first line of the format, with pixels of known values: a mantissa of 128 with the exponent 129 is 1.
+#[test]
+fn hdr_may_begin_with_either_name() {
+    let file = b"#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n\x80\x40\x20\x81\x80\x80\x80\x81";
+    let image = decoded("hdr", file).unwrap();
+    same(image.pixels[0], [1.0, 0.5, 0.25]);
+    same(image.pixels[1], [1.0; 3]);
+    let radiance = encoded("hdr", &sample(9, 2));
+    let other = [b"#?RGBE", radiance.strip_prefix(b"#?RADIANCE").unwrap()].concat();
+    assert_eq!(decoded("hdr", &other).unwrap(), decoded("hdr", &radiance).unwrap());
+    refusal("hdr", &[b"#?RGB", radiance.strip_prefix(b"#?RADIANCE").unwrap()].concat());
+}
+
 #[test]
 fn a_damaged_file_is_the_users_to_mend_and_named() {
     for format in FORMATS {
@@ -219,7 +232,7 @@ fn a_header_that_claims_too_much_is_refused_before_memory_is_asked_for() {
 }
 
 /// The checksum of PNG chunks.
-fn crc(bytes: &[u8]) -> u32 {
+pub(super) fn crc(bytes: &[u8]) -> u32 {
     let step = |crc: u32, &byte: &u8| {
         (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & 0u32.wrapping_sub(crc & 1)))
     };

@@ -19,6 +19,7 @@ mod lanes;
 mod layering;
 mod metric;
 mod peer;
+mod png_chunks;
 mod properties;
 mod prose;
 mod rounds;

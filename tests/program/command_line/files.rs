@@ -83,6 +83,38 @@ fn a_reference_is_cached_and_a_heat_map_is_drawn() {
     assert_eq!(same["rmse"], 0.0);
 }
 
+/// Means over a pixel that is no number are none either: the command prints them, names the pixel and fails.
+#[test]
+fn a_pixel_that_is_no_colour_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    // Rows are stored from the bottom up, so the third value is in the lower left.
+    let write = |name: &str, odd: &[(usize, f32)]| {
+        let mut values = [1.0_f32; 12];
+        odd.iter().for_each(|(at, value)| values[*at] = *value);
+        let bytes = values.iter().flat_map(|value| value.to_le_bytes());
+        let file: Vec<u8> = b"PF\n2 2\n-1.0\n".iter().copied().chain(bytes).collect();
+        fs::write(folder.path().join(name), file).unwrap();
+    };
+    write("one.pfm", &[]);
+    write("nan.pfm", &[(2, f32::NAN)]);
+    write("inf.pfm", &[(3, f32::INFINITY), (9, f32::NAN)]);
+    let cases: [(&[&str], &str); 4] = [
+        (&["nan.pfm", "one.pfm"], "nan.pfm: pixel (0, 1) = (1, 1, NaN) is not finite\n"),
+        (&["one.pfm", "nan.pfm"], "nan.pfm: pixel (0, 1) = (1, 1, NaN) is not finite\n"),
+        (&["one.pfm", "one.pfm", "inf.pfm"], "inf.pfm: pixel (1, 0) = (NaN, 1, 1) is not finite, and 1 pixel like it\n"),
+        (&["inf.pfm", "one.pfm", "--json"], "inf.pfm: pixel (1, 0) = (NaN, 1, 1) is not finite, and 1 pixel like it\n"),
+    ];
+    for (arguments, said) in cases {
+        let finished = finish(pathmark(folder.path(), &[&["compare"], arguments].concat())).with_code(1);
+        assert!(finished.out.contains("mse") && finished.out.contains("NaN"), "{}", finished.out);
+        assert!(finished.err.ends_with(said), "{arguments:?}: {}", finished.err);
+        if arguments.len() == 2 {
+            let percentile = finished.out.lines().find(|line| line.starts_with("error-50")).unwrap();
+            assert!(percentile.contains("NaN"), "{percentile}");
+        }
+    }
+}
+
 /// From a reference to a comparison: the two films of `reference` against an image that shares no sample with them.
 #[test]
 fn an_image_is_compared_with_both_halves_of_a_reference() {

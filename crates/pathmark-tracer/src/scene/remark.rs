@@ -29,8 +29,13 @@ fn may_see(view: &View, bounds: &Bounds) -> bool {
 }
 
 impl Scene {
+    /// Returns its remarks, and those on meshes that the view does not contain.
+    pub fn remarks_in(&self, view: &View) -> Vec<String> {
+        self.remarks.iter().cloned().chain(self.unseen_meshes(view)).collect()
+    }
+
     /// Returns remarks on meshes that the view does not contain: one for each, with its bounds.
-    pub fn unseen_meshes(&self, view: &View) -> impl Iterator<Item = String> {
+    pub(super) fn unseen_meshes(&self, view: &View) -> impl Iterator<Item = String> {
         self.meshes.iter().filter_map(|mesh| {
             let first = self.owners.len() - self.primitives.triangles.len();
             let triangles = self.primitives.triangles.iter().zip(&self.owners[first..]);
@@ -72,5 +77,59 @@ impl Scene {
             remarks.push("the fog has no end, so no light of the background reaches the camera");
         }
         remarks.into_iter().map(str::to_string).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{Library, Scene};
+
+    /// A ball that emits as stated, with further lines of a scene.
+    fn remarks(emission: f64, more: &str) -> Vec<String> {
+        let text = format!(
+            "about = 'a ball'\n{more}\n[camera.pinhole]\nposition = [0.0, 0.0, 9.0]\nlook-at = [0.0, 0.0, 0.0]\nfield-of-view = 40.0\n\
+             [[objects]]\nname = 'ball'\nshape = {{ sphere = {{ center = [0.0, 0.0, 0.0], radius = 1.0 }} }}\n\
+             material = {{ diffuse = {{ albedo = [0.5, 0.5, 0.5] }} }}\nemission = [0.0, {emission:?}, 0.0]\n"
+        );
+        Scene::from_toml(&text).unwrap().remarks
+    }
+
+    #[test]
+    fn a_scene_without_light_says_so() {
+        let dark = "no object emits and there is no background";
+        let told = |emission, more| remarks(emission, more).iter().any(|remark| remark.starts_with(dark));
+        assert!(told(0.0, "") && told(0.0, "background = [0.0, 0.0, 0.0]"));
+        let lamp = "point-lights = [{ position = [0.0, 5.0, 0.0], intensity = [1.0, 1.0, 1.0] }]";
+        let glow = "fog = { absorption = [0.1, 0.1, 0.1], scattering = 0.0, emission = [1.0, 1.0, 1.0] }";
+        assert!(!told(0.5, "") && !told(0.0, "background = [0.0, 0.1, 0.0]") && !told(0.0, lamp) && !told(0.0, glow));
+    }
+
+    /// Light from an infinite distance passes no fog, and a path ends only if it leaves, is absorbed or is cut.
+    #[test]
+    fn fog_without_an_end_is_told() {
+        let told = |background: &str, absorption: [f64; 3], scattering: f64| {
+            let fog = format!("{background}\nfog = {{ absorption = {absorption:?}, scattering = {scattering:?} }}");
+            let remarks = remarks(1.0, &fog);
+            let has = |text: &str| remarks.iter().any(|remark| remark.contains(text));
+            (has("do not end before the largest depth"), has("no light of the background"))
+        };
+        let sky = "background = [0.5, 0.7, 1.0]";
+        assert_eq!(told(sky, [0.0; 3], 0.01), (true, true));
+        assert_eq!(told(sky, [0.1, 0.0, 0.1], 0.01), (true, true));
+        assert_eq!(told(sky, [0.1; 3], 0.01), (false, true));
+        assert_eq!(told(sky, [0.1; 3], 0.0), (false, true));
+        assert_eq!(told(sky, [0.1, 0.0, 0.1], 0.0), (false, false));
+        assert_eq!(told("background = [0.0, 0.0, 0.0]", [0.0; 3], 0.01), (true, false));
+        assert_eq!(told("", [0.0; 3], 0.01), (false, false));
+    }
+
+    #[test]
+    fn the_programs_own_scenes_need_no_remark() {
+        let library = Library::default();
+        for name in library.names() {
+            let scene = library.load(name).unwrap();
+            assert!(scene.remarks.iter().all(|remark| remark.contains("are not used")), "{name}: {:?}", scene.remarks);
+            assert_eq!(scene.unseen_meshes(&scene.camera.view(64, 48)).collect::<Vec<_>>(), [""; 0], "{name}");
+        }
     }
 }

@@ -9,6 +9,9 @@
 //! A wrong path may lead to an endless file, so a file of more than a gibibyte is refused, unless the scene raises the
 //! limit: `largest-mib = 4096`. `scale`, `rotate` and `translate` place the mesh ([`Placement`]).
 
+#[cfg(test)]
+mod tests;
+
 use super::placement::Placement;
 use super::polygon::Cutter;
 use super::{Primitives, Shape, Triangle, foreign, obj, ply};

@@ -13,7 +13,7 @@ pub(super) const MOST_CORNERS: usize = 1 << 16;
 
 /// Corners farther than this from a common plane, as a share of the polygon's extent, make it bent: its shape then
 /// depends on the cut.
-const FLAT: f64 = 1e-3;
+const FLAT: f64 = 0.01;
 
 /// A turn below this, as the sine of its angle, is rounding error: the corners lie on a line.
 const STRAIGHT: f64 = 1e-9;

@@ -241,15 +241,20 @@ impl<R: Read> Ply<'_, R> {
 
     /// Reads a number of a binary file.
     fn binary(&mut self, of: Type, element: &Element, index: u64) -> Result<f64> {
+        let size = of.size();
         let mut bytes = [0; 8];
-        let own = &mut bytes[..of.size()];
-        match self.file.read_exact(own) {
-            Ok(()) => {}
-            Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Err(self.missing(element, index).into()),
-            Err(error) => return Err(unreadable(Path::new(self.name), error)),
+        // Copies of a constant size are faster. Bytes behind the number are not decoded.
+        if let Some(next) = self.file.buffer().first_chunk() {
+            bytes = *next;
+            self.file.consume(size);
+        } else if let Err(error) = self.file.read_exact(&mut bytes[..size]) {
+            return Err(match error.kind() {
+                ErrorKind::UnexpectedEof => self.missing(element, index).into(),
+                _ => unreadable(Path::new(self.name), error),
+            });
         }
         if self.encoding == Encoding::BigEndian {
-            own.reverse();
+            bytes = (u64::from_be_bytes(bytes) >> (64 - 8 * size)).to_le_bytes();
         }
         Ok(of.decoded(bytes))
     }
