@@ -44,7 +44,8 @@ mod whole;
 
 use crate::error::{Error, Result};
 use crate::lab::Lab;
-use clap::{CommandFactory, Parser, Subcommand};
+use crate::shell;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use progress::Talk;
 use std::io::ErrorKind;
 use std::process::ExitCode;
@@ -131,7 +132,7 @@ impl Lab {
     /// Runs the program with these tables and the process's arguments.
     pub fn main(self) -> ExitCode {
         out_of_memory::watch();
-        let cli = match Cli::try_parse() {
+        let cli = match read_arguments(&self) {
             Ok(cli) => cli,
             Err(told) => return tell(&told),
         };
@@ -144,6 +145,15 @@ impl Lab {
             }
         }
     }
+}
+
+/// Reads the process's arguments. `--version` tells the program's own name and version.
+fn read_arguments(lab: &Lab) -> std::result::Result<Cli, clap::Error> {
+    let [name, version] = lab.program();
+    // clap keeps a version for as long as the program runs.
+    let mut command = Cli::command().display_name(name).version(&*version.leak());
+    let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
 }
 
 /// Prints clap's message instead of running: an error, or the requested help or version.
@@ -195,6 +205,5 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
 
 /// The command as the user gave it, without the program's folder.
 fn command_line() -> String {
-    let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
-    std::iter::once("pathmark".to_string()).chain(arguments).collect::<Vec<_>>().join(" ")
+    shell::command(std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()))
 }

@@ -16,6 +16,15 @@ pub const MACHINE: &str = "machine.toml";
 pub struct RunFile {
     /// The command that made the rows.
     pub command: String,
+    /// Name and version of the program; the commit of Pathmark's own sources is the machine's. Empty in old files.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub program: String,
+    /// The name or path by which the command loaded the experiment; empty in old files.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub experiment: String,
+    /// The values that `--set` gave.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
     /// `quick`, `full` or `reports`.
     pub profile: String,
     /// The part of the sweep that these rows are, such as `2/4`; `None` if they are all of it.
@@ -47,10 +56,20 @@ pub fn read_run_file(path: &Path) -> Result<RunFile> {
 impl RunFile {
     /// The description of a measurement without a definition, on this machine.
     pub fn of_now(command: String) -> Self {
-        let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
-        let machine = Machine::look();
-        let (shard, against, until) = (None, None, None);
-        Self { command, profile, shard, against, until, uncapped: false, cached: false, definition_hash, machine }
+        Self {
+            command,
+            program: String::new(),
+            experiment: String::new(),
+            set: Vec::new(),
+            profile: Profile::Quick.name().to_string(),
+            shard: None,
+            against: None,
+            until: None,
+            uncapped: false,
+            cached: false,
+            definition_hash: String::new(),
+            machine: Machine::look(),
+        }
     }
 
     /// Writes the file.
@@ -75,12 +94,15 @@ impl RunFile {
             (Some(_), Some(_)) => "some goal".to_string(),
             (None, _) => "none".to_string(),
         };
+        // Rows of an older version do not tell their program.
+        let program = if self.program.is_empty() { &now.program } else { &self.program };
         let cache = |run: &Self| if run.cached { "a folder" } else { "none" }.to_string();
         let mut pairs = vec![
             ("profile", self.profile.clone(), now.profile.clone()),
             ("shard", part(self), part(now)),
             ("until", until(self, now), until(now, self)),
             ("cache", cache(self), cache(now)),
+            ("program", program.clone(), now.program.clone()),
         ];
         let (then, here) = (self.machine.identity(), now.machine.identity());
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));

@@ -309,6 +309,9 @@ fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
 fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -> RunFile {
     RunFile {
         command: options.command.clone(),
+        program: definition.lab.program().join(" "),
+        experiment: definition.asked.clone(),
+        set: definition.set.clone(),
         profile: options.profile.name().to_string(),
         shard: options.shard.map(|shard| shard.to_string()),
         against: options.against.as_ref().map(|program| program.display().to_string()),
