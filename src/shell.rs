@@ -30,7 +30,10 @@ mod tests {
 
     #[test]
     fn a_shell_reads_back_every_word() {
-        let words = ["", "plain", "a b", "it's", "\"x\"", "$HOME", "`id`", "a\\b", "*", "~", "#a", "a;b", "a\nb", "é", "''", "!x"];
+        let words = [
+            "", "plain", "a b", "it's", "\"x\"", "$HOME", "`id`", "a\\b", "*", "~", "#a", "a;b", "a\nb", "é", "''",
+            "!x",
+        ];
         let line = words.map(quoted).join(" ");
         let script = format!("printf '%s\\0' {line}");
         let output = Command::new("sh").args(["-c", &script]).output().unwrap();

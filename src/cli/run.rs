@@ -109,7 +109,12 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         let [old, new] = [&old, &summary.folder].map(|folder| folder.display().to_string());
         talk.note(&format!("{} compares the two builds", shell::command(["diff", &old, &new])));
     }
-    print(&format!("{} in {}, report in {}", rows(summary.rows, &summary.left_out), summary.folder.display(), page?.display()))
+    print(&format!(
+        "{} in {}, report in {}",
+        rows(summary.rows, &summary.left_out),
+        summary.folder.display(),
+        page?.display()
+    ))
 }
 
 /// The number of rows in words, with those that were left out.

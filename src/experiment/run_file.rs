@@ -1,7 +1,8 @@
 //! `machine.toml`: the machine on which the rows beside it were measured, and the command.
 
-use super::Profile;
+use super::{Definition, Options, Profile, Until};
 use crate::atomic_file;
+use crate::digest;
 use crate::error::{InputError, Result};
 use crate::input::{parse, read_text};
 use crate::measure::Machine;
@@ -69,6 +70,23 @@ impl RunFile {
             cached: false,
             definition_hash: String::new(),
             machine: Machine::look(),
+        }
+    }
+
+    /// The description of a sweep's rows: this command, this program and this machine.
+    pub(super) fn of_sweep(definition: &Definition, options: &Options, until: Option<&Until>) -> Self {
+        Self {
+            program: definition.lab.program().join(" "),
+            experiment: definition.asked.clone(),
+            set: definition.set.clone(),
+            profile: options.profile.name().to_string(),
+            shard: options.shard.map(|shard| shard.to_string()),
+            against: options.against.as_ref().map(|program| program.display().to_string()),
+            until: until.map(|until| until.text.clone()),
+            uncapped: options.say_how_often(),
+            cached: options.cache.is_some(),
+            definition_hash: digest::of_text(&definition.text),
+            ..Self::of_now(options.command.clone())
         }
     }
 

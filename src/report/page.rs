@@ -76,7 +76,22 @@ impl Section {
         let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
         let Results { failed, left_out, run, .. } = results;
         let chapter = Some(chapter);
-        Self { name, title, question, analysis, chapter, place, in_short, again, failed, left_out, rows, doubts, run, blocks }
+        Self {
+            name,
+            title,
+            question,
+            analysis,
+            chapter,
+            place,
+            in_short,
+            again,
+            failed,
+            left_out,
+            rows,
+            doubts,
+            run,
+            blocks,
+        }
     }
 }
 
@@ -335,8 +350,14 @@ fn provenance(section: &Section) -> Markup {
         ("load when the sweep began", machine.load_average.clone()),
         ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
         ("program", program.clone()),
-        ("Pathmark's sources", format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" })),
-        ("rows", format!("{} done, {} failed, {} left out", section.rows, section.failed.len(), section.left_out.count())),
+        (
+            "Pathmark's sources",
+            format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" }),
+        ),
+        (
+            "rows",
+            format!("{} done, {} failed, {} left out", section.rows, section.failed.len(), section.left_out.count()),
+        ),
     ];
     html! {
         details open[false] {

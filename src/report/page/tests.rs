@@ -29,7 +29,7 @@ fn other_programs_share_the_scene_of_our_rows() {
     let mut rows = Vec::new();
     for seed in [1, 2] {
         let (mse, makespan_s) = (Some(0.01 * seed as f64), Some(seed as f64));
-        let row = || Record { seed, mse, makespan_s, ..row() };
+        let row = || Record { seed, makespan_s, mse, ..row() };
         let hash = || "0123".to_string();
         rows.push(Record { scene: "room".to_string(), scene_hash: hash(), ..row() });
         let (sampler, strategy) = (EXTERNAL.to_string(), EXTERNAL.to_string());
