@@ -39,12 +39,13 @@ const addButton = (within, label, act) => {
   };
   // The command that runs what a value stands for: the experiment, with a filter for each name of the series and of the place.
   const commandOf = (note) => {
-    const section = note.closest("section[data-axes]");
+    const section = note.closest("section[data-again]");
     if (!section) return "";
-    const axes = JSON.parse(section.dataset.axes);
+    // Every part is quoted for a shell already.
+    const again = JSON.parse(section.dataset.again);
     const names = `${note.dataset.series}, ${note.dataset.of}`.split(/,\s|:\s|\s\+\s/);
-    const filters = names.filter((name) => axes[name]).map((name) => ` --filter ${axes[name]}=${name}`);
-    return `pathmark run ${section.id}${[...new Set(filters)].join("")}`;
+    const filters = names.filter((name) => Object.hasOwn(again.filters, name)).map((name) => again.filters[name]);
+    return [again.run, ...new Set(filters), again.out].join(" ");
   };
   const show = (event) => {
     const note = event.target.closest ? event.target.closest("circle.note") : null;

@@ -26,6 +26,7 @@ use crate::estimator::{ESTIMATORS, Entry as EstimatorEntry, Estimator};
 use crate::kernel::OwnEstimator;
 use crate::kernel::workload::{self, WORKLOADS, Workload};
 use crate::scene::{Library, OwnScene, Scene};
+use crate::shell;
 use crate::strategy::{Entry as Strategy, STRATEGIES, StrategyError};
 pub use rank_rule::{LOOK, Master, RankRule, Way, is_small};
 use std::fmt;
@@ -40,6 +41,8 @@ pub const SERIAL: &str = "serial";
 
 /// The tables of everything that a user can choose by name.
 pub struct Lab {
+    name: Option<&'static str>,
+    version: Option<&'static str>,
     strategies: Vec<Strategy>,
     estimators: Vec<OwnEstimator>,
     workloads: Vec<workload::Entry>,
@@ -69,6 +72,8 @@ impl Lab {
     /// Returns the built-in tables.
     pub fn new() -> Self {
         Self {
+            name: None,
+            version: None,
             strategies: STRATEGIES.to_vec(),
             estimators: Vec::new(),
             workloads: WORKLOADS.to_vec(),
@@ -82,6 +87,29 @@ impl Lab {
     /// Returns the built-in tables, shared, for programs that add nothing.
     pub fn built_in() -> Arc<Self> {
         Arc::clone(&BUILT_IN)
+    }
+
+    /// Names the program, for `machine.toml`, the page and `--version`. Without a name it is that of the executable.
+    #[must_use]
+    pub fn name(self, name: &'static str) -> Self {
+        Self { name: Some(name), ..self }
+    }
+
+    /// Sets the program's version, usually `env!("CARGO_PKG_VERSION")`.
+    #[must_use]
+    pub fn version(self, version: &'static str) -> Self {
+        Self { version: Some(version), ..self }
+    }
+
+    /// Returns name and version of the program, and Pathmark's version if the program is another one.
+    pub fn program(&self) -> [String; 2] {
+        let name = self.name.map_or_else(shell::executable_name, str::to_string);
+        let version = match self.version {
+            None if name == env!("CARGO_PKG_NAME") => env!("CARGO_PKG_VERSION").to_string(),
+            None => concat!("(Pathmark ", env!("CARGO_PKG_VERSION"), ")").to_string(),
+            Some(own) => format!("{own} (Pathmark {})", env!("CARGO_PKG_VERSION")),
+        };
+        [name, version]
     }
 
     /// Adds a strategy.
@@ -237,6 +265,17 @@ mod tests {
         assert_eq!(error.matches(file!()).count(), 2, "{error}");
         let error = said(&Lab::new().strategy(STRATEGIES[0]));
         assert!(error.starts_with(&format!("strategy = {}: ", STRATEGIES[0].name)), "{error}");
+    }
+
+    #[test]
+    fn a_program_has_its_own_name_and_version() {
+        let pathmark = concat!("Pathmark ", env!("CARGO_PKG_VERSION"));
+        let program = |lab: Lab| lab.program().join(" ");
+        assert_eq!(program(Lab::new().name("mypool").version("0.3.1")), format!("mypool 0.3.1 ({pathmark})"));
+        assert_eq!(program(Lab::new().name("mypool")), format!("mypool ({pathmark})"));
+        assert_eq!(program(Lab::new().name("pathmark")), pathmark.to_lowercase());
+        // The name of the test program, which is not Pathmark itself.
+        assert_eq!(program(Lab::new()), format!("{} ({pathmark})", shell::executable_name()));
     }
 
     #[test]

@@ -85,6 +85,8 @@ pub mod plot;
 #[cfg(feature = "program")]
 #[doc(hidden)]
 pub mod report;
+#[doc(hidden)]
+pub mod shell;
 pub mod simulate;
 mod temporary;
 

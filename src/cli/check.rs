@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if let Some(out) = &arguments.out {
         cases::write(out, &chosen, &outcomes)?;
         if !are_priced {
-            guards::write(out, &prices)?;
+            guards::write(out, lab, &prices)?;
         }
         let written = format!("report in {}", report::write(lab, out)?.display());
         // Standard output holds one JSON object then.

@@ -4,6 +4,7 @@ use crate::check::guards::{FILE, FOLDER, GUARDS, PriceRow, read_prices, write_pr
 use crate::error::{Error, Result};
 use crate::experiment::{MACHINE, Progress, RunFile, read_run_file};
 use crate::files::Files;
+use crate::lab::Lab;
 use std::path::Path;
 
 /// Whether a folder of results has the list already.
@@ -37,9 +38,10 @@ pub(super) fn claim(out: &Path, files: &mut Files) -> Result<()> {
 }
 
 /// Writes the list into a folder of results, with the command and the machine.
-pub(super) fn write(out: &Path, rows: &[PriceRow]) -> Result<()> {
+pub(super) fn write(out: &Path, lab: &Lab, rows: &[PriceRow]) -> Result<()> {
     let folder = out.join(FOLDER);
     std::fs::create_dir_all(&folder).map_err(|e| Error::system("creating", &folder, e))?;
-    RunFile::of_now(super::command_line()).write(&folder.join(MACHINE))?;
+    let program = lab.program().join(" ");
+    RunFile { program, ..RunFile::of_now(super::command_line()) }.write(&folder.join(MACHINE))?;
     write_prices(&folder.join(FILE), rows)
 }

@@ -44,8 +44,9 @@ mod whole;
 
 use crate::error::{Error, InputError, Result};
 use crate::lab::Lab;
+use crate::shell;
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use progress::Talk;
 use std::io;
 use std::process::ExitCode;
@@ -132,7 +133,7 @@ impl Lab {
     /// Runs the program with these tables and the process's arguments.
     pub fn main(self) -> ExitCode {
         out_of_memory::watch();
-        let cli = match Cli::try_parse() {
+        let cli = match read_arguments(&self) {
             Ok(cli) => cli,
             Err(told) if told.kind() == ErrorKind::InvalidUtf8 => {
                 let error = no_text();
@@ -158,6 +159,15 @@ fn no_text() -> Error {
     let bad = std::env::args_os().skip(1).filter(|argument| argument.to_str().is_none());
     let bad: Vec<String> = bad.map(|argument| argument.to_string_lossy().into_owned()).collect();
     InputError::new("argument", bad.join(" "), "is not UTF-8 text").allowed("a name of UTF-8 text").into()
+}
+
+/// Reads the process's arguments. `--version` tells the program's own name and version.
+fn read_arguments(lab: &Lab) -> std::result::Result<Cli, clap::Error> {
+    let [name, version] = lab.program();
+    // clap keeps a version for as long as the program runs.
+    let mut command = Cli::command().display_name(name).version(&*version.leak());
+    let matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    Cli::from_arg_matches(&matches).map_err(|error| error.format(&mut command))
 }
 
 /// Prints clap's message instead of running: an error, or the requested help or version.
@@ -209,6 +219,5 @@ fn run_verb(verb: Verb, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
 
 /// The command as the user gave it, without the program's folder.
 fn command_line() -> String {
-    let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
-    std::iter::once("pathmark".to_string()).chain(arguments).collect::<Vec<_>>().join(" ")
+    shell::command(std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned()))
 }

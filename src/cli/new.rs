@@ -2,6 +2,7 @@
 
 use super::output::print;
 use crate::error::{Error, InputError, Result};
+use crate::shell;
 use clap::{Args, ValueEnum};
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
@@ -59,5 +60,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         InputError::new("name", &shown, problem).allowed("a new name in a folder that exists").into()
     })?;
     file.write_all(arguments.kind.text().as_bytes()).map_err(|e| Error::system("writing", &path, e))?;
-    print(&format!("created {shown}; edit it, then run: pathmark {} {shown}", arguments.kind.verb()))
+    print(&format!("created {shown}; edit it, then run: {}", shell::command([arguments.kind.verb(), &shown])))
 }

@@ -199,7 +199,8 @@ fn ranking(goals: &[f64], rows: &[Row]) -> String {
     let line = |goal: &f64| {
         let mut of_goal: Vec<&Row> = rows.iter().filter(|row| row.rmse == *goal).collect();
         of_goal.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        let each = of_goal.iter().map(|row| format!("{} {:.3} s ({})", row.estimator, row.seconds, letters(&row.groups)));
+        let each =
+            of_goal.iter().map(|row| format!("{} {:.3} s ({})", row.estimator, row.seconds, letters(&row.groups)));
         format!("RMSE {goal}: {}", each.collect::<Vec<_>>().join(", "))
     };
     let rule = "Estimators that share a letter cannot be told apart: their intervals overlap.".to_string();

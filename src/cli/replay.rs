@@ -9,6 +9,7 @@ use crate::math::{Rgb, Vec3};
 use crate::measure::{AXES, InvalidSample, LARGEST_SPP, Settings};
 use crate::plot::number;
 use crate::scene::Scene;
+use crate::shell;
 use crate::simd::Precision;
 use clap::Args;
 use serde_json::{Value, json};
@@ -87,11 +88,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>) -> Result<()> {
 
 /// The command that replays a sample of an image, with every option that changes the sample.
 pub(super) fn command(scene: &str, settings: &Settings, at: InvalidSample) -> String {
-    let scene = if scene.contains(char::is_whitespace) { format!("'{scene}'") } else { scene.to_string() };
     let axes = AXES.iter().filter(|axis| axis.changes_image && (!axis.about.is_empty() || axis.name == "seed"));
     let values = axes.map(|axis| (axis.name, axis.show(settings))).filter(|(_, value)| !value.is_empty());
-    let options: Vec<String> = values.map(|(name, value)| format!("--{name} {value}")).collect();
-    format!("pathmark replay {scene} {} --pixel {},{} --sample {}", options.join(" "), at.x, at.y, at.sample)
+    let options = values.flat_map(|(name, value)| [format!("--{name}"), value]);
+    let place = ["--pixel".to_string(), format!("{},{}", at.x, at.y), "--sample".to_string(), at.sample.to_string()];
+    shell::command(["replay".to_string(), scene.to_string()].into_iter().chain(options).chain(place))
 }
 
 fn pixel(text: &str, spec: &Spec) -> Result<(u32, u32)> {
@@ -237,7 +238,7 @@ mod tests {
 
     /// The arguments that the program reads from a command.
     fn read(command: &str) -> Arguments {
-        let words = command.strip_prefix("pathmark ").expect("the program's name");
+        let (_, words) = command.split_once(' ').expect("the program's name");
         Replay::try_parse_from(words.split(' ')).expect("a command that the program takes").arguments
     }
 

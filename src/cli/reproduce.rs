@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         cases::write(&arguments.out, &all, &cases::try_all(&all, Effort::Quick, talk)?)?;
     }
     if !guards::are_in(&arguments.out) {
-        guards::write(&arguments.out, &guards::measure(talk))?;
+        guards::write(&arguments.out, lab, &guards::measure(talk))?;
     }
     let page = report::write(lab, &arguments.out)?;
     talk_of(&doubts, talk);

@@ -10,6 +10,7 @@ use crate::lab::Lab;
 use crate::lock::Sharing;
 use crate::measure::{Doubts, LeftOut};
 use crate::report::{self, check_figures, figure_of_serial};
+use crate::shell;
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -105,9 +106,15 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     tell_left_out(&summary.left_out, talk);
     if arguments.against.is_some() {
         let old = folder_against(&arguments.out, &definition.name);
-        talk.note(&format!("pathmark diff {} {} compares the two builds", old.display(), summary.folder.display()));
+        let [old, new] = [&old, &summary.folder].map(|folder| folder.display().to_string());
+        talk.note(&format!("{} compares the two builds", shell::command(["diff", &old, &new])));
     }
-    print(&format!("{} in {}, report in {}", rows(summary.rows, &summary.left_out), summary.folder.display(), page?.display()))
+    print(&format!(
+        "{} in {}, report in {}",
+        rows(summary.rows, &summary.left_out),
+        summary.folder.display(),
+        page?.display()
+    ))
 }
 
 /// The number of rows in words, with those that were left out.

@@ -52,6 +52,13 @@ pub(super) fn check_program(program: &Path) -> Result<()> {
     }
 }
 
+/// Name and version of a program, as it tells them; empty if it does not.
+fn version_of(program: &Path) -> String {
+    let told = Command::new(program).arg("--version").stdin(Stdio::null()).output();
+    let told = told.map(|told| String::from_utf8_lossy(&told.stdout).into_owned()).unwrap_or_default();
+    told.lines().next().unwrap_or_default().trim().to_string()
+}
+
 impl Against {
     pub(super) fn open(program: &Path, out: &Path, name: &str, text: &str, run: RunFile) -> Result<Self> {
         let folder = folder_against(out, name);
@@ -72,6 +79,7 @@ impl Against {
             let record = Record { order: job.order, ..record };
             if !self.has_rows {
                 // The rows say which build measured them.
+                self.run.program = version_of(&self.program);
                 self.run.machine.commit.clone_from(&record.commit);
                 self.run.machine.dirty = record.dirty;
                 self.run.write(&self.folder.join(MACHINE))?;

@@ -108,13 +108,17 @@ impl Cell {
         Self { id, points, weight: weight.max(1), at_most: None, external: None, scene, settings }
     }
 
+    /// Its value on an axis, as filters compare it.
+    pub fn shown(&self, axis: &Axis) -> String {
+        let strategy = schedule_name(&self.settings.strategy, &self.settings.decomposition).to_string();
+        axis.show(&Settings { strategy, ..self.settings.clone() })
+    }
+
     /// Whether it has one of the values that a filter `field=value,value...` asks for.
     pub fn matches(&self, filter: &str) -> Result<bool> {
-        let strategy = schedule_name(&self.settings.strategy, &self.settings.decomposition).to_string();
-        let settings = Settings { strategy, ..self.settings.clone() };
         let pair = filter.split_once('=');
         let known = pair.and_then(|(field, value)| Some((Axis::named(field)?, value)));
-        known.map(|(axis, values)| values.split(',').any(|value| axis.show(&settings) == value)).ok_or_else(|| {
+        known.map(|(axis, values)| values.split(',').any(|value| self.shown(axis) == value)).ok_or_else(|| {
             let names = AXES.each_ref().map(|axis| axis.name);
             InputError::new("filter", filter, "does not begin with the name of an axis")
                 .allowed(format!("{}=VALUE", names.join("=VALUE, ")))

@@ -111,9 +111,12 @@ pub struct Definition {
     /// The file's name, for errors.
     #[serde(skip)]
     pub file: String,
-    /// Whether `--set` changed values, so that no line of the text is one of the file.
+    /// The name or path by which it was loaded.
     #[serde(skip)]
-    pub(super) is_changed: bool,
+    pub(super) asked: String,
+    /// The values that `--set` gave; with any, no line of the text is one of the file.
+    #[serde(skip)]
+    pub(super) set: Vec<String>,
     /// The tables in which its names are looked up.
     #[serde(skip, default = "Lab::built_in")]
     pub lab: Arc<Lab>,
@@ -192,7 +195,7 @@ impl Definition {
 
     /// Loads the definition with that name, or from the file at that path.
     pub fn load(lab: &Arc<Lab>, name_or_path: &str) -> Result<Self> {
-        let definition = Self::find(lab, name_or_path)?;
+        let definition = Self { asked: name_or_path.to_string(), ..Self::find(lab, name_or_path)? };
         let name = &definition.name;
         if Path::new(name).file_name().is_none_or(|own| *own != **name) || TAKEN.contains(&name.as_str()) {
             let problem = format!("names the experiment `{name}`, which cannot be the name of its folder");
@@ -294,7 +297,7 @@ impl Definition {
             }
             Error::Input(input) if input.place.is_none() => {
                 let at = locate_in("reference", &self.text, &input.field, &input.value);
-                input.in_file(&self.file, at.filter(|_| !self.is_changed)).into()
+                input.in_file(&self.file, at.filter(|_| self.set.is_empty())).into()
             }
             other => other,
         }
@@ -303,7 +306,7 @@ impl Definition {
     /// Adds the place of the field and its value in the definition. The profile's own table is searched before the
     /// rest.
     pub(super) fn located(&self, profile: Profile, error: InputError) -> Error {
-        if self.is_changed {
+        if !self.set.is_empty() {
             return error.in_file(&self.file, None).into();
         }
         let (text, key, value) = (&self.text, &error.field, &error.value);

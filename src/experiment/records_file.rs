@@ -36,7 +36,8 @@ pub fn read_records(path: &Path) -> Result<Vec<Record>> {
     let complete = complete_part(&bytes, path)?;
     if complete.len() < bytes.len() {
         let line = complete.matches('\n').count() + 1;
-        let problem = "the last row is only half written; `pathmark run --resume` drops it and runs it again";
+        let problem =
+            "the last row is only half written; the command in machine.toml with --resume drops it and runs it again";
         let row: String = String::from_utf8_lossy(&bytes[complete.len()..]).chars().take(40).collect();
         return Err(InputError::new("row", row, problem).in_file(path.display().to_string(), Some((line, 1))).into());
     }

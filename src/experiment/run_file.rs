@@ -1,7 +1,8 @@
 //! `machine.toml`: the machine on which the rows beside it were measured, and the command.
 
-use super::Profile;
+use super::{Definition, Options, Profile, Until};
 use crate::atomic_file;
+use crate::digest;
 use crate::error::{InputError, Result};
 use crate::input::{parse, read_text};
 use crate::measure::Machine;
@@ -16,6 +17,15 @@ pub const MACHINE: &str = "machine.toml";
 pub struct RunFile {
     /// The command that made the rows.
     pub command: String,
+    /// Name and version of the program; the commit of Pathmark's own sources is the machine's. Empty in old files.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub program: String,
+    /// The name or path by which the command loaded the experiment; empty in old files.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub experiment: String,
+    /// The values that `--set` gave.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub set: Vec<String>,
     /// `quick`, `full` or `reports`.
     pub profile: String,
     /// The part of the sweep that these rows are, such as `2/4`; `None` if they are all of it.
@@ -47,10 +57,37 @@ pub fn read_run_file(path: &Path) -> Result<RunFile> {
 impl RunFile {
     /// The description of a measurement without a definition, on this machine.
     pub fn of_now(command: String) -> Self {
-        let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
-        let machine = Machine::look();
-        let (shard, against, until) = (None, None, None);
-        Self { command, profile, shard, against, until, uncapped: false, cached: false, definition_hash, machine }
+        Self {
+            command,
+            program: String::new(),
+            experiment: String::new(),
+            set: Vec::new(),
+            profile: Profile::Quick.name().to_string(),
+            shard: None,
+            against: None,
+            until: None,
+            uncapped: false,
+            cached: false,
+            definition_hash: String::new(),
+            machine: Machine::look(),
+        }
+    }
+
+    /// The description of a sweep's rows: this command, this program and this machine.
+    pub(super) fn of_sweep(definition: &Definition, options: &Options, until: Option<&Until>) -> Self {
+        Self {
+            program: definition.lab.program().join(" "),
+            experiment: definition.asked.clone(),
+            set: definition.set.clone(),
+            profile: options.profile.name().to_string(),
+            shard: options.shard.map(|shard| shard.to_string()),
+            against: options.against.as_ref().map(|program| program.display().to_string()),
+            until: until.map(|until| until.text.clone()),
+            uncapped: options.say_how_often(),
+            cached: options.cache.is_some(),
+            definition_hash: digest::of_text(&definition.text),
+            ..Self::of_now(options.command.clone())
+        }
     }
 
     /// Writes the file.
@@ -75,12 +112,15 @@ impl RunFile {
             (Some(_), Some(_)) => "some goal".to_string(),
             (None, _) => "none".to_string(),
         };
+        // Rows of an older version do not tell their program.
+        let program = if self.program.is_empty() { &now.program } else { &self.program };
         let cache = |run: &Self| if run.cached { "a folder" } else { "none" }.to_string();
         let mut pairs = vec![
             ("profile", self.profile.clone(), now.profile.clone()),
             ("shard", part(self), part(now)),
             ("until", until(self, now), until(now, self)),
             ("cache", cache(self), cache(now)),
+            ("program", program.clone(), now.program.clone()),
         ];
         let (then, here) = (self.machine.identity(), now.machine.identity());
         pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));

@@ -32,7 +32,7 @@ impl Definition {
             .map_err(|e| InputError::new("set", given.join(" "), format!("cannot be written as TOML: {e}")))?;
         let text = format!("# {} with {}\n{text}", self.file, given.join(" "));
         let mut changed = Self::from_text(&self.lab, &self.name, &self.file, &text)?;
-        changed.is_changed = true;
+        (changed.asked, changed.set) = (self.asked, [self.set, pairs.to_vec()].concat());
         Ok(changed)
     }
 }

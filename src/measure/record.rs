@@ -279,8 +279,7 @@ pub fn failure(settings: &Settings, error: &str) -> Record {
 
 /// The row of another program, with its errors.
 pub(super) fn external_row(settings: &Settings, scene: &Scene, errors: Measured) -> Record {
-    let (name, hash) = (scene.name.clone(), scene.hash.clone());
-    Record { scene: name, scene_hash: hash, ..described(settings).with_errors(errors) }
+    Record { scene: scene.name.clone(), scene_hash: scene.hash.clone(), ..described(settings).with_errors(errors) }
 }
 
 impl Record {

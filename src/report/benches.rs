@@ -103,7 +103,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         chapter: Some(Chapter::Scheduling),
         place: u32::MAX,
         in_short: None,
-        axes: None,
+        again: None,
         failed: Vec::new(),
         left_out: LeftOut::default(),
         doubts: Doubts::default(),

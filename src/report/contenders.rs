@@ -121,11 +121,13 @@ pub(super) fn curves_of_seeds(rows: &[&Row]) -> Vec<(Curve, f64)> {
     for row in rows {
         seeds.entry(row.seed).or_default().entry(row.spp).or_insert(row);
     }
-    let errors = group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, |row| row.mse)));
+    let errors =
+        group(rows.iter().copied(), |row| row.spp).into_iter().map(|(spp, rows)| (spp, by_seed(&rows, |row| row.mse)));
     let has_all = |errors: &BTreeMap<u64, f64>| errors.len() == seeds.len() && errors.values().all(|mse| *mse > 0.0);
     let whole: Vec<(u32, BTreeMap<u64, f64>)> = errors.filter(|(_, errors)| has_all(errors)).collect();
     let of_seed = |(seed, rows): (&u64, &BTreeMap<u32, &Row>)| {
-        let curve: Curve = whole.iter().filter_map(|(spp, errors)| Some((f64::from(*spp), *errors.get(seed)?))).collect();
+        let curve: Curve =
+            whole.iter().filter_map(|(spp, errors)| Some((f64::from(*spp), *errors.get(seed)?))).collect();
         let longest = rows.iter().rev().find_map(|(spp, row)| Some(row.rendering_s()? / f64::from(*spp)))?;
         Some((curve, longest))
     };

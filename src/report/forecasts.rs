@@ -111,7 +111,11 @@ pub fn forecast_blocks(rows: &[Forecast], workload: &str, equal_cores: bool, nam
     let mut blocks = Vec::new();
     let shown = representatives(rows, named);
     let is_whole = rows.iter().all(|row| shown.contains(&row.strategy));
-    let left_out = if is_whole { "" } else { " Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all." };
+    let left_out = if is_whole {
+        ""
+    } else {
+        " Of strategies that are within a quarter of each other everywhere only one is drawn; the table has all."
+    };
     let bound = rows.iter().map(|row| row.share_s * row.workers as f64 / row.longest_s).reduce(f64::max);
     let series = |value: Value| -> Vec<Series> {
         let points = |name: &str| {

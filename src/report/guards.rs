@@ -43,7 +43,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         chapter: Some(Chapter::HardInputs),
         place: 0,
         in_short: None,
-        axes: None,
+        again: None,
         failed: Vec::new(),
         left_out: LeftOut::default(),
         doubts: Doubts::default(),

@@ -1,5 +1,6 @@
 //! The report: turns records into figures, tables, findings and one self-contained page.
 
+mod again;
 mod benches;
 mod block;
 pub mod claims;

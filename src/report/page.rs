@@ -1,5 +1,6 @@
 //! `report.html`: the whole report in one file, readable without a network.
 
+use super::again::Again;
 use super::block::Block;
 use super::results::Results;
 use super::table::Table;
@@ -10,7 +11,6 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
-use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -50,8 +50,8 @@ pub(super) struct Section {
     pub(super) place: u32,
     /// Its finding at the beginning of the page.
     pub(super) in_short: Option<String>,
-    /// The axis of each value of the rows, for commands that run a part again; `None` if there is no such command.
-    pub(super) axes: Option<BTreeMap<String, &'static str>>,
+    /// The commands that run a part again; `None` if there are none.
+    pub(super) again: Option<Again>,
     /// Rows that failed.
     pub(super) failed: Vec<Record>,
     /// Rows that were not run.
@@ -70,33 +70,29 @@ impl Section {
     pub(super) fn of(results: Results, blocks: Vec<Block>) -> Self {
         let rows = results.len();
         let doubts = results.doubts();
-        let axes = Some(axes(&results));
+        let again = Again::of(&results);
         let Definition { name, title, question, analysis, chapter, place, in_short, .. } = results.definition;
         let findings = || blocks.iter().filter_map(Block::as_finding);
         let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
         let Results { failed, left_out, run, .. } = results;
         let chapter = Some(chapter);
-        Self { name, title, question, analysis, chapter, place, in_short, axes, failed, left_out, rows, doubts, run, blocks }
+        Self {
+            name,
+            title,
+            question,
+            analysis,
+            chapter,
+            place,
+            in_short,
+            again,
+            failed,
+            left_out,
+            rows,
+            doubts,
+            run,
+            blocks,
+        }
     }
-}
-
-/// The names that the rows have as values, with the axis of each.
-fn axes(results: &Results) -> BTreeMap<String, &'static str> {
-    let mut axes = BTreeMap::new();
-    for row in results.rows() {
-        let names = [
-            ("scene", &row.scene),
-            ("estimator", &row.estimator),
-            ("sampler", &row.sampler),
-            ("kernel", &row.kernel),
-            ("accelerator", &row.accelerator),
-            ("decomposition", &row.decomposition),
-            ("output", &row.output),
-            ("strategy", &row.strategy),
-        ];
-        axes.extend(names.map(|(axis, value)| (value.clone(), axis)));
-    }
-    axes
 }
 
 /// Longer cells are prose and may be broken into lines.
@@ -220,7 +216,7 @@ fn sources(sections: &[Section]) -> Markup {
                                 td { (section.run.profile) }
                                 td { (machine.processors) }
                                 td { (machine.cpu) }
-                                td { (machine.commit) @if machine.dirty { " with changes" } }
+                                td { @if !section.run.program.is_empty() { (section.run.program) ", " } (machine.commit) @if machine.dirty { " with changes" } }
                             }
                         }
                     }
@@ -234,7 +230,7 @@ fn sources(sections: &[Section]) -> Markup {
 fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
     let parts = section.blocks.iter().map(|block| part(&section.name, block)).collect::<Result<Vec<Markup>>>()?;
     Ok(html! {
-        section id=(section.name) data-axes=[section.axes.as_ref().map(json)] {
+        section id=(section.name) data-again=[section.again.as_ref().map(json)] {
             @if is_chapter { h2 { (section.title) } } @else { h3 { (section.title) } }
             p { strong { "Question. " } (prose(&section.question)) }
             @if !section.failed.is_empty() {
@@ -343,7 +339,7 @@ fn broken(cell: &str, is_text: bool) -> Markup {
 }
 
 fn provenance(section: &Section) -> Markup {
-    let RunFile { command, profile, machine, .. } = &section.run;
+    let RunFile { command, program, profile, machine, .. } = &section.run;
     let memory_gib = machine.memory_bytes as f64 / f64::from(1 << 30);
     let facts = [
         ("processor", machine.cpu.clone()),
@@ -353,15 +349,22 @@ fn provenance(section: &Section) -> Markup {
         ("system", machine.system.clone()),
         ("load when the sweep began", machine.load_average.clone()),
         ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),
-        ("sources", format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" })),
-        ("rows", format!("{} done, {} failed, {} left out", section.rows, section.failed.len(), section.left_out.count())),
+        ("program", program.clone()),
+        (
+            "Pathmark's sources",
+            format!("{}{}", machine.commit, if machine.dirty { " with uncommitted changes" } else { "" }),
+        ),
+        (
+            "rows",
+            format!("{} done, {} failed, {} left out", section.rows, section.failed.len(), section.left_out.count()),
+        ),
     ];
     html! {
         details open[false] {
             summary { "Command and machine" }
             pre { (command) }
             p { "Profile " (profile) "." }
-            table { @for (name, value) in facts { tr { th { (name) } td.text { (value) } } } }
+            table { @for (name, value) in facts.into_iter().filter(|(_, value)| !value.is_empty()) { tr { th { (name) } td.text { (value) } } } }
         }
     }
 }
@@ -378,3 +381,6 @@ fn prose(text: &str) -> Markup {
 fn or_none(text: &str) -> &str {
     if text.is_empty() { "none" } else { text }
 }
+
+#[cfg(test)]
+mod tests;

@@ -12,9 +12,8 @@ use std::collections::BTreeSet;
 pub(super) fn reference_image(results: &Results, scene: Option<&str>) -> Result<Option<Image>> {
     let profile = results.profile();
     let cells = results.definition.cells(profile)?;
-    let hashes: Option<BTreeSet<&str>> = scene.map(|scene| {
-        results.rows().filter(|row| row.scene == scene).map(|row| row.scene_hash.as_str()).collect()
-    });
+    let hashes: Option<BTreeSet<&str>> =
+        scene.map(|scene| results.rows().filter(|row| row.scene == scene).map(|row| row.scene_hash.as_str()).collect());
     let Some(wanted) = wanted_references(&results.definition, profile, &cells)?
         .into_iter()
         .find(|wanted| hashes.as_ref().is_none_or(|hashes| hashes.iter().any(|hash| wanted.is_of(hash))))

@@ -81,7 +81,10 @@ fn one_that_fails_or_writes_another_size_is_a_failed_row() {
             "external = other: ended with exit status: 3: out of paint",
         ),
         (r#""sh", "-c", "", "{out}", "{spp}", "{seed}""#, "external = other: wrote no image"),
-        (r#""sh", "-c", "echo no picture > $0", "{out}", "{spp}", "{seed}""#, "external = other: wrote an image that cannot be read"),
+        (
+            r#""sh", "-c", "echo no picture > $0", "{out}", "{spp}", "{seed}""#,
+            "external = other: wrote an image that cannot be read",
+        ),
         (r#""sh", "-c", "printf 'PF\\n1 1\\n-1.0\\n000000000000' > $0", "{out}", "{spp}", "{seed}""#, "1x1"),
     ] {
         let folder = tempfile::tempdir().unwrap();
@@ -194,14 +197,23 @@ fn it_meets_our_own_rows_of_the_same_scene_file() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("room.toml"), scene).unwrap();
         let (_, matrix) = TINY.split_once("[matrix]").unwrap();
-        let own = matrix.replace("[\"cornell\"]", "[\"room.toml\"]").replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
+        let own = matrix
+            .replace("[\"cornell\"]", "[\"room.toml\"]")
+            .replace("[\"serial\", \"static-blocks\", \"work-stealing\"]", "[\"serial\"]");
         assert!(own.contains("room.toml"), "{own}");
         let (own, scales) = own.split_once("[quick]").unwrap();
         let own = own.replace("seed = [1]", "seed = [3, 4]");
         let other = table(BLACK).replace("\"cornell\"", &format!("\"{spelling}\""));
         let scales = scales.replacen("repetitions = 3", "repetitions = 1\nreference-spp = 40", 1);
-        let head = TINY.split_once("[matrix]").unwrap().0.replace("[\"speedup\", \"schedules\"]", "[\"error-against-time\", \"pairs\"]");
-        write_tiny(folder.path(), &format!("{head}[matrix]{own}[reference]\nestimator = \"bsdf\"\n\n{other}\n[quick]{scales}"));
+        let head = TINY
+            .split_once("[matrix]")
+            .unwrap()
+            .0
+            .replace("[\"speedup\", \"schedules\"]", "[\"error-against-time\", \"pairs\"]");
+        write_tiny(
+            folder.path(),
+            &format!("{head}[matrix]{own}[reference]\nestimator = \"bsdf\"\n\n{other}\n[quick]{scales}"),
+        );
         finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out"])).with_code(0);
         let halves = std::fs::read_dir(folder.path().join("out/references")).unwrap().count();
         let pairs = std::fs::read_to_string(folder.path().join("out/tiny/figures/pairs.csv")).unwrap_or_default();

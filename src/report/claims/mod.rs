@@ -58,7 +58,7 @@ pub(super) fn section(lab: &Arc<Lab>, out: &Path) -> Result<Option<Section>> {
         chapter: None,
         place: 0,
         in_short: Some(listing::in_short(&answers)),
-        axes: None,
+        again: None,
         failed: Vec::new(),
         left_out: LeftOut::default(),
         doubts: Doubts::default(),

@@ -106,7 +106,8 @@ fn ratios_pair_rows_by_all_that_the_claim_does_not_name() {
 /// Images that differ in any setting are no partners, also if only the filter or the epsilon differs.
 #[test]
 fn ratios_pair_rows_of_the_same_image() {
-    let images: [fn(&mut Record); 3] = [|_| (), |row| row.filter = "box".to_string(), |row| row.epsilon = "1e-4".to_string()];
+    let images: [fn(&mut Record); 3] =
+        [|_| (), |row| row.filter = "box".to_string(), |row| row.epsilon = "1e-4".to_string()];
     let mut all = Vec::new();
     for (slow, change) in [1.0, 10.0, 100.0].into_iter().zip(images) {
         for repetition in 0..6 {

@@ -31,8 +31,7 @@ impl Verdict {
 
     /// The verdict of that name.
     pub(super) fn named(name: &str) -> Option<Self> {
-        let all =
-            [Self::Confirmed, Self::Refuted, Self::Open, Self::NotComparable, Self::NotAnswered, Self::Context];
+        let all = [Self::Confirmed, Self::Refuted, Self::Open, Self::NotComparable, Self::NotAnswered, Self::Context];
         all.into_iter().find(|verdict| verdict.name() == name)
     }
 

@@ -10,7 +10,8 @@ pub use primes::Primes;
 
 /// Pathmark with the additions of this crate.
 pub fn lab() -> pathmark::Lab {
-    pathmark::Lab::new().strategy(ENTRY).estimator("depth", Depth).workload("primes", Primes).experiment("ours", OURS)
+    let lab = pathmark::Lab::new().name("relay-race").version(env!("CARGO_PKG_VERSION"));
+    lab.strategy(ENTRY).estimator("depth", Depth).workload("primes", Primes).experiment("ours", OURS)
 }
 
 /// An experiment over this crate's additions and built-in entries: thread scaling and granularity on two workloads.

@@ -61,6 +61,9 @@ fn experiments_compare_own_entries_with_built_in_ones() {
     }
     assert_eq!(checksums.len(), 2, "{checksums:?}");
     assert!(strategies.contains("relay"), "{strategies:?}");
+    // The program's name and version are its own.
+    let machine = fs::read_to_string(folder.path().join("out/ours/machine.toml")).unwrap();
+    assert!(machine.contains("program = \"relay-race 0.1.0 (Pathmark "), "{machine}");
     let page = fs::read_to_string(folder.path().join("out/report.html")).unwrap();
     for name in ["relay", "primes", "cornell"] {
         assert!(page.contains(name), "{name} is not in the report");

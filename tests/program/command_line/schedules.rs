@@ -59,7 +59,8 @@ fn every_strategy_that_is_named_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     traced(folder.path(), "serial", "1");
     let simulate = ["simulate", "run.csv", "--no-check", "--workers", "1,2,4"];
-    let chosen = ["--strategies", "serial", "--strategies", "shared-counter", "--strategies", "dynamic:2,shared-counter"];
+    let chosen =
+        ["--strategies", "serial", "--strategies", "shared-counter", "--strategies", "dynamic:2,shared-counter"];
     run(folder.path(), &[&simulate[..], &chosen].concat());
     drawn(&folder.path().join("out/simulation/forecast-speedup.svg"), &["serial", "shared-counter", "dynamic:2"]);
     let table = fs::read_to_string(folder.path().join("out/simulation/forecast.csv")).unwrap();
