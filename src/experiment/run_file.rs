@@ -1,12 +1,15 @@
 //! `machine.toml`: the machine on which the rows beside it were measured, and the command.
 
-use super::Profile;
+use super::{Cell, Profile, Sweep};
 use crate::atomic_file;
+use crate::digest;
 use crate::error::{InputError, Result};
 use crate::input::{parse, read_text};
 use crate::measure::Machine;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::process;
+use std::time::SystemTime;
 
 /// The file's name.
 pub const MACHINE: &str = "machine.toml";
@@ -24,6 +27,13 @@ pub struct RunFile {
     /// The other program whose rows were measured in turns with these; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
+    /// The number of the sweep that measured these rows in turns with the other program's; rows of one number are pairs.
+    /// `None` without another program, and in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<String>,
+    /// The fewest rows of the finished sweep; `None` in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<u64>,
     /// The goal of the repetitions: a share, `fastest` or `order`; `None` if their number was fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
@@ -39,6 +49,11 @@ pub struct RunFile {
     pub machine: Machine,
 }
 
+/// A number that no other sweep has: of this process at this time.
+fn sweep_number() -> String {
+    digest::of_text(&format!("{:?} {}", SystemTime::now(), process::id()))
+}
+
 /// Reads a `machine.toml`.
 pub fn read_run_file(path: &Path) -> Result<RunFile> {
     parse(&read_text(path)?, &path.display().to_string())
@@ -49,8 +64,9 @@ impl RunFile {
     pub fn of_now(command: String) -> Self {
         let (profile, definition_hash) = (Profile::Quick.name().to_string(), String::new());
         let machine = Machine::look();
-        let (shard, against, until) = (None, None, None);
-        Self { command, profile, shard, against, until, uncapped: false, cached: false, definition_hash, machine }
+        let (shard, against, sweep, rows, until) = (None, None, None, None, None);
+        let (uncapped, cached) = (false, false);
+        Self { command, profile, shard, against, sweep, rows, until, uncapped, cached, definition_hash, machine }
     }
 
     /// Writes the file.
@@ -93,5 +109,27 @@ impl RunFile {
                     .into())
             }
         }
+    }
+}
+
+impl Sweep<'_> {
+    /// The description of its rows: this command and this machine.
+    pub(super) fn run_file(&self) -> Result<RunFile> {
+        let Self { definition, options, cells, until, .. } = self;
+        let repetitions = if until.is_some() { 1 } else { self.repetitions()? };
+        let rows = |cell: &Cell| cell.points.len() as u64 * u64::from(cell.repetitions(repetitions));
+        Ok(RunFile {
+            command: options.command.clone(),
+            profile: options.profile.name().to_string(),
+            shard: options.shard.map(|shard| shard.to_string()),
+            against: options.against.as_ref().map(|program| program.display().to_string()),
+            sweep: options.against.as_ref().map(|_| sweep_number()),
+            rows: Some(cells.iter().map(rows).sum()),
+            until: until.as_ref().map(|until| until.text.clone()),
+            uncapped: options.say_how_often(),
+            cached: options.cache.is_some(),
+            definition_hash: digest::of_text(&definition.text),
+            machine: Machine::look(),
+        })
     }
 }

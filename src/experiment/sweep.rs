@@ -17,11 +17,10 @@ use super::{
     wanted_references,
 };
 use crate::atomic_file;
-use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::files::Files;
 use crate::film::Film;
-use crate::measure::{Doubts, Machine, Record, Settings, check_cache};
+use crate::measure::{Doubts, Record, Settings, check_cache};
 use crate::temporary;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -142,11 +141,11 @@ impl<'a> Sweep<'a> {
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
         let Self { definition, options, cells, references: wanted, until } = self;
         let folder = options.out.join(&definition.name);
-        let run = || run_file(definition, options, until.as_ref());
-        let (file, done) = open(definition, options, &run(), &folder)?;
+        let run = self.run_file()?;
+        let (file, done) = open(definition, options, &run, &folder)?;
         let other = options.against.as_deref();
         let against = other
-            .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run()))
+            .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run.clone()))
             .transpose()?;
 
         let calibration = folder.join("calibration.csv");
@@ -301,21 +300,6 @@ fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
         wanted.iter().any(|other| other.id == cell.id) || (options.serial_for.is_some() && is_baseline())
     };
     Ok(cells.iter().filter(|cell| is_wanted(cell)).cloned().collect())
-}
-
-/// The description of a sweep's rows: this command and this machine.
-fn run_file(definition: &Definition, options: &Options, until: Option<&Until>) -> RunFile {
-    RunFile {
-        command: options.command.clone(),
-        profile: options.profile.name().to_string(),
-        shard: options.shard.map(|shard| shard.to_string()),
-        against: options.against.as_ref().map(|program| program.display().to_string()),
-        until: until.map(|until| until.text.clone()),
-        uncapped: options.say_how_often(),
-        cached: options.cache.is_some(),
-        definition_hash: digest::of_text(&definition.text),
-        machine: Machine::look(),
-    }
 }
 
 /// Creates or reopens the file of rows; also returns the rows that it already has.

@@ -47,8 +47,8 @@ impl SweepShard {
         Ok(cells.into_iter().filter(|cell| is_mine(cell) || is_needed(cell)).collect())
     }
 
-    /// The number of this part's repetition `own` among the repetitions of all parts.
-    pub(super) fn repetition(self, own: u32) -> u32 {
-        own.saturating_mul(self.count).saturating_add(self.index - 1)
+    /// The number of this part's repetition `own` among the repetitions of all parts; `None` beyond the largest one.
+    pub(super) fn repetition(self, own: u32) -> Option<u32> {
+        own.checked_mul(self.count)?.checked_add(self.index - 1)
     }
 }

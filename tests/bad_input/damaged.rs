@@ -7,6 +7,7 @@ use pathmark::experiment::EXPERIMENTS;
 use pathmark::measure::SCHEMA;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 const RUN: [&str; 4] = ["run", "tiny.toml", "--out", "out"];
@@ -109,6 +110,92 @@ fn rows_that_are_none_are_refused_with_their_line() {
         fs::write(&records, lines.join("\n") + "\n").unwrap();
         refused(folder.path(), &["report", "out"], 2, &["records.csv:3:", said]);
         refused(folder.path(), &RESUME, 2, &["records.csv:3:", said]);
+    }
+}
+
+/// Times that no clock shows are damage. A comparison would take their cells for absent.
+#[test]
+fn times_that_no_clock_shows_are_refused_with_their_line() {
+    let (folder, records) = after_a_run();
+    let mut reader = csv::Reader::from_path(&records).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let with = |column: &str, value: &str, error: &str| {
+        let mut writer = csv::Writer::from_path(&records).unwrap();
+        writer.write_record(&heads).unwrap();
+        for (index, row) in rows.iter().enumerate() {
+            let field = |(head, old)| match head {
+                _ if index != 1 => old,
+                head if head == column => value,
+                "error" => error,
+                _ => old,
+            };
+            writer.write_record(heads.iter().zip(row).map(field)).unwrap();
+        }
+        writer.flush().unwrap();
+    };
+    for (column, values) in [
+        ("makespan_s", &["NaN", "inf", "-inf", "0", "-0.0", "-1.5", "1e999"][..]),
+        ("setup_s", &["NaN", "inf", "-1e-9"]),
+        ("gap_sum_s", &["NaN", "-inf"]),
+    ] {
+        for value in values {
+            with(column, value, "");
+            let said = ["records.csv:3:", column, value];
+            refused(folder.path(), &["report", "out"], 2, &said);
+            refused(folder.path(), &["diff", "out", "out"], 2, &said);
+            refused(folder.path(), &["diff", "out/tiny", "out/tiny", "--counts"], 2, &said);
+            refused(folder.path(), &["rank", "out/tiny"], 2, &said);
+            refused(folder.path(), &RESUME, 2, &said);
+        }
+    }
+    // Rounding may leave a difference of times below 0, and a failed row has no time.
+    for (column, value, error) in [("gap_sum_s", "-1e-9", ""), ("setup_s", "0", ""), ("makespan_s", "0", "it broke")] {
+        with(column, value, error);
+        finish(pathmark(folder.path(), &["rank", "out/tiny"])).with_code(0);
+    }
+}
+
+/// A header may say any size. The length of the file shows that the pixels are not there before there is memory for them:
+/// 65536x1024 pixels take 3.5 GB, and the program gets 1 GB.
+#[test]
+fn a_part_with_a_forged_size_takes_no_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let part = |by: &str| {
+        let options = ["render", "cornell", "--size", "33x17", "--spp", "32", "--shard", "1/2", "--shard-by", by];
+        finish(pathmark(folder.path(), &[&options[..], &["-o", "part.film"]].concat())).with_code(0);
+        fs::read(folder.path().join("part.film")).unwrap()
+    };
+    let merge = "ulimit -v 1000000 && exec \"$0\" merge part.film --partial -o image.pfm";
+    let merged = || {
+        let mut limited = Command::new("sh");
+        limited.args(["-c", merge]).arg(assert_cmd::cargo::cargo_bin!("pathmark")).current_dir(folder.path());
+        limited.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        finish(limited)
+    };
+    for by in ["tiles", "samples"] {
+        let whole = part(by);
+        merged().with_code(0);
+        let mut lines = whole.splitn(3, |byte| *byte == b'\n');
+        let [magic, header] = [(); 2].map(|()| String::from_utf8(lines.next().unwrap().to_vec()).unwrap());
+        let body = lines.next().unwrap();
+        let large = header.replace("\"width\":33,\"height\":17", "\"width\":65536,\"height\":1024");
+        assert_ne!(large, header);
+        // Without samples, no pixels are expected.
+        let mut empty: serde_json::Value = serde_json::from_str(&large).unwrap();
+        empty["film"]["spp"] = 0.into();
+        let impossible = header.replace("\"width\":33,\"height\":17", "\"width\":4294967295,\"height\":4294967295");
+        for (forged, body, said) in [
+            (large, body, "pixels"),
+            (empty.to_string(), &body[body.len() - 32..], "no samples"),
+            (impossible, body, "4294967295x4294967295"),
+        ] {
+            fs::write(folder.path().join("part.film"), [format!("{magic}\n{forged}\n").as_bytes(), body].concat())
+                .unwrap();
+            let refused = merged().with_code(2);
+            assert!(refused.err.contains(said) && refused.err.contains("part.film"), "{}", refused.err);
+        }
+        fs::remove_file(folder.path().join("part.film")).unwrap();
     }
 }
 
