@@ -1,9 +1,9 @@
 //! `pathmark diff OLD NEW`: which cells got slower, and which are lost?
 
-use super::output::{counted, number, print, print_json, printable};
+use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, printable};
 use crate::experiment::{
     Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, Lost, Progress as _, count_diff, diff, parse_share,
 };

@@ -1,12 +1,11 @@
 //! Output of results: into a folder, or to standard output, which a user may close at any time:
 //! `pathmark list | head -1` is no failure.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, printable};
 use crate::files::create_folder;
 use crate::lock::{Lock, Sharing};
 use serde::Serialize;
 use serde_json::Value;
-use std::borrow::Cow;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
@@ -21,38 +20,13 @@ pub(super) fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
-/// Whether a terminal would obey a character instead of showing it: control characters, ends of lines of any script, and
-/// the marks that reverse the direction of what follows.
-fn is_command(character: char) -> bool {
-    character.is_control()
-        || matches!(character, '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
-}
-
-/// A name as it can be shown in a line of text: characters that a terminal would obey are escaped, as in `\u{1b}`.
-pub(super) fn printable(name: &str) -> Cow<'_, str> {
-    escaped(name, is_command, |character| character.escape_default().to_string())
-}
-
-fn escaped(text: &str, is_bad: fn(char) -> bool, escape: fn(char) -> String) -> Cow<'_, str> {
-    if !text.contains(is_bad) {
-        return text.into();
-    }
-    let one = |character| if is_bad(character) { escape(character) } else { String::from(character) };
-    text.chars().map(one).collect::<String>().into()
-}
-
-/// Lines of text in which characters that a terminal would obey are escaped, apart from tabs and the ends of the lines.
-pub(super) fn printable_lines(text: &str) -> Cow<'_, str> {
-    let is_bad = |character| is_command(character) && !matches!(character, '\n' | '\t');
-    escaped(text, is_bad, |character| character.escape_default().to_string())
-}
-
-/// Prints a text and a line end.
+/// Prints a text and a line end. Control characters of names in it are escaped, except the ends of its lines.
 pub(super) fn print(text: &str) -> Result<()> {
-    write(&printable_lines(text))
+    print_verbatim(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
 }
 
-fn write(text: &str) -> Result<()> {
+/// Prints a text of the program's own, such as a script, and a line end.
+pub(super) fn print_verbatim(text: &str) -> Result<()> {
     match writeln!(std::io::stdout().lock(), "{text}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::system("writing", "standard output", e)),
         _ => Ok(()),
@@ -68,8 +42,9 @@ pub(super) fn print_json(value: &impl Serialize) -> Result<()> {
     let named = toml::Value::try_from(value).is_ok_and(|exact| name_odd_numbers(&mut json, &exact));
     // If nothing has to be replaced, fields keep their order.
     let line = if named { json.to_string() } else { serde_json::to_string(value).map_err(failed)? };
-    // JSON itself escapes only the first 32 characters. All that are left stand in texts.
-    write(&escaped(&line, is_command, |character| format!("\\u{:04x}", u32::from(character))))
+    // JSON itself escapes only the first 32 characters. All control characters that are left stand in texts.
+    let escape = |c: char| if c.is_control() { format!("\\u{:04x}", u32::from(c)) } else { String::from(c) };
+    print_verbatim(&line.chars().map(escape).collect::<String>())
 }
 
 /// Replaces nulls that were numbers by texts; returns whether there were any.
@@ -122,13 +97,5 @@ mod tests {
         assert!(json.as_array().unwrap().iter().all(|row| row["absent"].is_null() && row["name"] == "a"));
         let mut fine = serde_json::to_value(&rows[3]).unwrap();
         assert!(!name_odd_numbers(&mut fine, &toml::Value::try_from(&rows[3]).unwrap()));
-    }
-
-    /// Escapes of colours, of the second control block and of reversed text, a line end, and text that stays.
-    #[test]
-    fn a_terminal_shows_names_and_obeys_none() {
-        assert_eq!(printable("a\u{1b}[2Jb\u{9b}c\nd\u{202e}e"), "a\\u{1b}[2Jb\\u{9b}c\\nd\\u{202e}e");
-        assert_eq!(printable_lines("a\r\n\tb\u{7f}"), "a\\r\n\tb\\u{7f}");
-        assert!(matches!(printable("Größe 1 °C, 木 \\"), Cow::Borrowed("Größe 1 °C, 木 \\")));
     }
 }

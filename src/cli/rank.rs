@@ -1,9 +1,9 @@
 //! `pathmark rank DIR`: which schedules can be told apart?
 
-use super::output::{counted, number, print, print_json, printable};
+use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
-use crate::error::Result;
+use crate::error::{Result, printable};
 use crate::experiment::{ImageRanking, Place, Progress as _, Ranking, ranking};
 use crate::lab::Lab;
 use clap::Args;

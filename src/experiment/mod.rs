@@ -13,6 +13,7 @@ mod definition;
 mod diff;
 mod drift;
 mod external;
+mod formula;
 mod half;
 mod instructions;
 mod keys;

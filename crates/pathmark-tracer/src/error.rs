@@ -1,5 +1,6 @@
 //! Errors, sorted by cause: the user's input (exit code 2), the system (3), or a failed check (1).
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -125,6 +126,16 @@ impl InputError {
         let (similarity, name) = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
         (SIMILAR..1.0).contains(&similarity).then_some(name)
     }
+}
+
+/// Returns a text with every control character escaped as in Rust: a terminal would obey it, and a line end would make
+/// one message look like two.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    if !text.contains(char::is_control) {
+        return text.into();
+    }
+    let escape = |c: char| if c.is_control() { c.escape_default().collect() } else { String::from(c) };
+    text.chars().map(escape).collect::<String>().into()
 }
 
 impl fmt::Display for InputError {
