@@ -1,7 +1,7 @@
 //! `pathmark completions SHELL`: a script that completes verbs, options and their values.
 
 use super::described;
-use super::output::print;
+use super::output::print_verbatim;
 use crate::error::Result;
 use clap::Args;
 use clap_complete::Shell;
@@ -16,5 +16,5 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut described(), "pathmark", &mut script);
-    print(String::from_utf8_lossy(&script).trim_end())
+    print_verbatim(String::from_utf8_lossy(&script).trim_end())
 }

@@ -1,7 +1,7 @@
 //! `pathmark man [VERB]`: a manual page, of the program or of a verb.
 
 use super::described;
-use super::output::print;
+use super::output::print_verbatim;
 use crate::error::{Error, InputError, Result};
 use clap::Args;
 use clap_mangen::Man;
@@ -28,5 +28,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     };
     let mut page = Vec::new();
     Man::new(command).render(&mut page).map_err(|e| Error::system("writing", "the manual page", e))?;
-    print(String::from_utf8_lossy(&page).trim_end())
+    print_verbatim(String::from_utf8_lossy(&page).trim_end())
 }

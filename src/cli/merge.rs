@@ -6,7 +6,7 @@ use super::picture::is_film;
 use super::progress::Talk;
 use super::strict::Strict;
 use crate::error::{InputError, Result};
-use crate::experiment::{Progress as _, merge_sweeps};
+use crate::experiment::{MergedSweep, Progress as _, merge_sweeps};
 use crate::files::Files;
 use crate::film_file::write_film;
 use crate::image_io;
@@ -57,13 +57,14 @@ fn sweeps(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
         for part in &sweep.missing {
             talk.note(&format!("warning: missing: part {part} of {}", sweep.name));
         }
-        let folder = sweep.out.join(&sweep.name).display().to_string();
+        let folder = sweep.folder().display().to_string();
         lines.push(format!("{} rows in {folder}", sweep.rows));
         sweeps.push(json!({ "folder": folder, "rows": sweep.rows, "missing": sweep.missing }));
     }
     let mut reports = Vec::new();
     for out in outs {
-        reports.push(report::write(lab, &out)?.display().to_string());
+        let report = report::write(lab, &out).inspect_err(|_| merged.iter().for_each(MergedSweep::remove))?;
+        reports.push(report.display().to_string());
     }
     if arguments.json {
         return print_json(&json!({ "sweeps": sweeps, "reports": reports }));

@@ -1,7 +1,7 @@
 //! Output of results: into a folder, or to standard output, which a user may close at any time:
 //! `pathmark list | head -1` is no failure.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, printable};
 use crate::files::create_folder;
 use crate::lock::{Lock, Sharing};
 use serde::Serialize;
@@ -20,8 +20,13 @@ pub(super) fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
-/// Prints a text and a line end.
+/// Prints a text and a line end. Control characters of names in it are escaped, except the ends of its lines.
 pub(super) fn print(text: &str) -> Result<()> {
+    print_verbatim(&text.split('\n').map(printable).collect::<Vec<_>>().join("\n"))
+}
+
+/// Prints a text of the program's own, such as a script, and a line end.
+pub(super) fn print_verbatim(text: &str) -> Result<()> {
     match writeln!(std::io::stdout().lock(), "{text}") {
         Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(Error::system("writing", "standard output", e)),
         _ => Ok(()),
@@ -36,7 +41,10 @@ pub(super) fn print_json(value: &impl Serialize) -> Result<()> {
     // TOML keeps NaN and infinities, which JSON turns into null.
     let named = toml::Value::try_from(value).is_ok_and(|exact| name_odd_numbers(&mut json, &exact));
     // If nothing has to be replaced, fields keep their order.
-    print(&if named { json.to_string() } else { serde_json::to_string(value).map_err(failed)? })
+    let line = if named { json.to_string() } else { serde_json::to_string(value).map_err(failed)? };
+    // JSON itself escapes only the first 32 characters. All control characters that are left stand in texts.
+    let escape = |c: char| if c.is_control() { format!("\\u{:04x}", u32::from(c)) } else { String::from(c) };
+    print_verbatim(&line.chars().map(escape).collect::<String>())
 }
 
 /// Replaces nulls that were numbers by texts; returns whether there were any.

@@ -4,7 +4,7 @@ use super::letters::letters;
 use super::output::{counted, number, print, print_json};
 use super::progress::Talk;
 use super::run::talk_of;
-use crate::error::{InputError, Result};
+use crate::error::{InputError, Result, printable};
 use crate::experiment::{ImageRanking, Place, Progress as _, Ranking, ranking};
 use crate::lab::Lab;
 use clap::Args;
@@ -40,6 +40,17 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
             "\nSchedules that share a letter cannot be told apart; all other orders hold together with 95 % confidence.",
         )?;
     }
+    if found.images.iter().any(|image| image.part[1] > 1) {
+        talk.note("schedules of different parts were never measured in one repetition, so each part is ranked apart");
+    }
+    if !found.without_time.is_empty() {
+        let names: Vec<_> = found.without_time.iter().map(|cell| printable(cell)).collect();
+        talk.note(&format!(
+            "{} not ranked, because no row has a time: {}",
+            counted(names.len(), "cell"),
+            names.join(", ")
+        ));
+    }
     let most = found.images.iter().flat_map(|image| &image.places).map(|place| place.repetitions).max().unwrap_or(0);
     let least = found.least_repetitions as usize;
     if most < least {
@@ -57,22 +68,26 @@ fn table(image: &ImageRanking) -> String {
     let head = format!("{:>8} {:>16} {:>11}  {:width$}  schedule", "ratio", "interval", "median", "groups");
     let line = |place: &Place| {
         let interval = place.interval.map_or_else(|| "-".to_string(), |i| format!("{:.3} to {:.3}", i.low, i.high));
-        let Place { ratio, median_s, schedule, .. } = place;
-        format!("{ratio:>8.3} {interval:>16} {:>8.1} ms  {:width$}  {schedule}", 1e3 * median_s, letters(&place.groups))
+        let ratio = place.ratio.map_or_else(|| "-".to_string(), |ratio| format!("{ratio:.3}"));
+        let (median_ms, schedule) = (1e3 * place.median_s, printable(&place.schedule));
+        format!("{ratio:>8} {interval:>16} {median_ms:>8.1} ms  {:width$}  {schedule}", letters(&place.groups))
     };
-    let ImageRanking { fastest, compared, places, .. } = image;
+    let ImageRanking { fastest, compared, places, part: [part, parts], .. } = image;
     let of = if *compared < places.len() {
         format!("{compared} (the matrix of the others has fewer repetitions)")
     } else {
         "them".to_string()
     };
     let fastest = match (*compared, fastest.len()) {
+        _ if places.len() == 1 => "no other schedule was measured with it".to_string(),
         (0 | 1, _) => "too few schedules have all repetitions to determine the fastest".to_string(),
         (_, 0) => format!("each of {of} is slower than another one"),
         (all, left) if left == all => format!("any of {of} may be the fastest"),
-        _ => format!("with 95 % confidence, the fastest of {of} is among: {}", fastest.join(", ")),
+        _ => format!("with 95 % confidence, the fastest of {of} is among: {}", printable(&fastest.join(", "))),
     };
-    let lines = [image.image.clone(), head].into_iter().chain(image.places.iter().map(line));
+    let of_part = if *parts > 1 { format!(", part {part} of {parts}") } else { String::new() };
+    let lines =
+        [format!("{}{of_part}", printable(&image.image)), head].into_iter().chain(image.places.iter().map(line));
     lines.chain([fastest]).collect::<Vec<_>>().join("\n")
 }
 
@@ -80,14 +95,14 @@ fn object(found: &Ranking) -> Value {
     let image = |image: &ImageRanking| {
         let place = |place: &Place| {
             json!({
-                "schedule": place.schedule, "ratio": number(place.ratio), "interval": place.interval, "groups": place.groups,
+                "schedule": place.schedule, "ratio": place.ratio.map(number), "interval": place.interval, "groups": place.groups,
                 "median_s": number(place.median_s), "repetitions": place.repetitions,
             })
         };
-        json!({ "image": image.image, "fastest": image.fastest, "compared": image.compared, "places": image.places.iter().map(place).collect::<Vec<_>>() })
+        json!({ "image": image.image, "part": image.part, "fastest": image.fastest, "compared": image.compared, "places": image.places.iter().map(place).collect::<Vec<_>>() })
     };
     json!({
         "images": found.images.iter().map(image).collect::<Vec<_>>(), "least_repetitions": found.least_repetitions,
-        "doubted_rows": found.doubts.count(),
+        "doubted_rows": found.doubts.count(), "without_time": found.without_time,
     })
 }

@@ -52,17 +52,16 @@ impl Cell {
         self.settings.is_serial()
     }
 
-    /// Whether it is a serial run of the other's image, with any decomposition.
-    pub(super) fn is_baseline_of(&self, other: &Self) -> bool {
-        let image = |cell: &Self| Settings {
+    /// Its settings without its schedule. A serial run with the same ones, and any decomposition, is its baseline.
+    pub(super) fn without_schedule(&self) -> Settings {
+        Settings {
             strategy: String::new(),
             threads: 0,
             rank_rule: None,
             ranks: None,
             decomposition: String::new(),
-            ..cell.settings.clone()
-        };
-        self.is_serial() && image(self) == image(other)
+            ..self.settings.clone()
+        }
     }
 
     /// The cell of a setup. Settings that its strategy ignores do not tell cells apart.

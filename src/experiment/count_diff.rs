@@ -1,6 +1,6 @@
 //! Comparison of two measurements of the same cells by counts: the program's work, however busy the machine is.
 
-use super::diff::{Side, sides};
+use super::sides::{Compared, Lost, Side, sides};
 use crate::error::Result;
 use crate::measure::Record;
 use serde::Serialize;
@@ -44,11 +44,25 @@ impl CountDiff {
     }
 }
 
-/// The counts that differ, of the cells that both measurements have, and how many counts were compared.
-pub fn count_diff(old: &Path, new: &Path) -> Result<(Vec<CountDiff>, usize)> {
+/// The counts of two measurements of an experiment.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CountDiffs {
+    /// The counts that differ.
+    pub changed: Vec<CountDiff>,
+    /// Number of counts that both measurements have.
+    pub compared: usize,
+    /// The cells that only the old measurement has.
+    pub lost: Lost,
+}
+
+/// Compares the counts of two measurements: of two experiments, or of those of equal name in two folders.
+pub fn count_diff(old: &Path, new: &Path) -> Result<Compared<CountDiffs>> {
     // Counts are the same on every machine.
-    let [old, new] = sides(old, new, true)?;
-    let (old, new) = (counts(&old), counts(&new));
+    sides(old, new, true)?.map(|(name, sides)| Ok((name, of_experiment(&sides))))
+}
+
+fn of_experiment(sides: &[Side; 2]) -> CountDiffs {
+    let [old, new] = sides.each_ref().map(counts);
     let both = || old.iter().filter_map(|(key, old)| Some((key, *old, *new.get(key)?)));
     let differs = |column: &str, old: u64, new: u64| {
         let slack = if column == INSTRUCTIONS { REPEATS * old as f64 } else { 0.0 };
@@ -56,7 +70,7 @@ pub fn count_diff(old: &Path, new: &Path) -> Result<(Vec<CountDiff>, usize)> {
     };
     let changed = both().filter(|((_, column), old, new)| differs(column, *old, *new));
     let found = changed.map(|((cell, column), old, new)| CountDiff { cell: cell.clone(), column, old, new });
-    Ok((found.collect(), both().count()))
+    CountDiffs { changed: found.collect(), compared: both().count(), lost: Lost::of(sides, |_| true) }
 }
 
 fn counts(side: &Side) -> BTreeMap<(String, &'static str), u64> {

@@ -17,6 +17,7 @@ use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::measure::{Settings, parse_size};
 use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -113,7 +114,7 @@ impl Definition {
     /// The cells of the other programs.
     pub(super) fn external_cells(&self, profile: Profile) -> Result<Vec<Cell>> {
         let scale = self.scale(profile)?;
-        let mut cells = Vec::new();
+        let (mut cells, mut places) = (Vec::<Cell>::new(), HashMap::new());
         for external in &self.external {
             external.check().map_err(|error| match error {
                 Error::Input(input) => self.located(profile, *input),
@@ -152,8 +153,11 @@ impl Definition {
                 let external = Some(external.clone());
                 let cell =
                     Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
-                match cells.iter().find(|known: &&Cell| known.id == cell.id) {
-                    None => cells.push(cell),
+                match places.get(&cell.id).map(|place: &usize| &cells[*place]) {
+                    None => {
+                        places.insert(cell.id.clone(), cells.len());
+                        cells.push(cell);
+                    }
                     // Curves share their first points, and a list may name a value twice.
                     Some(known) if known.external == cell.external => {}
                     Some(_) => {

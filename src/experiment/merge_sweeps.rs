@@ -3,12 +3,15 @@
 //!
 //! A ratio of two times compares two rows of one repetition, so a repetition must not mix machines: repetition r of
 //! part i of n becomes repetition r · n + i - 1. Rows of unlike machines are kept in separate folders.
+//!
+//! All parts are read and checked before any folder is made, and a merge that fails removes what it made.
 
 use super::cell::trace_file;
-use super::records_file::read_records;
+use super::records_file::{RECORDS, read_records};
 use super::run_file::{MACHINE, RunFile, read_run_file};
 use super::sweep_shard::SweepShard;
 use crate::atomic_file;
+use crate::digest;
 use crate::error::{Error, InputError, Result};
 use crate::measure::Record;
 use std::collections::BTreeMap;
@@ -24,6 +27,33 @@ struct Part {
     folder: PathBuf,
     shard: SweepShard,
     run: RunFile,
+    rows: Vec<Record>,
+}
+
+impl Part {
+    /// The rows that it still lacks, in words; `None` if it is finished.
+    fn lack(&self) -> Option<String> {
+        let (have, want) = (self.rows.len() as u64, self.run.rows.unwrap_or(1));
+        (have < want).then(|| format!("{}: {have} of at least {want} rows in {}", self.shard, self.folder.display()))
+    }
+
+    /// Its rows, numbered as rows of the merged sweep.
+    fn numbered(&self) -> Result<Vec<Record>> {
+        let number = |row: &Record| {
+            let too_large = |field: &str, value: String| {
+                let file = self.folder.join(RECORDS).display().to_string();
+                InputError::new(field, value, format!("is too large for a sweep of {} parts", self.shard.count))
+                    .in_file(file, None)
+            };
+            let repetition = self.shard.repetition(row.repetition);
+            let repetition = repetition.ok_or_else(|| too_large("repetition", row.repetition.to_string()))?;
+            let order = row.order.checked_mul(u64::from(self.shard.count));
+            let order = order.and_then(|order| order.checked_add(u64::from(self.shard.index - 1)));
+            let order = order.ok_or_else(|| too_large("order", row.order.to_string()))?;
+            Ok(Record { repetition, order, ..row.clone() })
+        };
+        self.rows.iter().map(number).collect()
+    }
 }
 
 /// A merged sweep.
@@ -35,7 +65,7 @@ pub struct MergedSweep {
     pub name: String,
     /// Number of its rows.
     pub rows: usize,
-    /// Missing parts, such as `2/4`.
+    /// Parts that are missing, such as `2/4`, or not finished.
     pub missing: Vec<String>,
 }
 
@@ -52,14 +82,15 @@ fn parts_in(folder: &Path) -> Result<Vec<(String, Part)>> {
     let mut parts = Vec::new();
     for entry in entries {
         let path = entry.map_err(|e| Error::system("reading", folder, e))?.path();
-        if !path.join(MACHINE).is_file() || !path.join("records.csv").is_file() {
+        if !path.join(MACHINE).is_file() || !path.join(RECORDS).is_file() {
             continue;
         }
         let run = read_run_file(&path.join(MACHINE))?;
         let Some(text) = &run.shard else { continue };
         let shard = SweepShard::parse(text)?;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        parts.push((name, Part { folder: path, shard, run }));
+        let rows = read_records(&path.join(RECORDS))?;
+        parts.push((name, Part { folder: path, shard, run, rows }));
     }
     if parts.is_empty() {
         let allowed = "folders that `pathmark run EXPERIMENT --shard I/N --out DIR` made";
@@ -81,23 +112,53 @@ pub fn merge_sweeps(folders: &[PathBuf], out: &Path, partial: bool, command: &st
         parts.sort_by_key(|part| part.shard.index);
         let missing = check(&parts)?;
         if !missing.is_empty() && !partial {
-            let problem = format!("these parts of {name} are missing: {}", missing.join(", "));
+            let problem = format!("these parts of {name} are missing or not finished: {}", missing.join(", "));
             let allowed = "all parts, or --partial for the available rows";
             return Err(refused("part", &parts[0].folder, problem).allowed(allowed).into());
         }
         checked.push((name, parts, missing));
     }
-    let mut merged = Vec::new();
+    let mut plans = Vec::new();
     for (name, parts, missing) in checked {
         let machines = by_machine(parts);
         let is_one = machines.len() == 1;
-        for (index, parts) in machines.iter().enumerate() {
+        for (index, parts) in machines.into_iter().enumerate() {
             let out = if is_one { out.to_path_buf() } else { out.join(format!("machine-{}", index + 1)) };
-            let rows = write(parts, &out, &name, command)?;
-            merged.push(MergedSweep { out, name: name.clone(), rows, missing: missing.clone() });
+            let folder = out.join(&name);
+            if folder.exists() {
+                return Err(refused("output", &folder, "already exists").allowed("another folder").into());
+            }
+            let mut rows = Vec::new();
+            for part in &parts {
+                rows.extend(part.numbered()?);
+            }
+            rows.sort_by_key(|row| row.order);
+            let sweep = MergedSweep { out, name: name.clone(), rows: rows.len(), missing: missing.clone() };
+            plans.push((sweep, parts, rows));
+        }
+    }
+    let mut merged = Vec::new();
+    for (sweep, parts, rows) in plans {
+        let written = write(&parts, &rows, &sweep, command);
+        merged.push(sweep);
+        if let Err(error) = written {
+            merged.iter().for_each(MergedSweep::remove);
+            return Err(error);
         }
     }
     Ok(merged)
+}
+
+impl MergedSweep {
+    /// The folder of its rows.
+    pub fn folder(&self) -> PathBuf {
+        self.out.join(&self.name)
+    }
+
+    /// Removes its folder, so that another attempt can make it. The parts still have the rows.
+    pub fn remove(&self) {
+        fs::remove_dir_all(self.folder()).ok();
+    }
 }
 
 /// Refuses parts that do not belong together; returns the missing ones.
@@ -122,10 +183,38 @@ fn check(parts: &[Part]) -> Result<Vec<String>> {
         let problem = format!("is part {}, the same as {}", pair[1].shard, pair[0].folder.display());
         return Err(refused("part", &pair[1].folder, problem).allowed("each part once").into());
     }
-    let is_there = |index: u32| parts.iter().any(|part| part.shard.index == index);
+    if parts.iter().all(|part| part.rows.is_empty()) {
+        return Err(refused("part", &first.folder, "has no rows, and neither has another part").into());
+    }
     let count = first.shard.count;
-    let missing = (1..=count).filter(|index| !is_there(*index)).take(MOST_TOLD);
-    Ok(missing.map(|index| format!("{index}/{count}")).collect())
+    let mut found = parts.iter().peekable();
+    let missing = (1..=count).filter_map(|index| match found.next_if(|part| part.shard.index == index) {
+        Some(part) => part.lack(),
+        None => Some(format!("{index}/{count}")),
+    });
+    Ok(missing.take(MOST_TOLD).collect())
+}
+
+/// The description of the merged rows.
+fn run_of(parts: &[Part], command: &str) -> RunFile {
+    // Intervals that hold at every look are valid for any part, the usual ones only where no part had a goal.
+    let mut goals: Vec<&str> = parts.iter().filter_map(|part| part.run.until.as_deref()).collect();
+    goals.sort_unstable();
+    goals.dedup();
+    let sweeps: Option<Vec<&str>> = parts.iter().map(|part| part.run.sweep.as_deref()).collect();
+    let first = &parts[0].run;
+    RunFile {
+        command: command.to_string(),
+        shard: None,
+        rows: None,
+        until: Some(goals.join(", ")).filter(|goals| !goals.is_empty()),
+        // The limits of matrices applied if they did in any part.
+        uncapped: parts.iter().all(|part| part.run.uncapped),
+        against: first.against.clone().filter(|_| parts.iter().all(|part| part.run.against.is_some())),
+        // Both builds' rows get the same number, because both were measured by the same parts.
+        sweep: sweeps.map(|sweeps| digest::of_text(&sweeps.join(" "))),
+        ..first.clone()
+    }
 }
 
 /// Groups the parts by machine: by model and number of processors.
@@ -141,35 +230,28 @@ fn by_machine(parts: Vec<Part>) -> Vec<Vec<Part>> {
     machines
 }
 
-/// Writes the folder of one sweep; returns its number of rows.
-fn write(parts: &[Part], out: &Path, name: &str, command: &str) -> Result<usize> {
-    let folder = out.join(name);
-    if folder.exists() {
-        return Err(refused("output", &folder, "already exists").allowed("another folder").into());
-    }
+/// Writes the folder of one sweep.
+fn write(parts: &[Part], rows: &[Record], sweep: &MergedSweep, command: &str) -> Result<()> {
+    let folder = sweep.folder();
     let make = |path: &Path| fs::create_dir_all(path).map_err(|e| Error::system("creating", path, e));
     make(&folder)?;
-    let mut rows = Vec::new();
-    for Part { folder: from, shard, .. } in parts {
-        for row in read_records(&from.join("records.csv"))? {
-            let repetition = shard.repetition(row.repetition);
-            let trace = |repetition| Path::new("traces").join(trace_file(&row.cell, repetition));
-            if from.join(trace(row.repetition)).is_file() {
+    for part in parts {
+        let from = &part.folder;
+        for (own, merged) in part.rows.iter().zip(part.numbered()?) {
+            let trace = |row: &Record| Path::new("traces").join(trace_file(&row.cell, row.repetition));
+            if from.join(trace(own)).is_file() {
                 make(&folder.join("traces"))?;
-                copy(&from.join(trace(row.repetition)), &folder.join(trace(repetition)))?;
+                copy(&from.join(trace(own)), &folder.join(trace(&merged)))?;
             }
-            let order = row.order * u64::from(shard.count) + u64::from(shard.index - 1);
-            rows.push(Record { repetition, order, ..row });
         }
         copy_all(&from.join("images"), &folder.join("images"))?;
         if let Some(references) = from.parent().map(|parent| parent.join("references")) {
-            copy_all(&references, &out.join("references"))?;
+            copy_all(&references, &sweep.out.join("references"))?;
         }
     }
-    rows.sort_by_key(|row| row.order);
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let path = folder.join("records.csv");
-    for row in &rows {
+    let path = folder.join(RECORDS);
+    for row in rows {
         writer.serialize(row).map_err(|e| Error::system("writing", &path, e.into()))?;
     }
     let bytes = writer.into_inner().map_err(|e| Error::system("writing", &path, e.into_error()))?;
@@ -180,8 +262,7 @@ fn write(parts: &[Part], out: &Path, name: &str, command: &str) -> Result<usize>
             copy(&first.folder.join(file), &folder.join(file))?;
         }
     }
-    RunFile { command: command.to_string(), shard: None, ..first.run.clone() }.write(&folder.join(MACHINE))?;
-    Ok(rows.len())
+    run_of(parts, command).write(&folder.join(MACHINE))
 }
 
 /// Copies the files of `from`, if it exists, except those that `to` already has.

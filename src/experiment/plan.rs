@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::kernel::Spec;
 use crate::lab::Lab;
 use crate::measure::{Settings, available_threads};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -57,7 +57,7 @@ pub struct Prices<'a> {
     lab: &'a Lab,
     begun: Instant,
     /// Kinds of images, each with the seconds of a sample.
-    kinds: Vec<(Settings, f64)>,
+    kinds: HashMap<Settings, f64>,
     /// Number of kinds that were not rendered for lack of time; the mean of the others stands for them.
     pub guessed: usize,
     planned: HashSet<PathBuf>,
@@ -66,7 +66,7 @@ pub struct Prices<'a> {
 impl<'a> Prices<'a> {
     /// Starts with no kinds of images.
     pub fn new(lab: &'a Lab) -> Self {
-        Self { lab, begun: Instant::now(), kinds: Vec::new(), guessed: 0, planned: HashSet::new() }
+        Self { lab, begun: Instant::now(), kinds: HashMap::new(), guessed: 0, planned: HashSet::new() }
     }
 
     /// The number of known kinds of images.
@@ -77,16 +77,16 @@ impl<'a> Prices<'a> {
     /// Seconds of a sample of these settings on one processor.
     fn sample_s(&mut self, settings: &Settings) -> Result<f64> {
         let kind = small(settings);
-        if let Some((_, seconds)) = self.kinds.iter().find(|(known, _)| *known == kind) {
+        if let Some(seconds) = self.kinds.get(&kind) {
             return Ok(*seconds);
         }
         let seconds = if self.begun.elapsed().as_secs_f64() < MOST_S {
             self.measure(&kind, settings.spp)?
         } else {
             self.guessed += 1;
-            self.kinds.iter().map(|(_, seconds)| seconds).sum::<f64>() / self.kinds.len().max(1) as f64
+            self.kinds.values().sum::<f64>() / self.kinds.len().max(1) as f64
         };
-        self.kinds.push((kind, seconds));
+        self.kinds.insert(kind, seconds);
         Ok(seconds)
     }
 

@@ -1,14 +1,15 @@
 //! Rankings of the schedules of an image by speed, from the rows of an experiment.
 //!
 //! A repetition of an image is a block: its rows were measured shortly after each other, so machine drift affects all
-//! of them.
+//! of them. Schedules without a common block, such as those of two parts of a sweep, are ranked apart.
 
 use super::Cell;
+use super::cell_diff::{Times, level_of};
 use super::definition::Definition;
-use super::diff::level_of;
 use super::profile::Profile;
 use super::records_file::read_records;
 use super::run_file::{MACHINE, read_run_file};
+use super::together::{Schedules, Timed, parts};
 use super::until::MOST_REPETITIONS;
 use crate::analysis::Interval;
 use crate::analysis::confidence_sequence::{Stopping, median_sequence};
@@ -17,7 +18,7 @@ use crate::analysis::ranking::{groups, least_blocks, may_be_least, order_so_far,
 use crate::error::{InputError, Result};
 use crate::input::read_text;
 use crate::lab::Lab;
-use crate::measure::{Doubts, ImageKey, Record};
+use crate::measure::{Doubts, ImageKey, Record, SERIAL};
 use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,8 +35,8 @@ pub struct Place {
     pub schedule: String,
     /// Median seconds.
     pub median_s: f64,
-    /// Time relative to the first schedule: the median of the ratios within a repetition.
-    pub ratio: f64,
+    /// Time relative to the first schedule: the median of the ratios within a repetition; `None` without a common one.
+    pub ratio: Option<f64>,
     /// The interval of the ratio; the intervals of all places hold together with 95 % confidence. `None` for the first
     /// place, and with too few repetitions.
     pub interval: Option<Interval>,
@@ -45,11 +46,13 @@ pub struct Place {
     pub groups: Vec<usize>,
 }
 
-/// The schedules of an image, the fastest first.
+/// The schedules of an image that were measured together, the fastest first.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ImageRanking {
     /// The image, in one word.
     pub image: String,
+    /// The number of this part of the image's schedules, from 1, and the number of parts.
+    pub part: [usize; 2],
     /// The schedules.
     pub places: Vec<Place>,
     /// The schedules that are not known to be slower than another: with 95 % confidence, for all images together, the
@@ -62,71 +65,78 @@ pub struct ImageRanking {
 /// The schedules of all images of an experiment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ranking {
-    /// Image by image.
+    /// Image by image, and part by part.
     pub images: Vec<ImageRanking>,
+    /// The cells that have no time, because their rows failed.
+    pub without_time: Vec<String>,
     /// The fewest repetitions that can tell any two schedules apart.
     pub least_repetitions: u32,
     /// Doubts about all times.
     pub doubts: Doubts,
 }
 
-/// Seconds by repetition.
-type Times = BTreeMap<u32, f64>;
-
-/// The schedules of an image.
-#[derive(Default)]
-struct Schedules {
-    /// Those that are compared with each other.
-    compared: BTreeMap<String, Times>,
-    /// Those whose matrix has fewer repetitions than the experiment.
-    shown: BTreeMap<String, Times>,
-}
-
 /// Ranks the schedules in the folder of an experiment; with filters, only those that pass them.
 pub fn ranking(lab: &Arc<Lab>, folder: &Path, filters: &[String]) -> Result<Ranking> {
-    let records = folder.join("records.csv");
-    let rows: Vec<Record> = read_records(&records)?.into_iter().filter(|row| row.error.is_empty()).collect();
+    let rows = read_records(&folder.join("records.csv"))?;
     let run = read_run_file(&folder.join(MACHINE))?;
     let wanted = if filters.is_empty() { None } else { Some(wanted(lab, folder, &run.profile, filters)?) };
     let rows: Vec<&Record> =
         rows.iter().filter(|row| wanted.as_ref().is_none_or(|wanted| wanted.contains(&row.cell))).collect();
     let shown_only = if run.uncapped { BTreeSet::new() } else { shown_only(lab, folder, &run.profile) };
     let mut images: BTreeMap<ImageKey, Schedules> = BTreeMap::new();
+    let (mut timed, mut failed) = (BTreeSet::new(), BTreeSet::new());
     for row in &rows {
+        let Some(seconds) = row.makespan_s.filter(|_| row.error.is_empty()) else {
+            failed.insert(row.cell.as_str());
+            continue;
+        };
+        timed.insert(row.cell.as_str());
         let image = row.image_key();
         let schedule = row.cell.strip_prefix(&format!("{image}/")).unwrap_or(&row.cell).to_string();
-        if let Some(seconds) = row.makespan_s.filter(|seconds| *seconds > 0.0 && seconds.is_finite()) {
-            let own = images.entry(image).or_default();
-            let own = if shown_only.contains(&row.cell) { &mut own.shown } else { &mut own.compared };
-            own.entry(schedule).or_default().insert(row.repetition, seconds);
-        }
+        let role = || Timed {
+            is_serial: row.strategy == SERIAL && row.ranks.is_none(),
+            is_shown_only: shown_only.contains(&row.cell),
+            ..Timed::default()
+        };
+        let own = images.entry(image).or_default().entry(schedule).or_insert_with(role);
+        own.times.insert(row.repetition, seconds);
     }
-    images.retain(|_, schedules| schedules.compared.len() + schedules.shown.len() > 1);
+    images.retain(|_, schedules| schedules.len() > 1);
     if images.is_empty() {
         let problem = "contains no image with two schedules, so there is nothing to rank";
         let error = InputError::new("folder", folder.display().to_string(), problem);
         return Err(error.allowed("the folder of an experiment with several schedules").into());
     }
-    let sizes = || images.values().map(|schedules| schedules.compared.len());
+    let parts: Vec<(&ImageKey, Vec<Schedules>)> =
+        images.iter().map(|(image, schedules)| (image, parts(schedules))).collect();
+    let sizes = || parts.iter().flat_map(|(_, parts)| parts).map(compared);
     let tests = |size: usize| (size * size.saturating_sub(1)) as f64;
     let miss = MISS / sizes().map(tests).sum::<f64>().max(1.0);
     let comparisons = sizes().map(|size| size.saturating_sub(1)).sum::<usize>().max(1);
     let level = level_of(comparisons);
     let stopping = if run.until.is_some() { Stopping::Sequential } else { Stopping::Fixed };
     let least = sizes().filter(|size| *size > 1).map(|size| least(size, miss * tests(size), stopping));
+    let of_part = |image: &ImageKey, part: &Schedules, number: [usize; 2]| ImageRanking {
+        image: image.to_string(),
+        part: number,
+        places: placed(part, miss * tests(compared(part)), level, stopping),
+        fastest: fastest(part, MISS / comparisons as f64, stopping),
+        compared: compared(part),
+    };
+    let rankings = parts.iter().flat_map(|(image, parts)| {
+        (1..).zip(parts).map(move |(number, part)| of_part(image, part, [number, parts.len()]))
+    });
     Ok(Ranking {
+        images: rankings.collect(),
+        without_time: failed.difference(&timed).map(|cell| (*cell).to_string()).collect(),
         least_repetitions: least.max().unwrap_or(0),
-        doubts: Doubts::of(rows.iter().map(|row| row.warnings.as_str())),
-        images: images
-            .iter()
-            .map(|(image, schedules)| ImageRanking {
-                image: image.to_string(),
-                places: placed(schedules, miss * tests(schedules.compared.len()), level, stopping),
-                fastest: fastest(&schedules.compared, MISS / comparisons as f64, stopping),
-                compared: schedules.compared.len(),
-            })
-            .collect(),
+        doubts: Doubts::of(rows.iter().filter(|row| row.error.is_empty()).map(|row| row.warnings.as_str())),
     })
+}
+
+/// How many schedules are compared with each other.
+fn compared(schedules: &Schedules) -> usize {
+    schedules.values().filter(|own| !own.is_shown_only).count()
 }
 
 /// The keys of rows whose matrix has fewer repetitions than its experiment; empty if no readable definition lies beside
@@ -194,15 +204,18 @@ fn least(schedules: usize, miss: f64, stopping: Stopping) -> u32 {
 }
 
 /// The schedules that are not known to be slower than another, with a miss probability for each comparison.
-fn fastest(schedules: &BTreeMap<String, Times>, miss: f64, stopping: Stopping) -> Vec<String> {
-    let is_left = may_be_least(&schedules.values().collect::<Vec<_>>(), miss, stopping);
-    schedules.keys().zip(is_left).filter(|(_, is_left)| *is_left).map(|(name, _)| name.clone()).collect()
+fn fastest(schedules: &Schedules, miss: f64, stopping: Stopping) -> Vec<String> {
+    let compared = || schedules.iter().filter(|(_, own)| !own.is_shown_only);
+    let is_left = may_be_least(&compared().map(|(_, own)| &own.times).collect::<Vec<_>>(), miss, stopping);
+    compared().zip(is_left).filter(|(_, is_left)| *is_left).map(|((name, _), _)| name.clone()).collect()
 }
 
 /// Schedules sorted by the median of their times, each divided by the median time of its repetition.
-fn ordered(schedules: &BTreeMap<String, Times>) -> Vec<(&String, &Times)> {
+fn ordered(schedules: &Schedules, is_shown_only: bool) -> Vec<(&String, &Times)> {
+    let own =
+        || schedules.iter().filter(|(_, own)| own.is_shown_only == is_shown_only).map(|(name, own)| (name, &own.times));
     let mut blocks: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
-    for (repetition, seconds) in schedules.values().flatten() {
+    for (repetition, seconds) in own().flat_map(|(_, times)| times) {
         blocks.entry(*repetition).or_default().push(*seconds);
     }
     let usual: BTreeMap<u32, f64> =
@@ -211,27 +224,30 @@ fn ordered(schedules: &BTreeMap<String, Times>) -> Vec<(&String, &Times)> {
         let shares: Vec<f64> = times.iter().map(|(repetition, seconds)| seconds / usual[repetition]).collect();
         median(&shares).unwrap_or(f64::INFINITY)
     };
-    let mut ordered: Vec<(&String, &Times)> = schedules.iter().collect();
-    ordered.sort_by(|(_, a), (_, b)| score(a).total_cmp(&score(b)));
-    ordered
+    let mut ordered: Vec<(f64, (&String, &Times))> = own().map(|(name, times)| (score(times), (name, times))).collect();
+    ordered.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    ordered.into_iter().map(|(_, own)| own).collect()
 }
 
 /// The schedules that are compared, the fastest first, and then the others, which are in no group.
 fn placed(schedules: &Schedules, miss: f64, level: f64, stopping: Stopping) -> Vec<Place> {
-    let (compared, shown) = (ordered(&schedules.compared), ordered(&schedules.shown));
+    let (compared, shown) = (ordered(schedules, false), ordered(schedules, true));
     let Some((_, first)) = compared.first().or(shown.first()) else { return Vec::new() };
     let times: Vec<Times> = compared.iter().map(|(_, times)| (*times).clone()).collect();
-    let sets = groups(times.len(), &orders(&times, miss, stopping));
+    let mut groups_of = vec![Vec::new(); compared.len() + shown.len()];
+    for (number, set) in groups(times.len(), &orders(&times, miss, stopping)).into_iter().enumerate() {
+        set.into_iter().for_each(|member| groups_of[member].push(number));
+    }
     let place = |(at, (schedule, own)): (usize, &(&String, &Times))| {
         let ratios: Vec<f64> = own.iter().filter_map(|(at, seconds)| Some(seconds / first.get(at)?)).collect();
         let interval = stopping.median_interval(&ratios, level).filter(|interval| at > 0 && interval.level >= level);
         Some(Place {
             schedule: (*schedule).clone(),
             median_s: median(&own.values().copied().collect::<Vec<_>>())?,
-            ratio: median(&ratios)?,
+            ratio: median(&ratios),
             interval,
             repetitions: own.len(),
-            groups: sets.iter().enumerate().filter(|(_, set)| set.contains(&at)).map(|(number, _)| number).collect(),
+            groups: groups_of[at].clone(),
         })
     };
     compared.iter().chain(&shown).enumerate().filter_map(place).collect()
@@ -240,6 +256,11 @@ fn placed(schedules: &Schedules, miss: f64, level: f64, stopping: Stopping) -> V
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn schedules<const COUNT: usize>(all: [(&str, Times, bool); COUNT]) -> Schedules {
+        let timed = |times, is_shown_only| Timed { times, is_serial: false, is_shown_only };
+        all.into_iter().map(|(name, times, is_shown)| (name.to_string(), timed(times, is_shown))).collect()
+    }
 
     fn times(factor: f64) -> Times {
         (0..9).map(|at| (at, factor * (1.0 + 0.4 * f64::from(at % 3)))).collect()
@@ -253,14 +274,12 @@ mod tests {
         for (at, seconds) in &mut b {
             *seconds *= if at % 2 == 0 { 1.01 } else { 0.99 };
         }
-        let schedules =
-            BTreeMap::from([("a".to_string(), times(2.0)), ("b".to_string(), b), ("c".to_string(), times(1.0))]);
-        let schedules = Schedules { compared: schedules, ..Schedules::default() };
+        let schedules = schedules([("a", times(2.0), false), ("b", b, false), ("c", times(1.0), false)]);
         let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
         let names: Vec<(&str, &[usize])> = places.iter().map(|p| (p.schedule.as_str(), p.groups.as_slice())).collect();
         assert_eq!(names, [("c", &[0][..]), ("b", &[0]), ("a", &[1])]);
-        assert_eq!((places[0].ratio, places[0].interval), (1.0, None));
-        assert_eq!(places[2].ratio, 2.0);
+        assert_eq!((places[0].ratio, places[0].interval), (Some(1.0), None));
+        assert_eq!(places[2].ratio, Some(2.0));
         let interval = places[2].interval.unwrap();
         assert_eq!((interval.low, interval.high), (2.0, 2.0));
         assert!(places.iter().all(|place| place.repetitions == 9));
@@ -270,29 +289,27 @@ mod tests {
     #[test]
     fn schedules_of_fewer_repetitions_come_last_and_in_no_group() {
         let fast: Times = times(0.5).into_iter().take(3).collect();
-        let schedules = Schedules {
-            compared: BTreeMap::from([("slow".to_string(), times(2.0)), ("usual".to_string(), times(1.0))]),
-            shown: BTreeMap::from([("fast".to_string(), fast)]),
-        };
+        let schedules = schedules([("slow", times(2.0), false), ("usual", times(1.0), false), ("fast", fast, true)]);
         let places = placed(&schedules, 0.05, level_of(1), Stopping::Fixed);
-        let told: Vec<(&str, f64, &[usize])> =
-            places.iter().map(|place| (place.schedule.as_str(), place.ratio, place.groups.as_slice())).collect();
+        let told: Vec<(&str, f64, &[usize])> = places
+            .iter()
+            .map(|place| (place.schedule.as_str(), place.ratio.unwrap(), place.groups.as_slice()))
+            .collect();
         assert_eq!(told, [("usual", 1.0, &[0][..]), ("slow", 2.0, &[1]), ("fast", 0.5, &[])]);
         assert_eq!(places[2].interval, None);
     }
 
-    /// A schedule that shares no repetition with the first gets no place, instead of a ratio of NaN.
+    /// A schedule that shares no repetition with the first one has no ratio, but a place.
     #[test]
-    fn a_schedule_without_a_common_repetition_has_no_place() {
+    fn every_schedule_has_a_place() {
         let elsewhere: Times = times(3.0).into_iter().map(|(at, seconds)| (at + 100, seconds)).collect();
-        let schedules = BTreeMap::from([
-            ("a".to_string(), times(1.0)),
-            ("b".to_string(), times(1.1)),
-            ("z".to_string(), elsewhere),
-        ]);
-        let schedules = Schedules { compared: schedules, ..Schedules::default() };
+        let schedules = schedules([("a", times(1.0), false), ("b", times(1.1), false), ("z", elsewhere, false)]);
         let places = placed(&schedules, 0.05, level_of(2), Stopping::Fixed);
-        assert!(places.iter().all(|place| place.ratio.is_finite()), "{places:?}");
+        let ratios: BTreeMap<&str, Option<f64>> = places
+            .iter()
+            .map(|place| (place.schedule.as_str(), place.ratio.map(|ratio| (10.0 * ratio).round())))
+            .collect();
+        assert_eq!(ratios, BTreeMap::from([("a", Some(10.0)), ("b", Some(11.0)), ("z", None)]));
     }
 
     /// Two comparisons, one with each other schedule: six repetitions in the same order suffice (1/64 <= .05 / 2), five
@@ -301,9 +318,8 @@ mod tests {
     fn the_fastest_is_among_those_that_none_is_faster_than() {
         let of = |count: u32, factor: f64| (0..count).map(|at| (at, factor)).collect::<Times>();
         let left = |count: u32, stopping: Stopping| {
-            let three =
-                [("a", 1.0), ("b", 1.1), ("c", 2.0)].map(|(name, factor)| (name.to_string(), of(count, factor)));
-            fastest(&BTreeMap::from(three), MISS / 2.0, stopping).len()
+            let three = [("a", 1.0), ("b", 1.1), ("c", 2.0)].map(|(name, factor)| (name, of(count, factor), false));
+            fastest(&schedules(three), MISS / 2.0, stopping).len()
         };
         assert_eq!((left(5, Stopping::Fixed), left(6, Stopping::Fixed)), (3, 1));
         assert_eq!((left(7, Stopping::Sequential), left(8, Stopping::Sequential)), (3, 1));

@@ -1,14 +1,20 @@
 //! `records.csv`: written row by row, flushed to the disk after each, so that a killed sweep loses at most the row it was writing.
 
+use super::formula;
 use crate::atomic_file;
 use crate::disk::{OnDisk, Step, step};
 use crate::error::{Error, InputError, Result};
 use crate::lock::{self, Sharing};
 use crate::measure::{COLUMNS, Column, Record, SCHEMA};
+use csv::StringRecord;
+use std::borrow::Cow;
 use std::collections::HashSet;
 use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+
+/// Name of the file of an experiment's rows.
+pub(super) const RECORDS: &str = "records.csv";
 
 /// Versions of the columns that can be read. The older ones only lack columns that may be empty.
 const READABLE: [u32; 4] = [7, 8, 9, SCHEMA];
@@ -118,6 +124,7 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
             };
             broken(column.unwrap_or("row"), &e)
         })?;
+        check_times(&record, &row, &columns).map_err(|error| error.in_file(&file, line))?;
         if !seen.insert((record.cell.clone(), record.repetition)) {
             let problem = format!("occurs twice for repetition {}", record.repetition);
             return Err(InputError::new("cell", &record.cell, problem).in_file(&file, line).into());
@@ -125,6 +132,27 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
         records.push(record);
     }
     Ok(records)
+}
+
+/// Columns of seconds that are differences of others, so that rounding may leave them below 0.
+const DIFFERENCES: [&str; 3] = ["gap_sum_s", "tail_sum_s", "foreign_cpu_s"];
+
+/// Refuses times that no clock shows. If they counted as absent, a comparison would miss their cells.
+fn check_times(record: &Record, row: &StringRecord, columns: &StringRecord) -> std::result::Result<(), InputError> {
+    let is_possible = |name: &str, seconds: f64| match name {
+        "makespan_s" => seconds > 0.0,
+        name => seconds >= 0.0 || DIFFERENCES.contains(&name),
+    };
+    let in_seconds = |name: &str| COLUMNS.iter().any(|column| column.name == name && column.unit() == Some("seconds"));
+    for (name, value) in columns.iter().zip(row).filter(|_| record.error.is_empty()) {
+        // Values that are no numbers were refused before.
+        let seconds = value.parse().ok().filter(|_| in_seconds(name));
+        if seconds.is_some_and(|seconds: f64| !seconds.is_finite() || !is_possible(name, seconds)) {
+            let allowed = if name == "makespan_s" { "a finite number above 0" } else { "a finite number from 0" };
+            return Err(InputError::new(name, value, "is not a possible time").allowed(allowed));
+        }
+    }
+    Ok(())
 }
 
 impl RecordsFile {
@@ -226,6 +254,9 @@ impl RecordsFile {
 
 fn row_bytes(record: &Record, header: bool) -> std::io::Result<Vec<u8>> {
     let mut writer = csv::WriterBuilder::new().has_headers(header).from_writer(Vec::new());
-    writer.serialize(record)?;
+    match formula::as_text(&record.error) {
+        Cow::Borrowed(_) => writer.serialize(record)?,
+        Cow::Owned(error) => writer.serialize(Record { error, ..record.clone() })?,
+    }
     writer.into_inner().map_err(csv::IntoInnerError::into_error)
 }

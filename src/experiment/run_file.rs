@@ -1,6 +1,6 @@
 //! `machine.toml`: the machine on which the rows beside it were measured, and the command.
 
-use super::{Definition, Options, Profile, Until};
+use super::{Cell, Profile, Sweep};
 use crate::atomic_file;
 use crate::digest;
 use crate::error::{InputError, Result};
@@ -8,6 +8,8 @@ use crate::input::{parse, read_text};
 use crate::measure::Machine;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use std::process;
+use std::time::SystemTime;
 
 /// The file's name.
 pub const MACHINE: &str = "machine.toml";
@@ -34,6 +36,13 @@ pub struct RunFile {
     /// The other program whose rows were measured in turns with these; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub against: Option<String>,
+    /// The number of the sweep that measured these rows in turns with the other program's; rows of one number are pairs.
+    /// `None` without another program, and in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sweep: Option<String>,
+    /// The fewest rows of the finished sweep; `None` in older files.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rows: Option<u64>,
     /// The goal of the repetitions: a share, `fastest` or `order`; `None` if their number was fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub until: Option<String>,
@@ -47,6 +56,11 @@ pub struct RunFile {
     pub definition_hash: String,
     /// The machine and the build.
     pub machine: Machine,
+}
+
+/// A number that no other sweep has: of this process at this time.
+fn sweep_number() -> String {
+    digest::of_text(&format!("{:?} {}", SystemTime::now(), process::id()))
 }
 
 /// Reads a `machine.toml`.
@@ -65,28 +79,13 @@ impl RunFile {
             profile: Profile::Quick.name().to_string(),
             shard: None,
             against: None,
+            sweep: None,
+            rows: None,
             until: None,
             uncapped: false,
             cached: false,
             definition_hash: String::new(),
             machine: Machine::look(),
-        }
-    }
-
-    /// The description of a sweep's rows: this command, this program and this machine.
-    pub(super) fn of_sweep(definition: &Definition, options: &Options, until: Option<&Until>) -> Self {
-        Self {
-            program: definition.lab.program().join(" "),
-            experiment: definition.asked.clone(),
-            set: definition.set.clone(),
-            profile: options.profile.name().to_string(),
-            shard: options.shard.map(|shard| shard.to_string()),
-            against: options.against.as_ref().map(|program| program.display().to_string()),
-            until: until.map(|until| until.text.clone()),
-            uncapped: options.say_how_often(),
-            cached: options.cache.is_some(),
-            definition_hash: digest::of_text(&definition.text),
-            ..Self::of_now(options.command.clone())
         }
     }
 
@@ -133,5 +132,29 @@ impl RunFile {
                     .into())
             }
         }
+    }
+}
+
+impl Sweep<'_> {
+    /// The description of its rows: this command, this program and this machine.
+    pub(super) fn run_file(&self) -> Result<RunFile> {
+        let Self { definition, options, cells, until, .. } = self;
+        let repetitions = if until.is_some() { 1 } else { self.repetitions()? };
+        let rows = |cell: &Cell| cell.points.len() as u64 * u64::from(cell.repetitions(repetitions));
+        Ok(RunFile {
+            program: definition.lab.program().join(" "),
+            experiment: definition.asked.clone(),
+            set: definition.set.clone(),
+            profile: options.profile.name().to_string(),
+            shard: options.shard.map(|shard| shard.to_string()),
+            against: options.against.as_ref().map(|program| program.display().to_string()),
+            sweep: options.against.as_ref().map(|_| sweep_number()),
+            rows: Some(cells.iter().map(rows).sum()),
+            until: until.as_ref().map(|until| until.text.clone()),
+            uncapped: options.say_how_often(),
+            cached: options.cache.is_some(),
+            definition_hash: digest::of_text(&definition.text),
+            ..RunFile::of_now(options.command.clone())
+        })
     }
 }

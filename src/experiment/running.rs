@@ -7,7 +7,7 @@ use super::sweep::{Summary, Sweep};
 use super::until::{Decisions, Goal};
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
-use crate::measure::{Doubts, LeftOut, Record};
+use crate::measure::{Doubts, LeftOut, Record, Settings};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 
@@ -66,7 +66,7 @@ impl<'a> Running<'a> {
             finished: HashSet::new(),
             by_doubt: HashMap::new(),
             decisions: Decisions::default(),
-            serial: (0..sweep.cells.len()).map(|index| serial_of(&sweep.cells, index)).collect(),
+            serial: serial_runs(&sweep.cells),
             checksums: HashMap::new(),
             drift: Drift::of(&done),
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
@@ -194,10 +194,12 @@ impl<'a> Running<'a> {
             self.decisions.is_known(&point.id, beside.map(|other| other.id.as_str()), limit)
         };
         let is_open = |index: usize| cells[index].points.iter().any(|point| !is_decided(index, point));
-        let serves_only = |index: usize| self.against.is_none() && self.serial.contains(&Some(index));
+        let serial: HashSet<usize> = self.serial.iter().flatten().copied().collect();
+        let serves_only = |index: usize| self.against.is_none() && serial.contains(&index);
         let open: HashSet<usize> = (0..cells.len()).filter(|index| !serves_only(*index) && is_open(*index)).collect();
-        let is_beside = |index: usize| serves_only(index) && open.iter().any(|own| self.serial[*own] == Some(index));
-        (0..cells.len()).filter(|index| open.contains(index) || is_beside(*index)).collect()
+        let beside: HashSet<usize> =
+            open.iter().filter_map(|own| self.serial[*own]).filter(|own| serves_only(*own)).collect();
+        (0..cells.len()).filter(|index| open.contains(index) || beside.contains(index)).collect()
     }
 
     /// The cells that have fewer than `wanted` rows without doubt because others are doubtful, each with the number
@@ -211,11 +213,16 @@ impl<'a> Running<'a> {
                 .unwrap_or(0)
         };
         let own: Vec<u32> = cells.iter().map(lacks).collect();
-        let of_group = |index: usize| {
-            let compared = cells.iter().zip(&own).filter(|(other, _)| cells[index].is_baseline_of(other));
-            compared.map(|(_, lack)| *lack).chain([own[index]]).max().unwrap_or(0)
+        let mut of_image: HashMap<Settings, u32> = HashMap::new();
+        for (cell, lack) in cells.iter().zip(&own).filter(|(_, lack)| **lack > 0) {
+            let most = of_image.entry(cell.without_schedule()).or_default();
+            *most = (*lack).max(*most);
+        }
+        let of_group = |(cell, own): (&Cell, &u32)| {
+            let compared = || of_image.get(&cell.without_schedule()).copied().unwrap_or(0);
+            if cell.is_serial() { compared() } else { *own }
         };
-        (0..cells.len()).map(|index| (index, of_group(index))).filter(|(_, lack)| *lack > 0).collect()
+        cells.iter().zip(&own).map(of_group).enumerate().filter(|(_, lack)| *lack > 0).collect()
     }
 
     /// The first repetition number that no row has yet.
@@ -230,15 +237,18 @@ impl<'a> Running<'a> {
     }
 }
 
-/// The serial run of a cell's image, with the same decomposition if there is one. `None` for a serial cell.
-fn serial_of(cells: &[Cell], index: usize) -> Option<usize> {
-    let own = &cells[index];
-    if own.is_serial() {
-        return None;
+/// The serial run of each cell's image, with the same decomposition if there is one. `None` for a serial cell.
+fn serial_runs(cells: &[Cell]) -> Vec<Option<usize>> {
+    let mut of_image: HashMap<Settings, Vec<usize>> = HashMap::new();
+    for (index, cell) in cells.iter().enumerate().filter(|(_, cell)| cell.is_serial()) {
+        of_image.entry(cell.without_schedule()).or_default().push(index);
     }
-    let serial = || (0..cells.len()).filter(|other| cells[*other].is_baseline_of(own));
-    let is_on_its_pieces = |other: &usize| cells[*other].settings.decomposition == own.settings.decomposition;
-    serial().find(is_on_its_pieces).or_else(|| serial().next())
+    let serial_of = |own: &Cell| {
+        let serial = of_image.get(&own.without_schedule()).filter(|_| !own.is_serial())?;
+        let is_on_its_pieces = |other: &&usize| cells[**other].settings.decomposition == own.settings.decomposition;
+        serial.iter().find(is_on_its_pieces).or(serial.first()).copied()
+    };
+    cells.iter().map(serial_of).collect()
 }
 
 /// Marks a row as failed if its checksum differs from that of earlier rows of its image: a schedule must not change a

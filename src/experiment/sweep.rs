@@ -3,6 +3,7 @@
 use super::against::{Against, check_program, folder_against};
 use super::calibration_file::write_calibration;
 use super::cell::trace_file;
+use super::formula;
 use super::instructions;
 use super::object_pixels::check_object;
 use super::processes::{MESSAGES, write_messages};
@@ -143,11 +144,11 @@ impl<'a> Sweep<'a> {
     pub fn run(&self, progress: &dyn Progress) -> Result<Summary> {
         let Self { definition, options, cells, references: wanted, until } = self;
         let folder = options.out.join(&definition.name);
-        let run = || RunFile::of_sweep(definition, options, until.as_ref());
-        let (file, done) = open(definition, options, &run(), &folder)?;
+        let run = self.run_file()?;
+        let (file, done) = open(definition, options, &run, &folder)?;
         let other = options.against.as_deref();
         let against = other
-            .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run()))
+            .map(|program| Against::open(program, &options.out, &definition.name, &definition.text, run.clone()))
             .transpose()?;
 
         let calibration = folder.join("calibration.csv");
@@ -195,8 +196,9 @@ impl<'a> Sweep<'a> {
                 open = still;
                 progress.note(&format!("{} of {without_limit} cells decided", without_limit - open));
             }
+            let open_now: HashSet<usize> = undecided.iter().copied().collect();
             for index in shuffled(cells.len(), &definition.name, repetition) {
-                if undecided.contains(&index) {
+                if open_now.contains(&index) {
                     running.cell(index, repetition)?;
                 }
                 units += if repetition < cells[index].repetitions(repetitions) { cells[index].weight } else { 0 };
@@ -297,11 +299,11 @@ fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
             return Err(InputError::new("filter", filter, "leaves no cell to run").into());
         }
     }
-    let is_wanted = |cell: &Cell| {
-        let is_baseline = || wanted.iter().any(|other| cell.is_baseline_of(other));
-        wanted.iter().any(|other| other.id == cell.id) || (options.serial_for.is_some() && is_baseline())
-    };
-    Ok(cells.iter().filter(|cell| is_wanted(cell)).cloned().collect())
+    let ids: HashSet<&str> = wanted.iter().map(|cell| cell.id.as_str()).collect();
+    let compared = wanted.iter().filter(|_| options.serial_for.is_some());
+    let compared: HashSet<Settings> = compared.map(|cell| cell.without_schedule()).collect();
+    let is_baseline = |cell: &Cell| cell.is_serial() && compared.contains(&cell.without_schedule());
+    Ok(cells.iter().filter(|cell| ids.contains(cell.id.as_str()) || is_baseline(cell)).cloned().collect())
 }
 
 /// Creates or reopens the file of rows; also returns the rows that it already has.
@@ -372,6 +374,7 @@ fn check_names(definition: &Definition, options: &Options, cells: &[Cell]) -> Re
         }
     }
     options.cache.as_deref().map_or(Ok(()), check_cache)?;
+    formula::check_names(definition, cells)?;
     for cell in cells {
         if definition.keeps(Keep::Traces) {
             // No repetition number is longer.

@@ -3,6 +3,8 @@
 use super::Cell;
 use crate::error::{InputError, Result};
 use crate::film::{Shard, ShardCut};
+use crate::measure::Settings;
+use std::collections::HashSet;
 use std::fmt;
 
 /// One of `count` parts of the cells of a sweep.
@@ -33,7 +35,8 @@ impl SweepShard {
         let own = |index: usize| index % self.count as usize == self.index as usize - 1;
         let (serial, others): (Vec<Cell>, Vec<Cell>) = cells.iter().cloned().partition(Cell::is_serial);
         // If all cells are serial, they are compared with nothing and are divided themselves.
-        let (baselines, divided) = if others.is_empty() { (Vec::new(), serial) } else { (serial, others) };
+        let has_baselines = !others.is_empty();
+        let divided = if has_baselines { others } else { serial };
         if self.count as usize > divided.len() {
             let problem = "there are more parts than cells to divide";
             let error = InputError::new("shard", self.to_string(), problem);
@@ -41,14 +44,15 @@ impl SweepShard {
         }
         let mine: Vec<Cell> =
             divided.into_iter().enumerate().filter(|(index, _)| own(*index)).map(|(_, cell)| cell).collect();
-        let is_mine = |cell: &Cell| mine.iter().any(|own| own.id == cell.id);
-        let is_baseline = |cell: &Cell| baselines.iter().any(|serial| serial.id == cell.id);
-        let is_needed = |cell: &Cell| is_baseline(cell) && mine.iter().any(|own| cell.is_baseline_of(own));
-        Ok(cells.into_iter().filter(|cell| is_mine(cell) || is_needed(cell)).collect())
+        let ids: HashSet<&str> = mine.iter().map(|cell| cell.id.as_str()).collect();
+        let compared: HashSet<Settings> = mine.iter().map(Cell::without_schedule).collect();
+        let is_needed = |cell: &Cell| has_baselines && cell.is_serial() && compared.contains(&cell.without_schedule());
+        let is_of_part = |cell: &Cell| ids.contains(cell.id.as_str()) || is_needed(cell);
+        Ok(cells.iter().filter(|cell| is_of_part(cell)).cloned().collect())
     }
 
-    /// The number of this part's repetition `own` among the repetitions of all parts.
-    pub(super) fn repetition(self, own: u32) -> u32 {
-        own.saturating_mul(self.count).saturating_add(self.index - 1)
+    /// The number of this part's repetition `own` among the repetitions of all parts; `None` beyond the largest one.
+    pub(super) fn repetition(self, own: u32) -> Option<u32> {
+        own.checked_mul(self.count)?.checked_add(self.index - 1)
     }
 }

@@ -9,7 +9,8 @@
 //! them. Decided cells are left out of later repetitions; serial runs are repeated beside the cells that are compared
 //! with them.
 
-use super::diff::{Change, Pairing, compared, level_of, parse_share};
+use super::cell_diff::{Change, Judge, Pairing};
+use super::diff::parse_share;
 use super::ranking::MISS;
 use super::{Definition, Options};
 use crate::analysis::Interval;
@@ -153,7 +154,7 @@ impl Decisions {
     /// Whether a cell, one of `cells` that are compared, is decided.
     pub(super) fn is_decided(&self, cell: &str, cells: usize, limit: f64) -> bool {
         let Some([old, new]) = self.times.get(cell) else { return false };
-        let found = compared(cell, old, new, Pairing::Sequential, level_of(cells), limit);
+        let found = Judge::new(cells, limit).compare(cell, Pairing::Sequential, old, new);
         found.is_some_and(|found| found.change != Change::Undecided)
     }
 

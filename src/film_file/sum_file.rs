@@ -69,11 +69,7 @@ impl SumFile {
             Err(_) => Vec::new(),
             Ok(header) => {
                 let (width, height, images) = shape(header);
-                check_size(width, height)?;
-                let size = (u64::from(width) * u64::from(height) * PIXEL_BYTES as u64).checked_mul(images as u64);
-                if size != Some(body.file.limit()) {
-                    return Err(self.broken(path, "does not contain as many pixels as its header states"));
-                }
+                self.check_length(path, &body, (width, height, images))?;
                 (0..images).map(|_| body.film(width, height, unreadable)).collect::<Result<_>>()?
             }
         };
@@ -83,10 +79,25 @@ impl SumFile {
         Ok((header.map_err(|e| self.no_header(path, &e))?, films))
     }
 
-    /// Reads only a header, without a check that the file is whole.
-    pub fn header<H: DeserializeOwned>(&self, path: &Path) -> Result<H> {
-        let (_, line) = self.begin(path)?;
-        serde_json::from_slice(&line).map_err(|e| self.no_header(path, &e))
+    /// Reads only a header, and checks that the file is as long as the images that it describes.
+    pub fn header<H: DeserializeOwned>(&self, path: &Path, shape: impl FnOnce(&H) -> (u32, u32, usize)) -> Result<H> {
+        let (body, line) = self.begin(path)?;
+        let header = serde_json::from_slice(&line).map_err(|e| self.no_header(path, &e))?;
+        self.check_length(path, &body, shape(&header))?;
+        Ok(header)
+    }
+
+    /// Refuses a file whose rest after the header does not have the length of so many images of a width and height.
+    fn check_length(&self, path: &Path, body: &Body, (width, height, images): (u32, u32, usize)) -> Result<()> {
+        check_size(width, height).map_err(|error| match error {
+            Error::Input(input) => input.in_file(path.display().to_string(), None).into(),
+            other => other,
+        })?;
+        let size = (u64::from(width) * u64::from(height) * PIXEL_BYTES as u64).checked_mul(images as u64);
+        if size == Some(body.file.limit()) {
+            return Ok(());
+        }
+        Err(self.broken(path, "does not contain as many pixels as its header states"))
     }
 
     /// Opens a file and reads the line of its header.

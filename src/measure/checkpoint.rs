@@ -7,7 +7,7 @@
 
 use super::{History, Position, Rounds};
 use crate::error::{InputError, Result};
-use crate::film::{Film, GrowingFilm, Shard, sections};
+use crate::film::{Film, GrowingFilm, Shard, check_size, sections};
 use crate::film_file::{FilmKey, SumFile};
 use crate::lock::Lock;
 use serde::{Deserialize, Serialize};
@@ -48,22 +48,30 @@ impl Header {
     pub(super) fn samples(&self) -> Range<u32> {
         let FilmKey { width, height, spp, .. } = self.film;
         let start = match self.part {
-            // If there are more shards than there can be, nothing is read, let alone allocated.
-            Some(part) if part.shard.check(width, height, part.spp).is_ok() => part.shard.samples(part.spp).start,
+            // For an impossible size, or more shards than there can be, nothing is read, let alone allocated.
+            Some(part)
+                if check_size(width, height).and_then(|()| part.shard.check(width, height, part.spp)).is_ok() =>
+            {
+                part.shard.samples(part.spp).start
+            }
             _ => 0,
         };
         start..spp
     }
 
-    /// Reads the header of a file, and trusts it.
+    /// Width, height and number of the images after the header.
+    fn shape(&self) -> (u32, u32, usize) {
+        (self.film.width, self.film.height, sections(&self.samples()).len())
+    }
+
+    /// Reads the header of a file that is as long as its header says.
     pub(super) fn of(path: &Path) -> Result<Self> {
-        FILE.header(path)
+        FILE.header(path, Self::shape)
     }
 
     /// Reads a file, and the subtrees of its film.
     pub(super) fn read(path: &Path) -> Result<(Self, GrowingFilm)> {
-        let shape = |header: &Self| (header.film.width, header.film.height, sections(&header.samples()).len());
-        let (header, films): (Self, Vec<Film>) = FILE.read(path, shape)?;
+        let (header, films): (Self, Vec<Film>) = FILE.read(path, Self::shape)?;
         let parts = sections(&header.samples()).into_iter().zip(films).collect();
         let FilmKey { width, height, spp, .. } = header.film;
         let owns = |x, y| header.part.is_none_or(|part| part.shard.owns(x, y));

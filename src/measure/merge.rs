@@ -38,6 +38,10 @@ impl Found {
     fn of(path: &Path) -> Result<Self> {
         let header = Header::of(path)?;
         let part = header.part.ok_or_else(|| refused(path, "is a checkpoint of a whole image, not of a part"))?;
+        if header.samples().is_empty() {
+            // Such a file has no pixels, so its length says nothing about the size of the image.
+            return Err(refused(path, "contains no samples").allowed("a part that was rendered").into());
+        }
         Ok(Self { path: path.to_path_buf(), header, part })
     }
 

@@ -19,7 +19,7 @@ pub const LARGEST_SPP: u32 = 1 << 24;
 pub const LARGEST_SEED: u64 = REFERENCE_SEEDS - 1;
 
 /// The settings of a run. Every field is a name as on the command line or in an experiment.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
     /// Scene: a name or a path.

@@ -112,6 +112,82 @@ fn rows_that_are_none_are_refused_with_their_line() {
     }
 }
 
+/// Times that no clock shows are damage. A comparison would take their cells for absent.
+#[test]
+fn times_that_no_clock_shows_are_refused_with_their_line() {
+    let (folder, records) = after_a_run();
+    let mut reader = csv::Reader::from_path(&records).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let with = |column: &str, value: &str, error: &str| {
+        let mut writer = csv::Writer::from_path(&records).unwrap();
+        writer.write_record(&heads).unwrap();
+        for (index, row) in rows.iter().enumerate() {
+            let field = |(head, old)| match head {
+                _ if index != 1 => old,
+                head if head == column => value,
+                "error" => error,
+                _ => old,
+            };
+            writer.write_record(heads.iter().zip(row).map(field)).unwrap();
+        }
+        writer.flush().unwrap();
+    };
+    for (column, values) in [
+        ("makespan_s", &["NaN", "inf", "-inf", "0", "-0.0", "-1.5", "1e999"][..]),
+        ("setup_s", &["NaN", "inf", "-1e-9"]),
+        ("gap_sum_s", &["NaN", "-inf"]),
+    ] {
+        for value in values {
+            with(column, value, "");
+            let said = ["records.csv:3:", column, value];
+            refused(folder.path(), &["report", "out"], 2, &said);
+            refused(folder.path(), &["diff", "out", "out"], 2, &said);
+            refused(folder.path(), &["diff", "out/tiny", "out/tiny", "--counts"], 2, &said);
+            refused(folder.path(), &["rank", "out/tiny"], 2, &said);
+            refused(folder.path(), &RESUME, 2, &said);
+        }
+    }
+    // Rounding may leave a difference of times below 0, and a failed row has no time.
+    for (column, value, error) in [("gap_sum_s", "-1e-9", ""), ("setup_s", "0", ""), ("makespan_s", "0", "it broke")] {
+        with(column, value, error);
+        finish(pathmark(folder.path(), &["rank", "out/tiny"])).with_code(0);
+    }
+}
+
+/// A header may say any size: 65536x1024 pixels take 3.5 GB, and a refusal takes little memory. The length of the file
+/// shows that the pixels are not there.
+#[test]
+fn a_part_with_a_forged_size_takes_no_memory() {
+    const MERGE: [&str; 5] = ["merge", "part.film", "--partial", "-o", "image.pfm"];
+    let size = "\"width\":33,\"height\":17";
+    for by in ["tiles", "samples"] {
+        let folder = tempfile::tempdir().unwrap();
+        let options = ["render", "cornell", "--size", "33x17", "--spp", "32", "--shard", "1/2", "--shard-by", by];
+        finish(pathmark(folder.path(), &[&options[..], &["-o", "part.film"]].concat())).with_code(0);
+        let whole = fs::read(folder.path().join("part.film")).unwrap();
+        finish(pathmark(folder.path(), &MERGE)).with_code(0);
+        let mut lines = whole.splitn(3, |byte| *byte == b'\n');
+        let [magic, header] = [(); 2].map(|()| String::from_utf8(lines.next().unwrap().to_vec()).unwrap());
+        let body = lines.next().unwrap();
+        let large = header.replace(size, "\"width\":65536,\"height\":1024");
+        assert_ne!(large, header);
+        // Without samples, no pixels are expected.
+        let mut empty: serde_json::Value = serde_json::from_str(&large).unwrap();
+        empty["film"]["spp"] = 0.into();
+        let impossible = header.replace(size, "\"width\":4294967295,\"height\":4294967295");
+        for (forged, body, said) in [
+            (large, body, "pixels"),
+            (empty.to_string(), &body[body.len() - 32..], "no samples"),
+            (impossible, body, "4294967295x4294967295"),
+        ] {
+            let bytes = [format!("{magic}\n{forged}\n").as_bytes(), body].concat();
+            fs::write(folder.path().join("part.film"), bytes).unwrap();
+            refused(folder.path(), &MERGE, 2, &["part.film", said]);
+        }
+    }
+}
+
 /// Rows of another version have other columns, so the message must name the version.
 #[test]
 fn rows_of_another_version_are_told_as_such() {

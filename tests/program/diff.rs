@@ -211,6 +211,29 @@ fn two_builds_are_measured_in_turns() {
     let found = run(folder.path(), &["diff", "out/against/tiny", "out/tiny", "--json", "--fail-above", "1000%"], 0);
     assert_eq!((&json(&found)["paired"], json(&found)["cells"].as_array().unwrap().len()), (&true.into(), 5));
     assert!(!found.err.contains("not measured in turns"));
+    // Two sweeps in turns were not measured in turns with each other.
+    run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "next"], 0);
+    let is_paired = |old: &str, new: &str| {
+        let found = run(folder.path(), &["diff", old, new, "--json", "--fail-above", "1000%"], 0);
+        let paired = json(&found)["paired"].as_bool().unwrap();
+        assert_eq!(found.err.contains("not measured in turns"), !paired, "{old} and {new}: {}", found.err);
+        paired
+    };
+    for (old, new) in
+        [("out/tiny", "next/tiny"), ("out/against/tiny", "next/tiny"), ("out/against/tiny", "next/against/tiny")]
+    {
+        assert!(!is_paired(old, new), "{old} and {new}");
+    }
+    // Older sweeps have no number. Their folders are a pair where the program left them, and nowhere else.
+    for name in ["out", "out/against", "next", "next/against"] {
+        let path = folder.path().join(name).join("tiny/machine.toml");
+        let text = fs::read_to_string(&path).unwrap();
+        let kept: Vec<&str> = text.lines().filter(|line| !line.starts_with("sweep = ")).collect();
+        assert_eq!(kept.len() + 1, text.lines().count(), "{text}");
+        fs::write(&path, kept.join("\n")).unwrap();
+    }
+    assert!(is_paired("out/against/tiny", "out/tiny") && is_paired("out/tiny", "out/against/tiny"));
+    assert!(!is_paired("out/against/tiny", "next/tiny") && !is_paired("out/tiny", "next/tiny"));
     // The same folder again, and files that are no builds of Pathmark.
     run(folder.path(), &["run", "tiny.toml", "--against", "./other", "--out", "out"], 2);
     for other in ["./nowhere", "tiny.toml", ".", "/bin/true", "/bin/sh"] {

@@ -1,6 +1,8 @@
 //! `rank`: which schedules can be told apart?
 
 use crate::diff::{base, json, measured, run, steady};
+use crate::experiment::{TINY, write_tiny};
+use serde_json::Value;
 use std::fs;
 
 /// Invented times of a cell: three times as long for serial runs, and twice for one thread.
@@ -63,4 +65,58 @@ fn folders_without_a_ranking_are_refused() {
     refused(&["base/tiny", "--filter", "mood=good"], "mood");
     fs::remove_file(folder.path().join("base/tiny/machine.toml")).unwrap();
     refused(&["base/tiny"], "machine.toml");
+}
+
+/// Two parts of a sweep have no repetition in common, so each is ranked apart. Each schedule is in the part that ran it,
+/// and the serial run in both.
+#[test]
+fn parts_of_a_sweep_are_ranked_apart_and_list_every_schedule() {
+    let folder = tempfile::tempdir().unwrap();
+    write_tiny(folder.path(), TINY);
+    for (shard, out) in [("1/2", "a"), ("2/2", "b")] {
+        run(folder.path(), &["run", "tiny.toml", "--shard", shard, "--repetitions", "9", "--out", out], 0);
+    }
+    run(folder.path(), &["merge", "a", "b", "-o", "merged"], 0);
+    let found = json(&run(folder.path(), &["rank", "merged/tiny", "--json"], 0));
+    let parts = found["images"].as_array().unwrap();
+    let schedules = |part: &Value| -> Vec<String> {
+        let places = part["places"].as_array().unwrap();
+        places.iter().map(|place| place["schedule"].as_str().unwrap().to_string()).collect()
+    };
+    assert_eq!(parts.iter().map(|part| part["part"].to_string()).collect::<Vec<_>>(), ["[1,2]", "[2,2]"]);
+    let mut all: Vec<String> = parts.iter().flat_map(schedules).collect();
+    all.sort();
+    let expected =
+        ["serial/1t", "serial/1t", "static-blocks/1t", "static-blocks/2t", "work-stealing/1t", "work-stealing/2t"];
+    assert_eq!(all, expected.map(|schedule| format!("tiles:8x8/{schedule}")));
+    let has_ratio = |place: &Value| place["ratio"].is_f64() && place["repetitions"] == 9;
+    assert!(parts.iter().all(|part| part["places"].as_array().unwrap().iter().all(has_ratio)), "{found}");
+    let printed = run(folder.path(), &["rank", "merged/tiny"], 0);
+    assert!(
+        printed.out.contains(", part 2 of 2\n") && printed.err.contains("each part is ranked apart"),
+        "{}",
+        printed.err
+    );
+}
+
+/// A schedule whose rows failed is not ranked, but named.
+#[test]
+fn schedules_that_failed_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    base(folder.path());
+    let path = folder.path().join("old/records.csv");
+    let mut reader = csv::Reader::from_path(&path).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let at = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let mut writer = csv::Writer::from_path(&path).unwrap();
+    writer.write_record(&heads).unwrap();
+    for row in rows {
+        let is_failed = &row[at("strategy")] == "static-blocks" && &row[at("threads")] == "2";
+        let error = |(place, value)| if is_failed && place == at("error") { "it broke" } else { value };
+        writer.write_record(row.iter().enumerate().map(error)).unwrap();
+    }
+    drop(writer);
+    let found = run(folder.path(), &["rank", "old"], 0);
+    assert!(found.err.contains("1 cell not ranked") && found.err.contains("static-blocks/2t"), "{}", found.err);
 }

@@ -5,33 +5,65 @@
 //! Moses, 1953). Both samples are assumed to follow the same distribution up to a factor; nothing else is assumed about
 //! it. The confidence comes from the exact distribution of Mann and Whitney's U (1947).
 
+use super::autocorrelation::widening;
 use super::interval::{Estimate, Interval, all_finite, is_level};
 use super::quantile::{quantile_of_sorted, sorted};
+use std::cell::RefCell;
+use std::collections::HashMap;
 
 /// Largest sample for which the distribution of U is computed; runs are never repeated more often.
 const MOST: usize = 200;
 
-/// Returns the ratio of the values of `new` to the values of `old`, with the narrowest interval of at least `level`
-/// confidence. If there are too few values for it, the interval spans all ratios, with a level below the requested one.
-/// `None` for fewer than two or more than 200 values in a sample, and for values that are not positive and finite.
-///
-/// ```
-/// use pathmark_analysis::rank_sum::ratio;
-/// let slower = ratio(&[1.0, 1.1, 1.2, 1.3], &[2.0, 2.2, 2.4, 2.6], 0.9).unwrap();
-/// assert!(slower.interval.contains(2.0));
-/// ```
-pub fn ratio(old: &[f64], new: &[f64], level: f64) -> Option<Estimate> {
-    let positive = |values: &[f64]| all_finite(values) && values.iter().all(|value| *value > 0.0);
-    let fits = |values: &[f64]| (2..=MOST).contains(&values.len()) && positive(values);
-    if !fits(old) || !fits(new) || !is_level(level) {
-        return None;
+/// The intervals of one level. The ranks of their ends are computed once for each pair of sample sizes.
+pub struct RankSum {
+    level: f64,
+    ranks: RefCell<HashMap<(usize, usize), (usize, f64)>>,
+}
+
+impl RankSum {
+    /// Intervals of at least this confidence.
+    pub fn new(level: f64) -> Self {
+        Self { level, ranks: RefCell::default() }
     }
-    let ratios: Vec<f64> = new.iter().flat_map(|new| old.iter().map(move |old| new / old)).collect();
-    let ordered = sorted(&ratios)?;
-    let (rank, reached) = rank(old.len(), new.len(), level);
-    let (low, high) = (ordered[rank - 1], *ordered.iter().nth_back(rank - 1)?);
-    let interval = Interval::between(low, high, reached)?;
-    Some(Estimate { value: quantile_of_sorted(&ordered, 0.5)?, interval })
+
+    /// Returns the ratio of the values of `new` to the values of `old`, with the narrowest interval of at least the
+    /// requested confidence. If there are too few values for it, the interval spans all ratios, with a level below the
+    /// requested one. `None` for fewer than two or more than 200 values in a sample, and for values that are not
+    /// positive and finite.
+    ///
+    /// ```
+    /// use pathmark_analysis::rank_sum::RankSum;
+    /// let slower = RankSum::new(0.9).ratio(&[1.0, 1.1, 1.2, 1.3], &[2.0, 2.2, 2.4, 2.6]).unwrap();
+    /// assert!(slower.interval.contains(2.0));
+    /// ```
+    pub fn ratio(&self, old: &[f64], new: &[f64]) -> Option<Estimate> {
+        let positive = |values: &[f64]| all_finite(values) && values.iter().all(|value| *value > 0.0);
+        let fits = |values: &[f64]| (2..=MOST).contains(&values.len()) && positive(values);
+        if !fits(old) || !fits(new) || !is_level(self.level) {
+            return None;
+        }
+        let ratios: Vec<f64> = new.iter().flat_map(|new| old.iter().map(move |old| new / old)).collect();
+        let ordered = sorted(&ratios)?;
+        let sizes = (old.len(), new.len());
+        let (rank, reached) =
+            *self.ranks.borrow_mut().entry(sizes).or_insert_with(|| rank(sizes.0, sizes.1, self.level));
+        let (low, high) = (ordered[rank - 1], *ordered.iter().nth_back(rank - 1)?);
+        let interval = Interval::between(low, high, reached)?;
+        Some(Estimate { value: quantile_of_sorted(&ordered, 0.5)?, interval })
+    }
+
+    /// The same for values in the order of their measurement, which may depend on their neighbours: the interval's ends
+    /// are farther from the estimate, as logarithms, by the [`widening`] for both series. That factor may be too small
+    /// with the probability with which an interval of this level misses, so the confidence falls by it.
+    pub fn ratio_of_series(&self, old: &[f64], new: &[f64]) -> Option<Estimate> {
+        let Estimate { value, interval } = self.ratio(old, new)?;
+        let miss = 1.0 - self.level;
+        let logarithms = [old, new].map(|values| values.iter().map(|value| libm::log(*value)).collect::<Vec<_>>());
+        let factor = widening([&logarithms[0], &logarithms[1]], miss)?;
+        let widened = |end: f64| value * libm::pow(end / value, factor);
+        let interval = Interval::between(widened(interval.low), widened(interval.high), interval.level - miss)?;
+        Some(Estimate { value, interval })
+    }
 }
 
 /// The rank of the interval's ends, counted from 1 from either end of the ordered ratios, and the interval's
@@ -121,11 +153,12 @@ mod tests {
         let mut times = |count: usize, factor: f64| -> Vec<f64> {
             (0..count).map(|_| factor * (1.0 + 0.1 * -libm::log(1.0 - uniform(&mut random)))).collect()
         };
+        let intervals = RankSum::new(0.9);
         for (m, n) in [(5, 5), (9, 7)] {
             let (mut held, mut stated) = (0, 0.0);
             for _ in 0..TRIALS {
                 let (old, new) = (times(m, 1.0), times(n, 1.3));
-                let found = ratio(&old, &new, 0.9).unwrap();
+                let found = intervals.ratio(&old, &new).unwrap();
                 held += u32::from(found.interval.contains(1.3));
                 stated = found.interval.level;
             }
@@ -140,10 +173,27 @@ mod tests {
         for (old, new) in
             [(vec![1.0], vec![1.0, 2.0]), (vec![1.0, 0.0], vec![1.0, 2.0]), (vec![1.0, f64::NAN], vec![1.0; 2])]
         {
-            assert_eq!(ratio(&old, &new, 0.95), None);
+            assert_eq!(RankSum::new(0.95).ratio(&old, &new), None);
         }
-        assert_eq!(ratio(&[1.0, 2.0], &[1.0, 2.0], 1.0), None);
-        let ties = ratio(&[2.0; 6], &[3.0; 6], 0.95).unwrap();
+        assert_eq!(RankSum::new(1.0).ratio(&[1.0, 2.0], &[1.0, 2.0]), None);
+        let ties = RankSum::new(0.95).ratio(&[2.0; 6], &[3.0; 6]).unwrap();
         assert_eq!((ties.value, ties.interval.low, ties.interval.high), (1.5, 1.5, 1.5));
+    }
+
+    /// The ends move by the factor as logarithms: with alternating times, which are no more alike than independent
+    /// ones, they stay.
+    #[test]
+    fn the_interval_of_series_contains_the_interval_of_samples() {
+        let intervals = RankSum::new(0.975);
+        let turns: [f64; 8] = std::array::from_fn(|at| [1.0, 1.1][at % 2] + 1e-3 * at as f64);
+        let waves = [1.0, 1.1, 1.3, 1.4, 1.4, 1.3, 1.1, 1.0];
+        let [sample, series] =
+            [intervals.ratio(&turns, &turns), intervals.ratio_of_series(&turns, &turns)].map(Option::unwrap);
+        assert!((series.interval.low - sample.interval.low).abs() < 1e-12 && series.interval.level >= 0.95);
+        let [sample, series] =
+            [intervals.ratio(&waves, &waves), intervals.ratio_of_series(&waves, &waves)].map(Option::unwrap);
+        let moved = libm::log(series.interval.high / series.value) / libm::log(sample.interval.high / sample.value);
+        let logarithms = waves.map(libm::log);
+        assert!((moved - widening([&logarithms, &logarithms], 0.025).unwrap()).abs() < 1e-9, "{moved}");
     }
 }

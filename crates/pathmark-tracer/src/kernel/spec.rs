@@ -5,7 +5,7 @@ use crate::simd::Precision;
 use serde::{Deserialize, Serialize};
 
 /// Specification of a kernel: the *what* of a render.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Spec {
     /// Columns of the image.
     pub width: u32,
