@@ -18,6 +18,7 @@ mod keys;
 mod matrix;
 mod merge_sweeps;
 mod object_pixels;
+mod options;
 mod plan;
 mod pricing;
 mod process_group;
@@ -33,6 +34,7 @@ mod shuffle;
 mod sweep;
 mod sweep_shard;
 mod table;
+mod time_limit;
 mod until;
 mod with_values;
 
@@ -48,6 +50,7 @@ pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use keys::keys;
 pub use merge_sweeps::{MergedSweep, merge_sweeps};
+pub use options::Options;
 pub use plan::{Plan, Prices};
 pub use pricing::{Paid, Pilot, Piloted, law_of, pay};
 pub use processes::MESSAGES;
@@ -57,8 +60,9 @@ pub use records_file::{RecordsFile, read_records};
 pub use reference::{HalfFile, Reference, reference_seed, wanted_references};
 pub use run_file::{MACHINE, RunFile, read_run_file};
 pub use scene_version::SceneVersion;
-pub use sweep::{Options, Summary, Sweep};
+pub use sweep::{Summary, Sweep};
 pub use sweep_shard::SweepShard;
+pub use time_limit::{TIMED_OUT, Timeout};
 pub use until::{Goal, MOST_REPETITIONS, Until};
 
 /// Receives the progress of long work. The command line implements it.
