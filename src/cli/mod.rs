@@ -44,6 +44,7 @@ mod whole;
 use crate::error::{Error, Result};
 use crate::lab::Lab;
 use clap::{CommandFactory, Parser, Subcommand};
+pub use out_of_memory::Allocator;
 use progress::Talk;
 use std::io::ErrorKind;
 use std::process::ExitCode;

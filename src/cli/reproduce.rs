@@ -34,8 +34,8 @@ pub(super) struct Arguments {
     plan: bool,
     /// Time limit of each cell's process, as in 10min, or none [default: the experiment's, or ten times the estimated
     /// time, at least a minute]
-    #[arg(long, value_name = "TIME", value_parser = Timeout::parse)]
-    timeout: Option<Timeout>,
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    timeout: Option<String>,
     #[command(flatten)]
     strict: Strict,
 }
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         shard: None,
         serial_for: None,
         until: None,
-        timeout: arguments.timeout,
+        timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         rerun_doubtful: false,
         count_instructions: false,
         cache: None,

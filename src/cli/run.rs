@@ -4,7 +4,9 @@ use super::output::{lock_folder, print};
 use super::progress::Talk;
 use super::{command_line, profile, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard, Timeout, Until, folder_against};
+use crate::experiment::{
+    Definition, LARGEST_REPETITIONS, Options, Progress, Sweep, SweepShard, Timeout, Until, folder_against,
+};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -33,7 +35,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     count_instructions: bool,
     /// Runs of each cell [default: set by the experiment]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_REPETITIONS)))]
     repetitions: Option<u32>,
     /// Replace the values of an axis, as in scene=my/room.toml or threads=1,2,4,8; may be given several times
     #[arg(long = "set", value_name = "AXIS=VALUES")]
@@ -61,8 +63,8 @@ pub(super) struct Arguments {
     within: Option<String>,
     /// Time limit of each cell's process, as in 10min, or none. A cell that reaches it is ended, and its rows fail
     /// [default: the experiment's, or ten times the estimated time, at least a minute]
-    #[arg(long, value_name = "TIME", value_parser = Timeout::parse)]
-    timeout: Option<Timeout>,
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    timeout: Option<String>,
     /// Keep the hierarchies of scenes with 4096 or more primitives in this folder, and reuse them the next time; the column
     /// `build_s` of such scenes is empty
     #[arg(long, value_name = "FOLDER", conflicts_with = "against")]
@@ -86,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
         serial_for: figure_of_serial(&definition),
         until: arguments.until.as_deref().map(|limit| Until::parse(limit, arguments.within.as_deref())).transpose()?,
-        timeout: arguments.timeout,
+        timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         rerun_doubtful: arguments.rerun_doubtful,
         count_instructions: arguments.count_instructions,
         cache: arguments.cache.clone(),

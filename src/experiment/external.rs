@@ -12,6 +12,7 @@
 //! # images at 4, 8, 16 ... samples on the way to each spp, each by a run of its own.
 //! ```
 
+use super::matrix::LARGEST_CELLS;
 use super::{Cell, CellPoint, Definition, Profile, Progress, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
@@ -152,6 +153,10 @@ impl Definition {
                 let external = Some(external.clone());
                 let cell =
                     Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
+                if cells.len() as u64 >= LARGEST_CELLS {
+                    let error = InputError::new("seed", format!("{} values", seeds.len()), "gives too many cells");
+                    return Err(self.located(profile, error.allowed(format!("at most {LARGEST_CELLS} cells"))));
+                }
                 match cells.iter().find(|known: &&Cell| known.id == cell.id) {
                     None => cells.push(cell),
                     // Curves share their first points, and a list may name a value twice.

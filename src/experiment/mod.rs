@@ -49,6 +49,7 @@ pub use diff::{Across, CellDiff, Change, Diff, diff, parse_share};
 pub use external::{EXTERNAL, External};
 pub use half::{ReferenceError, check_until, refine_reference, render_reference};
 pub use keys::keys;
+pub use matrix::LARGEST_REPETITIONS;
 pub use merge_sweeps::{MergedSweep, merge_sweeps};
 pub use options::Options;
 pub use plan::{Plan, Prices};

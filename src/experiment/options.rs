@@ -35,3 +35,26 @@ pub struct Options {
     /// The command as the user gave it.
     pub command: String,
 }
+
+#[cfg(test)]
+impl Options {
+    /// The options of a command without options.
+    pub(super) fn usual(out: PathBuf) -> Self {
+        Self {
+            out,
+            profile: Profile::Quick,
+            resume: false,
+            repetitions: None,
+            filters: Vec::new(),
+            against: None,
+            shard: None,
+            serial_for: None,
+            until: None,
+            timeout: None,
+            rerun_doubtful: false,
+            count_instructions: false,
+            cache: None,
+            command: String::new(),
+        }
+    }
+}

@@ -146,6 +146,34 @@ impl<'a> Limits<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::experiment::{Definition, Options};
+    use crate::files::Files;
+
+    const TEXT: &str = "title = \"t\"\nquestion = \"q\"\nfigures = []\n[matrix]\nscene = [\"cornell\"]\nspp = [4, 400]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\n[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [4]\nseed = [1]\ncommand = [\"{spp}\", \"{seed}\", \"{out}\"]\n[quick]\nsize = [100, 100]\n";
+
+    /// The limits of two cells and of another program, if a sample takes a hundredth of a second.
+    fn limits(text: &str, option: Option<Timeout>) -> Vec<Option<Duration>> {
+        let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", text).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let options = Options { timeout: option, ..Options::usual(folder.path().to_path_buf()) };
+        let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();
+        let mut limits = Limits::of(&sweep).unwrap();
+        limits.kinds.push((small(&sweep.cells[0].settings), Some(1e-2)));
+        sweep.cells.iter().map(|cell| limits.limit(cell)).collect()
+    }
+
+    /// Without a limit of the user: a minute for 40,000 samples, ten times 40,000 s for 4 million, an hour for another
+    /// program. The command's limit replaces the profile's, which replaces the file's.
+    #[test]
+    fn each_cell_has_the_nearest_limit() {
+        let [minute, hour] = [60, 3600].map(|seconds| Some(Duration::from_secs(seconds)));
+        assert_eq!(limits(TEXT, None), [minute, Some(Duration::from_secs(400_000)), hour]);
+        let file = format!("timeout = \"1h\"\n{TEXT}");
+        assert_eq!(limits(&file, None), [hour; 3]);
+        let profile = format!("{file}timeout = \"1min\"\n");
+        assert_eq!(limits(&profile, None), [minute; 3]);
+        assert_eq!(limits(&profile, Some(Timeout(None))), [None; 3]);
+    }
 
     #[test]
     fn limits_are_durations_above_zero_or_none() {

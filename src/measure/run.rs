@@ -311,6 +311,10 @@ impl Account {
         if self.makespan_s < SHORTEST_S {
             warnings.push(Warning::TooShort);
         }
+        let unmeasured = if self.rounds == 0 { Vec::new() } else { Usage::missing(self.cpu.as_ref()) };
+        if !unmeasured.is_empty() {
+            warnings.push(Warning::Unmeasured(unmeasured));
+        }
         let capacity_s = self.makespan_s * available_threads() as f64;
         if let Some(foreign_s) = self.cpu.and_then(|usage| usage.foreign_s)
             && foreign_s > FOREIGN_SHARE * capacity_s
