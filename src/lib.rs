@@ -90,6 +90,8 @@ pub mod shell;
 pub mod simulate;
 mod temporary;
 
+#[cfg(feature = "program")]
+pub use cli::Allocator;
 pub use lab::Lab;
 #[doc(inline)]
 pub use pathmark_analysis as analysis;

@@ -2,6 +2,9 @@
 
 use std::process::ExitCode;
 
+#[global_allocator]
+static ALLOCATOR: pathmark::Allocator = pathmark::Allocator;
+
 fn main() -> ExitCode {
     pathmark::Lab::new().main()
 }

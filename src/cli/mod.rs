@@ -47,6 +47,7 @@ use crate::lab::Lab;
 use crate::shell;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+pub use out_of_memory::Allocator;
 use progress::Talk;
 use std::io;
 use std::process::ExitCode;

@@ -3,12 +3,12 @@
 use super::output::{lock_folder, print};
 use super::plan::Plans;
 use super::progress::Talk;
-use super::run::{rows, talk_of, tell_left_out};
+use super::run::{check_failures, rows, talk_of, tell_left_out};
 use super::whole::Whole;
 use super::{cases, command_line, guards, profile, strict::Strict};
 use crate::check::{self, Case, Effort, cases_file, guards::FOLDER};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep};
+use crate::experiment::{Definition, Options, Profile, Progress, RecordsFile, Summary, Sweep, Timeout};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -32,6 +32,10 @@ pub(super) struct Arguments {
     /// Print rows, estimated seconds and bytes of each experiment, and run none
     #[arg(long)]
     plan: bool,
+    /// Time limit of each cell's process, as in 10min, or none [default: the experiment's, or ten times the estimated
+    /// time, at least a minute]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    timeout: Option<String>,
     #[command(flatten)]
     strict: Strict,
 }
@@ -48,6 +52,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         shard: None,
         serial_for: None,
         until: None,
+        timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         rerun_doubtful: false,
         count_instructions: false,
         cache: None,
@@ -79,7 +84,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if !guards::are_in(&arguments.out) {
         guards::claim(&arguments.out, &mut files)?;
     }
-    let Total { rows, failed, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, talk)?;
+    let Total { rows, failed, timed_out, invalid, left_out, doubts } = run_all(&sweeps, profile, lab, talk)?;
     // The cases take longer than a sixth of all quick experiments, so the quick profile leaves them to `check --out`.
     if profile != Profile::Quick && !cases_file::is_in(&arguments.out) {
         let all: Vec<&'static Case> = check::cases().collect();
@@ -93,9 +98,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     tell_left_out(&left_out, talk);
     let told = self::rows(rows, &left_out);
     print(&format!("{told} from {} experiments, report in {}", definitions.len(), page.display()))?;
-    if failed > 0 {
-        return Err(Error::Check(format!("{failed} of {rows} rows failed; their column `error` says why")));
-    }
+    check_failures(rows, failed, timed_out)?;
     arguments.strict.check(invalid)
 }
 
@@ -104,6 +107,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
 struct Total {
     rows: usize,
     failed: usize,
+    timed_out: usize,
     invalid: u64,
     left_out: LeftOut,
     doubts: Doubts,
@@ -116,6 +120,7 @@ fn run_all(sweeps: &[Sweep<'_>], profile: Profile, lab: &Lab, talk: &Talk) -> Re
     let mut add = |summary: &Summary| {
         total.rows += summary.rows;
         total.failed += summary.failed;
+        total.timed_out += summary.timed_out;
         total.invalid += summary.invalid;
         total.left_out.merge(&summary.left_out);
         total.doubts.merge(&summary.doubts);

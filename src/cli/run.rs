@@ -4,7 +4,9 @@ use super::output::{lock_folder, print};
 use super::progress::Talk;
 use super::{command_line, profile, strict::Strict};
 use crate::error::{Error, Result};
-use crate::experiment::{Definition, Options, Progress, Sweep, SweepShard, Until, folder_against};
+use crate::experiment::{
+    Definition, LARGEST_REPETITIONS, Options, Progress, Sweep, SweepShard, Timeout, Until, folder_against,
+};
 use crate::files::Files;
 use crate::lab::Lab;
 use crate::lock::Sharing;
@@ -34,7 +36,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     count_instructions: bool,
     /// Runs of each cell [default: set by the experiment]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LARGEST_REPETITIONS)))]
     repetitions: Option<u32>,
     /// Replace the values of an axis, as in scene=my/room.toml or threads=1,2,4,8; may be given several times
     #[arg(long = "set", value_name = "AXIS=VALUES")]
@@ -60,6 +62,10 @@ pub(super) struct Arguments {
     /// With --until: start no repetition after this time, as in 60s
     #[arg(long, value_name = "TIME", requires = "until")]
     within: Option<String>,
+    /// Time limit of each cell's process, as in 10min, or none. A cell that reaches it is ended, and its rows fail
+    /// [default: the experiment's, or ten times the estimated time, at least a minute]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    timeout: Option<String>,
     /// Keep the hierarchies of scenes with 4096 or more primitives in this folder, and reuse them the next time; the column
     /// `build_s` of such scenes is empty
     #[arg(long, value_name = "FOLDER", conflicts_with = "against")]
@@ -83,6 +89,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         shard: arguments.shard.as_deref().map(SweepShard::parse).transpose()?,
         serial_for: figure_of_serial(&definition),
         until: arguments.until.as_deref().map(|limit| Until::parse(limit, arguments.within.as_deref())).transpose()?,
+        timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
         rerun_doubtful: arguments.rerun_doubtful,
         count_instructions: arguments.count_instructions,
         cache: arguments.cache.clone(),
@@ -98,9 +105,8 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     // Failed rows are reported before a page that could not be written.
     if summary.failed > 0 {
         tell_left_out(&summary.left_out, talk);
-        let problem = format!("{} of {} rows failed; their column `error` says why", summary.failed, summary.rows);
-        return Err(Error::Check(problem));
     }
+    check_failures(summary.rows, summary.failed, summary.timed_out)?;
     arguments.strict.check(summary.invalid)?;
     talk_of(&summary.doubts, talk);
     tell_left_out(&summary.left_out, talk);
@@ -130,6 +136,15 @@ pub(super) fn tell_left_out(left_out: &LeftOut, talk: &Talk) {
     if left_out.count() > 0 {
         talk.note(&left_out.to_string());
     }
+}
+
+/// Refuses a sweep in which rows have failed.
+pub(super) fn check_failures(rows: usize, failed: usize, timed_out: usize) -> Result<()> {
+    if failed == 0 {
+        return Ok(());
+    }
+    let at_limit = if timed_out == 0 { String::new() } else { format!(", {timed_out} of them at their time limit") };
+    Err(Error::Check(format!("{failed} of {rows} rows failed{at_limit}; their column `error` says why")))
 }
 
 /// Says how many rows have times in doubt, if there are any.

@@ -90,6 +90,10 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     for name in &names {
         lab.strategy_named(name)?;
     }
+    if !arguments.no_check && measured.is_none() {
+        // These settings will be run. They come from a file, so they may be wrong or ask for too much.
+        lab.prepare(trace.header.settings.clone())?;
+    }
     let mut files = Files::default();
     files.reads("the trace", &arguments.trace);
     let mut rules = Vec::new();

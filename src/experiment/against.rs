@@ -5,6 +5,7 @@
 //! `OUT/against`, like those of a separate sweep.
 
 use super::cell_process::{CELL_ABOUT, CellJob, PointJob};
+use super::process_group::answer;
 use super::records_file::RecordsFile;
 use super::run_file::{MACHINE, RunFile};
 use crate::atomic_file;
@@ -13,10 +14,14 @@ use crate::measure::Record;
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
+use std::time::Duration;
 
 /// The folder of the other build's rows, inside the folder of results.
 const FOLDER: &str = "against";
+
+/// The time in which a program prints its help. A program of another kind may run for ever.
+const HELP: Duration = Duration::from_mins(1);
 
 /// The other build, and the files for its rows.
 pub(super) struct Against {
@@ -44,9 +49,10 @@ pub(super) fn check_program(program: &Path) -> Result<()> {
     }
     // An absolute path, because a name without a folder would be searched for elsewhere.
     let program = fs::canonicalize(program).map_err(|e| Error::system("finding", program, e))?;
-    let help = Command::new(&program).args(["cell", "--help"]).stdin(Stdio::null()).output();
-    match help {
-        Ok(help) if String::from_utf8_lossy(&help.stdout).contains(CELL_ABOUT) => Ok(()),
+    let mut help = Command::new(&program);
+    help.args(["cell", "--help"]);
+    match answer(help, "", Some(HELP)) {
+        Ok(Some(help)) if String::from_utf8_lossy(&help.stdout).contains(CELL_ABOUT) => Ok(()),
         Ok(_) => refused("cannot run the cells of a sweep"),
         Err(error) => refused(&format!("cannot be started ({error})")),
     }
@@ -70,12 +76,12 @@ impl Against {
     }
 
     /// Runs a repetition of a cell; returns its rows.
-    pub(super) fn run(&mut self, job: &CellJob) -> Result<Vec<Record>> {
+    pub(super) fn run(&mut self, job: &CellJob, limit: Option<Duration>) -> Result<Vec<Record>> {
         // Images and traces are kept of this build only.
         let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
         let job = CellJob { points, trace: None, ..job.clone() };
         let mut rows = Vec::new();
-        for record in job.run_in_child_of(Ok(self.program.clone())) {
+        for record in job.run_in_child_of(Ok(self.program.clone()), limit) {
             let record = Record { order: job.order, ..record };
             if !self.has_rows {
                 // The rows say which build measured them.

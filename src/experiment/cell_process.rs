@@ -9,6 +9,7 @@ use super::external::filled;
 use super::object_pixels::{object_pixels, only};
 use super::process_group;
 use super::processes::run_processes;
+use super::time_limit::timed_out;
 use super::{External, HalfFile, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::film::SAMPLE_BLOCK;
@@ -25,7 +26,7 @@ use std::env;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// The beginning of the help of the verb `cell`. A program whose help contains it can run cells, so later builds must
 /// keep these words.
@@ -79,15 +80,20 @@ impl CellJob {
         }
     }
 
-    /// Runs the cell in a child process and returns a row for each point; an error there becomes failed rows.
-    pub(super) fn run_in_child(&self) -> Vec<Record> {
+    /// Runs the cell in a child process and returns a row for each point. An error there, and the end of the time limit,
+    /// become failed rows.
+    pub(super) fn run_in_child(&self, limit: Option<Duration>) -> Vec<Record> {
         let own = env::current_exe().map_err(|e| format!("finding this program: {e}"));
-        self.run_in_child_of(own)
+        self.run_in_child_of(own, limit)
     }
 
     /// Runs the cell in a child process of `program`, which may be another build.
-    pub(super) fn run_in_child_of(&self, program: std::result::Result<PathBuf, String>) -> Vec<Record> {
-        let rows = program.and_then(|program| self.child(&program)).and_then(|rows| {
+    pub(super) fn run_in_child_of(
+        &self,
+        program: std::result::Result<PathBuf, String>,
+        limit: Option<Duration>,
+    ) -> Vec<Record> {
+        let rows = program.and_then(|program| self.child(&program, limit)).and_then(|rows| {
             let wrong = || format!("the cell's process gave {} rows instead of {}", rows.len(), self.points.len());
             if rows.len() == self.points.len() { Ok(rows) } else { Err(wrong()) }
         });
@@ -103,11 +109,13 @@ impl CellJob {
         self.points.iter().map(failed).collect()
     }
 
-    fn child(&self, program: &Path) -> std::result::Result<Vec<Record>, String> {
+    fn child(&self, program: &Path, limit: Option<Duration>) -> std::result::Result<Vec<Record>, String> {
         let mut command = Command::new(program);
         command.arg("cell");
         let text = serde_json::to_string(self).map_err(|e| format!("describing the cell: {e}"))?;
-        let output = process_group::answer(command, &text).map_err(|e| format!("running the cell's process: {e}"))?;
+        let output = process_group::answer(command, &text, limit)
+            .map_err(|e| format!("running the cell's process: {e}"))?
+            .ok_or_else(|| timed_out(limit))?;
         if !output.status.success() {
             let said = String::from_utf8_lossy(&output.stderr);
             return Err(format!("the cell's process ended with {}: {}", output.status, said.trim()));

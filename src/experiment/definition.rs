@@ -9,6 +9,7 @@
 //! place = 3                       # optional: its place among the experiments of the chapter
 //! in-short = 1                    # optional: the number of the finding that stands at the beginning of the page
 //! keep = ["traces"]               # optional: images, traces, calibration, messages
+//! timeout = "10min"               # optional: the time limit of each cell's process, or "none"; a profile may have another
 //!
 //! [matrix]                       # cells are all combinations
 //! scene = ["cornell"]            # or "all"
@@ -48,7 +49,7 @@
 
 use super::table::{Matrix, Scale, one_or_many};
 use super::until::Until;
-use super::{Chapter, External, Profile};
+use super::{Chapter, External, Profile, Timeout};
 use crate::error::{Error, InputError, Result};
 use crate::input::{locate, locate_in, parse, read_text};
 use crate::lab::Lab;
@@ -147,6 +148,8 @@ pub struct Definition {
     /// Whether samplers may draw other random numbers in each run, so that no checksum can be expected.
     #[serde(default)]
     pub unverified: bool,
+    /// The time limit of each cell, where the profile sets none.
+    pub(super) timeout: Option<Timeout>,
     /// Features that not every build has; without them the experiment is left out.
     #[serde(default)]
     pub requires: Vec<String>,
@@ -251,6 +254,11 @@ impl Definition {
     /// The repetitions of each cell; the largest number, if there is a goal.
     pub fn repetitions(&self, profile: Profile) -> Result<u32> {
         Ok(self.scale(profile)?.repetitions)
+    }
+
+    /// The time limit of each cell; `None` if the definition sets none.
+    pub(super) fn timeout(&self, profile: Profile) -> Result<Option<Timeout>> {
+        Ok(self.scale(profile)?.timeout.or(self.timeout))
     }
 
     /// The goal at which repetitions stop; `None` if their number is fixed.

@@ -12,6 +12,7 @@
 //! # images at 4, 8, 16 ... samples on the way to each spp, each by a run of its own.
 //! ```
 
+use super::matrix::LARGEST_CELLS;
 use super::{Cell, CellPoint, Definition, Profile, Progress, SceneVersion};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
@@ -153,6 +154,10 @@ impl Definition {
                 let external = Some(external.clone());
                 let cell =
                     Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
+                if cells.len() as u64 >= LARGEST_CELLS {
+                    let error = InputError::new("seed", format!("{} values", seeds.len()), "gives too many cells");
+                    return Err(self.located(profile, error.allowed(format!("at most {LARGEST_CELLS} cells"))));
+                }
                 match places.get(&cell.id).map(|place: &usize| &cells[*place]) {
                     None => {
                         places.insert(cell.id.clone(), cells.len());

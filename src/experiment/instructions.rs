@@ -5,6 +5,7 @@
 //! of a sweep lie beside its rows in `instructions.csv`, which `diff --counts` compares.
 
 use super::cell_process::{CellJob, PointJob};
+use super::time_limit::{Limits, timed_out};
 use super::{Cell, Progress, Sweep, folder_against, process_group};
 use crate::atomic_file;
 use crate::error::{Error, InputError, Result};
@@ -14,6 +15,7 @@ use std::collections::BTreeMap;
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 /// The file's name.
 pub(super) const INSTRUCTIONS: &str = "instructions.csv";
@@ -44,10 +46,10 @@ impl Sweep<'_> {
         let cells: Vec<&Cell> = self.cells.iter().filter(of_this_program).collect();
         for (program, folder) in builds.into_iter().flatten() {
             progress.begin(&format!("{}, instructions", self.definition.name), cells.len() as u64);
-            let mut counts = BTreeMap::new();
+            let (mut counts, mut limits) = (BTreeMap::new(), Limits::of(self)?);
             for (done, cell) in (1..).zip(&cells) {
                 let job = self.job(cell, (0, 0), &folder, &[], None);
-                match count(&job, &program) {
+                match count(&job, &program, limits.limit_of_counting(cell)) {
                     Ok(count) => _ = counts.insert(cell.id.clone(), count),
                     Err(error) => progress.note(&format!("{}: {error}", cell.id)),
                 }
@@ -61,7 +63,7 @@ impl Sweep<'_> {
 }
 
 /// Counts the instructions of a cell that `program` runs. `Err` says why there is no count.
-fn count(job: &CellJob, program: &Path) -> std::result::Result<u64, String> {
+fn count(job: &CellJob, program: &Path, limit: Option<Duration>) -> std::result::Result<u64, String> {
     // The process only renders the image: it reads, writes and compares nothing else.
     let points = job.points.iter().map(|point| PointJob { image: None, ..point.clone() }).collect();
     // With a cache, the count would depend on whether another run has built the hierarchy.
@@ -70,7 +72,9 @@ fn count(job: &CellJob, program: &Path) -> std::result::Result<u64, String> {
     let text = serde_json::to_string(&job).map_err(|e| format!("describing the cell: {e}"))?;
     let mut command = Command::new(COUNTER);
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(program).arg("cell");
-    let output = process_group::answer(command, &text).map_err(|e| format!("running {COUNTER}: {e}"))?;
+    let output = process_group::answer(command, &text, limit)
+        .map_err(|e| format!("running {COUNTER}: {e}"))?
+        .ok_or_else(|| timed_out(limit))?;
     let said = String::from_utf8_lossy(&output.stderr);
     if !output.status.success() {
         return Err(format!("{COUNTER} ended with {}: {}", output.status, said.trim()));

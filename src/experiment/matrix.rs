@@ -13,6 +13,11 @@ use std::path::Path;
 /// The value that leaves the choice to the program.
 const FITTING: &str = "fitting";
 
+/// Most cells of a sweep: checking and comparing more takes minutes before the first one runs.
+pub(super) const LARGEST_CELLS: u64 = 10_000;
+/// Most repetitions of a cell.
+pub const LARGEST_REPETITIONS: u32 = 10_000;
+
 /// Distinct cells. Two words may mean the same run, such as `fitting` and the name of the profile that fits a scene; a
 /// point that two curves share is kept once.
 #[derive(Default)]
@@ -46,8 +51,10 @@ impl Definition {
     /// The cells, each once, in the order of the matrix. Every cell is checked, so no error of the definition can
     /// appear later.
     pub fn cells(&self, profile: Profile) -> Result<Vec<Cell>> {
-        if self.repetitions(profile)? == 0 {
-            return Err(self.located(profile, InputError::new("repetitions", "0", "must be at least 1")));
+        let repetitions = self.repetitions(profile)?;
+        if !(1..=LARGEST_REPETITIONS).contains(&repetitions) {
+            let error = InputError::new("repetitions", repetitions.to_string(), "is out of range");
+            return Err(self.located(profile, error.allowed(format!("1 to {LARGEST_REPETITIONS}"))));
         }
         if let Some(unknown) =
             self.requires.iter().find(|name| !FEATURES.iter().any(|feature| feature.name == name.as_str()))
@@ -61,9 +68,11 @@ impl Definition {
             return Err(self.located(profile, error.allowed(takes)));
         }
         let mut cells = Cells::default();
+        let mut combinations = 0_u64;
         for matrix in self.matrices(profile) {
             let product = Product { definition: self, profile, scale: self.scale(profile)?, matrix };
             product.check_axes()?;
+            product.check_combinations(&mut combinations)?;
             product.add(&AXES, &Settings::default(), &mut cells)?;
         }
         cells.list.extend(self.external_cells(profile)?);
@@ -112,20 +121,37 @@ impl<'a> Product<'a> {
         })
     }
 
+    /// The values of an axis, one of which may stand for all that there are.
+    fn values(&self, axis: &Axis) -> impl Iterator<Item = String> {
+        self.written(axis).into_iter().flatten().flat_map(|value| match axis.all {
+            Some(all) if value == "all" => all(&self.definition.lab),
+            _ => vec![value.clone()],
+        })
+    }
+
+    /// Adds the number of combinations to those of earlier matrices, and refuses too many. The axis with the most values
+    /// is named.
+    fn check_combinations(&self, sum: &mut u64) -> Result<()> {
+        let counts: Vec<u64> = AXES.iter().map(|axis| (self.values(axis).count() as u64).max(1)).collect();
+        *sum = counts.iter().fold(1_u64, |product, count| product.saturating_mul(*count)).saturating_add(*sum);
+        let longest = AXES.iter().zip(&counts).max_by_key(|(_, count)| **count);
+        let Some((axis, count)) = longest.filter(|_| *sum > LARGEST_CELLS) else { return Ok(()) };
+        let problem = format!("the matrices have {sum} combinations of their values, of which each is a cell");
+        let error = InputError::new(axis.name, format!("{count} values"), problem);
+        Err(self.at_field(error.allowed(format!("at most {LARGEST_CELLS} combinations")).into()))
+    }
+
     /// Adds the cells of all combinations of these axes.
     fn add(&self, axes: &[Axis], settings: &Settings, cells: &mut Cells) -> Result<()> {
         let Some((axis, inner)) = axes.split_first() else { return self.add_cell(settings.clone(), cells) };
-        let Some(written) = self.written(axis).filter(|values| !values.is_empty()) else {
+        if self.written(axis).is_none_or(Vec::is_empty) {
             let mut settings = settings.clone();
             if axis.name == "estimator" {
                 settings.spec.estimator = self.own_estimator(&settings.scene)?;
             }
             return self.add(inner, &settings, cells);
-        };
-        for value in written.iter().flat_map(|value| match axis.all {
-            Some(all) if value == "all" => all(&self.definition.lab),
-            _ => vec![value.clone()],
-        }) {
+        }
+        for value in self.values(axis) {
             let mut settings = settings.clone();
             match (axis.field)(&mut settings) {
                 Field::Fitting(_) if value == FITTING => {}

@@ -96,6 +96,10 @@ impl<'a> Prices<'a> {
         let samples = |spp: u32| f64::from(kind.spec.width) * f64::from(kind.spec.height) * f64::from(spp);
         let fewest = with(spp)?.fewest_spp();
         let setup = with(fewest)?;
+        // Without the GPU that it needs, a cell renders nothing.
+        if setup.scene().is_some_and(|(_, choice)| choice.lacks_device()) {
+            return Ok(0.0);
+        }
         // The first run of a setup builds its kernel, and the first of a process is slower than the rest.
         setup.run(None)?;
         let once_s = setup.run(None)?.makespan_s;
@@ -125,7 +129,7 @@ impl<'a> Prices<'a> {
 
 /// The image of these settings at the pilot's size, on one thread, without seed and samples; equal for cells of one
 /// kind.
-fn small(settings: &Settings) -> Settings {
+pub(super) fn small(settings: &Settings) -> Settings {
     let spec = &settings.spec;
     let height = (u64::from(WIDTH) * u64::from(spec.height)).div_ceil(u64::from(spec.width).max(1));
     let spec = Spec { width: WIDTH, height: height.clamp(1, 4 * u64::from(WIDTH)) as u32, seed: 0, ..spec.clone() };
@@ -172,4 +176,24 @@ impl Sweep<'_> {
 
 fn pixels(cell: &Cell) -> u64 {
     u64::from(cell.settings.spec.width) * u64::from(cell.settings.spec.height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::experiment::{Definition, Options};
+    use crate::files::Files;
+
+    /// A machine without the GPU that a cell needs can plan it, as it can run it.
+    #[test]
+    fn a_cell_for_a_device_has_a_plan_on_every_machine() {
+        let text = "title = \"t\"\nquestion = \"q\"\nfigures = []\n[matrix]\nscene = [\"cornell\"]\nspp = [4]\nstrategy = [\"serial\"]\nthreads = [1]\ndecomposition = [\"rows\"]\nkernel = [\"device\"]\n";
+        let lab = Lab::built_in();
+        let definition = Definition::from_text(&lab, "x", "x.toml", text).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let options = Options::usual(folder.path().to_path_buf());
+        let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();
+        let plan = sweep.plan(&mut Prices::new(&lab)).unwrap();
+        assert_eq!((plan.cells, plan.rows), (1, 6));
+    }
 }

@@ -4,6 +4,7 @@ use super::against::Against;
 use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::sweep::{Summary, Sweep};
+use super::time_limit::Limits;
 use super::until::{Decisions, Goal};
 use super::{Cell, CellPoint, HalfFile, Progress, Reference};
 use crate::error::Result;
@@ -30,6 +31,7 @@ pub(super) struct Running<'a> {
     /// The first row's checksum of each image.
     checksums: HashMap<String, String>,
     drift: Drift,
+    limits: Limits<'a>,
     lowest_seed: Option<u64>,
     /// The next row's number, and the next repetition's.
     order: u64,
@@ -46,12 +48,14 @@ impl<'a> Running<'a> {
         references: Vec<(&'a Reference, [HalfFile; 2])>,
         against: Option<Against>,
         (file, done): (RecordsFile, Vec<Record>),
+        limits: Limits<'a>,
         progress: &'a dyn Progress,
     ) -> Self {
         let summary = Summary {
             folder: folder.clone(),
             rows: done.len(),
             failed: 0,
+            timed_out: 0,
             left_out: LeftOut::of(&done),
             invalid: done.iter().filter_map(|record| record.invalid_samples).sum(),
             doubts: Doubts::of(done.iter().map(|record| record.warnings.as_str())),
@@ -69,6 +73,7 @@ impl<'a> Running<'a> {
             serial: serial_runs(&sweep.cells),
             checksums: HashMap::new(),
             drift: Drift::of(&done),
+            limits,
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
             // Failed rows were dropped with their numbers, so the number of rows may be in use already.
             order: done.iter().map(|record| record.order + 1).max().unwrap_or(0),
@@ -106,20 +111,21 @@ impl<'a> Running<'a> {
             return Ok(());
         }
         let job = self.sweep.job(cell, (repetition, self.order), &self.folder, &self.references, self.lowest_seed);
+        let limit = self.limits.limit(cell);
         let (mut others, other_first) = (Vec::new(), (u64::from(repetition) + index as u64) % 2 == 1);
         let mut run_against =
-            || self.against.as_mut().map_or(Ok(()), |against| against.run(&job).map(|rows| others.extend(rows)));
+            || self.against.as_mut().map_or(Ok(()), |against| against.run(&job, limit).map(|rows| others.extend(rows)));
         if other_first {
             run_against()?;
         }
         // A curve that was killed between two rows is rendered again, and only the missing rows are added.
-        let rows = job.run_in_child();
+        let rows = job.run_in_child(limit);
         if !other_first {
             run_against()?;
         }
         for other in others {
             if !other.error.is_empty() {
-                self.summary.failed += 1;
+                self.summary.add_failure(&other.error);
                 self.progress.note(&format!("{} repetition {repetition}, the other build: {}", cell.id, other.error));
             }
             self.decisions.note(&other, false);
@@ -134,7 +140,7 @@ impl<'a> Running<'a> {
         let mut record = verified(record, image, &mut self.checksums);
         self.drift.watch(&mut record);
         if !record.error.is_empty() {
-            self.summary.failed += 1;
+            self.summary.add_failure(&record.error);
             // A program that fails usually fails in every row.
             if self.told.insert(record.error.clone()) {
                 self.progress.note(&format!("{} repetition {}: {}", record.cell, record.repetition, record.error));

@@ -11,10 +11,10 @@ use super::records_file::RecordsFile;
 use super::run_file::{RunFile, read_run_file};
 use super::running::Running;
 use super::shuffle::shuffled;
-use super::sweep_shard::SweepShard;
+use super::time_limit::{Limits, TIMED_OUT};
 use super::until::{MOST_REPETITIONS, Until};
 use super::{
-    Cell, CellJob, CellPoint, Definition, HalfFile, Keep, PointJob, Profile, Progress, Reference, render_reference,
+    Cell, CellJob, CellPoint, Definition, HalfFile, Keep, Options, PointJob, Progress, Reference, render_reference,
     wanted_references,
 };
 use crate::atomic_file;
@@ -31,37 +31,6 @@ use std::time::Instant;
 const OWN_FILES: [&str; 6] =
     ["records.csv", "machine.toml", "experiment.toml", "calibration.csv", MESSAGES, instructions::INSTRUCTIONS];
 
-/// Options of a sweep.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// The parent of the experiment's folder and of the references' folder.
-    pub out: PathBuf,
-    /// The size at which the experiment is run.
-    pub profile: Profile,
-    /// Whether to continue with the rows that the folder already has.
-    pub resume: bool,
-    /// Repetitions of each cell; `None` for the definition's number.
-    pub repetitions: Option<u32>,
-    /// Filters `field=value,value...`: a cell is run if it has one of the values of each filter.
-    pub filters: Vec<String>,
-    /// Another build of the program, which also runs each repetition of each cell.
-    pub against: Option<PathBuf>,
-    /// The part of the cells to run; `None` for all.
-    pub shard: Option<SweepShard>,
-    /// The figure that compares with serial runs. Filters then keep the serial runs, and there must be at least one.
-    pub serial_for: Option<&'static str>,
-    /// The goal at which repetitions stop; `None` for the definition's.
-    pub until: Option<Until>,
-    /// Whether cells with doubtful rows are run again.
-    pub rerun_doubtful: bool,
-    /// Whether the instructions of each cell are counted, too.
-    pub count_instructions: bool,
-    /// Folder in which cells look up and store the hierarchies of large scenes.
-    pub cache: Option<PathBuf>,
-    /// The command as the user gave it.
-    pub command: String,
-}
-
 /// The outcome of a sweep.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Summary {
@@ -71,12 +40,21 @@ pub struct Summary {
     pub rows: usize,
     /// Rows that failed, checksum mismatches included.
     pub failed: usize,
+    /// Failed rows whose cell was ended at its time limit.
+    pub timed_out: usize,
     /// Samples that were NaN, infinite or negative, over all rows.
     pub invalid: u64,
     /// Rows that were not run, because the machine lacks what they need.
     pub left_out: LeftOut,
     /// Rows whose times are in doubt.
     pub doubts: Doubts,
+}
+
+impl Summary {
+    pub(super) fn add_failure(&mut self, error: &str) {
+        self.failed += 1;
+        self.timed_out += usize::from(error.starts_with(TIMED_OUT));
+    }
 }
 
 /// An experiment that is ready to start: all user input has been checked, and no file has been made.
@@ -179,7 +157,7 @@ impl<'a> Sweep<'a> {
 
         let repetitions = self.repetitions()?;
         let rows = (file, done);
-        let mut running = Running::new(self, folder, references, against, rows, progress);
+        let mut running = Running::new(self, folder, references, against, rows, Limits::of(self)?, progress);
         let total: u64 = cells.iter().map(|cell| cell.weight * u64::from(cell.repetitions(repetitions))).sum();
         let without_limit = cells.iter().filter(|cell| cell.at_most.is_none()).count();
         let (mut units, begun, mut open) = (0, Instant::now(), without_limit);

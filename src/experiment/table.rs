@@ -1,8 +1,8 @@
 //! The tables of a definition that give values to axes: `[matrix]`, and a table for each profile.
 
-use super::Profile;
 use super::definition::REFERENCE_SPP;
 use super::until::{MOST_REPETITIONS, Until};
+use super::{Profile, Timeout};
 use crate::measure::{AXES, Axis, Field, Settings, available_threads};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{DeserializeSeed, Error as _, MapAccess, SeqAccess, Visitor};
@@ -29,6 +29,8 @@ pub(super) struct Table<const PROFILE: bool> {
     pub(super) at_most: Option<u32>,
     pub(super) until: Option<Until>,
     pub(super) reference_spp: Option<u32>,
+    /// The time limit of a profile's cells.
+    pub(super) timeout: Option<Timeout>,
 }
 
 /// The axes; cells are all combinations. An axis that is not named keeps its default.
@@ -39,6 +41,9 @@ pub(super) type Scale = Table<true>;
 
 /// The axes that a matrix cannot leave out.
 pub(super) const REQUIRED: &[&str] = &["scene", "spp", "strategy", "threads", "decomposition"];
+
+/// The field of a profile for the time limit of its cells.
+const TIMEOUT: &str = "timeout";
 
 /// Default size and repetitions of a profile: the fewest repetitions that allow an interval with 95 % confidence.
 const SIZE: &str = "320x240";
@@ -94,7 +99,7 @@ impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
         let others: &[&str] =
-            if PROFILE { &["repetitions", REFERENCE_SPP] } else { &["repetitions", "weak", "curve", "profiles"] };
+            if PROFILE { &["repetitions", REFERENCE_SPP, TIMEOUT] } else { &["repetitions", "weak", "curve", "profiles"] };
         let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
         if known.contains(&name.as_str()) {
             return Ok(Self(name));
@@ -181,6 +186,7 @@ impl<'de, const PROFILE: bool> Visitor<'de> for TableVisitor<PROFILE> {
                         table.until = Some(Until::parse(&until, within.as_deref()).map_err(M::Error::custom)?);
                     }
                 },
+                (None, TIMEOUT) => table.timeout = Some(map.next_value()?),
                 (None, _) => table.reference_spp = Some(map.next_value()?),
             }
         }

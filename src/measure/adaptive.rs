@@ -55,8 +55,8 @@ impl Setup {
         let before = Instant::now();
         let grid = self.sample_grid()?;
         let pilot_s = before.elapsed().as_secs_f64();
+        self.check_size(grid.plan_size(self.decomposition()))?;
         let plan = grid.plan(self.decomposition());
-        self.check_jobs(plan.len())?;
         let mut account = Account::new();
         let spec = &self.settings().spec;
         let films = account.round(self, plan, from_ref(&(0..grid.largest())), watch)?;

@@ -11,6 +11,7 @@ mod calibration;
 mod checkpoint;
 mod chrome_trace;
 mod column;
+mod cut;
 mod date;
 mod doubts;
 mod external;

@@ -48,8 +48,13 @@ impl Rounds {
     pub fn extend_to(&mut self, spp: u32, watch: Watch<'_>) -> Result<RoundTimes> {
         self.extend(spp, |Self { setup, shard, account, .. }, sections| {
             let plan = setup.plan_of(sections)?;
-            let plan = shard.map_or_else(|| plan.clone(), |shard| shard.part_of(&plan));
-            setup.check_jobs(plan.len())?;
+            let plan = match shard {
+                Some(shard) => {
+                    setup.check_size(shard.size_of_parts(&plan))?;
+                    shard.part_of(&plan)
+                }
+                None => plan,
+            };
             account.round(setup, plan, sections, watch)
         })
     }

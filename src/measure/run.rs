@@ -311,6 +311,10 @@ impl Account {
         if self.makespan_s < SHORTEST_S {
             warnings.push(Warning::TooShort);
         }
+        let unmeasured = if self.rounds == 0 { Vec::new() } else { Usage::missing(self.cpu.as_ref()) };
+        if !unmeasured.is_empty() {
+            warnings.push(Warning::Unmeasured(unmeasured));
+        }
         let capacity_s = self.makespan_s * available_threads() as f64;
         let percent = |seconds: Option<f64>| {
             let disturbs = |seconds: &f64| *seconds > FOREIGN_SHARE * capacity_s && *seconds > FOREIGN_LEAST_S;

@@ -1,7 +1,8 @@
 //! Settings that have been checked, and the run itself.
 
+use super::cut::cut;
 use super::output::{self, Delivery, OUTPUTS, Output};
-use super::settings::{LARGEST_THREADS, check_spp};
+use super::settings::check_spp;
 use super::tree_folder::TreeFolder;
 use super::{Settings, Warning, available_threads, pilot};
 use crate::digest;
@@ -14,8 +15,8 @@ use crate::lab::{Lab, THREAD_PER_ROW};
 use crate::scene::{SUBPIXELS, Scene};
 use crate::strategy::{self, Config, Strategy, StrategyError, Workers};
 use std::num::NonZeroUsize;
-use std::ops::Range;
 use std::path::PathBuf;
+use std::slice::from_ref;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
@@ -117,8 +118,8 @@ impl Setup {
             let problem = "cannot be combined with the subpixel clamp, which needs all samples of a pixel at once";
             return Err(InputError::new("decomposition", &settings.decomposition, problem).into());
         }
-        let plan = decomposition.plan(settings.spec.width, settings.spec.height, &(0..settings.spp));
-        check_jobs(plan.len(), &strategy, &settings.decomposition)?;
+        let size = [settings.spec.width, settings.spec.height];
+        let plan = cut(&decomposition, &strategy, size, from_ref(&(0..settings.spp)))?;
         let setup =
             Self { subject, built: OnceLock::new(), decomposition, plan, output, strategy, parameter, settings };
         setup.check_adaptive()?;
@@ -130,8 +131,7 @@ impl Setup {
         let mut settings = Settings { spp, ..self.settings.clone() };
         (settings.spec.seed, settings.spec.clamp, settings.adaptive) = (seed, None, false);
         check_spp(spp, &settings.spec.estimator, self.spp_multiple())?;
-        let plan = self.decomposition.plan(settings.spec.width, settings.spec.height, &(0..spp));
-        check_jobs(plan.len(), &self.strategy, &settings.decomposition)?;
+        let plan = self.plan_of(from_ref(&(0..spp)))?;
         let mut subject = self.subject.clone();
         if let Subject::Scene { choice, .. } = &mut subject {
             **choice = choice.as_ref().clone().pilot(seed);
@@ -288,22 +288,6 @@ impl Setup {
         self.plan.clone()
     }
 
-    /// The pieces of other samples: of each section in turn.
-    pub(super) fn plan_of(&self, sections: &[Range<u32>]) -> Result<Plan> {
-        let (width, height) = (self.settings.spec.width, self.settings.spec.height);
-        let mut plan = Plan::default();
-        for samples in sections {
-            plan.append(&self.decomposition.plan(width, height, samples));
-        }
-        self.check_jobs(plan.len())?;
-        Ok(plan)
-    }
-
-    /// Refuses more jobs than the strategy may start threads for.
-    pub(super) fn check_jobs(&self, jobs: usize) -> Result<()> {
-        check_jobs(jobs, &self.strategy, &self.settings.decomposition)
-    }
-
     /// The decomposition of the film.
     pub(super) fn decomposition(&self) -> &Decomposition {
         &self.decomposition
@@ -390,14 +374,4 @@ fn chosen(scene: &Scene, settings: &Settings, own: &[OwnEstimator]) -> Result<Bo
     let choice = kernel::choose_among(scene, &settings.spec, own)?;
     let Some(folder) = &settings.cache else { return Ok(Box::new(choice)) };
     Ok(Box::new(choice.with_trees(Arc::new(TreeFolder::new(folder)?))))
-}
-
-/// Refuses more jobs than a strategy with a thread for each may start.
-fn check_jobs(jobs: usize, strategy: &strategy::Entry, decomposition: &str) -> Result<()> {
-    if strategy.workers != Workers::PerJob || jobs <= LARGEST_THREADS {
-        return Ok(());
-    }
-    let problem = format!("makes {jobs} jobs, and {} starts a thread for each", strategy.name);
-    let allowed = format!("at most {LARGEST_THREADS} jobs");
-    Err(InputError::new("decomposition", decomposition, problem).allowed(allowed).into())
 }

@@ -1,4 +1,5 @@
-//! Resource usage of this process: CPU time and context switches (getrusage), peak memory (/proc).
+//! Resource usage of this process: CPU time and context switches (getrusage), peak memory and the load of other programs
+//! (/proc). Facts that the system does not report are missing, and the row says which (`unmeasured`).
 
 use nix::sys::resource::{Usage as Counted, UsageWho, getrusage};
 use nix::sys::time::TimeValLike;
@@ -33,8 +34,12 @@ fn processor_time(stat: &str) -> Option<ProcessorTime> {
     Some(ProcessorTime { busy_s: (user + nice + system + irq + softirq) * 1e-2, steal_s: steal * 1e-2 })
 }
 
-/// Peak memory of this program. getrusage's figure is not used: it survives exec and so includes the parent's.
-fn peak_rss_bytes() -> Option<i64> {
+/// Peak memory of this program. On Linux getrusage's figure is not used: it survives exec and so includes the parent's.
+/// Apple's systems have no /proc, and their figure is in bytes.
+fn peak_rss_bytes(counted: &Counted) -> Option<i64> {
+    if cfg!(target_vendor = "apple") {
+        return Some(counted.max_rss());
+    }
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<i64>().ok()? * 1024)
@@ -54,8 +59,18 @@ impl Usage {
             steal_s: machine.map(|machine| machine.steal_s),
             voluntary_switches: counted.voluntary_context_switches(),
             involuntary_switches: counted.involuntary_context_switches(),
-            peak_rss_bytes: peak_rss_bytes(),
+            peak_rss_bytes: peak_rss_bytes(&counted),
         })
+    }
+
+    /// The facts that the system did not report.
+    pub(super) fn missing(usage: Option<&Self>) -> Vec<&'static str> {
+        let facts = [
+            ("processor time", usage.is_some()),
+            ("load of other programs", usage.is_some_and(|usage| usage.foreign_s.is_some())),
+            ("peak memory", usage.is_some_and(|usage| usage.peak_rss_bytes.is_some())),
+        ];
+        facts.into_iter().filter(|(_, is_there)| !is_there).map(|(fact, _)| fact).collect()
     }
 
     /// The sum of two periods; the peak is the larger one.
@@ -94,5 +109,25 @@ mod tests {
         let time = processor_time("cpu  100 20 30 400 50 6 7 89 0 0\ncpu0 1 2 3\n").unwrap();
         assert!((time.busy_s - 1.63).abs() < 1e-12 && (time.steal_s - 0.89).abs() < 1e-12);
         assert!(processor_time("cpu 1 2 3").is_none() && processor_time("").is_none());
+    }
+
+    /// Where the system reports everything, a fact is missing only if it was taken away.
+    #[test]
+    fn missing_facts_are_named() {
+        let all = Usage {
+            user_s: 1.0,
+            system_s: 0.0,
+            voluntary_switches: 0,
+            involuntary_switches: 0,
+            peak_rss_bytes: Some(1),
+            foreign_s: Some(0.0),
+            steal_s: Some(0.0),
+        };
+        assert!(Usage::missing(Some(&all)).is_empty());
+        let without_load = Usage { foreign_s: None, ..all };
+        assert_eq!(Usage::missing(Some(&without_load)), ["load of other programs"]);
+        let without_peak = Usage { peak_rss_bytes: None, ..without_load };
+        assert_eq!(Usage::missing(Some(&without_peak)), ["load of other programs", "peak memory"]);
+        assert_eq!(Usage::missing(None), ["processor time", "load of other programs", "peak memory"]);
     }
 }

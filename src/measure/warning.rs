@@ -71,6 +71,8 @@ pub enum Warning {
     NoDevice,
     /// The system's clock shows no date from 1970 to 9999.
     NoDate,
+    /// The system does not report some facts, so their columns are empty and doubts that rest on them are not raised.
+    Unmeasured(Vec<&'static str>),
     /// The program was built without optimisation for measuring.
     DebugBuild,
 }
@@ -179,6 +181,11 @@ pub const WARNINGS: &[WarningEntry] = &[
         advice: "Set the clock; durations are measured with another clock and are correct.",
     },
     WarningEntry {
+        name: "unmeasured",
+        about: "The system does not report the facts in brackets: their columns are empty, and no row is in doubt because of them.",
+        advice: "Measure on Linux if you need them; without the load of other programs, make sure that there is none.",
+    },
+    WarningEntry {
         name: "debug-build",
         about: "The program was built without release optimisation.",
         advice: "Measure with `cargo run --release`.",
@@ -210,6 +217,7 @@ impl fmt::Display for Warning {
             Self::NoProgram => f.write_str("no-program"),
             Self::NoDevice => f.write_str("no-device"),
             Self::NoDate => f.write_str("no-date"),
+            Self::Unmeasured(facts) => write!(f, "unmeasured({})", facts.join(", ")),
             Self::DebugBuild => f.write_str("debug-build"),
         }
     }
@@ -240,6 +248,7 @@ mod tests {
             Warning::NoProgram,
             Warning::NoDevice,
             Warning::NoDate,
+            Warning::Unmeasured(vec!["peak memory"]),
             Warning::DebugBuild,
         ];
         for warning in &all {
@@ -262,6 +271,7 @@ mod tests {
                 | Warning::NoProgram
                 | Warning::NoDevice
                 | Warning::NoDate
+                | Warning::Unmeasured(_)
                 | Warning::DebugBuild => {}
             }
         }

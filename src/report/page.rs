@@ -340,12 +340,15 @@ fn broken(cell: &str, is_text: bool) -> Markup {
 
 fn provenance(section: &Section) -> Markup {
     let RunFile { command, program, profile, machine, .. } = &section.run;
-    let memory_gib = machine.memory_bytes as f64 / f64::from(1 << 30);
+    // The system may not report a number, which is then 0.
+    let or_unknown = |number: u64, told: String| if number == 0 { "unknown".to_string() } else { told };
+    let memory = format!("{:.1} GiB", machine.memory_bytes as f64 / f64::from(1 << 30));
+    let cores = or_unknown(machine.physical_cores as u64, machine.physical_cores.to_string());
     let facts = [
         ("processor", machine.cpu.clone()),
-        ("processors", format!("{} ({} physical cores)", machine.processors, machine.physical_cores)),
+        ("processors", format!("{} ({cores} physical cores)", machine.processors)),
         ("governor", machine.governor.clone()),
-        ("memory", format!("{memory_gib:.1} GiB")),
+        ("memory", or_unknown(machine.memory_bytes, memory)),
         ("system", machine.system.clone()),
         ("load when the sweep began", machine.load_average.clone()),
         ("compiler", format!("{}, profile {}, flags {}", machine.rustc, machine.profile, or_none(&machine.rustflags))),

@@ -70,6 +70,24 @@ const WRONG: &[(&[&str], &[&str])] = &[
     (&["--max-depth", "65536"], &["max-depth", "65536"]),
     (&["--max-depth=-1"], &["max-depth", "-1"]),
     (&["--colour", "red"], &["--colour"]),
+    // 2^42 jobs would fill any memory.
+    (
+        &["--size", "2048x2048", "--spp", "16777216", "--decomposition", "samples:16:1x1"],
+        &["decomposition", "samples:16:1x1", "4398046511104 jobs of 440 bytes", "at most 39045157", "larger tiles"],
+    ),
+    (
+        &["--size", "2048x2048", "--spp", "16777216", "--decomposition", "samples:16:1x1", "--shard", "1/2"],
+        &["decomposition", "4398046511104 jobs"],
+    ),
+    (
+        &["--size", "64x64", "--spp", "16777216", "--decomposition", "samples:16:1x1", "--adaptive"],
+        &["decomposition", "4294967296 jobs"],
+    ),
+    // Few jobs, but each with a buffer for many pixels.
+    (
+        &["--size", "8192x8192", "--spp", "1024", "--decomposition", "samples:16:8192x8192"],
+        &["decomposition", "64 jobs", "at most 4 such jobs"],
+    ),
     // A thread for each of 90 000 jobs would end the process on many systems.
     (
         &["--size", "300x300", "--strategy", "thread-per-job", "--decomposition", "tiles:1x1"],
@@ -102,6 +120,9 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
         (&["reference", "cornell", "--spp", "4", "--estimator", "magic"], &["estimator", "magic", "bsdf"]),
         (&["run", "cold-fusion"], &["experiment", "cold-fusion", "thread-scaling", ".toml"]),
         (&["run", "thread-scaling", "--repetitions", "0"], &["repetitions", "0"]),
+        (&["run", "thread-scaling", "--repetitions", "4294967295"], &["repetitions", "4294967295", "10000"]),
+        (&["run", "thread-scaling", "--timeout", "10"], &["timeout = 10", "10min, or none"]),
+        (&["reproduce", "--timeout", "-1s"], &["timeout = -1s", "above 0"]),
         (&["run", "thread-scaling", "--filter", "no-such-cell"], &["filter", "no-such-cell"]),
         (&["run", "thread-scaling", "--filter", "strategy=warp"], &["filter", "strategy=warp"]),
         (&["list", "planets"], &["planets", "scenes", "strategies"]),

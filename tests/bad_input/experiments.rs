@@ -61,7 +61,23 @@ const WRONG: &[(&str, &str, &[&str])] = &[
     ("size = [24, 16]", "size = [0, 16]", &["size", "0x16", "1x1 to"]),
     ("size = [24, 16]", "size = [1000000000, 1000000000]", &["size", "1000000000x1000000000", "1x1 to"]),
     ("size = [24, 16]", "size = [24]", &["size", "24"]),
-    ("repetitions = 3", "repetitions = 0", &["repetitions", "0", "1"]),
+    ("repetitions = 3", "repetitions = 0", &["repetitions", "0", "1 to 10000"]),
+    ("repetitions = 3", "repetitions = 4294967295", &["repetitions", "4294967295", "1 to 10000"]),
+    (
+        "repetitions = 3",
+        "repetitions = { until = \"3 %\", at-most = 4294967295 }",
+        &["repetitions", "4294967295", "1 to 10000"],
+    ),
+    ("title = \"Tiny\"", "title = \"Tiny\"\ntimeout = \"soon\"", &["timeout", "soon", "10min, or none"]),
+    ("title = \"Tiny\"", "title = \"Tiny\"\ntimeout = 60", &["timeout", "60", "string"]),
+    ("title = \"Tiny\"", "title = \"Tiny\"\ntimeout = \"0s\"", &["timeout", "0s", "above 0"]),
+    ("repetitions = 3", "repetitions = 3\ntimeout = \"-1s\"", &["timeout", "-1s", "above 0"]),
+    ("repetitions = 3", "repetitions = 3\ntimeout = \"60\"", &["timeout", "60", "with its unit"]),
+    (
+        "size = [24, 16]",
+        "size = [24, 16]\nspp = [16777216]\ndecomposition = [\"samples:16:1x1\"]",
+        &["decomposition", "samples:16:1x1", "402653184 jobs", "larger tiles"],
+    ),
     ("title = \"Tiny\"", "title = \"Tiny\"\nmood = \"good\"", &["mood", "title"]),
     ("title = \"Tiny\"", "title = Tiny", &["title"]),
 ];
@@ -90,6 +106,19 @@ fn each_wrong_experiment_is_refused_at_its_place() {
     // All cases run before any failure is reported, so that one run shows all of them.
     let failed: Vec<_> = failed.map(|(_, wrong, _)| wrong).collect();
     assert!(failed.is_empty(), "{failed:?}");
+}
+
+/// Combinations multiply: no list need be long.
+#[test]
+fn too_many_cells_are_refused() {
+    let numbers: Vec<String> = (1..=2001).map(|number| number.to_string()).collect();
+    let seeds = format!("seed = [{}]", numbers.join(", "));
+    assert!(check(TINY, "seed = [1]", &seeds, &[], &["seed", "2001 values", "12006 combinations", "at most 10000"]));
+    let other = "[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [4, 8, 12, 16, 20, 24]\n";
+    let command = "command = [\"other\", \"{spp}\", \"{seed}\", \"{out}\"]";
+    let base = TINY.replace("[quick]\n", &format!("{other}seed = [1]\n{command}\n\n[quick]\n"));
+    let base = base.replacen("seed = [1]", "seed = [0]", 1);
+    assert!(check(&base, "seed = [1]", &seeds, &[], &["seed", "2001 values", "at most 10000 cells"]));
 }
 
 /// A fault in one profile is not reported at the same field of the other.

@@ -36,6 +36,18 @@ fn a_damaged_trace_is_refused_with_its_line() {
     }
 }
 
+/// The settings in a trace are run to predict this machine. They are checked before anything is written.
+#[test]
+fn a_trace_that_asks_for_too_many_jobs_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    finish(pathmark(folder.path(), &RENDER)).with_code(0);
+    let path = folder.path().join("run.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let enormous = text.replace("\"spp\":4", "\"spp\":16777216").replace("tiles:8x8", "samples:16:1x1");
+    fs::write(&path, enormous).unwrap();
+    refused(folder.path(), &["simulate", "run.csv", "--out", "new"], 2, &["decomposition", "402653184 jobs"]);
+}
+
 #[test]
 fn options_that_make_no_sense_are_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -210,6 +210,24 @@ fn no_file_silences_a_lint() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
+/// Unsafe code stands only in the files that CONTRIBUTING.md names, and each of these has some.
+#[test]
+fn unsafe_code_stands_in_the_listed_files() {
+    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let (_, listed) = text.split_once("* **`unsafe`.**").unwrap();
+    let (listed, _) = listed.split_once("* **Tests.**").unwrap();
+    let names: Vec<&str> = listed.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs")).collect();
+    let allows = |file: &PathBuf| code(&fs::read_to_string(file).unwrap()).contains(concat!("unsafe", "_code"));
+    let (in_lanes, others): (Vec<_>, Vec<_>) = FOLDERS
+        .into_iter()
+        .flat_map(rust_files)
+        .filter(allows)
+        .partition(|file| file.starts_with(root().join("crates/pathmark-tracer/src/simd")));
+    let unlisted: Vec<_> = others.iter().filter(|file| !names.iter().any(|name| file.ends_with(name))).collect();
+    let without: Vec<_> = names.iter().filter(|name| !others.iter().any(|file| file.ends_with(name))).collect();
+    assert!(unlisted.is_empty() && without.is_empty() && !in_lanes.is_empty(), "{unlisted:?} {without:?}");
+}
+
 #[test]
 fn files_hold_one_idea() {
     let lines = |file: &PathBuf| fs::read_to_string(file).unwrap().lines().count();

@@ -132,6 +132,7 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
             shard: None,
             serial_for: None,
             until: None,
+            timeout: None,
             rerun_doubtful: false,
             count_instructions: false,
             cache: None,

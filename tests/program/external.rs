@@ -24,7 +24,7 @@ fn run(folder: &Path, external: &str) -> (Vec<BTreeMap<String, String>>, Finishe
     (rows.into_iter().filter(|row| row["estimator"] == "other").collect(), finished)
 }
 
-fn table(command: &str) -> String {
+pub(crate) fn table(command: &str) -> String {
     format!("[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [8]\nseed = [3, 4]\ncommand = [{command}]\n")
 }
 
@@ -153,7 +153,7 @@ fn a_command_without_a_place_for_the_seed_is_refused() {
 }
 
 /// Whether a process runs; an ended process that nobody has waited for does not.
-fn runs(process: &str) -> bool {
+pub(crate) fn runs(process: &str) -> bool {
     let status = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
     status.rsplit_once(") ").is_some_and(|(_, state)| !state.starts_with('Z'))
 }

@@ -29,6 +29,7 @@ mod scene_text;
 mod shared_seeds;
 #[path = "../support/snapshot.rs"]
 mod snapshot;
+mod time_limits;
 mod until;
 #[path = "../support/watchdog.rs"]
 mod watchdog;

@@ -16,6 +16,10 @@ const RENDER: [&str; 6] = ["render", "cornell", "--size", "16x12", "--spp", "4"]
 
 /// Runs `pathmark ARGUMENTS` under a limit of `prlimit`; `None` if there is no such program.
 fn limited(folder: &Path, limit: &str, arguments: &[impl AsRef<OsStr>]) -> Option<Finished> {
+    limited_command(folder, limit, arguments).map(finish)
+}
+
+fn limited_command(folder: &Path, limit: &str, arguments: &[impl AsRef<OsStr>]) -> Option<Command> {
     if Command::new("prlimit").arg("--version").output().is_err() {
         skip("there is no program prlimit");
         return None;
@@ -26,7 +30,7 @@ fn limited(folder: &Path, limit: &str, arguments: &[impl AsRef<OsStr>]) -> Optio
     command.args(["-c", "trap '' XFSZ; exec prlimit \"$@\"", "sh", limit]).arg(inner.get_program());
     command.args(inner.get_args()).current_dir(folder);
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    Some(finish(command))
+    Some(command)
 }
 
 /// The system limits the size of a file: real short writes, at several lengths.
@@ -187,6 +191,25 @@ fn too_little_memory_is_the_systems_fault() {
             watchdog.now(format!("{arguments:?} in {more} MiB more than nothing"));
             done_or_refused(folder.path(), least + (more << 20), arguments);
         }
+    }
+}
+
+/// Memory for 16 million jobs is refused, but there is enough for a backtrace, which overwrites the error number of the
+/// refusal.
+#[test]
+fn refused_memory_has_its_exit_code_also_with_a_backtrace() {
+    let _watchdog = Watchdog::new(Duration::from_mins(2));
+    let folder = tempfile::tempdir().unwrap();
+    let Some(least) = least(folder.path()) else { return };
+    let many = ["render", "cornell", "--size", "4096x4096", "--spp", "4", "--decomposition", "tiles:1x1", "-o", "a.pfm"];
+    // The order of the jobs takes 8 bytes a job. Their pieces, at 24 bytes a job, find less room than they need.
+    let limit = format!("--as={}", least + (30 << 24));
+    for backtrace in ["0", "1", "full"] {
+        let Some(mut command) = limited_command(folder.path(), &limit, &many) else { return };
+        command.env("RUST_BACKTRACE", backtrace);
+        let finished = finish(command).with_code(3);
+        assert!(finished.err.contains("the system refused memory"), "{backtrace}: {}", finished.err);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{backtrace}");
     }
 }
 

@@ -3,7 +3,7 @@
 //! A new decomposition needs a line in `DECOMPOSITIONS` and a function that parses its parameters.
 
 use super::order::ORDERS;
-use super::{Plan, SAMPLE_BLOCK, TileOrder};
+use super::{Plan, PlanSize, SAMPLE_BLOCK, TileOrder};
 use crate::error::{InputError, Result};
 use std::ops::Range;
 
@@ -153,6 +153,19 @@ impl Decomposition {
         self.cut.block
     }
 
+    /// The size of [`Self::plan`].
+    pub fn plan_size(&self, width: u32, height: u32, samples: &Range<u32>) -> PlanSize {
+        let parts = self.parts(samples);
+        let tiles = self.cut.columns.count(width) * self.cut.rows.count(height);
+        PlanSize { pieces: tiles * parts, pixels: u64::from(width) * u64::from(height) * parts }
+    }
+
+    /// The number of jobs among which these samples of a pixel are divided.
+    pub(super) fn parts(&self, samples: &Range<u32>) -> u64 {
+        let count = samples.end.saturating_sub(samples.start);
+        u64::from(self.cut.block.map_or(1, |block| count.div_ceil(block)))
+    }
+
     /// Cuts a film of `width` x `height` pixels with the samples in `samples`.
     pub fn plan(&self, width: u32, height: u32, samples: &Range<u32>) -> Plan {
         let (columns, rows) = (self.cut.columns.boundaries(width), self.cut.rows.boundaries(height));
@@ -163,6 +176,14 @@ impl Decomposition {
 }
 
 impl Parts {
+    /// The number of parts of a side.
+    fn count(self, length: u32) -> u64 {
+        u64::from(match self {
+            Self::Even(parts) => parts.min(length),
+            Self::Every(step) => length.div_ceil(step),
+        })
+    }
+
     /// The start of each part of a side, and the end of the last one.
     fn boundaries(self, length: u32) -> Vec<u32> {
         match self {
@@ -204,6 +225,21 @@ mod tests {
             plan.pieces().iter().map(|piece| (piece.bounds.x0, piece.samples.clone())).collect();
         let of_tile = |x0| [(x0, 0..32), (x0, 32..64), (x0, 64..80)];
         assert_eq!(parts, [of_tile(0), of_tile(8)].concat());
+    }
+
+    #[test]
+    fn the_size_of_a_plan_is_known_without_it() {
+        for text in ["rows", "bands:5", "bands:99", "grid:12", "tiles:8x3:spiral", "samples:16", "samples:32:5x7"] {
+            for (width, height, samples) in [(1, 1, 0..1), (16, 8, 0..80), (37, 11, 16..100), (8, 64, 0..64)] {
+                let cut = Decomposition::parse(text).unwrap();
+                let plan = cut.plan(width, height, &samples);
+                let pixels = plan.pieces().iter().map(|piece| piece.bounds.area() as u64).sum();
+                let expected = PlanSize { pieces: plan.len() as u64, pixels };
+                assert_eq!(cut.plan_size(width, height, &samples), expected, "{text}, {width}x{height}");
+            }
+        }
+        let enormous = Decomposition::parse("samples:16:1x1").unwrap();
+        assert_eq!(enormous.plan_size(2048, 2048, &(0..1 << 24)), PlanSize { pieces: 1 << 42, pixels: 1 << 42 });
     }
 
     #[test]

@@ -21,7 +21,7 @@ pub use growth::{GrowingFilm, Sections, sections};
 pub use image::Image;
 pub use noise::{FEWEST_PIXELS, Noise};
 pub use order::TileOrder;
-pub use plan::{Bounds, Piece, Plan};
+pub use plan::{Bounds, Piece, Plan, PlanSize};
 pub use sample_grid::SampleGrid;
 pub use shard::{Shard, ShardCut};
 pub use sum::{PixelSum, SAMPLE_BLOCK, SampleSum};

@@ -41,6 +41,23 @@ pub struct Piece {
     pub samples: Range<u32>,
 }
 
+/// The size of a plan, which is known before the plan is made: it may be too large for any memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct PlanSize {
+    /// Number of pieces.
+    pub pieces: u64,
+    /// Pixels of all pieces together. A pixel counts once for each piece that has samples of it.
+    pub pixels: u64,
+}
+
+impl PlanSize {
+    /// The size of two plans together.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self { pieces: self.pieces + other.pieces, pixels: self.pixels + other.pixels }
+    }
+}
+
 /// All pieces of a film, in the order in which they are handed out.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Plan {

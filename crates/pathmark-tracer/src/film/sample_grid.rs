@@ -1,7 +1,7 @@
 //! Sample counts that vary over the image: one per cell of a grid that is independent of the film's decomposition into
 //! jobs.
 
-use super::{Bounds, Decomposition, Film, Piece, Plan};
+use super::{Bounds, Decomposition, Film, Piece, Plan, PlanSize};
 
 /// Side of a cell, in pixels.
 const SIDE: u32 = 16;
@@ -69,26 +69,39 @@ impl SampleGrid {
             .sum()
     }
 
+    /// The size of [`Self::plan`].
+    pub fn plan_size(&self, decomposition: &Decomposition) -> PlanSize {
+        let whole = decomposition.plan(self.width, self.height, &(0..1));
+        let size = |Piece { bounds, samples }: Piece| {
+            let parts = decomposition.parts(&samples);
+            PlanSize { pieces: parts, pixels: parts * bounds.area() as u64 }
+        };
+        self.pieces(&whole).map(size).fold(PlanSize::default(), PlanSize::plus)
+    }
+
     /// Returns the decomposition's pieces, cut along cell boundaries, each with its cell's number of samples.
     pub fn plan(&self, decomposition: &Decomposition) -> Plan {
-        let columns = self.width.div_ceil(SIDE);
-        let mut pieces = Vec::new();
-        for piece in decomposition.plan(self.width, self.height, &(0..1)).pieces() {
-            let Bounds { x0, y0, x1, y1 } = piece.bounds;
-            for row in y0 / SIDE..y1.div_ceil(SIDE) {
-                for column in x0 / SIDE..x1.div_ceil(SIDE) {
-                    let (left, top) = (column * SIDE, row * SIDE);
-                    let bounds =
-                        Bounds { x0: x0.max(left), y0: y0.max(top), x1: x1.min(left + SIDE), y1: y1.min(top + SIDE) };
-                    pieces.push(Piece { bounds, samples: 0..self.counts[(row * columns + column) as usize] });
-                }
-            }
-        }
-        let plan = Plan::from_pieces(pieces);
+        let whole = decomposition.plan(self.width, self.height, &(0..1));
+        let plan = Plan::from_pieces(self.pieces(&whole).collect());
         match decomposition.sample_block() {
             Some(block) => plan.split_samples(block),
             None => plan,
         }
+    }
+
+    /// The pieces of a plan of whole pixels, cut along cell boundaries.
+    fn pieces<'a>(&'a self, whole: &'a Plan) -> impl Iterator<Item = Piece> + 'a {
+        let columns = self.width.div_ceil(SIDE);
+        whole.pieces().iter().flat_map(move |piece| {
+            let Bounds { x0, y0, x1, y1 } = piece.bounds;
+            let cells_of_row = move |row: u32| (x0 / SIDE..x1.div_ceil(SIDE)).map(move |column| (row, column));
+            (y0 / SIDE..y1.div_ceil(SIDE)).flat_map(cells_of_row).map(move |(row, column)| {
+                let (left, top) = (column * SIDE, row * SIDE);
+                let bounds =
+                    Bounds { x0: x0.max(left), y0: y0.max(top), x1: x1.min(left + SIDE), y1: y1.min(top + SIDE) };
+                Piece { bounds, samples: 0..self.counts[(row * columns + column) as usize] }
+            })
+        })
     }
 }
 
@@ -157,7 +170,11 @@ mod tests {
         let grid = SampleGrid::neyman(&pilot(50, 40, |x, _| f64::from(x)), 64, 8, 4);
         for text in ["rows", "bands:7", "grid:6", "tiles:32x32", "tiles:5x3:hilbert", "samples:16:24x24"] {
             let mut found = vec![0; 50 * 40];
-            for Piece { bounds, samples } in grid.plan(&Decomposition::parse(text).unwrap()).pieces() {
+            let cut = Decomposition::parse(text).unwrap();
+            let (plan, size) = (grid.plan(&cut), grid.plan_size(&cut));
+            let pixels: usize = plan.pieces().iter().map(|piece| piece.bounds.area()).sum();
+            assert_eq!(size, PlanSize { pieces: plan.len() as u64, pixels: pixels as u64 }, "{text}");
+            for Piece { bounds, samples } in plan.pieces() {
                 for y in bounds.y0..bounds.y1 {
                     (bounds.x0..bounds.x1).for_each(|x| found[(y * 50 + x) as usize] += samples.end - samples.start);
                 }

@@ -4,7 +4,7 @@
 //! ([`super::SAMPLE_BLOCK`]), so that its subtrees are subtrees of the whole sum. Cut by tiles, it has all samples of
 //! every n-th tile. In both cases the combined shards equal the image rendered at once, bit for bit.
 
-use super::{Bounds, Piece, Plan, SAMPLE_BLOCK};
+use super::{Bounds, Piece, Plan, PlanSize, SAMPLE_BLOCK};
 use crate::error::{InputError, Result};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -139,6 +139,19 @@ impl Shard {
         if self.cut == ShardCut::Samples { u64::from(width) * u64::from(height) } else { rows.sum() }
     }
 
+    /// The size of the parts of all shards together.
+    pub fn size_of_parts(&self, plan: &Plan) -> PlanSize {
+        let tiles = |from: u32, to: u32| u64::from(to.div_ceil(TILE) - from / TILE);
+        let size = |Piece { bounds, .. }: &Piece| {
+            let pieces = match self.cut {
+                ShardCut::Samples => 1,
+                ShardCut::Tiles => tiles(bounds.x0, bounds.x1) * tiles(bounds.y0, bounds.y1),
+            };
+            PlanSize { pieces, pixels: bounds.area() as u64 }
+        };
+        plan.pieces().iter().map(size).fold(PlanSize::default(), PlanSize::plus)
+    }
+
     /// The shard's part of a plan's pieces, in the same order.
     #[must_use]
     pub fn part_of(&self, plan: &Plan) -> Plan {
@@ -192,8 +205,9 @@ mod tests {
             for text in ["rows", "tiles:16x16", "tiles:48x40:hilbert", "samples:16:32x32", "grid:5"] {
                 let plan = Decomposition::parse(text).unwrap().plan(width, height, &(0..32));
                 for count in [1, 2, 3, 7] {
-                    let mut seen = vec![0; (width * height) as usize];
+                    let (mut seen, mut pieces) = (vec![0; (width * height) as usize], 0);
                     for shard in shards(count, ShardCut::Tiles) {
+                        pieces += shard.part_of(&plan).len();
                         let mut own = 0;
                         for piece in shard.part_of(&plan).pieces() {
                             let Bounds { x0, y0, x1, y1 } = piece.bounds;
@@ -206,6 +220,8 @@ mod tests {
                         assert_eq!(own, 32 * shard.pixels(width, height), "{text}, {shard}");
                     }
                     assert!(seen.iter().all(|samples| *samples == 32), "{text} among {count}");
+                    let size = Shard::new(1, count, ShardCut::Tiles).unwrap().size_of_parts(&plan);
+                    assert_eq!(size.pieces, pieces as u64, "{text} among {count}");
                 }
             }
         }
