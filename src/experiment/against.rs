@@ -14,7 +14,7 @@ use crate::measure::Record;
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// The folder of the other build's rows, inside the folder of results.

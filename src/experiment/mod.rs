@@ -67,7 +67,7 @@ pub use reference::{HalfFile, Reference, reference_seed, wanted_references};
 pub use run_file::{MACHINE, RunFile, read_run_file};
 pub use scene_version::SceneVersion;
 pub use sides::{Compared, FailedCell, Lost};
-pub use sweep::{Options, Summary, Sweep};
+pub use sweep::{Summary, Sweep};
 pub use sweep_shard::SweepShard;
 pub use time_limit::{TIMED_OUT, Timeout};
 pub use until::{Goal, MOST_REPETITIONS, Until};

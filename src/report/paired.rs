@@ -78,7 +78,8 @@ impl<'a> Partners<'a> {
 }
 
 fn alike(row: &Row, other: &Row) -> InputError {
-    let problem = format!("a figure cannot tell it from {}, with which it shares what rows are compared by", other.cell);
+    let problem =
+        format!("a figure cannot tell it from {}, with which it shares what rows are compared by", other.cell);
     InputError::new("cell", &row.cell, problem)
 }
 
@@ -123,10 +124,7 @@ impl Repeats {
     }
 
     /// A value of each row, by its own image, schedule and repetition.
-    pub(super) fn of_rows<'a>(
-        rows: impl IntoIterator<Item = &'a Row>,
-        value: impl Fn(&Row) -> Option<f64>,
-    ) -> Self {
+    pub(super) fn of_rows<'a>(rows: impl IntoIterator<Item = &'a Row>, value: impl Fn(&Row) -> Option<f64>) -> Self {
         Self(rows.into_iter().filter_map(|row| Some((row.key(|_, _| ()), value(row)?))).collect())
     }
 

@@ -118,7 +118,11 @@ impl Scene {
                 return error("a radius", sphere.radius, format!("f64, or radii from {finest:e}"));
             }
             if sphere.reach() > LONGEST * size {
-                return error("a sphere up to a distance", sphere.reach(), format!("f64, or up to {:e}", LONGEST * size));
+                return error(
+                    "a sphere up to a distance",
+                    sphere.reach(),
+                    format!("f64, or up to {:e}", LONGEST * size),
+                );
             }
         }
         for plane in &self.primitives.planes {

@@ -129,9 +129,12 @@ impl Scene {
         without(spheres, |index| hidden_spheres.contains_key(&index));
         without(planes, |index| hidden_planes.contains_key(&index));
         let whole = std::mem::take(triangles);
-        triangles.extend(whole.into_iter().enumerate().flat_map(|(index, triangle)| {
-            rests.remove(&index).unwrap_or_else(|| vec![triangle])
-        }));
+        triangles.extend(
+            whole
+                .into_iter()
+                .enumerate()
+                .flat_map(|(index, triangle)| rests.remove(&index).unwrap_or_else(|| vec![triangle])),
+        );
     }
 
     /// Adds a remark for each pair of objects, of which the first one hides the second one.
