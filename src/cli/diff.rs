@@ -5,7 +5,8 @@ use super::progress::Talk;
 use super::run::talk_of;
 use crate::error::{Error, Result, printable};
 use crate::experiment::{
-    Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, Lost, Progress as _, count_diff, diff, parse_share,
+    Across, CellDiff, Change, Compared, CountDiff, CountDiffs, Diff, FailedCell, Lost, Progress as _, count_diff, diff,
+    parse_share,
 };
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
@@ -136,16 +137,17 @@ fn losses<T>(found: &Compared<T>, lost: impl Fn(&T) -> &Lost, talk: &Talk) -> Ve
     for name in only_new {
         talk.note(&format!("experiment {}: only the new measurement has it", printable(name)));
     }
-    let all = || found.experiments.iter().map(|(_, of)| lost(of));
-    let missing: Vec<String> = all().flat_map(|lost| &lost.missing).map(|cell| printable(cell).into_owned()).collect();
-    let with_error = all().flat_map(|lost| &lost.failed).map(|cell| {
-        format!(
-            "{} ({} of {}: {})",
-            printable(&cell.cell),
-            cell.failed,
-            counted(cell.rows, "row"),
-            printable(&cell.error)
-        )
+    let place = |name: &str, cell: &str| {
+        let of = if name.is_empty() { String::new() } else { format!("{} ", printable(name)) };
+        format!("{of}{}", printable(cell))
+    };
+    let all = || found.experiments.iter().map(|(name, of)| (name, lost(of)));
+    let missing: Vec<String> =
+        all().flat_map(|(name, lost)| lost.missing.iter().map(|cell| place(name, cell))).collect();
+    let with_error = all().flat_map(|(name, lost)| {
+        lost.failed.iter().map(|FailedCell { cell, failed, rows, error }| {
+            format!("{} ({failed} of {}: {})", place(name, cell), counted(*rows, "row"), printable(error))
+        })
     });
     let told = |names: Vec<String>, thing: &str, lack: &str| {
         let rest = names.len().saturating_sub(MOST_TOLD);

@@ -13,12 +13,13 @@ const FIRST: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
 /// Refuses the names of an experiment, its scenes and its other programs if a spreadsheet takes them for formulas.
 pub(super) fn check_names(definition: &Definition, cells: &[Cell]) -> Result<()> {
-    let check = |field: &str, name: &str, value: &str| {
+    let check = |field: &str, name: &str, value: &str| -> Result<()> {
         if !name.starts_with(FIRST) {
             return Ok(());
         }
         let problem = "gives rows a name that a spreadsheet takes for a formula";
-        Err(InputError::new(field, value, problem).allowed("names that do not begin with =, +, -, @ or a tab"))
+        let allowed = "names that do not begin with =, +, -, @ or a tab";
+        Err(InputError::new(field, value, problem).allowed(allowed).into())
     };
     check("experiment", &definition.name, &definition.file)?;
     for cell in cells {

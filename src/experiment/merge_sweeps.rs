@@ -34,7 +34,7 @@ impl Part {
     /// The rows that it still lacks, in words; `None` if it is finished.
     fn lack(&self) -> Option<String> {
         let (have, want) = (self.rows.len() as u64, self.run.rows.unwrap_or(1));
-        (have < want).then(|| format!("{}: {have} of at least {want} rows in {}", self.shard, self.folder.display()))
+        (want > have).then(|| format!("{}: {have} of at least {want} rows in {}", self.shard, self.folder.display()))
     }
 
     /// Its rows, numbered as rows of the merged sweep.

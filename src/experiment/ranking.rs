@@ -236,7 +236,9 @@ fn placed(schedules: &Schedules, miss: f64, level: f64, stopping: Stopping) -> V
     let times: Vec<Times> = compared.iter().map(|(_, times)| (*times).clone()).collect();
     let mut groups_of = vec![Vec::new(); compared.len() + shown.len()];
     for (number, set) in groups(times.len(), &orders(&times, miss, stopping)).into_iter().enumerate() {
-        set.into_iter().for_each(|member| groups_of[member].push(number));
+        for member in set {
+            groups_of[member].push(number);
+        }
     }
     let place = |(at, (schedule, own)): (usize, &(&String, &Times))| {
         let ratios: Vec<f64> = own.iter().filter_map(|(at, seconds)| Some(seconds / first.get(at)?)).collect();

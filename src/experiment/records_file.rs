@@ -124,7 +124,9 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
             };
             broken(column.unwrap_or("row"), &e)
         })?;
-        check_times(&record, &row, &columns).map_err(|error| error.in_file(&file, line))?;
+        if let Some(error) = impossible_time(&record, &row, &columns) {
+            return Err(error.in_file(&file, line).into());
+        }
         if !seen.insert((record.cell.clone(), record.repetition)) {
             let problem = format!("occurs twice for repetition {}", record.repetition);
             return Err(InputError::new("cell", &record.cell, problem).in_file(&file, line).into());
@@ -137,22 +139,20 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
 /// Columns of seconds that are differences of others, so that rounding may leave them below 0.
 const DIFFERENCES: [&str; 3] = ["gap_sum_s", "tail_sum_s", "foreign_cpu_s"];
 
-/// Refuses times that no clock shows. If they counted as absent, a comparison would miss their cells.
-fn check_times(record: &Record, row: &StringRecord, columns: &StringRecord) -> std::result::Result<(), InputError> {
+/// The first time of a row that no clock shows. If it counted as absent, a comparison would miss its cell.
+fn impossible_time(record: &Record, row: &StringRecord, columns: &StringRecord) -> Option<InputError> {
     let is_possible = |name: &str, seconds: f64| match name {
+        _ if !seconds.is_finite() => false,
         "makespan_s" => seconds > 0.0,
         name => seconds >= 0.0 || DIFFERENCES.contains(&name),
     };
     let in_seconds = |name: &str| COLUMNS.iter().any(|column| column.name == name && column.unit() == Some("seconds"));
-    for (name, value) in columns.iter().zip(row).filter(|_| record.error.is_empty()) {
-        // Values that are no numbers were refused before.
-        let seconds = value.parse().ok().filter(|_| in_seconds(name));
-        if seconds.is_some_and(|seconds: f64| !seconds.is_finite() || !is_possible(name, seconds)) {
-            let allowed = if name == "makespan_s" { "a finite number above 0" } else { "a finite number from 0" };
-            return Err(InputError::new(name, value, "is not a possible time").allowed(allowed));
-        }
-    }
-    Ok(())
+    let fields = columns.iter().zip(row).filter(|(name, _)| record.error.is_empty() && in_seconds(name));
+    // Values that are no numbers were refused before.
+    let mut times = fields.filter_map(|(name, value)| Some((name, value, value.parse().ok()?)));
+    let (name, value, _) = times.find(|(name, _, seconds)| !is_possible(name, *seconds))?;
+    let allowed = if name == "makespan_s" { "a finite number above 0" } else { "a finite number from 0" };
+    Some(InputError::new(name, value, "is not a possible time").allowed(allowed))
 }
 
 impl RecordsFile {

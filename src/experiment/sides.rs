@@ -22,7 +22,7 @@ pub(super) struct Side {
     pub(super) instructions: BTreeMap<String, u64>,
 }
 
-/// What two measurements have in common, experiment by experiment.
+/// The results of a comparison of two measurements, experiment by experiment.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Compared<T> {
     /// Name and comparison of each experiment that both have. The name is empty if two experiments were given, and not
@@ -229,7 +229,8 @@ pub(super) fn sides(old: &Path, new: &Path, across_machines: bool) -> Result<Com
 
 /// Refuses cells whose images have other bits in both measurements: more time for another image does not mean slower.
 pub(super) fn check_images([before, after]: &[Side; 2]) -> Result<()> {
-    let has_image = |row: &&Record| !row.checksum.is_empty();
+    // A row whose checksum differs from those of its own sweep has failed, and its cell is lost.
+    let has_image = |row: &&Record| !row.checksum.is_empty() && row.error.is_empty();
     let old: BTreeMap<&str, &str> =
         before.rows.iter().filter(has_image).map(|row| (row.cell.as_str(), row.checksum.as_str())).collect();
     let is_other = |row: &&Record| old.get(row.cell.as_str()).is_some_and(|checksum| *checksum != row.checksum);

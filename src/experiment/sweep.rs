@@ -70,7 +70,7 @@ impl<'a> Sweep<'a> {
     /// Checks an experiment and adds its files to `files`, the files of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
         let cells = filtered(&definition.cells(options.profile)?, options)?;
-        let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
+        let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(&cells))?;
         if options.say_how_often() {
             for cell in &mut cells {
                 cell.at_most = None;

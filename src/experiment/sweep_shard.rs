@@ -31,7 +31,7 @@ impl SweepShard {
     }
 
     /// The cells of this part: every n-th, and the serial runs that they are compared with.
-    pub(super) fn cells(self, cells: Vec<Cell>) -> Result<Vec<Cell>> {
+    pub(super) fn cells(self, cells: &[Cell]) -> Result<Vec<Cell>> {
         let own = |index: usize| index % self.count as usize == self.index as usize - 1;
         let (serial, others): (Vec<Cell>, Vec<Cell>) = cells.iter().cloned().partition(Cell::is_serial);
         // If all cells are serial, they are compared with nothing and are divided themselves.

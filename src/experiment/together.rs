@@ -34,7 +34,7 @@ impl Joined {
             below.push(root);
             root = *parent;
         }
-        below.into_iter().for_each(|own| _ = self.parents.insert(own, root));
+        self.parents.extend(below.into_iter().map(|own| (own, root)));
         root
     }
 
@@ -59,7 +59,9 @@ pub(super) fn parts(schedules: &Schedules) -> Vec<Schedules> {
     let is_alone = |own: &&Timed| own.is_serial && !own.times.keys().any(|repetition| joined.has(*repetition));
     // Serial schedules that were measured with no other are compared with each other.
     let alone: Vec<&Timed> = schedules.values().filter(is_alone).collect();
-    alone.into_iter().for_each(|own| joined.join(&own.times));
+    for own in alone {
+        joined.join(&own.times);
+    }
     let mut parts: BTreeMap<u32, Schedules> = BTreeMap::new();
     let mut first = HashMap::new();
     for (name, own) in schedules {

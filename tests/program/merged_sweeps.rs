@@ -149,7 +149,7 @@ fn a_goal_of_one_part_is_a_goal_of_the_sweep() {
 
 /// A part without rows, or with fewer than its sweep has when it is finished, is missing.
 #[test]
-fn a_part_that_is_not_finished_is_missing() {
+fn an_unfinished_part_of_a_sweep_is_missing() {
     let folder = tempfile::tempdir().unwrap();
     two_parts(folder.path());
     let records = folder.path().join("b/tiny/records.csv");
@@ -180,16 +180,18 @@ fn a_part_that_is_not_finished_is_missing() {
     assert!(!folder.path().join("merged").exists());
 }
 
+type Damage = fn(&str) -> String;
+
 /// After a refusal nothing is in the way of another attempt with mended parts.
 #[test]
 fn a_refused_merge_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     two_parts(folder.path());
-    let damages: [(&str, &dyn Fn(&str) -> String, &str); 4] = [
-        ("b/tiny/records.csv", &|text| text.replacen("\n9,", "\nx,", 1), "records.csv:2:"),
-        ("b/tiny/records.csv", &|text| text[..text.len() - 5].to_string(), "half written"),
-        ("a/tiny/experiment.toml", &|text| text.replace("[matrix]", "[matr"), "experiment.toml"),
-        ("b/tiny/records.csv", &renumbered, "repetition = 4294967295"),
+    let damages: [(&str, Damage, &str); 4] = [
+        ("b/tiny/records.csv", |text| text.replacen("\n9,", "\nx,", 1), "records.csv:2:"),
+        ("b/tiny/records.csv", |text| text[..text.len() - 5].to_string(), "half written"),
+        ("a/tiny/experiment.toml", |text| text.replace("[matrix]", "[matr"), "experiment.toml"),
+        ("b/tiny/records.csv", renumbered, "repetition = 4294967295"),
     ];
     for (file, damage, said) in damages {
         let path = folder.path().join(file);

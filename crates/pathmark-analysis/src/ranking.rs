@@ -146,7 +146,9 @@ fn without_superfluous(things: usize, mut sets: Vec<BTreeSet<usize>>) -> Vec<BTr
     for at in (0..sets.len()).rev() {
         let own = pairs(&sets[at]);
         if own.iter().all(|pair| times_shared[*pair] > 1) {
-            own.iter().for_each(|pair| times_shared[*pair] -= 1);
+            for pair in own {
+                times_shared[pair] -= 1;
+            }
             sets.remove(at);
         }
     }
