@@ -2,4 +2,9 @@
 //! otherwise.
 
 mod equilibrium;
+mod extremes;
 mod rays;
+mod scales;
+
+#[path = "../../../../tests/support/watchdog.rs"]
+mod watchdog;
