@@ -78,8 +78,15 @@ pub struct RaySearch {
 
 enum Way {
     /// `unit` is the length of the lanes' rays in those of the scene.
-    Lanes { lanes: Box<Lanes>, rays: Numbers, unit: f64 },
-    Scalar { scene: Arc<Scene>, rays: Vec<Start> },
+    Lanes {
+        lanes: Box<Lanes>,
+        rays: Numbers,
+        unit: f64,
+    },
+    Scalar {
+        scene: Arc<Scene>,
+        rays: Vec<Start>,
+    },
 }
 
 impl RaySearch {

@@ -1,6 +1,7 @@
 //! Tests of whole paths. They are in this crate because all its code is optimised in every build; estimators are slow
 //! otherwise.
 
+mod coincident;
 mod equilibrium;
 mod extremes;
 mod rays;

@@ -8,13 +8,7 @@ use std::sync::Arc;
 const SIZE: u32 = 16;
 
 fn spec(precision: &str, estimator: &str) -> Spec {
-    Spec {
-        width: SIZE,
-        height: SIZE,
-        estimator: estimator.into(),
-        precision: precision.into(),
-        ..Spec::default()
-    }
+    Spec { width: SIZE, height: SIZE, estimator: estimator.into(), precision: precision.into(), ..Spec::default() }
 }
 
 fn image(scene: &Arc<Scene>, spec: &Spec, spp: u32) -> TileBuffer {

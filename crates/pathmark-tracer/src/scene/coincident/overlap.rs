@@ -59,7 +59,8 @@ impl Flat {
                 }
             });
         };
-        let each = |object: &Self| (object.first..object.end).map(|k| Self::of(triangles, k, k + 1)).collect::<Vec<_>>();
+        let each =
+            |object: &Self| (object.first..object.end).map(|k| Self::of(triangles, k, k + 1)).collect::<Vec<_>>();
         for object in &mut objects {
             *object = Self::of(triangles, object.first, object.end);
             if is_light(owners[object.first]) {
