@@ -92,6 +92,28 @@ fn have_the_scalar_kernels_bits(device: &str) {
     assert!(scenes >= 30 && compared > 230 && in_single > 80, "{compared} comparisons, {in_single}, {scenes} scenes");
 }
 
+/// Rays that start outside the box of their own sphere after rounding, in a hierarchy, and scenes that single precision
+/// renders in another unit of length.
+#[test]
+fn extreme_scenes_have_the_same_bits() {
+    let text = "about = 'a small ball in a mirror'\nbackground = [0.4, 0.5, 0.6]\n[camera.pinhole]\n\
+                position = [0.0, 0.3, 4.0]\nlook-at = [0.0, 0.0, 0.0]\nfield-of-view = 170.0\n[[objects]]\nname = 'ball'\n\
+                shape = { sphere = { center = [1.0, -1.0, -3.0], radius = 1e-3 } }\n\
+                material = { diffuse = { albedo = [0.5, 0.5, 0.5] } }\nemission = [1.0, 1.0, 1.0]\n[[objects]]\n\
+                name = 'mirror'\nshape = { sphere = { center = [0.0, 0.0, 0.0], radius = 1e15 } }\n\
+                material = { mirror = { albedo = [0.8, 0.8, 0.8] } }\n";
+    let mirror = Arc::new(Scene::from_toml(text).unwrap());
+    let spec = Spec { width: 64, height: 48, seed: 5, estimator: "bsdf".into(), ..Spec::default() };
+    let spec = Spec { accelerator: Some("median".into()), max_depth: Some(12), ..spec };
+    let piece = Piece { bounds: Bounds { x0: 29, y0: 21, x1: 39, y1: 33 }, samples: 0..64 };
+    let far = Arc::new(load("cornell").unwrap().scaled((1_u64 << 60) as f64));
+    let single = Spec { precision: "f32".into(), accelerator: None, max_depth: None, ..spec.clone() };
+    for device in devices() {
+        assert!(is_same(&mirror, &spec, &device, from_ref(&piece)), "{device}");
+        assert!(is_same(&far, &single, &device, &[Piece { samples: 0..4, ..piece.clone() }]), "{device}");
+    }
+}
+
 /// Several camera rays, on a scene with a sky, on one with a lens and on one whose glass splits paths.
 #[test]
 fn camera_rays_are_those_of_the_scalar_kernel() {

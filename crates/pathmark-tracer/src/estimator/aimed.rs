@@ -79,7 +79,7 @@ pub(super) fn aimed_at_surface<X: EffectSet, P: Probe>(
     let wi = frame.to_local(aim.direction);
     let material = &scene.objects[hit.object as usize].material;
     let scattered = material.eval::<X>(wo, wi) * wi.z.abs();
-    if scattered.is_black() {
+    if !scattered.has_light() {
         return None;
     }
     let from = Some(Standpoint { primitive: hit.primitive, inside: (wi.z < 0.0) != hit.inside });

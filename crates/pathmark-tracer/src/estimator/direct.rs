@@ -80,7 +80,7 @@ pub(super) fn light_at_surface<X: EffectSet, P: Probe>(
         let Some(way) = Way::to::<X, P>(light, hit.point, probe) else { continue };
         let wi = frame.to_local(way.direction);
         let scattered = material.eval::<X>(wo, wi) * wi.z.abs();
-        if scattered.is_black() {
+        if !scattered.has_light() {
             continue;
         }
         let from = Some(Standpoint { primitive: hit.primitive, inside: (wi.z < 0.0) != hit.inside });

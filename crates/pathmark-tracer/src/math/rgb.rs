@@ -38,6 +38,12 @@ impl Rgb {
         self.r == 0.0 && self.g == 0.0 && self.b == 0.0
     }
 
+    /// Whether any channel is above zero; false if all are NaN.
+    #[inline(always)]
+    pub fn has_light(self) -> bool {
+        self.r > 0.0 || self.g > 0.0 || self.b > 0.0
+    }
+
     /// Whether every channel is a finite radiance, zero or more.
     #[inline(always)]
     pub fn is_valid_radiance(self) -> bool {

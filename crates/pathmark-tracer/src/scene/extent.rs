@@ -15,12 +15,15 @@ const BESIDE: f64 = 16.0;
 /// Scenes of sizes from 2^-20 to 2^20 are not scaled for single precision.
 const USUAL: i32 = 20;
 
-/// Limits of single precision, in sizes of the scene. Up to the first, a sphere is large enough (or far enough away)
-/// for its numbers and their squares; beyond the second, rounding moves a hit of a triangle or a plane by a part of the
-/// scene's size.
+/// The farthest point of a sphere and the distance of a plane, in sizes of the scene, up to which no square overflows
+/// in single precision.
 const LONGEST: f64 = (1_u64 << 40) as f64;
+/// The distance of corners, and of points by which planes are given, in sizes of the scene. Beyond it rounding in
+/// single precision moves near hits by a sixteenth of the scene's size.
 const WIDEST: f64 = (1 << 20) as f64;
-/// The smallest radius, in sizes of the scene or distances from the origin: rounding moves rays by a 2^-22 of these.
+/// The smallest radius of a sphere that is not large, in sizes of the scene or distances of its centre from the origin.
+/// Rounding in single precision moves rays by up to 2^-22 of these lengths, so a smaller sphere seems larger or
+/// smaller: by a thousandth of its area at this radius, and by half of it at a hundredth of this radius.
 const FINEST: f64 = 1.0 / (1 << 17) as f64;
 
 /// The length of a vector. If squares underflow, it is the largest coordinate.
@@ -70,7 +73,7 @@ impl Scene {
     }
 
     /// Returns the scale of a scene: the camera's distance from the origin, or the smallest reach of an object, if that
-    /// is larger.
+    /// is larger. If there are only planes, the nearest one counts.
     pub fn size(&self) -> f64 {
         let camera = length(self.camera.position);
         let spheres = self.primitives.spheres.iter().map(Sphere::reach);

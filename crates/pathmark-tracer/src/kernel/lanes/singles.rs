@@ -39,12 +39,12 @@ impl Singles {
         for ((sphere, is_large), number) in scene.primitives.spheres.iter().zip(scene.large_spheres()).zip(0_u32..) {
             let is_enclosing = enclosing_all.contains(&number);
             let number = number as f32;
-            if !is_large {
-                centred.push((number, single(sphere.center), sphere.radius as f32));
-            } else {
+            if is_large {
                 let Curved { normal, curvature, offset } = Curved::of(sphere.center, sphere.radius);
                 let sphere = Curved { normal: single(normal), curvature: curvature as f32, offset: offset as f32 };
                 if is_enclosing { &mut enclosing } else { &mut curved }.push((number, sphere));
+            } else {
+                centred.push((number, single(sphere.center), sphere.radius as f32));
             }
         }
         Self { enclosing, curved, centred }

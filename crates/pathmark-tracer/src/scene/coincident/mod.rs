@@ -91,8 +91,12 @@ impl Scene {
         let hidden_planes = hidden_planes(planes);
         let mut pairs: Vec<(u32, u32)> = Vec::new();
         let mut hides = |hidden: usize, hider: usize| pairs.push((self.owners[hider], self.owners[hidden]));
-        hidden_spheres.iter().for_each(|(hidden, hider)| hides(*hidden, *hider));
-        hidden_planes.iter().for_each(|(hidden, hider)| hides(first_plane + hidden, first_plane + hider));
+        for (hidden, hider) in &hidden_spheres {
+            hides(*hidden, *hider);
+        }
+        for (hidden, hider) in &hidden_planes {
+            hides(first_plane + hidden, first_plane + hider);
+        }
         // The rest of each triangle that is hidden in part or as a whole.
         let mut rests: BTreeMap<usize, Vec<Triangle>> = BTreeMap::new();
         for (index, triangle) in triangles.iter().enumerate() {

@@ -32,6 +32,7 @@ FN rgb mixed(rgb a, rgb b) { return rgb_of(a.r + b.r, a.g + b.g, a.b + b.b); }
 FN rgb filtered(rgb a, rgb b) { return rgb_of(a.r * b.r, a.g * b.g, a.b * b.b); }
 FN rgb dimmed(rgb a, real s) { return rgb_of(a.r * s, a.g * s, a.b * s); }
 FN int is_black(rgb c) { return c.r == 0.0 && c.g == 0.0 && c.b == 0.0; }
+FN int has_light(rgb c) { return c.r > 0.0 || c.g > 0.0 || c.b > 0.0; }
 FN rgb rgb_at(GLOBAL const stored *p) { return rgb_of((real)p[0], (real)p[1], (real)p[2]); }
 FN real max_channel(rgb c) { return larger(larger(c.r, c.g), c.b); }
 FN real largest_channel(rgb c) {

@@ -41,7 +41,7 @@ FN rgb point_light(const walk *w, const surface *of, const surface_hit *hit, con
         way.direction = times(towards, 1.0 / far);
         vec wi = to_local(around, way.direction);
         rgb share = scattered_light(of, wo, wi);
-        if (is_black(share)) continue;
+        if (!has_light(share)) continue;
         standpoint from = leaving(hit, wi, way.direction);
         e->rays += 1;
         if (first_hit(s, way, from, far * HIDING, &e->tested).primitive != NOTHING) continue;
@@ -90,7 +90,7 @@ FN rgb aimed_light(const walk *w, const part *p, const surface *of, const surfac
     if (!at.found) return grey(0.0);
     vec wi = to_local(around, at.direction);
     rgb share = scattered_light(of, wo, wi);
-    if (is_black(share)) return grey(0.0);
+    if (!has_light(share)) return grey(0.0);
     from = leaving(hit, wi, at.direction);
     way.origin = hit->point;
     way.direction = at.direction;
