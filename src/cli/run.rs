@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let summary = sweep.run(talk)?;
     let page = report::write(lab, &arguments.out);
     // Failed rows are reported before a page that could not be written.
-    check_failures(summary.rows, summary.failed, summary.timed_out)?;
+    check_failures(summary.rows + summary.other_rows, summary.failed, summary.timed_out)?;
     arguments.strict.check(summary.invalid)?;
     talk_of(&summary.doubts, talk);
     if arguments.against.is_some() {

@@ -14,7 +14,10 @@ const KEYS: &[(&str, &str)] = &[
     ("in-short", "number of the finding to list at the beginning of the page"),
     ("keep", "files to keep beside the rows: images, traces, calibration, messages"),
     ("unverified", "true: allows samplers that draw different random numbers in each run, so images have no checksum"),
-    ("timeout", "time limit of each cell's process, as in \"10min\", or \"none\" [default: ten times its estimate, at least a minute]"),
+    (
+        "timeout",
+        "time limit of each cell's process, as in \"10min\", or \"none\" [default: ten times its estimate, at least a minute]",
+    ),
     ("requires", "optional features that the build must have: openmp"),
     ("matrix", "a table of axes, or several under [[matrix]]; cells are all combinations [required]"),
     ("matrix.weak", "true: weak scaling, spp is multiplied by the number of workers"),

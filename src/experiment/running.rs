@@ -52,6 +52,7 @@ impl<'a> Running<'a> {
         let summary = Summary {
             folder: folder.clone(),
             rows: done.len(),
+            other_rows: 0,
             failed: 0,
             timed_out: 0,
             invalid: done.iter().filter_map(|record| record.invalid_samples).sum(),
@@ -119,6 +120,7 @@ impl<'a> Running<'a> {
         if !other_first {
             run_against()?;
         }
+        self.summary.other_rows += others.len();
         for other in others {
             if !other.error.is_empty() {
                 self.summary.add_failure(&other.error);

@@ -98,8 +98,11 @@ struct Key<const PROFILE: bool>(String);
 impl<'de, const PROFILE: bool> Deserialize<'de> for Key<PROFILE> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let name = String::deserialize(deserializer)?;
-        let others: &[&str] =
-            if PROFILE { &["repetitions", REFERENCE_SPP, TIMEOUT] } else { &["repetitions", "weak", "curve", "profiles"] };
+        let others: &[&str] = if PROFILE {
+            &["repetitions", REFERENCE_SPP, TIMEOUT]
+        } else {
+            &["repetitions", "weak", "curve", "profiles"]
+        };
         let known: Vec<&str> = AXES.iter().map(|axis| axis.name).chain(others.iter().copied()).collect();
         if known.contains(&name.as_str()) {
             return Ok(Self(name));

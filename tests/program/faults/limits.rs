@@ -201,7 +201,8 @@ fn refused_memory_has_its_exit_code_also_with_a_backtrace() {
     let _watchdog = Watchdog::new(Duration::from_mins(2));
     let folder = tempfile::tempdir().unwrap();
     let Some(least) = least(folder.path()) else { return };
-    let many = ["render", "cornell", "--size", "4096x4096", "--spp", "4", "--decomposition", "tiles:1x1", "-o", "a.pfm"];
+    let many =
+        ["render", "cornell", "--size", "4096x4096", "--spp", "4", "--decomposition", "tiles:1x1", "-o", "a.pfm"];
     // The order of the jobs takes 8 bytes a job. Their pieces, at 24 bytes a job, find less room than they need.
     let limit = format!("--as={}", least + (30 << 24));
     for backtrace in ["0", "1", "full"] {
