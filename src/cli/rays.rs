@@ -6,11 +6,13 @@ use super::progress::Talk;
 use crate::analysis::quantile::{median, median_interval};
 use crate::atomic_file;
 use crate::error::{InputError, Result};
+use crate::experiment::LARGEST_REPETITIONS;
 use crate::experiment::Progress;
 use crate::files::Files;
 use crate::kernel::{FoundRays, RaySearch, Start, path_rays};
 use crate::lab::Lab;
 use crate::math::Vec3;
+use crate::measure::{Settings, Setup};
 use crate::plot::number::short;
 use crate::scene::Scene;
 use clap::{Args, value_parser};
@@ -26,7 +28,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     samples: Samples,
     /// Number of searches along all rays, on one thread
-    #[arg(long, value_name = "N", default_value_t = 9, value_parser = value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", default_value_t = 9, value_parser = value_parser!(u32).range(1..=i64::from(LARGEST_REPETITIONS)))]
     repetitions: u32,
     /// Write the triangles and the rays for another program: a line of text, then 64-bit numbers
     #[arg(long, value_name = "FILE")]
@@ -44,6 +46,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let setup = lab.prepare(settings)?;
     setup.remarks().iter().for_each(|remark| talk.note(remark));
     let Some((scene, choice)) = setup.scene() else { return Err(no_paths(&arguments.samples.scene)) };
+    check_paths(&setup)?;
     let mut files = Files::default();
     files.reads_scene(setup.files());
     if let Some(path) = &arguments.export {
@@ -103,6 +106,22 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         rates.len(),
         short(distance / (met as f64).max(1.0), 6),
     ))
+}
+
+/// Most paths: each has some seven rays, whose 1000 bytes stay in memory.
+const MOST_PATHS: u64 = 1 << 24;
+
+/// Refuses more paths than fit into memory.
+fn check_paths(setup: &Setup) -> Result<()> {
+    let Settings { spec, spp, .. } = setup.settings();
+    let paths = u64::from(spec.width) * u64::from(spec.height) * u64::from(*spp);
+    if paths <= MOST_PATHS {
+        return Ok(());
+    }
+    let problem =
+        format!("makes {paths} paths of {}x{} pixels, whose rays are kept in memory", spec.width, spec.height);
+    let error = InputError::new("spp", spp.to_string(), problem);
+    Err(error.allowed(format!("at most {MOST_PATHS} paths; a smaller --size makes fewer")).into())
 }
 
 /// Writes `pathmark-rays 1 TRIANGLES RAYS`, a line end, then little-endian doubles: the corners of each triangle; then

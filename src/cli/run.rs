@@ -106,7 +106,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     if summary.failed > 0 {
         tell_left_out(&summary.left_out, talk);
     }
-    check_failures(summary.rows, summary.failed, summary.timed_out)?;
+    check_failures(summary.rows + summary.other_rows, summary.failed, summary.timed_out)?;
     arguments.strict.check(summary.invalid)?;
     talk_of(&summary.doubts, talk);
     tell_left_out(&summary.left_out, talk);

@@ -155,7 +155,11 @@ impl Definition {
                 let cell =
                     Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
                 if cells.len() as u64 >= LARGEST_CELLS {
-                    let error = InputError::new("seed", format!("{} values", seeds.len()), "gives too many cells");
+                    let error = InputError::new(
+                        "name",
+                        &cell.settings.spec.estimator,
+                        "has too many combinations of spp and seed",
+                    );
                     return Err(self.located(profile, error.allowed(format!("at most {LARGEST_CELLS} cells"))));
                 }
                 match places.get(&cell.id).map(|place: &usize| &cells[*place]) {

@@ -11,7 +11,7 @@ use crate::analysis::tail::{Tail, tail};
 use crate::error::{Error, InputError, Result};
 use crate::kernel::Spec;
 use crate::lab::Lab;
-use crate::measure::{Doubts, Rounds, Settings};
+use crate::measure::{Doubts, LARGEST_BYTES, Rounds, Settings};
 use crate::sampling::{REFERENCE_SEEDS, is_spread};
 
 /// The first seed of pilots.
@@ -67,6 +67,14 @@ impl Pilot {
             return Err(InputError::new("pilot-spp", self.spp.to_string(), problem).into());
         }
         let count = if law == Law::Independent { 1 } else { POINTS };
+        let pixels = u64::from(settings.spec.width) * u64::from(settings.spec.height);
+        let bytes = pixels * u64::from(self.seeds) * u64::from(count) * size_of::<[f64; 3]>() as u64;
+        if bytes > LARGEST_BYTES {
+            let problem = format!("keeps {} GiB of images in memory", bytes >> 30);
+            let error = InputError::new("pilot-seeds", self.seeds.to_string(), problem);
+            let allowed = format!("at most {} GiB, by fewer seeds or a smaller --size", LARGEST_BYTES >> 30);
+            return Err(error.allowed(allowed).into());
+        }
         let halved = (0..count).map(|times| self.spp >> times).take_while(|spp| spp.is_multiple_of(fewest) && *spp > 0);
         let mut points: Vec<u32> = halved.collect();
         points.reverse();
@@ -86,7 +94,6 @@ impl Pilot {
                 samples += times.paths;
                 images.push(rounds.film().image().pixels.into_flattened());
             }
-            let pixels = u64::from(settings.spec.width) * u64::from(settings.spec.height);
             per_spp.push(seconds * pixels as f64 / samples as f64);
             let warnings: Vec<String> = rounds.outcome().warnings.iter().map(ToString::to_string).collect();
             doubts.add(&warnings.join(";"));

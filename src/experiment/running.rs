@@ -54,6 +54,7 @@ impl<'a> Running<'a> {
         let summary = Summary {
             folder: folder.clone(),
             rows: done.len(),
+            other_rows: 0,
             failed: 0,
             timed_out: 0,
             left_out: LeftOut::of(&done),
@@ -123,6 +124,7 @@ impl<'a> Running<'a> {
         if !other_first {
             run_against()?;
         }
+        self.summary.other_rows += others.len();
         for other in others {
             if !other.error.is_empty() {
                 self.summary.add_failure(&other.error);

@@ -38,7 +38,9 @@ pub struct Summary {
     pub folder: PathBuf,
     /// Number of rows in the folder.
     pub rows: usize,
-    /// Rows that failed, checksum mismatches included.
+    /// Number of rows of the other build, if there is one.
+    pub other_rows: usize,
+    /// Rows that failed, of either build, checksum mismatches included.
     pub failed: usize,
     /// Failed rows whose cell was ended at its time limit.
     pub timed_out: usize,

@@ -1,7 +1,7 @@
 //! The jobs of a run: refused before any is made if memory or threads do not suffice for so many.
 
 use super::Setup;
-use super::settings::LARGEST_THREADS;
+use super::settings::{LARGEST_BYTES, LARGEST_THREADS};
 use crate::error::{InputError, Result};
 use crate::film::{Decomposition, PixelSum, Plan, PlanSize};
 use crate::strategy::{Entry, Workers};
@@ -12,8 +12,6 @@ use std::ops::Range;
 const JOB_BYTES: u64 = 384;
 /// Bytes of a pixel in the buffer of a job.
 const PIXEL_BYTES: u64 = size_of::<PixelSum>() as u64;
-/// Most bytes of all jobs of a run. Images of the largest size need a quarter of them, in pieces of usual sizes.
-const LARGEST_BYTES: u64 = 16 << 30;
 
 /// Cuts a film into pieces: section by section of its samples.
 pub(super) fn cut(

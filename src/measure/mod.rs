@@ -64,7 +64,7 @@ pub use provenance::Provenance;
 pub use record::{COLUMNS, Measured, Record, SCHEMA, failure};
 pub use rounds::Rounds;
 pub use run::{Outcome, RoundTimes, Watch};
-pub use settings::{LARGEST_SEED, LARGEST_SPP, Settings, available_threads, schedule_name};
+pub use settings::{LARGEST_BYTES, LARGEST_SEED, LARGEST_SPP, Settings, available_threads, schedule_name};
 pub use setup::Setup;
 pub use share::{DoneJob, Gathered, Share};
 pub use trace::{JobSpan, Trace};

@@ -13,6 +13,9 @@ use std::sync::LazyLock;
 /// Most workers that a user may request, and most threads that a strategy may start by its own rule: systems refuse
 /// some tens of thousands, and some of them end the process.
 pub(super) const LARGEST_THREADS: usize = 1 << 14;
+/// Most bytes that numbers of the user may reserve at once. Images of the largest size need a quarter of them, in
+/// pieces of usual sizes.
+pub const LARGEST_BYTES: u64 = 16 << 30;
 /// Most samples per pixel.
 pub const LARGEST_SPP: u32 = 1 << 24;
 /// Largest seed of an image under test: the seeds above belong to references.

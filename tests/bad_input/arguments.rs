@@ -125,6 +125,15 @@ fn names_that_there_are_not_are_answered_with_those_that_there_are() {
         (&["reproduce", "--timeout", "-1s"], &["timeout = -1s", "above 0"]),
         (&["run", "thread-scaling", "--filter", "no-such-cell"], &["filter", "no-such-cell"]),
         (&["run", "thread-scaling", "--filter", "strategy=warp"], &["filter", "strategy=warp"]),
+        (&["rays", "cornell", "--estimator", "bsdf", "--repetitions", "4294967295"], &["repetitions", "4294967295"]),
+        (
+            &["rays", "cornell", "--estimator", "bsdf", "--size", "8192x8192", "--spp", "64"],
+            &["spp = 64", "4294967296 paths", "at most 16777216"],
+        ),
+        (
+            &["price", "cornell", "--size", "8192x8192", "--rmse", "0.1", "--pilot-seeds", "100"],
+            &["pilot-seeds = 100", "150 GiB", "at most 16 GiB"],
+        ),
         (&["list", "planets"], &["planets", "scenes", "strategies"]),
         (&["report", "nowhere"], &["folder", "nowhere"]),
         (&["report", "."], &["folder", "records.csv"]),

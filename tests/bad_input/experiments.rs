@@ -114,11 +114,11 @@ fn too_many_cells_are_refused() {
     let numbers: Vec<String> = (1..=2001).map(|number| number.to_string()).collect();
     let seeds = format!("seed = [{}]", numbers.join(", "));
     assert!(check(TINY, "seed = [1]", &seeds, &[], &["seed", "2001 values", "12006 combinations", "at most 10000"]));
-    let other = "[[external]]\nname = \"other\"\nscene = \"cornell\"\nspp = [4, 8, 12, 16, 20, 24]\n";
-    let command = "command = [\"other\", \"{spp}\", \"{seed}\", \"{out}\"]";
-    let base = TINY.replace("[quick]\n", &format!("{other}seed = [1]\n{command}\n\n[quick]\n"));
-    let base = base.replacen("seed = [1]", "seed = [0]", 1);
-    assert!(check(&base, "seed = [1]", &seeds, &[], &["seed", "2001 values", "at most 10000 cells"]));
+    let named = "name = \"other\"\nseed = [1]";
+    let rest = "scene = \"cornell\"\nspp = [4, 8, 12, 16, 20, 24]\ncommand = [\"{spp}\", \"{seed}\", \"{out}\"]";
+    let base = TINY.replace("[quick]\n", &format!("[[external]]\n{named}\n{rest}\n\n[quick]\n"));
+    let many = format!("name = \"other\"\n{seeds}");
+    assert!(check(&base, named, &many, &[], &["name", "other", "at most 10000 cells"]));
 }
 
 /// A fault in one profile is not reported at the same field of the other.

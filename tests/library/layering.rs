@@ -212,7 +212,7 @@ fn no_file_silences_a_lint() {
 
 /// Unsafe code stands only in the files that CONTRIBUTING.md names, and each of these has some.
 #[test]
-fn unsafe_code_stands_in_the_listed_files() {
+fn unsafe_blocks_stand_in_the_listed_files() {
     let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
     let (_, listed) = text.split_once("* **`unsafe`.**").unwrap();
     let (listed, _) = listed.split_once("* **Tests.**").unwrap();
