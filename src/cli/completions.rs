@@ -3,6 +3,7 @@
 use super::described;
 use super::output::print_verbatim;
 use crate::error::Result;
+use crate::shell;
 use clap::Args;
 use clap_complete::Shell;
 
@@ -15,6 +16,6 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut described(), "pathmark", &mut script);
+    clap_complete::generate(arguments.shell, &mut described(), shell::executable_name(), &mut script);
     print_verbatim(String::from_utf8_lossy(&script).trim_end())
 }

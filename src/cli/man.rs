@@ -3,6 +3,7 @@
 use super::described;
 use super::output::print_verbatim;
 use crate::error::{Error, InputError, Result};
+use crate::shell;
 use clap::Args;
 use clap_mangen::Man;
 
@@ -23,7 +24,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
             let verbs = program.get_subcommands().filter(|command| !command.is_hide_set());
             let verbs: Vec<&str> = verbs.map(clap::Command::get_name).collect();
             let unknown = || InputError::new("verb", verb, "there is no such verb").allowed(verbs.join(", "));
-            found.ok_or_else(unknown)?.bin_name(format!("pathmark {verb}"))
+            found.ok_or_else(unknown)?.bin_name(format!("{} {verb}", shell::executable_name()))
         }
     };
     let mut page = Vec::new();

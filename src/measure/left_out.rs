@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 impl Record {
-    /// What it lacks, in words; `None` if the row was run.
+    /// The missing program or device, in words; `None` if the row was run.
     fn lacks(&self) -> Option<String> {
         let has = |warning: &Warning| self.warnings.split(';').any(|own| own == warning.to_string());
         if has(&Warning::NoDevice) {

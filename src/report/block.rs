@@ -10,7 +10,7 @@ use std::path::Path;
 pub enum Block {
     /// The result in a sentence or two.
     Finding(String),
-    /// What is missing here, and why. It says nothing about the measurements.
+    /// A missing part, with the reason. It says nothing about the measurements.
     Notice(String),
     /// A figure as SVG and PNG.
     Figure {

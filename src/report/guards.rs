@@ -48,7 +48,7 @@ pub(super) fn section(out: &Path) -> Result<Option<Section>> {
         left_out: LeftOut::default(),
         doubts: Doubts::default(),
         rows: rows.len(),
-        run,
+        run: Some(run),
         blocks,
     }))
 }

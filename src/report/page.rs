@@ -4,6 +4,7 @@ use super::again::Again;
 use super::block::Block;
 use super::results::Results;
 use super::table::Table;
+use super::words::counted;
 use crate::error::Result;
 use crate::experiment::{Chapter, Definition, RunFile};
 use crate::measure::{Doubts, LeftOut, Record};
@@ -11,6 +12,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -60,8 +62,8 @@ pub(super) struct Section {
     pub(super) rows: usize,
     /// Rows whose times are in doubt.
     pub(super) doubts: Doubts,
-    /// Command and machine.
-    pub(super) run: RunFile,
+    /// Command and machine; `None` for the claims, which are computed anew for each page.
+    pub(super) run: Option<RunFile>,
     pub(super) blocks: Vec<Block>,
 }
 
@@ -75,7 +77,7 @@ impl Section {
         let findings = || blocks.iter().filter_map(Block::as_finding);
         let in_short = in_short.and_then(|number| findings().nth(number.get() - 1)).map(ToString::to_string);
         let Results { failed, left_out, run, .. } = results;
-        let chapter = Some(chapter);
+        let (chapter, run) = (Some(chapter), Some(run));
         Self {
             name,
             title,
@@ -192,8 +194,9 @@ fn chapter(chapter: Chapter, sections: &[&Section]) -> Result<Markup> {
 
 /// The folder of each section's rows, with the program and the machine that measured them.
 fn sources(sections: &[Section]) -> Markup {
-    let mut runs: Vec<&Section> = sections.iter().filter(|section| section.chapter.is_some()).collect();
-    runs.sort_by(|a, b| a.name.cmp(&b.name));
+    let mut runs: Vec<(&Section, &RunFile)> =
+        sections.iter().filter_map(|section| Some((section, section.run.as_ref()?))).collect();
+    runs.sort_by(|a, b| a.0.name.cmp(&b.0.name));
     html! {
         section id=(SOURCES) {
             h2 { (SOURCES_TITLE) }
@@ -205,18 +208,18 @@ fn sources(sections: &[Section]) -> Markup {
                 table {
                     thead { tr { th { "folder" } th { "rows" } th { "failed" } th { "left out" } th { "in doubt" } th { "profile" } th { "processors" } th { "processor" } th { "sources" } } }
                     tbody {
-                        @for section in runs {
-                            @let machine = &section.run.machine;
+                        @for (section, run) in runs {
+                            @let machine = &run.machine;
                             tr {
                                 td { a href={ "#" (section.name) } { (section.name) } }
                                 td { (section.rows) }
                                 td { (section.failed.len()) }
                                 td { (section.left_out.count()) }
                                 td { (section.doubts.count()) }
-                                td { (section.run.profile) }
+                                td { (run.profile) }
                                 td { (machine.processors) }
                                 td { (machine.cpu) }
-                                td { @if !section.run.program.is_empty() { (section.run.program) ", " } (machine.commit) @if machine.dirty { " with changes" } }
+                                td { @if !run.program.is_empty() { (run.program) ", " } (machine.commit) @if machine.dirty { " with changes" } }
                             }
                         }
                     }
@@ -241,31 +244,32 @@ fn section(section: &Section, is_chapter: bool) -> Result<Markup> {
             }
             @if section.left_out.count() > 0 {
                 div.failed {
-                    p { strong { (section.left_out.count()) " rows are left out" } " of figures and tables, because they were not run." }
+                    p { strong { "Left out: " (counted(section.left_out.count(), "row")) "." } " Rows that were not run are in no figure or table." }
                     ul { @for line in section.left_out.lines() { li { (line) } } }
                 }
             }
             @if section.doubts.is_any() { p.doubts.high[section.doubts.is_high()] { (section.doubts) "; " code { "pathmark explain" } " says what each means." } }
-            @if let Some(goal) = &section.run.until {
+            @if let Some(goal) = section.run.as_ref().and_then(|run| run.until.as_ref()) {
                 p.doubts {
                     "Repetitions went on until the goal " code { (goal) } " or a limit was reached. Intervals of medians hold all the same; those of fitted lines take the number of repetitions for fixed."
                 }
             }
             @for part in &parts { (part) }
             @for paragraph in section.analysis.split("\n\n") { p { (prose(paragraph)) } }
-            (provenance(section))
+            @if let Some(run) = &section.run { (provenance(section, run)) }
         }
     })
 }
 
 /// The errors of the failed rows, each with its cells: a program that fails usually fails in every row.
 fn failures(failed: &[Record]) -> Vec<(&str, Vec<&str>)> {
-    let mut errors: Vec<(&str, Vec<&str>)> = Vec::new();
+    let (mut errors, mut places) = (Vec::<(&str, Vec<&str>)>::new(), HashMap::new());
     for record in failed {
-        match errors.iter_mut().find(|(error, _)| *error == record.error) {
-            Some((_, cells)) => cells.push(&record.cell),
-            None => errors.push((&record.error, vec![&record.cell])),
+        let place = *places.entry(record.error.as_str()).or_insert(errors.len());
+        if place == errors.len() {
+            errors.push((&record.error, Vec::new()));
         }
+        errors[place].1.push(&record.cell);
     }
     errors
 }
@@ -338,8 +342,8 @@ fn broken(cell: &str, is_text: bool) -> Markup {
     html! { @for part in parts { span { (part.replace(" %", "\u{a0}%")) } " " } }
 }
 
-fn provenance(section: &Section) -> Markup {
-    let RunFile { command, program, profile, machine, .. } = &section.run;
+fn provenance(section: &Section, run: &RunFile) -> Markup {
+    let RunFile { command, program, profile, machine, .. } = run;
     // The system may not report a number, which is then 0.
     let or_unknown = |number: u64, told: String| if number == 0 { "unknown".to_string() } else { told };
     let memory = format!("{:.1} GiB", machine.memory_bytes as f64 / f64::from(1 << 30));

@@ -36,7 +36,7 @@ fn a_gpu_that_is_not_there_is_a_row() {
     }
     finish(pathmark(folder.path(), &["report", "out"])).with_code(0);
     let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-    assert!(page.contains("3 rows are left out") && page.contains("neither CUDA nor OpenCL finds a GPU"), "{page}");
+    assert!(page.contains("Left out: 3 rows.") && page.contains("neither CUDA nor OpenCL finds a GPU"), "{page}");
 }
 
 /// Compilation and copying are reported separately; both are part of the build time.

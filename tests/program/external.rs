@@ -64,7 +64,7 @@ fn a_program_that_is_not_there_is_said_and_stops_nothing() {
         assert_eq!(last, "left out: 2 rows of other: its program is not on this machine");
         assert!(finished.out.contains("7 rows (2 left out)"), "{}", finished.out);
         let page = std::fs::read_to_string(folder.path().join("out/report.html")).unwrap();
-        let box_of = "<div class=\"failed\"><p><strong>2 rows are left out</strong>";
+        let box_of = "<div class=\"failed\"><p><strong>Left out: 2 rows.</strong>";
         assert!(page.contains(box_of) && page.contains("2 rows of other: its program is not on this machine"));
         assert!(page.contains("5 done, 0 failed, 2 left out"), "{page}");
         assert_eq!(rows.len(), 2);

@@ -140,6 +140,8 @@ fn the_page_works_in_a_browser() {
         assert!(width < 1300 || seen["cutTables"] == 0, "{width} pixels: a table is wider than the page: {seen}");
         let shown = seen["shown"].as_str().unwrap();
         assert!(shown.starts_with("work-stealing: ") && shown.contains("threads = 2"), "{shown}");
+        let offered = "pathmark run thread-scaling.toml --quick --filter strategy=work-stealing --out ";
+        assert!(shown.contains(offered), "{shown}");
         let value: f64 = shown["work-stealing: ".len()..].split(' ').next().unwrap().parse().unwrap();
         assert!((value - seen["value"].as_f64().unwrap()).abs() <= 5e-4 * value, "{shown}");
         assert_eq!((seen["before"].as_str(), seen["after"].as_str()), (Some("inline"), Some("none")), "{seen}");

@@ -12,7 +12,7 @@ fn section_of(figures: &[&str], more: &str, rows: Vec<Record>) -> Section {
     Section::of(results, blocks)
 }
 
-/// What is missing says nothing about the measurements, so it is not among the findings, whatever their number.
+/// A notice says nothing about the measurements, so it is not among the findings, whatever their number.
 #[test]
 fn a_notice_is_no_finding() {
     let rows = || vec![row(), Record { repetition: 1, makespan_s: Some(2.0), ..row() }];
