@@ -161,8 +161,9 @@ const SCENE_WORDS: &[&str] = &[
     "}",
     "\u{feff}",
 ];
-const MESH_WORDS: &[&str] =
-    &["v ", "f ", "o ", "vn ", "vt ", "/", "//", "-1", "\\\n", "g ", "usemtl ", "mtllib ", "s off\n", " # ", "\u{feff}"];
+const MESH_WORDS: &[&str] = &[
+    "v ", "f ", "o ", "vn ", "vt ", "/", "//", "-1", "\\\n", "g ", "usemtl ", "mtllib ", "s off\n", " # ", "\u{feff}",
+];
 const PLY_WORDS: &[&str] = &[
     "format ascii 1.0\n",
     "format binary_big_endian 1.0\n",
@@ -208,8 +209,16 @@ const EXR_WORDS: &[&str] = &[
     "R\0",
     "lineOrder\0",
 ];
-const HDR_WORDS: &[&str] =
-    &["EXPOSURE=", "FORMAT=32-bit_rle_rgbe\n", "-Y ", "+X ", "COLORCORR=1 1 1\n", "#?RADIANCE\n", "#?RGBE\n", "\u{2}\u{2}"];
+const HDR_WORDS: &[&str] = &[
+    "EXPOSURE=",
+    "FORMAT=32-bit_rle_rgbe\n",
+    "-Y ",
+    "+X ",
+    "COLORCORR=1 1 1\n",
+    "#?RADIANCE\n",
+    "#?RGBE\n",
+    "\u{2}\u{2}",
+];
 
 fn ok<T>(result: Result<T>) -> bool {
     match result {

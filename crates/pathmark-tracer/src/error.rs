@@ -179,7 +179,8 @@ mod tests {
     /// A control character of a value, a key or a file's name could colour a terminal, move its cursor or end a line.
     #[test]
     fn control_characters_are_escaped() {
-        let error = InputError::new("a\u{1b}[2J", "\u{7}b\n", "c\t\u{9b}31m").allowed("d\r").in_file("e\0", Some((1, 2)));
+        let error =
+            InputError::new("a\u{1b}[2J", "\u{7}b\n", "c\t\u{9b}31m").allowed("d\r").in_file("e\0", Some((1, 2)));
         let expected = "e\\u{0}:1:2: a\\u{1b}[2J = \\u{7}b\\n: c\\t\\u{9b}31m (allowed: d\\r)";
         assert_eq!(error.to_string(), expected);
         assert_eq!(Error::from(error).to_string(), expected);

@@ -101,7 +101,10 @@ fn a_pixel_that_is_no_colour_is_named() {
     let cases: [(&[&str], &str); 4] = [
         (&["nan.pfm", "one.pfm"], "nan.pfm: pixel (0, 1) = (1, 1, NaN) is not finite\n"),
         (&["one.pfm", "nan.pfm"], "nan.pfm: pixel (0, 1) = (1, 1, NaN) is not finite\n"),
-        (&["one.pfm", "one.pfm", "inf.pfm"], "inf.pfm: pixel (1, 0) = (NaN, 1, 1) is not finite, and 1 pixel like it\n"),
+        (
+            &["one.pfm", "one.pfm", "inf.pfm"],
+            "inf.pfm: pixel (1, 0) = (NaN, 1, 1) is not finite, and 1 pixel like it\n",
+        ),
         (&["inf.pfm", "one.pfm", "--json"], "inf.pfm: pixel (1, 0) = (NaN, 1, 1) is not finite, and 1 pixel like it\n"),
     ];
     for (arguments, said) in cases {

@@ -41,7 +41,14 @@ pub(super) fn read(
     face: impl FnMut(&[Vec3]) -> Result<()>,
 ) -> Result<Found> {
     let mut statements = Statements { file, name, hash, text: Vec::new(), first: 1, lines: 0, before: 0 };
-    let mut obj = Obj { object, is_wanted: object.is_none(), vertices: Vec::new(), corners: Vec::new(), face, found: Found::default() };
+    let mut obj = Obj {
+        object,
+        is_wanted: object.is_none(),
+        vertices: Vec::new(),
+        corners: Vec::new(),
+        face,
+        found: Found::default(),
+    };
     while statements.next()? {
         let statement = statements.current()?;
         obj.take(&statement)?;
