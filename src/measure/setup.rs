@@ -209,12 +209,9 @@ impl Setup {
         self.scene().map_or(&[], |(scene, _)| &scene.files)
     }
 
-    /// Remarks for the scene's author on how its files were read, on its light, and on meshes that the camera does not
-    /// see.
+    /// Remarks for the scene's author: on its files, its light, and meshes that the camera does not see.
     pub fn remarks(&self) -> Vec<String> {
-        let Some((scene, _)) = self.scene() else { return Vec::new() };
-        let view = scene.camera.view(self.settings.spec.width, self.settings.spec.height);
-        scene.remarks_in(&view)
+        self.scene().map_or_else(Vec::new, |(scene, choice)| scene.remarks_in(&choice.view(scene)))
     }
 
     /// The scene, and the choices that the settings make for it; `None` for a workload.

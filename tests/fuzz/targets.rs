@@ -105,7 +105,7 @@ pub(crate) const TARGETS: &[Target] = &[
         name: "png",
         file: "image.png",
         read: image,
-        words: &["IHDR", "IDAT", "IEND", "tRNS", "zTXt", "PLTE"],
+        words: &["IHDR", "IDAT", "IEND", "tRNS", "zTXt", "PLTE", "gAMA", "cHRM", "sRGB", "cICP"],
         ..TARGET
     },
     Target { name: "bmp", file: "image.bmp", read: image, ..TARGET },
@@ -153,14 +153,17 @@ const SCENE_WORDS: &[&str] = &[
     "normal",
     "point",
     "file = '/dev/zero'",
+    "scale = 2.0",
+    "rotate = [0.0, 90.0, 0.0]",
     "'''",
     "\\u0000",
     "{",
     "}",
     "\u{feff}",
 ];
-const MESH_WORDS: &[&str] =
-    &["v ", "f ", "o ", "vn ", "vt ", "/", "//", "-1", "\\\n", "g ", "usemtl ", "mtllib ", "s off\n"];
+const MESH_WORDS: &[&str] = &[
+    "v ", "f ", "o ", "vn ", "vt ", "/", "//", "-1", "\\\n", "g ", "usemtl ", "mtllib ", "s off\n", " # ", "\u{feff}",
+];
 const PLY_WORDS: &[&str] = &[
     "format ascii 1.0\n",
     "format binary_big_endian 1.0\n",
@@ -169,6 +172,11 @@ const PLY_WORDS: &[&str] = &[
     "property list uint char vertex_index\n",
     "property double x\n",
     "end_header\n",
+    "property float x\n",
+    "format ascii 2.0\n",
+    " nan ",
+    " .5 ",
+    "\u{feff}",
     "\0\0\0\0",
 ];
 const EXPERIMENT_WORDS: &[&str] = &[
@@ -201,8 +209,16 @@ const EXR_WORDS: &[&str] = &[
     "R\0",
     "lineOrder\0",
 ];
-const HDR_WORDS: &[&str] =
-    &["EXPOSURE=", "FORMAT=32-bit_rle_rgbe\n", "-Y ", "+X ", "COLORCORR=1 1 1\n", "#?RADIANCE\n", "\u{2}\u{2}"];
+const HDR_WORDS: &[&str] = &[
+    "EXPOSURE=",
+    "FORMAT=32-bit_rle_rgbe\n",
+    "-Y ",
+    "+X ",
+    "COLORCORR=1 1 1\n",
+    "#?RADIANCE\n",
+    "#?RGBE\n",
+    "\u{2}\u{2}",
+];
 
 fn ok<T>(result: Result<T>) -> bool {
     match result {

@@ -90,7 +90,9 @@ fn a_pixel_that_is_no_colour_is_named() {
     // Rows are stored from the bottom up, so the third value is in the lower left.
     let write = |name: &str, odd: &[(usize, f32)]| {
         let mut values = [1.0_f32; 12];
-        odd.iter().for_each(|(at, value)| values[*at] = *value);
+        for (at, value) in odd {
+            values[*at] = *value;
+        }
         let bytes = values.iter().flat_map(|value| value.to_le_bytes());
         let file: Vec<u8> = b"PF\n2 2\n-1.0\n".iter().copied().chain(bytes).collect();
         fs::write(folder.path().join(name), file).unwrap();

@@ -91,7 +91,7 @@ impl Cutter {
             (sum + cross, sizes + length(cross))
         });
         // All corners in one point, or edges around equal areas on both sides.
-        if !(length(normal) > STRAIGHT * sizes) {
+        if sizes.is_nan() || length(normal) <= STRAIGHT * sizes {
             self.crossed += usize::from(pairs().any(|(a, b)| length(a.cross(b)) > STRAIGHT * length(a) * length(b)));
             return true;
         }

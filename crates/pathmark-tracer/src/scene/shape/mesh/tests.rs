@@ -21,11 +21,11 @@ fn mesh(obj: &str, placement: &str) -> Scene {
     scene(&format!("mesh = {{ file = 'a.obj'{placement} }}"), ("a.obj", obj)).unwrap()
 }
 
-/// The area that faces the positive z axis; an area behind it counts negative.
+/// The sum of the areas of triangles in a plane of constant z, whichever way each faces.
 fn area(scene: &Scene) -> f64 {
     let areas = scene.primitives.triangles.iter().map(|triangle| {
         let [a, b, c] = triangle.corners;
-        0.5 * dot((b - a).cross(c - a), Vec3::new(0.0, 0.0, 1.0))
+        0.5 * dot((b - a).cross(c - a), Vec3::new(0.0, 0.0, 1.0)).abs()
     });
     areas.sum()
 }

@@ -214,19 +214,22 @@ impl Draft {
     }
 
     /// Checks that there are vertices with coordinates and faces with corners; the error names what is missing.
-    fn finish(self) -> std::result::Result<Header, InputError> {
+    fn finish(self, refused: impl Fn(InputError) -> InputError) -> Result<Header> {
         let has = |element, used| self.elements.iter().any(|found| found.has(element, used));
         if let Some(missing) = (0..3).find(|axis| !has("vertex", Use::Coordinate(*axis))) {
             let problem = "the element `vertex` has no number with this name";
-            return Err(InputError::new("property", COORDINATES[missing], problem).allowed("x, y and z"));
+            let error = InputError::new("property", COORDINATES[missing], problem).allowed("x, y and z");
+            return Err(refused(error).into());
         }
         if !has("face", Use::Corners) {
             let problem = "the element `face` has no list of whole numbers with this name";
-            return Err(InputError::new("property", CORNERS[0], problem).allowed(CORNERS.join(" or ")));
+            let error = InputError::new("property", CORNERS[0], problem).allowed(CORNERS.join(" or "));
+            return Err(refused(error).into());
         }
         let Some(encoding) = self.encoding else {
             let problem = "the header does not state the format";
-            return Err(InputError::new("format", "", problem).allowed("a line such as `format ascii 1.0`"));
+            let error = InputError::new("format", "", problem).allowed("a line such as `format ascii 1.0`");
+            return Err(refused(error).into());
         };
         Ok(Header { encoding, elements: self.elements })
     }
@@ -258,7 +261,7 @@ impl Header {
                 line if number == 1 => {
                     return Err(error(line, "is not the header of a PLY file").allowed("ply").into());
                 }
-                "end_header" => return draft.finish().map_err(|problem| refused(problem, number).into()),
+                "end_header" => return draft.finish(|error| refused(error, number)),
                 line => draft.take(line).map_err(|(problem, allowed)| error(line, problem).allowed(allowed))?,
             }
         }
