@@ -112,32 +112,32 @@ impl Scene {
     pub fn factor_in_single_precision(&self) -> Result<f64> {
         let size = self.size();
         let error = |what: &str, value: f64, allowed: String| {
-            let problem = format!("does not fit a scene with {what} of {value:e} and the size {size:e}");
+            let problem = format!("does not fit a scene with {what} of {value:e} and the size {size:.3e}");
             Err(InputError::new("precision", "f32", problem).allowed(allowed).into())
         };
         for (sphere, is_large) in self.primitives.spheres.iter().zip(self.large_spheres()) {
             let finest = FINEST * length(sphere.center).max(size);
             if !is_large && sphere.radius < finest {
-                return error("a radius", sphere.radius, format!("f64, or radii from {finest:e}"));
+                return error("a radius", sphere.radius, format!("f64, or radii from {finest:.3e}"));
             }
             if sphere.reach() > LONGEST * size {
                 return error(
                     "a sphere up to a distance",
                     sphere.reach(),
-                    format!("f64, or up to {:e}", LONGEST * size),
+                    format!("f64, or up to {:.3e}", LONGEST * size),
                 );
             }
         }
         for plane in &self.primitives.planes {
             let (away, beside) = (dot(plane.point, plane.normal), length(plane.point));
             if away.abs() > LONGEST * size || beside > WIDEST * away.abs().max(size) {
-                let allowed = format!("f64, or a point at up to {:e}", WIDEST * size);
+                let allowed = format!("f64, or a point at up to {:.3e}", WIDEST * size);
                 return error("a point of a plane at a distance", beside, allowed);
             }
         }
         let widest = self.primitives.triangles.iter().map(Triangle::reach).fold(0.0, f64::max);
         if widest > WIDEST * size {
-            return error("a corner at a distance", widest, format!("f64, or up to {:e}", WIDEST * size));
+            return error("a corner at a distance", widest, format!("f64, or up to {:.3e}", WIDEST * size));
         }
         let (_, exponent) = libm::frexp(size);
         let is_usual = size == 0.0 || exponent.abs() <= USUAL;

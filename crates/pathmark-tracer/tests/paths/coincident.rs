@@ -146,6 +146,18 @@ fn squares_keep_the_area_that_no_other_covers() {
     }
 }
 
+/// A square under very many others stays whole, and a remark tells that rounding decides.
+#[test]
+fn rounding_decides_below_very_many_squares() {
+    let small: Vec<String> =
+        (0..33).map(|k| object(&format!("{k}"), &square(0.01, 0.5 + 0.05 * f64::from(k)), 0.5, 0.0)).collect();
+    let under = object("under", &square(5.0, 0.0), 0.5, 0.0);
+    let scene = scene(&[CAMERA, &small.concat(), &under]);
+    assert_eq!(scene.owners.len(), 2 * 34);
+    assert_eq!(scene.remarks[0], "where 0 and under coincide, rounding decides which of them rays meet");
+    assert!(scene.remarks.last().unwrap().ends_with("more pairs of objects coincide"), "{:?}", scene.remarks);
+}
+
 /// Two lamps in one place are one lamp to next-event estimation, too.
 #[test]
 fn a_lamp_that_another_hides_sends_no_light() {

@@ -3,7 +3,7 @@
 //! A search cannot keep this rule: rounding decides which of two equal distances is smaller, and whether a ray that
 //! starts on one of the surfaces starts in front of the other. So the hidden surface is removed when the scene is read.
 //! A sphere, a plane, or a triangle in a plane is removed as a whole. A triangle that overlaps others in its plane
-//! keeps the rest of its area.
+//! keeps the rest of its area, unless there are very many of these: then a remark says that rounding decides.
 //!
 //! Two places are the same if they differ by no more than rounding moves a surface.
 
@@ -13,10 +13,12 @@ use super::{Plane, Primitives, Scene, Sphere, Triangle};
 use crate::math::{Vec3, dot};
 use overlap::Flat;
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 
 /// Largest distance of surfaces in one place, in units of their largest coordinate.
 const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;
+
+/// The most triangles that are cut out of another one. The number of its parts may grow with the square of this.
+const MOST_COVERS: usize = 64;
 
 /// The most remarks on pairs of objects.
 const MOST_REMARKS: usize = 8;
@@ -54,7 +56,7 @@ impl Plane {
 /// For each hidden sphere, the one that hides it.
 fn hidden_spheres(spheres: &[Sphere]) -> BTreeMap<usize, usize> {
     let mut order: Vec<(f64, u32)> = spheres.iter().map(Sphere::key).zip(0..).collect();
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
     let mut hidden = BTreeMap::new();
     for (place, (key, one)) in order.iter().enumerate() {
         let one = *one as usize;
@@ -107,18 +109,28 @@ impl Scene {
         }
         let owners = &self.owners[first_triangle..];
         let is_light = |owner: u32| !self.objects[owner as usize].emission.is_black();
+        let mut undecided: Vec<(u32, u32)> = Vec::new();
+        let mut covers: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (hider, hidden) in Flat::overlaps(triangles, owners, is_light) {
-            let mut rest = match rests.entry(hidden) {
-                Entry::Occupied(rest) => rest,
-                Entry::Vacant(none) => none.insert_entry(vec![triangles[hidden]]),
-            };
-            *rest.get_mut() = rest.get().iter().flat_map(|part| overlap::rest(part, &triangles[hider])).collect();
-            hides(first_triangle + hidden, first_triangle + hider);
+            covers.entry(hidden).or_default().push(hider);
         }
+        for (hidden, hiders) in covers {
+            if hiders.len() > MOST_COVERS {
+                undecided.extend(hiders.iter().map(|hider| (owners[*hider], owners[hidden])));
+                continue;
+            }
+            let mut rest = rests.remove(&hidden).unwrap_or_else(|| vec![triangles[hidden]]);
+            for hider in hiders {
+                rest = rest.iter().flat_map(|part| overlap::rest(part, &triangles[hider])).collect();
+                hides(first_triangle + hidden, first_triangle + hider);
+            }
+            rests.insert(hidden, rest);
+        }
+        self.tell(undecided, |_| "rounding decides which of them rays meet".to_string());
         if pairs.is_empty() {
             return;
         }
-        self.tell(pairs);
+        self.tell(pairs, |hider| format!("rays meet {hider}, which comes first"));
         let is_hidden = |number: usize| {
             hidden_spheres.contains_key(&number)
                 || number.checked_sub(first_plane).is_some_and(|plane| hidden_planes.contains_key(&plane))
@@ -141,15 +153,14 @@ impl Scene {
         );
     }
 
-    /// Adds a remark for each pair of objects, of which the first one hides the second one.
-    fn tell(&mut self, mut pairs: Vec<(u32, u32)>) {
+    /// Adds a remark for each pair of objects, of which the first one comes first.
+    fn tell(&mut self, mut pairs: Vec<(u32, u32)>, end: impl Fn(&str) -> String) {
         pairs.retain(|(hider, hidden)| hider != hidden);
         pairs.sort_unstable();
         pairs.dedup();
-        let name = |owner: u32| &self.objects[owner as usize].name;
         for (hider, hidden) in pairs.iter().take(MOST_REMARKS) {
-            let (hider, hidden) = (name(*hider), name(*hidden));
-            let remark = format!("where {hider} and {hidden} coincide, rays meet {hider}, which comes first");
+            let [hider, hidden] = [hider, hidden].map(|owner| &self.objects[*owner as usize].name);
+            let remark = format!("where {hider} and {hidden} coincide, {}", end(hider));
             self.remarks.push(remark);
         }
         if let Some(more) = pairs.len().checked_sub(MOST_REMARKS + 1) {

@@ -108,10 +108,10 @@ impl AllCoarse {
             self.put(12 + axis, origin);
         }
         self.put(15, padding);
-        let sum = |x: V, y: V, z: V| x.abs() + y.abs() + z.abs();
         let Vec3 { x: dx, y: dy, z: dz } = ray.direction;
-        let length = sum(dx, dy, dz);
-        sum(x, y, z).lt(V::splat(FARTHEST)) & V::splat(0.5).lt(length) & length.lt(V::splat(2.0))
+        let away = x.abs() + y.abs() + z.abs();
+        let length = dx.abs() + dy.abs() + dz.abs();
+        away.lt(V::splat(FARTHEST)) & V::splat(0.5).lt(length) & length.lt(V::splat(2.0))
     }
 
     #[inline(always)]
