@@ -25,7 +25,7 @@ const LEAST: Duration = Duration::from_mins(1);
 const WITHOUT_ESTIMATE: Duration = Duration::from_hours(1);
 /// How often the estimate goes into the limit.
 const TIMES: f64 = 10.0;
-/// Seconds that no sample of a scene takes. Cells so small that they end in time even then need no estimate.
+/// Seconds that hardly any scene's sample takes. Cells so small that they end in time even then need no estimate.
 const SLOWEST_SAMPLE_S: f64 = 1e-3;
 /// How much longer a process takes under valgrind, which also runs its threads one at a time.
 const COUNTING: u32 = 50;

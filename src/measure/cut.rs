@@ -23,7 +23,9 @@ pub(super) fn cut(
     let sizes = sections.iter().map(|samples| decomposition.plan_size(width, height, samples));
     check(sizes.fold(PlanSize::default(), PlanSize::plus), decomposition, strategy)?;
     let mut plan = Plan::default();
-    sections.iter().for_each(|samples| plan.append(&decomposition.plan(width, height, samples)));
+    for samples in sections {
+        plan.append(&decomposition.plan(width, height, samples));
+    }
     Ok(plan)
 }
 

@@ -216,7 +216,7 @@ fn unsafe_blocks_stand_in_the_listed_files() {
     let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
     let (_, listed) = text.split_once("* **`unsafe`.**").unwrap();
     let (listed, _) = listed.split_once("* **Tests.**").unwrap();
-    let names: Vec<&str> = listed.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs")).collect();
+    let names: Vec<&str> = listed.split('`').skip(1).step_by(2).filter(|name| name.contains(".rs")).collect();
     let allows = |file: &PathBuf| code(&fs::read_to_string(file).unwrap()).contains(concat!("unsafe", "_code"));
     let (in_lanes, others): (Vec<_>, Vec<_>) = FOLDERS
         .into_iter()
