@@ -3,6 +3,7 @@
 use super::{External, SceneVersion};
 use crate::error::{InputError, Result};
 use crate::measure::{AXES, Axis, ImageKey, Settings, Setup, available_threads, schedule_name};
+use std::collections::{HashMap, HashSet};
 
 /// One combination of the experiment's matrix.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +42,16 @@ impl CellPoint {
     }
 }
 
+/// Scene, samples, seed, estimator, sampler and size.
+pub(super) type Kind<'a> = (&'a str, u32, u64, [&'a str; 2], [u32; 2]);
+
+/// Cells by their kind.
+pub(super) fn by_kind<'a>(cells: impl IntoIterator<Item = &'a Cell>) -> HashMap<Kind<'a>, Vec<&'a Cell>> {
+    let mut kinds: HashMap<Kind<'_>, Vec<&Cell>> = HashMap::new();
+    cells.into_iter().for_each(|cell| kinds.entry(cell.kind()).or_default().push(cell));
+    kinds
+}
+
 impl Cell {
     /// Its repetitions in an experiment of `others` repetitions.
     pub(super) fn repetitions(&self, others: u32) -> u32 {
@@ -50,6 +61,12 @@ impl Cell {
     /// Whether it runs its jobs one after the other on one thread.
     pub(super) fn is_serial(&self) -> bool {
         self.settings.is_serial()
+    }
+
+    /// Properties that it shares with its baselines, to find them among many cells.
+    pub(super) fn kind(&self) -> Kind<'_> {
+        let Settings { scene, spp, spec, .. } = &self.settings;
+        (scene, *spp, spec.seed, [&spec.estimator, &spec.sampler], [spec.width, spec.height])
     }
 
     /// Whether it is a serial run of the other's image, with any decomposition.
@@ -121,6 +138,28 @@ impl Cell {
                 .into()
         })
     }
+}
+
+/// The cells that pass all filters, and with them the serial runs that their times are compared with, if those are
+/// asked for.
+pub(super) fn filtered(cells: &[Cell], filters: &[String], with_baselines: bool) -> Result<Vec<Cell>> {
+    let mut wanted: Vec<&Cell> = cells.iter().collect();
+    for filter in filters {
+        let matches = wanted.iter().map(|cell| cell.matches(filter)).collect::<Result<Vec<bool>>>()?;
+        let mut matches = matches.into_iter();
+        wanted.retain(|_| matches.next().unwrap_or(false));
+        if wanted.is_empty() {
+            return Err(InputError::new("filter", filter, "leaves no cell to run").into());
+        }
+    }
+    let ids: HashSet<&str> = wanted.iter().map(|cell| cell.id.as_str()).collect();
+    let kinds = by_kind(wanted.iter().copied());
+    let is_wanted = |cell: &Cell| {
+        let mut alike = kinds.get(&cell.kind()).into_iter().flatten();
+        let mut is_baseline = || alike.any(|other| cell.is_baseline_of(other));
+        ids.contains(cell.id.as_str()) || (with_baselines && is_baseline())
+    };
+    Ok(cells.iter().filter(|cell| is_wanted(cell)).cloned().collect())
 }
 
 /// The file name of the trace of a cell's repetition.

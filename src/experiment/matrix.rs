@@ -7,7 +7,7 @@ use super::{Cell, Definition, Profile};
 use crate::error::{Error, InputError, Result};
 use crate::measure::{AXES, Axis, Field, ImageKey, LARGEST_SEED, ScheduleKey, Settings, Setup};
 use crate::sampling::{SAMPLERS, is_deterministic};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// The value that leaves the choice to the program.
@@ -18,6 +18,8 @@ const FITTING: &str = "fitting";
 #[derive(Default)]
 struct Cells {
     list: Vec<Cell>,
+    /// The place of each cell in the list, by its id.
+    places: HashMap<String, usize>,
     known: HashSet<(ImageKey, ScheduleKey)>,
 }
 
@@ -27,13 +29,14 @@ impl Cells {
         let cell = if is_curve { Cell::curve(setup) } else { Cell::new(setup) };
         let mut cell = Cell { at_most, ..cell };
         // If two matrices have the cell, the larger number of repetitions counts.
-        if let Some(known) = self.list.iter_mut().find(|known| known.id == cell.id) {
+        if let Some(known) = self.places.get(&cell.id).map(|place| &mut self.list[*place]) {
             known.at_most = known.at_most.zip(at_most).map(|(first, second)| first.max(second));
         }
         let (image, schedule) = (setup.image_key(), setup.schedule_key());
         let known = &mut self.known;
         cell.points.retain(|point| known.insert((ImageKey { spp: point.spp, ..image.clone() }, schedule.clone())));
         if !cell.points.is_empty() {
+            self.places.entry(cell.id.clone()).or_insert(self.list.len());
             self.list.push(cell);
         }
     }
@@ -197,6 +200,15 @@ mod tests {
         let text = format!("{head}{}{}[quick]\nrepetitions = 5", matrix(first), matrix(second));
         let definition = Definition::from_text(&Lab::built_in(), "x", "x.toml", &text).unwrap();
         definition.cells(Profile::Quick).unwrap().into_iter().map(|cell| cell.at_most).collect()
+    }
+
+    /// A case that a search through all cells for each cell would slow down: two matrices with the same thousands of
+    /// cells give each of them once.
+    #[test]
+    fn cells_of_two_large_matrices_are_found_again() {
+        let seeds: Vec<u32> = (0..3000).collect();
+        let own = |repetitions: u32| format!("seed = {seeds:?}\nrepetitions = {repetitions}");
+        assert_eq!(limits(&own(2), &own(3)), vec![Some(3); 3000]);
     }
 
     /// If two matrices have a cell, the larger number of repetitions counts. A limit that is not below the profile's

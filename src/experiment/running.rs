@@ -1,6 +1,7 @@
 //! A running sweep: runs cells, checks their rows and appends them.
 
 use super::against::Against;
+use super::cell::Kind;
 use super::drift::Drift;
 use super::records_file::RecordsFile;
 use super::sweep::{Summary, Sweep};
@@ -63,7 +64,7 @@ impl<'a> Running<'a> {
             finished: HashSet::new(),
             by_doubt: HashMap::new(),
             decisions: Decisions::default(),
-            serial: (0..sweep.cells.len()).map(|index| serial_of(&sweep.cells, index)).collect(),
+            serial: serial_runs(&sweep.cells),
             checksums: HashMap::new(),
             drift: Drift::of(&done),
             lowest_seed: sweep.cells.iter().map(|cell| cell.settings.spec.seed).min(),
@@ -203,8 +204,13 @@ impl<'a> Running<'a> {
                 .unwrap_or(0)
         };
         let own: Vec<u32> = cells.iter().map(lacks).collect();
+        let mut kinds: HashMap<Kind<'_>, Vec<(&Cell, u32)>> = HashMap::new();
+        for (cell, lack) in cells.iter().zip(&own).filter(|(_, lack)| **lack > 0) {
+            kinds.entry(cell.kind()).or_default().push((cell, *lack));
+        }
         let of_group = |index: usize| {
-            let compared = cells.iter().zip(&own).filter(|(other, _)| cells[index].is_baseline_of(other));
+            let alike = kinds.get(&cells[index].kind()).into_iter().flatten();
+            let compared = alike.filter(|(other, _)| cells[index].is_baseline_of(other));
             compared.map(|(_, lack)| *lack).chain([own[index]]).max().unwrap_or(0)
         };
         (0..cells.len()).map(|index| (index, of_group(index))).filter(|(_, lack)| *lack > 0).collect()
@@ -222,15 +228,20 @@ impl<'a> Running<'a> {
     }
 }
 
-/// The serial run of a cell's image, with the same decomposition if there is one. `None` for a serial cell.
-fn serial_of(cells: &[Cell], index: usize) -> Option<usize> {
-    let own = &cells[index];
-    if own.is_serial() {
-        return None;
+/// The serial run of each cell's image, with the same decomposition if there is one. `None` for a serial cell.
+fn serial_runs(cells: &[Cell]) -> Vec<Option<usize>> {
+    let mut serial: HashMap<Kind<'_>, Vec<usize>> = HashMap::new();
+    for (index, cell) in cells.iter().enumerate().filter(|(_, cell)| cell.is_serial()) {
+        serial.entry(cell.kind()).or_default().push(index);
     }
-    let serial = || (0..cells.len()).filter(|other| cells[*other].is_baseline_of(own));
-    let is_on_its_pieces = |other: &usize| cells[*other].settings.decomposition == own.settings.decomposition;
-    serial().find(is_on_its_pieces).or_else(|| serial().next())
+    let run_of = |own: &Cell| {
+        let alike = serial.get(&own.kind()).filter(|_| !own.is_serial())?;
+        let is_on_its_pieces = |other: &usize| cells[*other].settings.decomposition == own.settings.decomposition;
+        let mut baselines = alike.iter().copied().filter(|other| cells[*other].is_baseline_of(own));
+        let first = baselines.next()?;
+        Some(std::iter::once(first).chain(baselines).find(is_on_its_pieces).unwrap_or(first))
+    };
+    cells.iter().map(run_of).collect()
 }
 
 /// Marks a row as failed if its checksum differs from that of earlier rows of its image: a schedule must not change a

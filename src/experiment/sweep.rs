@@ -2,7 +2,7 @@
 
 use super::against::{Against, check_program, folder_against};
 use super::calibration_file::write_calibration;
-use super::cell::trace_file;
+use super::cell::{filtered, trace_file};
 use super::instructions;
 use super::object_pixels::check_object;
 use super::processes::{MESSAGES, write_messages};
@@ -89,7 +89,7 @@ pub struct Sweep<'a> {
 impl<'a> Sweep<'a> {
     /// Checks an experiment and adds its files to `files`, the files of the command.
     pub fn new(definition: &'a Definition, options: &'a Options, files: &mut Files) -> Result<Self> {
-        let cells = filtered(&definition.cells(options.profile)?, options)?;
+        let cells = filtered(&definition.cells(options.profile)?, &options.filters, options.serial_for.is_some())?;
         let mut cells = options.shard.map_or_else(|| Ok(cells.clone()), |shard| shard.cells(cells.clone()))?;
         if options.say_how_often() {
             for cell in &mut cells {
@@ -283,24 +283,6 @@ impl<'a> Sweep<'a> {
             trace: definition.keeps(Keep::Traces).then(trace),
         }
     }
-}
-
-/// The cells that pass all filters, and the serial runs with which their times are compared.
-fn filtered(cells: &[Cell], options: &Options) -> Result<Vec<Cell>> {
-    let mut wanted: Vec<&Cell> = cells.iter().collect();
-    for filter in &options.filters {
-        let matches = wanted.iter().map(|cell| cell.matches(filter)).collect::<Result<Vec<bool>>>()?;
-        let mut matches = matches.into_iter();
-        wanted.retain(|_| matches.next().unwrap_or(false));
-        if wanted.is_empty() {
-            return Err(InputError::new("filter", filter, "leaves no cell to run").into());
-        }
-    }
-    let is_wanted = |cell: &Cell| {
-        let is_baseline = || wanted.iter().any(|other| cell.is_baseline_of(other));
-        wanted.iter().any(|other| other.id == cell.id) || (options.serial_for.is_some() && is_baseline())
-    };
-    Ok(cells.iter().filter(|cell| is_wanted(cell)).cloned().collect())
 }
 
 /// The description of a sweep's rows: this command and this machine.

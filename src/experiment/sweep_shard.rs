@@ -1,8 +1,10 @@
 //! A part of a sweep: `run EXPERIMENT --shard 2/4`.
 
 use super::Cell;
+use super::cell::by_kind;
 use crate::error::{InputError, Result};
 use crate::film::{Shard, ShardCut};
+use std::collections::HashSet;
 use std::fmt;
 
 /// One of `count` parts of the cells of a sweep.
@@ -41,10 +43,13 @@ impl SweepShard {
         }
         let mine: Vec<Cell> =
             divided.into_iter().enumerate().filter(|(index, _)| own(*index)).map(|(_, cell)| cell).collect();
-        let is_mine = |cell: &Cell| mine.iter().any(|own| own.id == cell.id);
-        let is_baseline = |cell: &Cell| baselines.iter().any(|serial| serial.id == cell.id);
-        let is_needed = |cell: &Cell| is_baseline(cell) && mine.iter().any(|own| cell.is_baseline_of(own));
-        Ok(cells.into_iter().filter(|cell| is_mine(cell) || is_needed(cell)).collect())
+        let ids = |cells: &[Cell]| cells.iter().map(|cell| cell.id.clone()).collect::<HashSet<String>>();
+        let (of_mine, of_baselines, kinds) = (ids(&mine), ids(&baselines), by_kind(&mine));
+        let is_needed = |cell: &Cell| {
+            let mut alike = kinds.get(&cell.kind()).into_iter().flatten();
+            of_baselines.contains(&cell.id) && alike.any(|own| cell.is_baseline_of(own))
+        };
+        Ok(cells.into_iter().filter(|cell| of_mine.contains(&cell.id) || is_needed(cell)).collect())
     }
 
     /// The number of this part's repetition `own` among the repetitions of all parts.

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::figures::{FIGURES, blocks};
 use super::results::Results;
-use super::tests::{row, results, words};
+use super::tests::{results, row, words};
 use crate::measure::Record;
 
 /// How many times as long the second image takes as the first.
@@ -26,10 +26,9 @@ const PLAIN: Scales = Scales { all: 1.0, second_size: 1.0, drift: 1.0 };
 fn rows_of(scales: Scales, variants: &[fn(&mut Record)]) -> Vec<Record> {
     let mut rows = Vec::new();
     for (index, (width, factor)) in [(8, 1.0), (16, scales.second_size)].into_iter().enumerate() {
-        for (seed, spp, repetition) in
-            (1..=3u64).flat_map(|seed| [4, 8, 16].map(|spp| (seed, spp))).flat_map(|(seed, spp)| {
-                (0..3u32).map(move |repetition| (seed, spp, repetition))
-            })
+        for (seed, spp, repetition) in (1..=3u64)
+            .flat_map(|seed| [4, 8, 16].map(|spp| (seed, spp)))
+            .flat_map(|(seed, spp)| (0..3u32).map(move |repetition| (seed, spp, repetition)))
         {
             let drift = (0..repetition).fold(1.0, |product, _| product * scales.drift);
             for (place, variant) in variants.iter().enumerate() {
@@ -162,8 +161,7 @@ fn told(results: &Results) -> Vec<String> {
 /// The numbers that do not change if all times get longer: ratios of times, and numbers that are no times.
 fn dimensionless(figure: &str, scales: Scales) -> Vec<String> {
     let variants = variants(figure);
-    let [own, longer] =
-        [1.0, 1024.0].map(|all| told(&of(figure, rows_of(Scales { all, ..scales }, &variants))));
+    let [own, longer] = [1.0, 1024.0].map(|all| told(&of(figure, rows_of(Scales { all, ..scales }, &variants))));
     assert_eq!(own.len(), longer.len(), "{figure}: longer times change the number of words");
     let same = own.into_iter().zip(longer).filter(|(a, b)| a == b).map(|(word, _)| word);
     // A rate that rounds to zero does not change either.
@@ -279,7 +277,39 @@ fn no_figure_ranks_a_cell_with_fewer_repetitions() {
     let openmp = sentence("openmp", "", against);
     assert!(openmp.contains("strategies is late: 2.000 times"), "{openmp}");
     let baselines = sentence("baselines", "", drifting());
-    assert!(baselines.contains("late on 2 threads, effects smallpt over serial, effects all: 1.25 times"), "{baselines}");
+    assert!(
+        baselines.contains("late on 2 threads, effects smallpt over serial, effects all: 1.25 times"),
+        "{baselines}"
+    );
     assert!(!baselines.contains("early"), "{baselines}");
     assert_eq!(sentence("granularity", "", plain()), "");
+}
+
+/// Times of two images have no common order: the typical run is one of the image with the most runs.
+#[test]
+fn the_typical_run_is_of_one_image() {
+    let times = [(8, 1.0), (8, 2.0), (8, 3.0), (16, 100.0), (16, 200.0)];
+    let rows = (0..).zip(times).map(|(repetition, (width, seconds))| Record {
+        repetition,
+        width,
+        makespan_s: Some(seconds),
+        ..row()
+    });
+    let results = results(&["schedules"], "", rows.collect()).unwrap();
+    let all: Vec<_> = results.rows().collect();
+    assert_eq!(Results::typical(&all).and_then(|row| row.makespan_s), Some(2.0));
+}
+
+/// A case that a search through all schedules for each schedule would hardly finish.
+#[test]
+fn many_strategies_are_compared() {
+    let mut rows = Vec::new();
+    for (repetition, index) in (0..2).flat_map(|repetition| (0..6000).map(move |index| (repetition, index))) {
+        let own = Record { repetition, makespan_s: Some(1.0), ..row() };
+        let parallel = |own| Record { strategy: format!("pool-{index}"), threads: 2, ..own };
+        rows.push(if index == 0 { own } else { parallel(own) });
+    }
+    let found = blocks(&results(&["speedup"], "", rows).unwrap()).unwrap();
+    let table = found.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None });
+    assert_eq!(table.unwrap().len(), 5999);
 }

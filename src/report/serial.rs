@@ -1,6 +1,6 @@
 //! Schedules paired with the serial runs of the same image in the same repetition.
 
-use super::paired::{Partners, Pairs, Ratio, Repeats, estimates, in_common, medians};
+use super::paired::{Pairs, Partners, Ratio, Repeats, estimates, in_common, medians};
 use super::results::Results;
 use super::rows::{Row, gathered};
 use super::schedule::Schedule;

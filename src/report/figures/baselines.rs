@@ -44,8 +44,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
         }
     }
     let all = estimates(cells, results.stopping()).into_iter();
-    let mut all: Vec<Against<'_>> =
-        all.map(|((own, baseline), speedup)| Against { own, baseline, speedup }).collect();
+    let mut all: Vec<Against<'_>> = all.map(|((own, baseline), speedup)| Against { own, baseline, speedup }).collect();
     all.sort_by(|a, b| a.speedup.falling(&b.speedup));
     let dots = all.iter().map(|a| PlotRow::new(a.name(), vec![Some(Told::from(a.speedup).dot())])).collect();
     let mut plot =
@@ -83,7 +82,8 @@ fn finding(all: &[Against<'_>]) -> Option<Block> {
 }
 
 fn table(all: &[Against<'_>]) -> Block {
-    let fraction = |against: &&Against<'_>| serial_fraction_within(&against.speedup.estimate(), against.workers()).map(Told::from);
+    let fraction =
+        |against: &&Against<'_>| serial_fraction_within(&against.speedup.estimate(), against.workers()).map(Told::from);
     Block::table("baselines", "Speedup and Karp-Flatt fraction by baseline", all)
         .column("schedule", |against| told_kind(against.own))
         .column("baseline", |against| told_kind(against.baseline))

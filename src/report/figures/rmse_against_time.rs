@@ -54,11 +54,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let places = places.map(|((key, setting, spp, mse), seconds)| Place { key, setting, spp, seconds, mse });
     let places = places.filter(|place| place.mse > 0.0);
     let places: Vec<Place<'_>> = places.collect();
-    let lines = gathered(
-        places
-            .iter()
-            .map(|place| (&place.key, place.point())),
-    );
+    let lines = gathered(places.iter().map(|place| (&place.key, place.point())));
     let colour = |key: &Key<'_>| format!("{}{}", key.0, key.1.name);
     let mut colours: Vec<String> = lines.keys().map(|key| colour(key)).collect();
     colours.dedup();

@@ -107,7 +107,7 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
 
 /// The image without its seed.
 fn kind(row: &Row) -> ImageKey {
-    ImageKey { seed: 0, ..row.image.clone() }
+    row.image.without_seed()
 }
 
 /// Clears the scene, and what a scene decides.
@@ -142,8 +142,9 @@ fn chart(results: &Results, scenes: &[Accuracy]) -> LineChart {
 /// The rank correlation over different scenes. Leaves out the two variants of the control, which would count one scene
 /// three times.
 fn claim(scenes: &[Accuracy], control: Option<&Control>) -> Option<Block> {
-    let is_variant =
-        |scene: &&Accuracy| control.is_some_and(|control| [&control.diffuse, &control.mirrors].contains(&&scene.image.scene));
+    let is_variant = |scene: &&Accuracy| {
+        control.is_some_and(|control| [&control.diffuse, &control.mirrors].contains(&&scene.image.scene))
+    };
     let others = gathered(scenes.iter().filter(|scene| !is_variant(scene)).map(|scene| (setting(scene), scene)));
     let others = others.into_values().rev().max_by_key(Vec::len)?;
     let pairs: Vec<(f64, f64)> = others.iter().map(|scene| (scene.rays, scene.error.value)).collect();
@@ -173,9 +174,7 @@ fn error_ratio(above: &Accuracy, below: &Accuracy) -> Option<Estimate> {
 
 fn controlled(scenes: &[Accuracy], control: &Control) -> Option<Block> {
     let diffuse = scenes.iter().find(|scene| scene.image.scene == control.diffuse)?;
-    let of = |name: &str| {
-        scenes.iter().find(|scene| scene.image.scene == name && setting(scene) == setting(diffuse))
-    };
+    let of = |name: &str| scenes.iter().find(|scene| scene.image.scene == name && setting(scene) == setting(diffuse));
     let (own, mirrors) = (of(&control.glass)?, of(&control.mirrors)?);
     let (glass, mirror) = (error_ratio(own, diffuse)?, error_ratio(mirrors, diffuse)?);
     let ratio = |found: &Estimate| {
