@@ -228,6 +228,15 @@ mod tests {
         definition.cells(Profile::Quick).unwrap().into_iter().map(|cell| cell.at_most).collect()
     }
 
+    /// A case that a search through all cells for each cell would slow down: two matrices with the same thousands of
+    /// cells give each of them once.
+    #[test]
+    fn cells_of_two_large_matrices_are_found_again() {
+        let seeds: Vec<u32> = (0..3000).collect();
+        let own = |repetitions: u32| format!("seed = {seeds:?}\nrepetitions = {repetitions}");
+        assert_eq!(limits(&own(2), &own(3)), vec![Some(3); 3000]);
+    }
+
     /// If two matrices have a cell, the larger number of repetitions counts. A limit that is not below the profile's
     /// repetitions is none.
     #[test]

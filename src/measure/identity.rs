@@ -56,6 +56,14 @@ pub struct ImageKey {
     pub adaptive: bool,
 }
 
+impl ImageKey {
+    /// The key that the images of all seeds share.
+    #[must_use]
+    pub fn without_seed(&self) -> Self {
+        Self { seed: 0, ..self.clone() }
+    }
+}
+
 /// One word without spaces, equal only for equal keys.
 impl fmt::Display for ImageKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -9,6 +9,7 @@ use super::marker;
 use super::number::{between, short};
 use super::overlay::{Overlay, OverlayKind, inside};
 use super::style::{Colour, DASHES, Dash, LINE, Look, MUTED, TEXT_SIZE};
+use std::collections::HashMap;
 
 /// Width of a fitted line: thinner than the data it belongs to.
 const FIT_LINE: f64 = 1.5;
@@ -167,9 +168,9 @@ impl LineChart {
     /// For each series the index of the first one with the same points. The later one would hide it, so both are drawn
     /// as one.
     fn first_alike(&self) -> Vec<usize> {
+        let mut known = HashMap::new();
         let first = |(index, series): (usize, &Series)| {
-            let alike = |other: &Series| !series.points.is_empty() && other.points == series.points;
-            self.series[..index].iter().position(alike).unwrap_or(index)
+            if series.points.is_empty() { index } else { *known.entry(format!("{:?}", series.points)).or_insert(index) }
         };
         self.series.iter().enumerate().map(first).collect()
     }

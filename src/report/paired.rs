@@ -43,6 +43,18 @@ pub(super) fn identified<K: Ord, T: Copy>(
     Ok(found)
 }
 
+/// Ratios of a value between items of two lists that share a key. The key identifies the items of the second list.
+pub(super) fn ratios_by<K: Ord, T: Copy>(
+    above: impl IntoIterator<Item = (K, T)>,
+    below: impl IntoIterator<Item = (K, T)>,
+    of_two: impl Fn(T, T) -> InputError,
+    value: impl Fn(T) -> Option<f64>,
+) -> Result<Vec<f64>> {
+    let below = identified(below, of_two)?;
+    let ratio = |(key, item): (K, T)| Some(value(item)? / value(*below.get(&key)?)?);
+    Ok(above.into_iter().filter_map(ratio).collect())
+}
+
 /// Rows to compare others with, by what a pair shares.
 pub(super) struct Partners<'a> {
     forget: Forget,
@@ -186,7 +198,7 @@ impl Repeats {
 
     /// The images, without their seeds: values of other images are not compared with these.
     fn images(&self) -> BTreeSet<ImageKey> {
-        self.0.keys().map(|(image, ..)| ImageKey { seed: 0, ..image.clone() }).collect()
+        self.0.keys().map(|(image, ..)| image.without_seed()).collect()
     }
 
     fn places(&self) -> BTreeSet<(&ImageKey, u32)> {
@@ -267,9 +279,15 @@ pub(super) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping
         let places: Vec<_> = indices.iter().map(|index| cells[*index].1.places()).collect();
         let mut kinds: BTreeMap<&BTreeSet<_>, usize> = BTreeMap::new();
         places.iter().for_each(|own| *kinds.entry(own).or_default() += 1);
+        // Only cells that have a place of the block can have all of them.
+        let mut having: BTreeMap<_, Vec<_>> = BTreeMap::new();
+        for (own, count) in &kinds {
+            own.iter().for_each(|place| having.entry(place).or_default().push((*own, *count)));
+        }
         let size = |block: &BTreeSet<_>| {
-            let whole = kinds.iter().filter(|(own, _)| block.is_subset(own)).map(|(_, count)| count).sum::<usize>();
-            (whole * block.len(), block.len())
+            let others = block.iter().filter_map(|place| having.get(place)).min_by_key(|others| others.len());
+            let whole = others.into_iter().flatten().filter(|(own, _)| block.is_subset(own));
+            (whole.map(|(_, count)| count).sum::<usize>() * block.len(), block.len())
         };
         let Some(block) = kinds.keys().copied().max_by_key(|block| size(block)) else { continue };
         for (index, own) in indices.iter().zip(&places) {

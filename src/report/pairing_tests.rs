@@ -284,3 +284,32 @@ fn no_figure_ranks_a_cell_with_fewer_repetitions() {
     assert!(!baselines.contains("early"), "{baselines}");
     assert_eq!(sentence("granularity", "", plain()), "");
 }
+
+/// Times of two images have no common order: the typical run is one of the image with the most runs.
+#[test]
+fn the_typical_run_is_of_one_image() {
+    let times = [(8, 1.0), (8, 2.0), (8, 3.0), (16, 100.0), (16, 200.0)];
+    let rows = (0..).zip(times).map(|(repetition, (width, seconds))| Record {
+        repetition,
+        width,
+        makespan_s: Some(seconds),
+        ..row()
+    });
+    let results = results(&["schedules"], "", rows.collect()).unwrap();
+    let all: Vec<_> = results.rows().collect();
+    assert_eq!(Results::typical(&all).and_then(|row| row.makespan_s), Some(2.0));
+}
+
+/// A case that a search through all schedules for each schedule would hardly finish.
+#[test]
+fn many_strategies_are_compared() {
+    let mut rows = Vec::new();
+    for (repetition, index) in (0..2).flat_map(|repetition| (0..6000).map(move |index| (repetition, index))) {
+        let own = Record { repetition, makespan_s: Some(1.0), ..row() };
+        let parallel = |own| Record { strategy: format!("pool-{index}"), threads: 2, ..own };
+        rows.push(if index == 0 { own } else { parallel(own) });
+    }
+    let found = blocks(&results(&["speedup"], "", rows).unwrap()).unwrap();
+    let table = found.iter().find_map(|block| if let Block::Table { table, .. } = block { Some(table) } else { None });
+    assert_eq!(table.unwrap().len(), 5999);
+}

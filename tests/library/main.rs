@@ -18,6 +18,7 @@ mod image_notes;
 mod lanes;
 mod layering;
 mod metric;
+mod pairing;
 mod peer;
 mod png_chunks;
 mod properties;

@@ -44,3 +44,31 @@ fn scene_files_of_the_same_name_are_different_cells() {
     assert_ne!(cells[0].points[0].image, cells[1].points[0].image);
     assert_ne!(cells[0].points[0].image_file(), cells[1].points[0].image_file());
 }
+
+/// `without` leaves out thousands of objects of a base, and refuses a name that is not, or no longer, there.
+#[test]
+fn many_objects_of_a_base_are_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let object = |index: usize| {
+        let shape = format!("shape = {{ sphere = {{ center = [{index}.0, 0.0, 0.0], radius = 0.25 }} }}");
+        format!(
+            "[[objects]]\nname = \"ball {index}\"\n{shape}\nmaterial = {{ diffuse = {{ albedo = [0.5, 0.5, 0.5] }} }}\n"
+        )
+    };
+    let base = (0..3000).map(object).collect::<String>();
+    let camera =
+        "[camera.smallpt]\nposition = [0.0, 0.0, 9.0]\ndirection = [0.0, 0.0, -1.0]\nfield = 0.5\nadvance = 0.0\n";
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("base.toml"), format!("about = \"balls\"\n{camera}{base}")).unwrap();
+    let load = |names: Vec<String>| {
+        std::fs::write(path("few.toml"), format!("about = \"few\"\nbase = \"base.toml\"\nwithout = {names:?}\n"))
+            .unwrap();
+        pathmark::scene::load(&path("few.toml").display().to_string())
+    };
+    let left_out: Vec<String> = (1..3000).map(|index| format!("ball {index}")).collect();
+    assert_eq!(load(left_out).unwrap().objects.len(), 1);
+    for names in [["ball 1", "ball 1"], ["ball 1", "ball 3000"]] {
+        let told = load(names.map(str::to_string).to_vec()).unwrap_err().to_string();
+        assert!(told.contains("without") && told.contains("the base has no object of that name"), "{told}");
+    }
+}

@@ -16,6 +16,7 @@ use crate::error::{InputError, Result};
 use crate::experiment::read_calibration;
 use crate::measure::{image_columns, schedule_columns};
 use crate::report::contenders::{curves_of_seeds, one_per_seed};
+use crate::report::paired::ratios_by;
 use crate::report::results::Results;
 use crate::report::rows::Row;
 use crate::simulate::{Contender, Hardware, contenders, forecast};
@@ -135,18 +136,15 @@ impl Evidence {
         let key = |row: &Row, columns: &Columns| {
             (identity.iter().map(|column| text(columns, column)).collect::<Vec<String>>(), row.repetition)
         };
-        let mut below = HashMap::new();
-        for (row, columns) in self.rows(over) {
-            if let Some(other) = below.insert(key(row, columns), (row, columns)) {
-                let problem = format!("cannot be told from {} by the claim that compares with it", other.0.cell);
-                return Err(InputError::new("cell", &row.cell, problem).into());
-            }
-        }
-        let ratio = |(row, columns): &Pair<'_>| {
-            let (_, other) = below.get(&key(row, columns))?;
-            Some(number(columns, column)? / number(other, column)?).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+        let of_two = |(row, _): Pair<'_>, (other, _): Pair<'_>| {
+            let problem = format!("cannot be told from {} by the claim that compares with it", other.cell);
+            InputError::new("cell", &row.cell, problem)
         };
-        Ok(rows.iter().filter_map(ratio).collect())
+        let keyed = |pair: &Pair<'_>| key(pair.0, pair.1);
+        let (above, below) = (rows.iter().map(|pair| (keyed(pair), *pair)), self.rows(over));
+        let below = below.into_iter().map(|pair| (keyed(&pair), pair));
+        let ratios = ratios_by(above, below, of_two, |(_, columns)| number(columns, column))?;
+        Ok(ratios.into_iter().filter(|ratio| ratio.is_finite() && *ratio > 0.0).collect())
     }
 
     /// The statistic of simulated schedules, from the traced jobs of serial rows.

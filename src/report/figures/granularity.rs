@@ -15,7 +15,7 @@ pub(super) struct Options {
 /// The serial runs, and the seconds of their jobs.
 struct Baseline<'a> {
     serial: Serial<'a>,
-    per_job: BTreeMap<(&'a ImageKey, &'a str), f64>,
+    per_job: BTreeMap<(ImageKey, &'a str), f64>,
     processors: usize,
 }
 
@@ -23,7 +23,7 @@ impl<'a> Baseline<'a> {
     fn of(results: &'a Results) -> Result<Self> {
         let serial = results.rows().filter(|row| row.schedule.is_serial());
         let jobs = serial.filter_map(|row| {
-            let key = (&row.image, row.decomposition.as_str());
+            let key = (row.image.without_seed(), row.decomposition.as_str());
             Some((key, row.busy_sum_s? / row.jobs as f64))
         });
         let per_job = gathered(jobs).into_iter().filter_map(|(key, times)| Some((key, median(&times)?))).collect();
@@ -53,7 +53,8 @@ impl<'a> Baseline<'a> {
 
 pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let baseline = Baseline::of(results)?;
-    let cells = results.by(|row| (&row.schedule, &row.image)).into_iter().filter_map(|((schedule, image), rows)| {
+    let cells = results.by(|row| (&row.schedule, row.image.without_seed()));
+    let cells = cells.into_iter().filter_map(|((schedule, image), rows)| {
         let job_s = *baseline.per_job.get(&(image, schedule.key.decomposition.as_str()))?;
         Some(((name(results, rows[0]), job_s), baseline.efficiency(&rows)))
     });

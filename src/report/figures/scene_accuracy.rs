@@ -107,7 +107,7 @@ fn accuracies(results: &Results) -> Result<Vec<Accuracy>> {
 
 /// The image without its seed.
 fn kind(row: &Row) -> ImageKey {
-    ImageKey { seed: 0, ..row.image.clone() }
+    row.image.without_seed()
 }
 
 /// Clears the scene, and what a scene decides.

@@ -34,7 +34,7 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let asked = results.rows().filter(|row| row.threads != row.jobs).map(|row| row.threads).collect();
     let all = serial.speedups();
     let images = |schedule: &Schedule| -> BTreeSet<ImageKey> {
-        serial.rows(schedule).iter().map(|row| ImageKey { seed: 0, ..row.image.clone() }).collect()
+        serial.rows(schedule).iter().map(|row| row.image.without_seed()).collect()
     };
     let images: BTreeMap<_, _> = all.iter().map(|(schedule, _)| (*schedule, images(schedule))).collect();
     let peers = gathered(images.iter().map(|(schedule, own)| (own, schedule))).into_iter();

@@ -34,7 +34,7 @@ use crate::material::Material;
 use crate::math::Rgb;
 use crate::scene::camera::CameraFile;
 use serde::{Deserialize, Deserializer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::rc::Rc;
 
@@ -240,14 +240,15 @@ fn draft(source: &Rc<Source>, depth: usize, own: &[OwnScene]) -> Result<(Draft, 
     draft.fog = file.fog.or(draft.fog);
     draft.point_lights = file.point_lights.unwrap_or(draft.point_lights);
     draft.generator = file.generator.or(draft.generator);
+    let mut kept: BTreeSet<&str> = draft.parts.iter().map(|part| part.name.as_str()).collect();
     for name in &file.without {
-        let before = draft.parts.len();
-        draft.parts.retain(|part| part.name != *name);
-        if draft.parts.len() == before {
+        if !kept.remove(name.as_str()) {
             let error = InputError::new("without", name, "the base has no object of that name");
             return Err(error.in_file(&source.file, locate(&source.text, "without", name)).into());
         }
     }
+    let left_out: BTreeSet<&str> = file.without.iter().map(String::as_str).collect();
+    draft.parts.retain(|part| !left_out.contains(part.name.as_str()));
     let inherited = draft.parts.len();
     let mut names: BTreeMap<String, usize> =
         draft.parts.iter().enumerate().map(|(index, part)| (part.name.clone(), index)).collect();
