@@ -154,7 +154,7 @@ impl DotPlot {
                 }
                 marker::draw(drawing, (x(place), y), look.marker, look.colour);
                 if dot.hollow {
-                    marker::hollow(drawing, (x(place), y));
+                    marker::hollow(drawing, (x(place), y), look.marker);
                 }
             });
             drawing.note(note(row, name, dot, (x(place), y)));

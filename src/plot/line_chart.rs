@@ -233,7 +233,7 @@ impl LineChart {
             let Some(at) = spot else { continue };
             marker::draw(drawing, at, series.look.marker, series.look.colour);
             if point.hollow {
-                marker::hollow(drawing, at);
+                marker::hollow(drawing, at, series.look.marker);
             }
             for alike in self.alike(first_alike, index) {
                 drawing.note(self.note(alike, point, at));

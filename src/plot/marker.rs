@@ -22,23 +22,39 @@ pub(super) fn draw(drawing: &mut Drawing, at: Place, marker: Marker, colour: Col
         }
         Marker::Plus => cross(drawing, at, colour, &[((-1.0, 0.0), (1.0, 0.0)), ((0.0, -1.0), (0.0, 1.0))]),
         Marker::Cross => cross(drawing, at, colour, &[((-0.8, -0.8), (0.8, 0.8)), ((-0.8, 0.8), (0.8, -0.8))]),
-        Marker::Square => filled(drawing, at, colour, &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
-        Marker::Diamond => filled(drawing, at, colour, &[(0.0, -1.25), (1.25, 0.0), (0.0, 1.25), (-1.25, 0.0)]),
-        Marker::Triangle => filled(drawing, at, colour, &[(0.0, -1.2), (1.15, 0.85), (-1.15, 0.85)]),
-        Marker::Nabla => filled(drawing, at, colour, &[(0.0, 1.2), (-1.15, -0.85), (1.15, -0.85)]),
+        Marker::Square => filled(drawing, at, colour, &SQUARE),
+        Marker::Diamond => filled(drawing, at, colour, &DIAMOND),
+        Marker::Triangle => filled(drawing, at, colour, &TRIANGLE),
+        Marker::Nabla => filled(drawing, at, colour, &NABLA),
     }
 }
 
-/// Empties the middle of a marker. Where it has strokes instead of an area, or an empty middle already, the paper covers
-/// all but the ends.
-pub(super) fn hollow(drawing: &mut Drawing, at: Place) {
-    drawing.disc(at, RADIUS - 1.5, PAPER);
+/// Corners of the filled markers, in radii.
+const SQUARE: [Place; 4] = [(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)];
+const DIAMOND: [Place; 4] = [(0.0, -1.25), (1.25, 0.0), (0.0, 1.25), (-1.25, 0.0)];
+const TRIANGLE: [Place; 3] = [(0.0, -1.2), (1.15, 0.85), (-1.15, 0.85)];
+const NABLA: [Place; 3] = [(0.0, 1.2), (-1.15, -0.85), (1.15, -0.85)];
+
+/// Empties the middle of a marker.
+pub(super) fn hollow(drawing: &mut Drawing, at: Place, marker: Marker) {
+    let mut empty = |corners: &[Place]| drawing.area(corners_at(at, corners, 0.5 * RADIUS), PAPER, 1.0);
+    match marker {
+        Marker::Square => empty(&SQUARE),
+        Marker::Diamond => empty(&DIAMOND),
+        Marker::Triangle => empty(&TRIANGLE),
+        Marker::Nabla => empty(&NABLA),
+        // Of a cross only the ends remain, of a ring a thin line.
+        Marker::Disc | Marker::Plus | Marker::Cross | Marker::Ring => drawing.disc(at, RADIUS - 1.5, PAPER),
+    }
+}
+
+fn corners_at(at: Place, corners: &[Place], radius: f64) -> Vec<Place> {
+    corners.iter().map(|c| (at.0 + radius * c.0, at.1 + radius * c.1)).collect()
 }
 
 fn filled(drawing: &mut Drawing, at: Place, colour: Colour, corners: &[Place]) {
-    let outline = |radius: f64| corners.iter().map(|c| (at.0 + radius * c.0, at.1 + radius * c.1)).collect();
-    drawing.area(outline(RADIUS + 1.3), PAPER, 1.0);
-    drawing.area(outline(RADIUS), colour, 1.0);
+    drawing.area(corners_at(at, corners, RADIUS + 1.3), PAPER, 1.0);
+    drawing.area(corners_at(at, corners, RADIUS), colour, 1.0);
 }
 
 fn cross(drawing: &mut Drawing, at: Place, colour: Colour, arms: &[(Place, Place)]) {

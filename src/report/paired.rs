@@ -278,7 +278,9 @@ pub(super) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping
     for indices in peers.into_values() {
         let places: Vec<_> = indices.iter().map(|index| cells[*index].1.places()).collect();
         let mut kinds: BTreeMap<&BTreeSet<_>, usize> = BTreeMap::new();
-        places.iter().for_each(|own| *kinds.entry(own).or_default() += 1);
+        for own in &places {
+            *kinds.entry(own).or_default() += 1;
+        }
         // Only cells that have a place of the block can have all of them.
         let mut having: BTreeMap<_, Vec<_>> = BTreeMap::new();
         for (own, count) in &kinds {

@@ -32,7 +32,7 @@ fn rows_of(scales: Scales, variants: &[fn(&mut Record)]) -> Vec<Record> {
         {
             let drift = (0..repetition).fold(1.0, |product, _| product * scales.drift);
             for (place, variant) in variants.iter().enumerate() {
-                let mut own = Record { width, seed, spp, repetition, ..row() };
+                let mut own = Record { width, spp, seed, repetition, ..row() };
                 variant(&mut own);
                 // Times per sample differ by variant, seed and size, and a little by the number of samples.
                 let uneven = 0.3 * place as f64 + 0.01 * seed as f64 + 0.02 * index as f64 + 0.07 * f64::from(spp % 7);

@@ -26,12 +26,12 @@ pub(super) struct Serial<'a> {
 /// A line of a chart: the threads of its points, and the speedups of each.
 pub(super) type Line = Vec<(usize, Vec<f64>)>;
 
-/// What a row shares with the serial run on the same pieces.
+/// Keeps the properties that a row shares with the serial run on the same pieces.
 pub(super) fn with_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     schedule.forget_workers();
 }
 
-/// What a row shares with all serial runs of its image.
+/// Keeps the properties that a row shares with all serial runs of its image.
 pub(super) fn without_pieces(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     schedule.forget_workers();
     schedule.decomposition.clear();

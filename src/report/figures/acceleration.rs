@@ -53,7 +53,7 @@ fn ns_per_ray(row: &Row) -> Option<f64> {
     Some(row.makespan_s? * 1e9 / row.rays? as f64)
 }
 
-/// What rows with and without a hierarchy share.
+/// Clears the properties in which rows with and without a hierarchy differ.
 fn any_accelerator(_: &mut ImageKey, schedule: &mut ScheduleKey) {
     schedule.accelerator.clear();
     schedule.effects.clear();

@@ -55,7 +55,7 @@ struct Times {
     rays: Option<f64>,
 }
 
-/// What rows with and without an effect share: the setting, but neither the scene nor what is chosen to fit it.
+/// Keeps the setting, but neither the scene nor the choices that fit it, so that rows with and without an effect pair.
 fn setting(image: &mut ImageKey, schedule: &mut ScheduleKey) {
     image.scene.clear();
     image.scene_hash.clear();

@@ -30,7 +30,7 @@ struct Line<'a> {
     ratio: Option<Ratio>,
 }
 
-/// What rows of different kernels and precisions share.
+/// Clears the properties in which rows of different kernels and precisions differ.
 pub(super) fn any_kernel(image: &mut ImageKey, schedule: &mut ScheduleKey) {
     image.precision.clear();
     schedule.forget_kernel();

@@ -15,7 +15,7 @@ pub(super) fn table(results: &Results, laws: &[Law], stem: &'static str) -> Resu
     let fits = lines.iter().flat_map(|(name, points)| laws.iter().map(move |law| (name, law, in_words(*law, points))));
     let title = format!("Laws of speedup, up to {processors} threads on {processors} processors");
     Ok(Block::table(stem, title, fits)
-        .column("strategy", |(strategy, ..)| (*strategy).to_string())
+        .column("strategy", |(strategy, ..)| (*strategy).clone())
         .column("law", |(_, law, _)| law.to_string())
         .column("parameters, interval (confidence)", |(.., [parameters, _])| parameters.clone())
         .column("does it describe the points?", |(.., [_, verdict])| verdict.clone())

@@ -155,10 +155,11 @@ impl Speedups<'_> {
             let place = threads.iter().position(|threads| *threads == schedule.key.threads).unwrap_or(threads.len());
             dots[place] = Some(Told::from(*speedup).times(value(1.0, schedule.key.threads)));
         }
-        // Sorted by the value at the most threads, because readers look for it first.
+        // Sorted by the value at the most threads, because readers look for it first. Partial values are not ranked.
         let at_most = |dots: &[Option<Told>]| {
-            let last = dots.iter().flatten().next_back();
-            last.map(|told| (told.is_partial, -told.value)).unwrap_or_default()
+            let mut all = dots.iter().flatten();
+            let ranked = all.clone().rfind(|told| !told.is_partial);
+            ranked.or_else(|| all.next_back()).map(|told| (told.is_partial, -told.value)).unwrap_or_default()
         };
         let mut rows: Vec<_> = rows.into_iter().collect();
         rows.sort_by(|((a, _), first), ((b, _), second)| {
