@@ -54,7 +54,7 @@ fn among_others(random: &mut Random, height: f64) -> Primitives {
     }));
     // Spheres at the ends of slivers: a distance that is off by the sliver's length would come before a nearer hit.
     let ends = triangles[..24].iter().flat_map(|triangle| triangle.corners);
-    let spheres = ends.map(|center| Sphere { center, radius: random.scale(-5.0, -2.0) }).collect();
+    let spheres = ends.map(|center| Sphere { center, radius: random.scale(-4.0, -2.0) }).collect();
     Primitives { spheres, triangles, ..Primitives::default() }
 }
 
