@@ -2,6 +2,7 @@
 
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
+use pathmark::measure::SCHEMA;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -188,7 +189,7 @@ fn a_refused_merge_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     two_parts(folder.path());
     let damages: [(&str, Damage, &str); 4] = [
-        ("b/tiny/records.csv", |text| text.replacen("\n9,", "\nx,", 1), "records.csv:2:"),
+        ("b/tiny/records.csv", |text| text.replacen(&format!("\n{SCHEMA},"), "\nx,", 1), "records.csv:2:"),
         ("b/tiny/records.csv", |text| text[..text.len() - 5].to_string(), "half written"),
         ("a/tiny/experiment.toml", |text| text.replace("[matrix]", "[matr"), "experiment.toml"),
         ("b/tiny/records.csv", renumbered, "repetition = 4294967295"),
