@@ -43,7 +43,7 @@ use way::Way;
 
 /// Version of the arithmetic. It changes when the same settings produce different bits; films of older versions are
 /// then no longer used.
-pub const REVISION: u32 = 2;
+pub const REVISION: u32 = 3;
 
 /// Counts of the events while a piece was rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
