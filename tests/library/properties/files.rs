@@ -108,7 +108,7 @@ proptest! {
         let row = |(repetition, (words, others, a, b, seed, rays))| {
             let (experiment, cell, scene, warnings) = (others, words, "\"".to_string(), ",".to_string());
             // A makespan is above 0; other numbers may have either sign.
-            let (makespan_s, rmse) = (Some(a.abs()).filter(|seconds| *seconds > 0.0), b);
+            let (makespan_s, rmse) = (Some(f64::abs(a)).filter(|seconds| *seconds > 0.0), b);
             Record { schema: SCHEMA, experiment, cell, scene, warnings, makespan_s, rmse, seed, rays, repetition, ..Record::default() }
         };
         let rows: Vec<Record> = (0..).zip(rows).map(row).collect();
