@@ -226,8 +226,8 @@ fn a_nan_is_never_hidden() {
     for entry in METRICS {
         for (a, b) in [(&test, &reference), (&reference, &test)] {
             let found = entry.compute(a, b).unwrap();
-            // One pixel of 144 is above the 90 % percentile, and its error is the largest one; the others are equal.
-            if ["error-50", "error-90"].contains(&entry.name) {
+            // One pixel of 144 has the largest error. The others, 99.3 % of them, are equal.
+            if ["error-50", "error-90", "error-99"].contains(&entry.name) {
                 assert_eq!(found, 0.0, "{}", entry.name);
             } else {
                 assert!(found.is_nan(), "{}", entry.name);

@@ -116,7 +116,7 @@ fn a_pixel_that_is_no_colour_is_named() {
         if arguments.len() == 2 {
             let percentile = finished.out.lines().find(|line| line.starts_with("error-50")).unwrap();
             // Of the other pixels, which are equal.
-            assert_eq!(percentile.split_whitespace().nth(1), Some("0"), "{percentile}");
+            assert_eq!(percentile.split_whitespace().nth(1), Some("0.000000"), "{percentile}");
         }
     }
 }
