@@ -102,14 +102,11 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
     let _lock = lock_folder(&arguments.out, Sharing::Shared)?;
     let summary = sweep.run(talk)?;
     let page = report::write(lab, &arguments.out);
-    // Failed rows are reported before a page that could not be written.
-    if summary.failed > 0 {
-        tell_left_out(&summary.left_out, talk);
-    }
-    check_failures(summary.rows + summary.other_rows, summary.failed, summary.timed_out)?;
-    arguments.strict.check(summary.invalid)?;
     talk_of(&summary.doubts, talk);
     tell_left_out(&summary.left_out, talk);
+    // Failed rows are reported before a page that could not be written.
+    check_failures(summary.rows + summary.other_rows, summary.failed, summary.timed_out)?;
+    arguments.strict.check(summary.invalid)?;
     if arguments.against.is_some() {
         let old = folder_against(&arguments.out, &definition.name);
         let [old, new] = [&old, &summary.folder].map(|folder| folder.display().to_string());

@@ -8,7 +8,9 @@ use crate::error::{Error, InputError, Result};
 use crate::experiment::{MESSAGES, Progress, read_calibration};
 use crate::files::{Files, create_folder};
 use crate::lab::Lab;
-use crate::measure::{Doubts, ForeignLoad, SERIAL, Settings, Setup, TraceFile, available_threads, calibrate};
+use crate::measure::{
+    CalibrationRow, Doubts, ForeignLoad, SERIAL, Settings, Setup, TraceFile, available_threads, calibrate,
+};
 use crate::report::rank_forecasts::{self, RankPlan};
 use crate::report::{Block, Results, forecasts, save};
 use crate::simulate::{
@@ -106,19 +108,7 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         files.claims("out", &arguments.out.join(name))?;
     }
     create_folder("out", &arguments.out)?;
-    // Overheads calibrated with the trace explain it better than those of this machine now.
-    let calibrated = arguments.trace.join("calibration.csv");
-    let rows = if calibrated.is_file() && arguments.strategies.is_empty() {
-        read_calibration(&calibrated)?
-    } else {
-        talk.note("calibrating: every strategy hands out empty jobs");
-        let load = ForeignLoad::begin();
-        let rows = calibrate(lab, &names)?;
-        if let Some(warning) = load.warning() {
-            talk.note(&warning);
-        }
-        rows
-    };
+    let rows = overheads(arguments, lab, &names, talk)?;
     let mut contenders = contenders(lab, &rows);
 
     if !arguments.no_check {
@@ -163,6 +153,21 @@ pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<
         save(block, &arguments.out)?;
     }
     print(&format!("figures and {table} in {}", arguments.out.display()))
+}
+
+/// The costs of handing out jobs: those calibrated with the trace explain it better than those of this machine now.
+fn overheads(arguments: &Arguments, lab: &Lab, names: &[String], talk: &Talk) -> Result<Vec<CalibrationRow>> {
+    let calibrated = arguments.trace.join("calibration.csv");
+    if calibrated.is_file() && arguments.strategies.is_empty() {
+        return read_calibration(&calibrated);
+    }
+    talk.note("calibrating: every strategy hands out empty jobs");
+    let load = ForeignLoad::begin();
+    let rows = calibrate(lab, names)?;
+    if let Some(warning) = load.warning() {
+        talk.note(&warning);
+    }
+    Ok(rows)
 }
 
 /// The costs of messages from the user's file, or from the folder; none without either.

@@ -14,7 +14,7 @@ use crate::measure::Record;
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::Duration;
 
 /// The folder of the other build's rows, inside the folder of results.
@@ -60,7 +60,9 @@ pub(super) fn check_program(program: &Path) -> Result<()> {
 
 /// Name and version of a program, as it tells them; empty if it does not.
 fn version_of(program: &Path) -> String {
-    let told = Command::new(program).arg("--version").stdin(Stdio::null()).output();
+    let mut version = Command::new(program);
+    version.arg("--version");
+    let told = answer(version, "", Some(HELP)).ok().flatten();
     let told = told.map(|told| String::from_utf8_lossy(&told.stdout).into_owned()).unwrap_or_default();
     told.lines().next().unwrap_or_default().trim().to_string()
 }

@@ -70,7 +70,7 @@ fn of_experiment(sides: &[Side; 2]) -> CountDiffs {
     };
     let changed = both().filter(|((_, column), old, new)| differs(column, *old, *new));
     let found = changed.map(|((cell, column), old, new)| CountDiff { cell: cell.clone(), column, old, new });
-    CountDiffs { changed: found.collect(), compared: both().count(), lost: Lost::of(sides, |_| true) }
+    CountDiffs { changed: found.collect(), compared: both().count(), lost: Lost::of(sides, |row| !row.is_left_out()) }
 }
 
 fn counts(side: &Side) -> BTreeMap<(String, &'static str), u64> {

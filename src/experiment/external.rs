@@ -154,15 +154,12 @@ impl Definition {
                 let external = Some(external.clone());
                 let cell =
                     Cell { id, settings, scene: version, points, weight: samples.max(1), at_most: None, external };
-                if cells.len() as u64 >= LARGEST_CELLS {
-                    let error = InputError::new(
-                        "name",
-                        &cell.settings.spec.estimator,
-                        "has too many combinations of spp and seed",
-                    );
-                    return Err(self.located(profile, error.allowed(format!("at most {LARGEST_CELLS} cells"))));
-                }
                 match places.get(&cell.id).map(|place: &usize| &cells[*place]) {
+                    None if cells.len() as u64 >= LARGEST_CELLS => {
+                        let problem = "has too many combinations of spp and seed";
+                        let error = InputError::new("name", &cell.settings.spec.estimator, problem);
+                        return Err(self.located(profile, error.allowed(format!("at most {LARGEST_CELLS} cells"))));
+                    }
                     None => {
                         places.insert(cell.id.clone(), cells.len());
                         cells.push(cell);

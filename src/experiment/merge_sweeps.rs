@@ -217,11 +217,11 @@ fn run_of(parts: &[Part], command: &str) -> RunFile {
     }
 }
 
-/// Groups the parts by machine: by model and number of processors.
+/// Groups the parts by machine.
 fn by_machine(parts: Vec<Part>) -> Vec<Vec<Part>> {
     let mut machines: Vec<Vec<Part>> = Vec::new();
     for part in parts {
-        let alike = machines.iter_mut().find(|parts| parts[0].run.machine.identity() == part.run.machine.identity());
+        let alike = machines.iter_mut().find(|parts| parts[0].run.machine.difference(&part.run.machine).is_none());
         match alike {
             Some(parts) => parts.push(part),
             None => machines.push(vec![part]),

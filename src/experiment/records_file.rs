@@ -101,6 +101,7 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let columns = reader.headers().cloned().unwrap_or_default();
     let schema = columns.iter().position(|column| column == "schema");
+    let times = times(&columns);
     for row in reader.records() {
         let broken = |column: &str, e: &csv::Error| {
             let line = e.position().map(|position| (position.line() as usize, 1));
@@ -124,7 +125,7 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
             };
             broken(column.unwrap_or("row"), &e)
         })?;
-        if let Some(error) = impossible_time(&record, &row, &columns) {
+        if let Some(error) = impossible_time(&record, &row, &times) {
             return Err(error.in_file(&file, line).into());
         }
         if !seen.insert((record.cell.clone(), record.repetition)) {
@@ -139,18 +140,27 @@ fn parse(text: &str, path: &Path) -> Result<Vec<Record>> {
 /// Columns of seconds that are differences of others, so that rounding may leave them below 0.
 const DIFFERENCES: [&str; 3] = ["gap_sum_s", "tail_sum_s", "foreign_cpu_s"];
 
+/// The columns of seconds, with their places in a row.
+fn times(columns: &StringRecord) -> Vec<(usize, &'static str)> {
+    let in_seconds = |name: &str| COLUMNS.iter().find(|own| own.name == name && own.unit() == Some("seconds"));
+    let found = columns.iter().enumerate().filter_map(|(place, name)| Some((place, in_seconds(name)?.name)));
+    found.collect()
+}
+
 /// The first time of a row that no clock shows. If it counted as absent, a comparison would miss its cell.
-fn impossible_time(record: &Record, row: &StringRecord, columns: &StringRecord) -> Option<InputError> {
+fn impossible_time(record: &Record, row: &StringRecord, times: &[(usize, &'static str)]) -> Option<InputError> {
     let is_possible = |name: &str, seconds: f64| match name {
         _ if !seconds.is_finite() => false,
         "makespan_s" => seconds > 0.0,
         name => seconds >= 0.0 || DIFFERENCES.contains(&name),
     };
-    let in_seconds = |name: &str| COLUMNS.iter().any(|column| column.name == name && column.unit() == Some("seconds"));
-    let fields = columns.iter().zip(row).filter(|(name, _)| record.error.is_empty() && in_seconds(name));
+    if !record.error.is_empty() {
+        return None;
+    }
+    let values = times.iter().filter_map(|(place, name)| Some((*name, row.get(*place)?)));
     // Values that are no numbers were refused before.
-    let mut times = fields.filter_map(|(name, value)| Some((name, value, value.parse().ok()?)));
-    let (name, value, _) = times.find(|(name, _, seconds)| !is_possible(name, *seconds))?;
+    let mut values = values.filter_map(|(name, value)| Some((name, value, value.parse().ok()?)));
+    let (name, value, _) = values.find(|(name, _, seconds)| !is_possible(name, *seconds))?;
     let allowed = if name == "makespan_s" { "a finite number above 0" } else { "a finite number from 0" };
     Some(InputError::new(name, value, "is not a possible time").allowed(allowed))
 }
@@ -180,7 +190,8 @@ impl RecordsFile {
         let mut records = parse(complete, path)?;
         check_columns(complete, path)?;
         let rows = records.len();
-        records.retain(|record| record.error.is_empty());
+        // What was missing may be there by now.
+        records.retain(|record| record.error.is_empty() && !record.is_left_out());
         if rows == records.len() && complete.len() == bytes.len() {
             return Ok((locked, records));
         }

@@ -121,8 +121,7 @@ impl RunFile {
             ("cache", cache(self), cache(now)),
             ("program", program.clone(), now.program.clone()),
         ];
-        let (then, here) = (self.machine.identity(), now.machine.identity());
-        pairs.extend(then.into_iter().zip(here).map(|((name, old), (_, new))| (name, old, new)));
+        pairs.extend(self.machine.difference(&now.machine));
         match pairs.into_iter().find(|(_, old, new)| old != new) {
             None => Ok(()),
             Some((name, old, new)) => {

@@ -210,12 +210,10 @@ pub(super) fn sides(old: &Path, new: &Path, across_machines: bool) -> Result<Com
         let both = [Side::read(&old)?, Side::read(&new)?];
         if let [Some(before), Some(after)] = [&both[0].run, &both[1].run]
             && !across_machines
+            && let Some((fact, then, now)) = before.machine.hardware_difference(&after.machine)
         {
-            let [then, now] = [before, after].map(|run| run.machine.line());
-            if then != now {
-                let problem = format!("was measured on another machine: {now}, not {then}");
-                return Err(refused("new", &new, &problem).allowed("--across-machines").into());
-            }
+            let problem = format!("was measured on another machine: {fact} is {now}, not {then}");
+            return Err(refused("new", &new, &problem).allowed("--across-machines").into());
         }
         let cells: HashSet<&str> = both[0].rows.iter().map(|row| row.cell.as_str()).collect();
         if !both[1].rows.iter().any(|row| cells.contains(row.cell.as_str())) {

@@ -56,6 +56,13 @@ fn built_with(fact: &str) -> String {
     fact.to_string()
 }
 
+type Facts = Vec<(&'static str, String)>;
+
+fn differing(own: impl Into<Facts>, other: impl Into<Facts>) -> Option<(&'static str, String, String)> {
+    let pairs = own.into().into_iter().zip(other.into());
+    pairs.map(|((name, own), (_, other))| (name, own, other)).find(|(_, own, other)| own != other)
+}
+
 /// The kernel's name.
 const KERNEL: &str = if cfg!(target_os = "linux") { "Linux" } else { std::env::consts::OS };
 
@@ -66,7 +73,7 @@ fn load_average() -> String {
 }
 
 impl Machine {
-    /// The machine in a few words, for figures and for the question whether two folders come from one machine.
+    /// The machine in a few words, for figures.
     pub fn line(&self) -> String {
         let model = if self.cpu_model.is_empty() { String::new() } else { format!(" ({})", self.cpu_model) };
         format!("{} processors, {}{model}", self.processors, self.cpu)
@@ -87,7 +94,7 @@ impl Machine {
             processors: super::available_threads(),
             physical_cores: System::physical_core_count().unwrap_or(0),
             governor: or_unknown(read("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor")),
-            memory_bytes: system.as_ref().map_or(0, |system| system.total_memory()),
+            memory_bytes: system.as_ref().map_or(0, System::total_memory),
             system: or_unknown(kernel),
             load_average: load_average(),
             rustc: built_with(env!("PATHMARK_RUSTC")),
@@ -99,19 +106,30 @@ impl Machine {
         }
     }
 
-    /// The facts that must be equal for rows to belong together: rows of another processor or revision are no
-    /// repetitions.
-    pub fn identity(&self) -> Vec<(&'static str, String)> {
-        let hardware = [
+    /// The first fact of the build or the processors that differs, with both values: rows of another processor or
+    /// revision are no repetitions.
+    pub fn difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        differing(self.build(), other.build()).or_else(|| self.hardware_difference(other))
+    }
+
+    /// The first fact of the processors that differs, with both values. Files of older versions lack some of them; a
+    /// fact that one side lacks is not compared.
+    pub fn hardware_difference(&self, other: &Self) -> Option<(&'static str, String, String)> {
+        let known = |(own, other): &((_, String), (_, String))| !own.1.is_empty() && !other.1.is_empty();
+        let (own, other): (Vec<_>, Vec<_>) = self.hardware().into_iter().zip(other.hardware()).filter(known).unzip();
+        differing(own, other)
+    }
+
+    fn hardware(&self) -> [(&'static str, String); 4] {
+        [
             ("cpu", self.cpu.clone()),
             ("cpu_model", self.cpu_model.clone()),
             ("cpu_features", self.cpu_features.clone()),
             ("processors", self.processors.to_string()),
-        ];
-        self.build().into_iter().chain(hardware).collect()
+        ]
     }
 
-    /// The facts of the build among them: parts of one sweep may run on several machines, but with one build.
+    /// The facts of the build: parts of one sweep may run on several machines, but with one build.
     pub fn build(&self) -> [(&'static str, String); 6] {
         [
             ("rustc", self.rustc.clone()),
@@ -132,10 +150,13 @@ mod tests {
     fn models_of_one_name_are_different_machines() {
         let here = Machine { cpu: "AMD EPYC".to_string(), cpu_model: "family 25".to_string(), ..Machine::look() };
         let other = Machine { cpu_model: "family 26".to_string(), ..here.clone() };
-        assert_ne!(here.identity(), other.identity());
+        let both = || ("family 25".to_string(), "family 26".to_string());
+        assert_eq!(here.difference(&other), Some(("cpu_model", both().0, both().1)));
         assert_ne!(here.line(), other.line());
-        let newer = Machine { cpu_features: "avx512f".to_string(), ..here.clone() };
-        assert_ne!(here.identity(), newer.identity());
+        let newer = Machine { cpu_features: "none of today's".to_string(), ..here.clone() };
+        assert_eq!(here.hardware_difference(&newer).unwrap().0, "cpu_features");
+        let rebuilt = Machine { commit: "another".to_string(), ..here.clone() };
+        assert_eq!((here.difference(&rebuilt).unwrap().0, here.hardware_difference(&rebuilt)), ("commit", None));
     }
 
     #[test]
@@ -152,5 +173,7 @@ mod tests {
         table.remove("cpu_features");
         let old: Machine = table.try_into().unwrap();
         assert_eq!((old.cpu_model.as_str(), old.cpu_features.as_str()), ("", ""));
+        // What an old file does not say is no difference.
+        assert_eq!((old.difference(&Machine::look()), Machine::look().difference(&old)), (None, None));
     }
 }

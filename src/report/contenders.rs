@@ -145,7 +145,7 @@ pub(super) fn one_per_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -
 fn by_seed(rows: &[&Row], value: impl Fn(&Row) -> Option<f64>) -> BTreeMap<u64, f64> {
     let mut images: BTreeMap<ImageKey, BTreeMap<u64, f64>> = BTreeMap::new();
     for (row, value) in rows.iter().filter_map(|row| Some((row, value(row)?))) {
-        let image = ImageKey { seed: 0, ..row.image.clone() };
+        let image = row.image.without_seed();
         images.entry(image).or_default().entry(row.seed).or_insert(value);
     }
     let seeds: BTreeSet<u64> = images.values().flat_map(BTreeMap::keys).copied().collect();

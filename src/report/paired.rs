@@ -265,9 +265,9 @@ impl From<Ratio> for Told {
     }
 }
 
-/// The medians of several cells. Cells of the same images are compared over repetitions that they share: of all choices
-/// of cells and repetitions without a gap, the one with the most values. A cell that lacks one of these repetitions is
-/// partial.
+/// The medians of several cells. Cells of the same images are compared over repetitions that they share: either those
+/// of one cell, or those that all cells of the most repetitions have. Of these choices the one counts that gives the
+/// most values in cells without a gap. A cell that lacks one of these repetitions is partial.
 pub(super) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Told)> {
     let cells: Vec<(T, Repeats)> = cells.into_iter().collect();
     let mut peers: BTreeMap<BTreeSet<ImageKey>, Vec<usize>> = BTreeMap::new();
@@ -291,7 +291,14 @@ pub(super) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping
             let whole = others.into_iter().flatten().filter(|(own, _)| block.is_subset(own));
             (whole.map(|(_, count)| count).sum::<usize>() * block.len(), block.len())
         };
-        let Some(block) = kinds.keys().copied().max_by_key(|block| size(block)) else { continue };
+        let mut choices: Vec<BTreeSet<_>> = kinds.keys().map(|own| (*own).clone()).collect();
+        choices.sort_by_key(|own| std::cmp::Reverse(own.len()));
+        for at in 1..choices.len() {
+            // The cells of the most repetitions may each lack another one, as after a failure.
+            let before = choices.last().filter(|_| at > 1).unwrap_or(&choices[0]);
+            choices.push(before.intersection(&choices[at]).copied().collect());
+        }
+        let Some(block) = choices.iter().max_by_key(|block| size(block)) else { continue };
         for (index, own) in indices.iter().zip(&places) {
             let is_partial = !block.is_subset(own);
             let is_meant = |(image, _, repetition): &Shared| is_partial || block.contains(&(image, *repetition));

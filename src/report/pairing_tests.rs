@@ -256,6 +256,21 @@ fn cells_with_fewer_repetitions_are_hollow_and_not_ranked() {
     assert_eq!(clock.matches("not comparable").count(), 1, "{clock}");
 }
 
+/// Two schedules that each lack another repetition, as after two failures, are compared over those that both have.
+#[test]
+fn cells_that_each_lack_a_repetition_are_compared() {
+    let repeated = drifting().into_iter().filter(|row| row.effects == "smallpt" && row.strategy != "early");
+    let (serial, late): (Vec<Record>, Vec<Record>) = repeated.partition(|row| row.strategy == "serial");
+    let other = late.iter().map(|row| Record { strategy: "rayon".to_string(), ..row.clone() });
+    let last = late.iter().map(|row| row.repetition).max().unwrap();
+    let late = late.iter().filter(|row| row.repetition != 0).cloned();
+    let rows = serial.into_iter().chain(late).chain(other.filter(|row| row.repetition != last));
+    let results = results(&["speedup"], "", rows.collect()).unwrap();
+    let found: Vec<_> = results.serial().unwrap().speedups().into_iter().map(|(_, ratio)| ratio).collect();
+    assert_eq!(found.len(), 2);
+    assert!(found.iter().all(|ratio| !ratio.is_partial && ratio.count == Some(last as usize - 1)), "{found:?}");
+}
+
 /// In the other figures that rank, too, the first place goes to `late`.
 #[test]
 fn no_figure_ranks_a_cell_with_fewer_repetitions() {

@@ -72,6 +72,19 @@ fn a_program_that_is_not_there_is_said_and_stops_nothing() {
     }
 }
 
+/// A program that was missing is run when the sweep is resumed and the program is there.
+#[test]
+fn one_that_was_missing_is_run_when_it_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let (rows, _) = run(folder.path(), &table(r#""./later", "{out}", "{spp}", "{seed}""#));
+    assert!(rows.iter().all(|row| row["warnings"] == "no-program"));
+    std::fs::write(folder.path().join("later"), "#!/bin/sh\nexit 3\n").unwrap();
+    std::fs::set_permissions(folder.path().join("later"), std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    let resumed = finish(pathmark(folder.path(), &["run", "tiny.toml", "--out", "out", "--resume"])).with_code(1);
+    assert!(resumed.err.contains("external = other: ended with exit status: 3"), "{}", resumed.err);
+    assert!(!resumed.err.contains("left out"), "{}", resumed.err);
+}
+
 /// Of a traceback the last line says what is wrong. All rows fail in the same way, so it is told once.
 #[test]
 fn one_that_fails_or_writes_another_size_is_a_failed_row() {
