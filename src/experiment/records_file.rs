@@ -190,7 +190,7 @@ impl RecordsFile {
         let mut records = parse(complete, path)?;
         check_columns(complete, path)?;
         let rows = records.len();
-        // What was missing may be there by now.
+        // A program or device that was missing may be there by now.
         records.retain(|record| record.error.is_empty() && !record.is_left_out());
         if rows == records.len() && complete.len() == bytes.len() {
             return Ok((locked, records));

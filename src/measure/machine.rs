@@ -173,7 +173,7 @@ mod tests {
         table.remove("cpu_features");
         let old: Machine = table.try_into().unwrap();
         assert_eq!((old.cpu_model.as_str(), old.cpu_features.as_str()), ("", ""));
-        // What an old file does not say is no difference.
+        // A fact that an old file lacks is no difference.
         assert_eq!((old.difference(&Machine::look()), Machine::look().difference(&old)), (None, None));
     }
 }

@@ -174,6 +174,46 @@ fn a_lamp_that_another_hides_sends_no_light() {
     assert_eq!(pixels(&one), pixels(&both));
 }
 
+/// A surface that light passes hides nothing, whether it comes first or last: behind it the other one must stay.
+#[test]
+fn glass_hides_no_wall() {
+    let pane = format!(
+        "[[objects]]\nname = 'pane'\nshape = {{ {} }}\nmaterial = {{ dielectric = {{ eta = 1.5, tint = [1.0, 1.0, 1.0] }} }}\n",
+        square(1.0, 0.0)
+    );
+    let wall = object("wall", &square(2.0, 0.0), 0.5, 0.0);
+    let plane = object("plane", "plane = { point = [0.0, 1.0, 0.0], normal = [0.0, 1.0, 0.0] }", 0.5, 0.0);
+    for (parts, [first, second], primitives) in [
+        ([&pane, &wall], ["pane", "wall"], 4),
+        ([&wall, &pane], ["wall", "pane"], 4),
+        ([&pane, &plane], ["plane", "pane"], 3),
+    ] {
+        let scene = scene(&[CAMERA, parts[0], parts[1]]);
+        let told = format!("where {first} and {second} coincide, rounding decides which of them rays meet");
+        assert_eq!((coincidences(&scene), scene.owners.len()), (vec![told.as_str()], primitives));
+    }
+}
+
+/// Coordinates along a plane do not blur its height.
+#[test]
+fn surfaces_above_a_wide_plane_are_kept() {
+    let lamp = object("lamp", &square(1.0, 0.0), 0.0, 1.0);
+    let wide = "triangle = { corners = [[-1e17, 2.0, -1e17], [1e17, 2.0, -1e17], [0.0, 2.0, 1e17]] }";
+    for floor in ["plane = { point = [1e16, 2.0, 0.0], normal = [0.0, 1.0, 0.0] }", wide] {
+        let scene = scene(&[CAMERA, &lamp, &object("floor", floor, 0.5, 0.0)]);
+        assert_eq!((coincidences(&scene), scene.owners.len()), (vec![], 3), "{floor}");
+    }
+}
+
+/// A plane precedes all triangles, and the remark says so.
+#[test]
+fn a_plane_precedes_a_triangle() {
+    let plane = object("wall", "plane = { point = [0.0, 1.0, 0.0], normal = [0.0, 1.0, 0.0] }", 0.5, 0.0);
+    let scene = scene(&[CAMERA, &object("lamp", &square(1.0, 0.0), 0.0, 1.0), &plane]);
+    let told = "where wall and lamp coincide, rays meet wall, because planes precede triangles";
+    assert_eq!((coincidences(&scene), scene.owners.len()), (vec![told], 1));
+}
+
 /// Neighbours in a plane, surfaces that cross, and shells a little apart are left as they are.
 #[test]
 fn surfaces_that_only_touch_are_kept() {

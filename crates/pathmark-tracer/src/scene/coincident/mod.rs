@@ -3,7 +3,8 @@
 //! A search cannot keep this rule: rounding decides which of two equal distances is smaller, and whether a ray that
 //! starts on one of the surfaces starts in front of the other. So the hidden surface is removed when the scene is read.
 //! A sphere, a plane, or a triangle in a plane is removed as a whole. A triangle that overlaps others in its plane
-//! keeps the rest of its area, unless there are very many of these: then a remark says that rounding decides.
+//! keeps the rest of its area, unless there are very many of these: then a remark says that rounding decides. So it
+//! says of a surface that light passes, such as glass: what lies behind that must stay.
 //!
 //! Two places are the same if they differ by no more than rounding moves a surface.
 
@@ -17,6 +18,9 @@ use std::collections::BTreeMap;
 /// Largest distance of surfaces in one place, in units of their largest coordinate.
 const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;
 
+/// The same for spheres, whose hits have the rounding of a square root.
+const SPHERE_SLACK: f64 = 1.0 / (1_u64 << 43) as f64;
+
 /// The most triangles that are cut out of another one. The number of its parts may grow with the square of this.
 const MOST_COVERS: usize = 64;
 
@@ -27,10 +31,17 @@ fn largest(v: Vec3) -> f64 {
     v.x.abs().max(v.y.abs()).max(v.z.abs())
 }
 
+/// The largest height of a point above another one in its plane. Coordinates along the plane do not round heights.
+fn slack_across(normal: Vec3, point: Vec3, other: Vec3) -> f64 {
+    let part = |normal: f64, point: f64, other: f64| normal.abs() * (point.abs() + other.abs());
+    let parts = [part(normal.x, point.x, other.x), part(normal.y, point.y, other.y), part(normal.z, point.z, other.z)];
+    SLACK * parts.iter().sum::<f64>()
+}
+
 impl Sphere {
     fn is_where(&self, other: &Self) -> bool {
         let distance = largest(self.center - other.center).max((self.radius - other.radius).abs());
-        distance <= SLACK * (largest(self.center) + self.radius)
+        distance <= SPHERE_SLACK * (largest(self.center) + self.radius)
     }
 
     /// A number that is nearly the same for spheres in one place, and hardly ever for others.
@@ -45,7 +56,7 @@ impl Plane {
     }
 
     fn contains(&self, point: Vec3) -> bool {
-        dot(point - self.point, self.normal).abs() <= SLACK * (largest(point) + largest(self.point))
+        dot(point - self.point, self.normal).abs() <= slack_across(self.normal, point, self.point)
     }
 
     fn holds(&self, triangle: &Triangle) -> bool {
@@ -60,7 +71,7 @@ fn hidden_spheres(spheres: &[Sphere]) -> BTreeMap<usize, usize> {
     let mut hidden = BTreeMap::new();
     for (place, (key, one)) in order.iter().enumerate() {
         let one = *one as usize;
-        let reach = 8.0 * SLACK * (largest(spheres[one].center) + spheres[one].radius);
+        let reach = 8.0 * SPHERE_SLACK * (largest(spheres[one].center) + spheres[one].radius);
         let near = order[place + 1..].iter().take_while(|(other, _)| other - key <= reach);
         for other in near.map(|(_, other)| *other as usize).filter(|other| spheres[one].is_where(&spheres[*other])) {
             hidden.insert(one.max(other), one.min(other));
@@ -89,8 +100,22 @@ impl Scene {
     pub(super) fn resolve_coincident(&mut self) {
         let Primitives { spheres, planes, triangles, .. } = &self.primitives;
         let [first_plane, first_triangle] = [spheres.len(), spheres.len() + planes.len()];
-        let hidden_spheres = hidden_spheres(spheres);
-        let hidden_planes = hidden_planes(planes);
+        // A surface that light passes hides nothing: behind it the other one must stay.
+        let is_through = |one: usize, other: usize| {
+            let transmits = |number: usize| self.objects[self.owners[number] as usize].material.transmits();
+            transmits(one) || transmits(other)
+        };
+        let mut undecided: Vec<(u32, u32)> = Vec::new();
+        let mut opaque = |first: usize, hidden: BTreeMap<usize, usize>| {
+            let (through, opaque): (BTreeMap<_, _>, BTreeMap<_, _>) =
+                hidden.into_iter().partition(|(hidden, hider)| is_through(first + hidden, first + hider));
+            undecided.extend(
+                through.iter().map(|(hidden, hider)| (self.owners[first + hider], self.owners[first + hidden])),
+            );
+            opaque
+        };
+        let hidden_spheres = opaque(0, hidden_spheres(spheres));
+        let hidden_planes = opaque(first_plane, hidden_planes(planes));
         let mut pairs: Vec<(u32, u32)> = Vec::new();
         let mut hides = |hidden: usize, hider: usize| pairs.push((self.owners[hider], self.owners[hidden]));
         for (hidden, hider) in &hidden_spheres {
@@ -103,16 +128,23 @@ impl Scene {
         let mut rests: BTreeMap<usize, Vec<Triangle>> = BTreeMap::new();
         for (index, triangle) in triangles.iter().enumerate() {
             if let Some(plane) = planes.iter().position(|plane| plane.holds(triangle)) {
+                if is_through(first_triangle + index, first_plane + plane) {
+                    undecided.push((self.owners[first_plane + plane], self.owners[first_triangle + index]));
+                    continue;
+                }
                 hides(first_triangle + index, first_plane + plane);
                 rests.insert(index, Vec::new());
             }
         }
         let owners = &self.owners[first_triangle..];
         let is_light = |owner: u32| !self.objects[owner as usize].emission.is_black();
-        let mut undecided: Vec<(u32, u32)> = Vec::new();
         let mut covers: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (hider, hidden) in Flat::overlaps(triangles, owners, is_light) {
-            covers.entry(hidden).or_default().push(hider);
+            if is_through(first_triangle + hidden, first_triangle + hider) {
+                undecided.push((owners[hider], owners[hidden]));
+            } else {
+                covers.entry(hidden).or_default().push(hider);
+            }
         }
         for (hidden, hiders) in covers {
             if hiders.len() > MOST_COVERS {
@@ -126,11 +158,14 @@ impl Scene {
             }
             rests.insert(hidden, rest);
         }
-        self.tell(undecided, |_| "rounding decides which of them rays meet".to_string());
+        self.tell(undecided, |_, _| "rounding decides which of them rays meet".to_string());
         if pairs.is_empty() {
             return;
         }
-        self.tell(pairs, |hider| format!("rays meet {hider}, which comes first"));
+        self.tell(pairs, |hider, is_first| {
+            let why = if is_first { "which comes first" } else { "because planes precede triangles" };
+            format!("rays meet {hider}, {why}")
+        });
         let is_hidden = |number: usize| {
             hidden_spheres.contains_key(&number)
                 || number.checked_sub(first_plane).is_some_and(|plane| hidden_planes.contains_key(&plane))
@@ -153,14 +188,16 @@ impl Scene {
         );
     }
 
-    /// Adds a remark for each pair of objects, of which the first one comes first.
-    fn tell(&mut self, mut pairs: Vec<(u32, u32)>, end: impl Fn(&str) -> String) {
+    /// Adds a remark for each pair of objects. `end` gets the name of the first one, and whether it comes first in the
+    /// scene.
+    fn tell(&mut self, mut pairs: Vec<(u32, u32)>, end: impl Fn(&str, bool) -> String) {
         pairs.retain(|(hider, hidden)| hider != hidden);
         pairs.sort_unstable();
         pairs.dedup();
         for (hider, hidden) in pairs.iter().take(MOST_REMARKS) {
+            let is_first = hider < hidden;
             let [hider, hidden] = [hider, hidden].map(|owner| &self.objects[*owner as usize].name);
-            let remark = format!("where {hider} and {hidden} coincide, {}", end(hider));
+            let remark = format!("where {hider} and {hidden} coincide, {}", end(hider, is_first));
             self.remarks.push(remark);
         }
         if let Some(more) = pairs.len().checked_sub(MOST_REMARKS + 1) {

@@ -1,8 +1,9 @@
 //! Triangles that overlap in one plane.
 
-use super::{SLACK, largest};
+use super::{MOST_COVERS, SLACK, largest, slack_across};
 use crate::math::{Vec3, dot};
 use crate::scene::{Bounds, Primitive, Triangle};
+use std::collections::HashMap;
 
 /// A triangle or a set of triangles with its box.
 pub(super) struct Flat {
@@ -11,11 +12,24 @@ pub(super) struct Flat {
     end: usize,
 }
 
-/// Pairs of items of two lists whose boxes meet, found by a sweep along the x axis.
+/// The axis along which the fewest boxes meet, if they are spread evenly.
+fn axis_of_spread(all: &[Flat]) -> usize {
+    let spread = |axis: usize| {
+        let low = all.iter().map(|item| item.bounds.low[axis]).fold(f64::INFINITY, f64::min);
+        let high = all.iter().map(|item| item.bounds.high[axis]).fold(f64::NEG_INFINITY, f64::max);
+        let lengths: f64 = all.iter().map(|item| item.bounds.high[axis] - item.bounds.low[axis]).sum();
+        (high - low) / lengths
+    };
+    (0..3).max_by(|a, b| spread(*a).total_cmp(&spread(*b))).unwrap_or(0)
+}
+
+/// Pairs of items whose boxes meet, found by a sweep along an axis.
 fn meeting(all: &mut [Flat], mut found: impl FnMut(&Flat, &Flat)) {
-    all.sort_unstable_by(|a, b| a.bounds.low[0].total_cmp(&b.bounds.low[0]).then(a.first.cmp(&b.first)));
+    let axis = axis_of_spread(all);
+    let low = |item: &Flat| item.bounds.low[axis];
+    all.sort_unstable_by(|a, b| low(a).total_cmp(&low(b)).then(a.first.cmp(&b.first)));
     for (place, one) in all.iter().enumerate() {
-        for other in all[place + 1..].iter().take_while(|other| other.bounds.low[0] <= one.bounds.high[0]) {
+        for other in all[place + 1..].iter().take_while(|other| low(other) <= one.bounds.high[axis]) {
             if meet(&one.bounds, &other.bounds) {
                 let (lower, higher) = if one.first < other.first { (one, other) } else { (other, one) };
                 found(lower, higher);
@@ -51,11 +65,15 @@ impl Flat {
             return Vec::new();
         }
         let mut pairs = Vec::new();
+        // Beyond that many, the others do not matter.
+        let mut covers: HashMap<usize, usize> = HashMap::new();
         let mut compare = |mut candidates: Vec<Self>, is_wanted: &dyn Fn(usize, usize) -> bool| {
             meeting(&mut candidates, |one, other| {
-                let is_pair = is_wanted(one.first, other.first);
+                let is_pair = is_wanted(one.first, other.first)
+                    && covers.get(&other.first).is_none_or(|covers| *covers <= MOST_COVERS);
                 if is_pair && overlap(&triangles[one.first], &triangles[other.first]) {
                     pairs.push((one.first, other.first));
+                    *covers.entry(other.first).or_default() += 1;
                 }
             });
         };
@@ -112,7 +130,9 @@ fn slack(one: &Triangle, other: &Triangle) -> f64 {
 fn overlap(one: &Triangle, other: &Triangle) -> bool {
     let (wide, small) = if longest_edge(one) < longest_edge(other) { (other, one) } else { (one, other) };
     let (normal, slack) = (wide.normal(wide.corners[0]), slack(one, other));
-    let is_flat = small.corners.iter().all(|corner| dot(*corner - wide.corners[0], normal).abs() <= slack);
+    let origin = wide.corners[0];
+    let is_in_plane = |corner: &Vec3| dot(*corner - origin, normal).abs() <= slack_across(normal, *corner, origin);
+    let is_flat = small.corners.iter().all(is_in_plane);
     is_flat && cut(&small.corners, wide, slack).is_some()
 }
 

@@ -71,6 +71,13 @@ struct Statements<'a, R> {
     before: usize,
 }
 
+/// Whether a statement holds numbers. Other statements hold names and paths, which may end in a backslash.
+fn has_numbers(statement: &[u8]) -> bool {
+    let statement = statement.strip_prefix(BYTE_ORDER_MARK.as_bytes()).unwrap_or(statement).trim_ascii_start();
+    let keyword = statement.split(u8::is_ascii_whitespace).next().unwrap_or_default();
+    matches!(keyword, b"v" | b"vt" | b"vn" | b"vp" | b"f" | b"l" | b"p")
+}
+
 /// Whether the next line continues this one: it ends in a backslash outside of a comment.
 fn is_continued(line: &[u8]) -> bool {
     let line = line.trim_ascii_end();
@@ -94,7 +101,7 @@ impl<R: BufRead> Statements<'_, R> {
             }
             self.hash.update(line);
             self.lines += 1;
-            let is_continued = is_continued(line);
+            let is_continued = is_continued(line) && (start > 0 || has_numbers(line));
             if is_continued && let Some(backslash) = line.iter_mut().rfind(|byte| **byte == b'\\') {
                 *backslash = b' ';
             }
@@ -131,7 +138,10 @@ struct Statement<'a> {
 impl<'a> Statement<'a> {
     /// Its words before a comment.
     fn words(&self) -> impl Iterator<Item = &'a str> + Clone {
-        self.text.split_whitespace().take_while(|word| !word.starts_with('#'))
+        // A comment may follow a number without a blank; a name may contain the sign.
+        let end = if has_numbers(self.text.as_bytes()) { self.text.find('#') } else { None };
+        let text = &self.text[..end.unwrap_or(self.text.len())];
+        text.split_whitespace().take_while(|word| !word.starts_with('#'))
     }
 
     /// Creates an error at the words `from` and all after it; at the statement's first line if there is none.
@@ -253,6 +263,8 @@ mod tests {
         for text in [
             "f 1 2 3 4",
             "f 1 2 3 4 # floor\n",
+            "f 1 2 3 4#floor\n",
+            "g right\\\nusemtl C:\\dir\\\nf 1 2 3 4\n",
             "f 1 2 3 4 #floor \\\n#\n",
             "f 1 2 3 \\\n  4\n",
             "f 1 \\\r\n2\\ \n 3 4\r\n",
