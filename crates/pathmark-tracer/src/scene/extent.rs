@@ -23,7 +23,8 @@ const LONGEST: f64 = (1_u64 << 40) as f64;
 const WIDEST: f64 = (1 << 20) as f64;
 /// The smallest radius of a sphere that is not large, in sizes of the scene or distances of its centre from the origin.
 /// Rounding in single precision moves rays by up to 2^-22 of these lengths, so a smaller sphere seems larger or
-/// smaller: by a thousandth of its area at this radius, and by half of it at a hundredth of this radius.
+/// smaller: by a thousandth of its area at this radius, and by half of it at a hundredth of this radius. The same holds
+/// for the extent of an object of triangles.
 const FINEST: f64 = 1.0 / (1 << 17) as f64;
 
 /// The length of a vector. If squares underflow, it is the largest coordinate.
@@ -51,19 +52,22 @@ impl Triangle {
 }
 
 impl Scene {
-    /// Returns the smallest reach of an object that consists of triangles; infinity without triangles.
-    fn reach_of_triangles(&self) -> f64 {
+    /// The triangles of each object.
+    fn meshes(&self) -> impl Iterator<Item = &[Triangle]> {
         let triangles = &self.primitives.triangles;
         let owners = &self.owners[self.owners.len() - triangles.len()..];
-        let (mut smallest, mut reach) = (f64::INFINITY, 0.0);
         // The triangles of an object follow each other.
-        for (index, triangle) in triangles.iter().enumerate() {
-            reach = triangle.reach().max(reach);
-            if owners.get(index + 1) != Some(&owners[index]) {
-                (smallest, reach) = (reach.min(smallest), 0.0);
-            }
-        }
-        smallest
+        let mut start = 0;
+        owners.chunk_by(|a, b| a == b).map(move |own| {
+            start += own.len();
+            &triangles[start - own.len()..start]
+        })
+    }
+
+    /// Returns the smallest reach of an object that consists of triangles; infinity without triangles.
+    fn reach_of_triangles(&self) -> f64 {
+        let reach = |mesh: &[Triangle]| mesh.iter().map(Triangle::reach).fold(0.0, f64::max);
+        self.meshes().map(reach).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the distance of the nearest plane from the origin, if there are planes.
@@ -138,6 +142,15 @@ impl Scene {
         let widest = self.primitives.triangles.iter().map(Triangle::reach).fold(0.0, f64::max);
         if widest > WIDEST * size {
             return error("a corner at a distance", widest, format!("f64, or up to {:.3e}", WIDEST * size));
+        }
+        for mesh in self.meshes() {
+            let [first, ..] = mesh[0].corners;
+            let corners = || mesh.iter().flat_map(|triangle| triangle.corners);
+            let extent = corners().map(|corner| length(corner - first)).fold(0.0, f64::max);
+            let finest = FINEST * corners().map(length).fold(size, f64::max);
+            if extent < finest {
+                return error("triangles that extend over", extent, format!("f64, or an extent from {finest:.3e}"));
+            }
         }
         let (_, exponent) = libm::frexp(size);
         let is_usual = size == 0.0 || exponent.abs() <= USUAL;

@@ -149,6 +149,10 @@ fn lengths_out_of_the_range_of_single_precision_are_refused() {
         ("plane = { point = [1e9, 0.0, -5.0], normal = [0.0, 0.0, 1.0] }", "1e9"),
         ("sphere = { center = [0.0, 0.0, 1e20], radius = 1e19 }", "1.1e20"),
         ("sphere = { center = [1.0, 1.0, 1.0], radius = 1e-7 }", "1e-7"),
+        (
+            "quad = { corners = [[9.0, 9.0, 9.0], [9.00001, 9.0, 9.0], [9.00001, 9.00001, 9.0], [9.0, 9.00001, 9.0]] }",
+            "e-5",
+        ),
         ("triangle = { corners = [[3e8, -1.0, 4e8], [0.0, -1.0, -1e2], [-1e2, -1.0, 0.0]] }", "5e8"),
     ] {
         let text = format!(
