@@ -43,20 +43,11 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, lab: &Arc<Lab>, talk: &Talk) -> Result<()> {
     let profile = arguments.size.profile();
     let options = Options {
-        out: arguments.out.clone(),
         profile,
         resume: arguments.resume,
-        repetitions: None,
-        filters: Vec::new(),
-        against: None,
-        shard: None,
-        serial_for: None,
-        until: None,
         timeout: arguments.timeout.as_deref().map(Timeout::parse).transpose()?,
-        rerun_doubtful: false,
-        count_instructions: false,
-        cache: None,
         command: command_line(),
+        ..Options::usual(arguments.out.clone())
     };
     let mut definitions =
         Definition::known(lab).map(|(name, _)| Definition::load(lab, name)).collect::<Result<Vec<_>>>()?;

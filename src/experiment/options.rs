@@ -36,10 +36,9 @@ pub struct Options {
     pub command: String,
 }
 
-#[cfg(test)]
 impl Options {
     /// The options of a command without options.
-    pub(super) fn usual(out: PathBuf) -> Self {
+    pub fn usual(out: PathBuf) -> Self {
         Self {
             out,
             profile: Profile::Quick,

@@ -4,7 +4,7 @@
 use crate::experiment::{TINY, write_tiny};
 use crate::program::{finish, pathmark};
 use pathmark::Lab;
-use pathmark::experiment::{Definition, Options, Profile, Progress, Sweep};
+use pathmark::experiment::{Definition, Options, Progress, Sweep};
 use pathmark::files::Files;
 use std::collections::BTreeMap;
 use std::fs;
@@ -122,22 +122,7 @@ fn a_scene_edited_before_its_reference_ends_the_sweep() {
         let folder = tempfile::tempdir().unwrap();
         prepare(folder.path(), "true");
         let definition = Definition::load(&Lab::built_in(), folder.path().join("tiny.toml").to_str().unwrap()).unwrap();
-        let options = Options {
-            out: folder.path().join("out"),
-            profile: Profile::Quick,
-            resume: false,
-            repetitions: None,
-            filters: Vec::new(),
-            against: None,
-            shard: None,
-            serial_for: None,
-            until: None,
-            timeout: None,
-            rerun_doubtful: false,
-            count_instructions: false,
-            cache: None,
-            command: String::new(),
-        };
+        let options = Options::usual(folder.path().join("out"));
         let sweep = Sweep::new(&definition, &options, &mut Files::default()).unwrap();
         let mut text = fs::read_to_string(folder.path().join(name)).unwrap();
         text.push('\n');
