@@ -200,10 +200,6 @@ impl Repeats {
     fn images(&self) -> BTreeSet<ImageKey> {
         self.0.keys().map(|(image, ..)| image.without_seed()).collect()
     }
-
-    fn places(&self) -> BTreeSet<(&ImageKey, u32)> {
-        self.0.keys().map(|(image, _, repetition)| (image, *repetition)).collect()
-    }
 }
 
 /// Ratios of a value between rows of one kind and rows of another that agree in what `forget` leaves.
@@ -270,49 +266,114 @@ impl From<Ratio> for Told {
 /// most values in cells without a gap. A cell that lacks one of these repetitions is partial.
 pub(super) fn medians<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Told)> {
     let cells: Vec<(T, Repeats)> = cells.into_iter().collect();
-    let mut peers: BTreeMap<BTreeSet<ImageKey>, Vec<usize>> = BTreeMap::new();
-    for (index, (_, repeats)) in cells.iter().enumerate() {
-        peers.entry(repeats.images()).or_default().push(index);
-    }
+    let alone: Vec<usize> = (0..cells.len()).collect();
+    compared(cells, &alone, stopping)
+}
+
+/// The medians of the points of several lines. The points of a line are compared as cells of the same images are, even
+/// if each has an image of its own; repetitions of two images then correspond if they have one seed and one number.
+pub(super) fn along<T, L: Ord>(
+    cells: impl IntoIterator<Item = (T, Repeats)>,
+    line: impl Fn(&T) -> L,
+    stopping: Stopping,
+) -> Vec<(T, Told)> {
+    let cells: Vec<(T, Repeats)> = cells.into_iter().collect();
+    let lines: Vec<L> = cells.iter().map(|(thing, _)| line(thing)).collect();
+    compared(cells, &lines, stopping)
+}
+
+/// The medians that have an interval.
+pub(super) fn estimates<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
+    with_intervals(medians(cells, stopping))
+}
+
+/// Those with an interval.
+pub(super) fn with_intervals<T>(told: Vec<(T, Told)>) -> Vec<(T, Ratio)> {
+    told.into_iter().filter_map(|(thing, told)| Some((thing, Ratio::of(told)?))).collect()
+}
+
+/// A repetition of an image, or of all images with this seed.
+type Place = (ImageKey, u32);
+
+fn compared<T, L: Ord>(cells: Vec<(T, Repeats)>, lines: &[L], stopping: Stopping) -> Vec<(T, Told)> {
+    let images: Vec<BTreeSet<ImageKey>> = cells.iter().map(|(_, repeats)| repeats.images()).collect();
     let mut found: Vec<Option<Told>> = vec![None; cells.len()];
-    for indices in peers.into_values() {
-        let places: Vec<_> = indices.iter().map(|index| cells[*index].1.places()).collect();
-        let mut kinds: BTreeMap<&BTreeSet<_>, usize> = BTreeMap::new();
-        for own in &places {
-            *kinds.entry(own).or_default() += 1;
-        }
-        // Only cells that have a place of the block can have all of them.
-        let mut having: BTreeMap<_, Vec<_>> = BTreeMap::new();
-        for (own, count) in &kinds {
-            own.iter().for_each(|place| having.entry(place).or_default().push((*own, *count)));
-        }
-        let size = |block: &BTreeSet<_>| {
-            let others = block.iter().filter_map(|place| having.get(place)).min_by_key(|others| others.len());
-            let whole = others.into_iter().flatten().filter(|(own, _)| block.is_subset(own));
-            (whole.map(|(_, count)| count).sum::<usize>() * block.len(), block.len())
+    for indices in peers(&images, lines) {
+        let is_of_one = indices.iter().all(|index| images[*index] == images[indices[0]]);
+        let place = |(image, _, repetition): &Shared| {
+            let of_any = || ImageKey { seed: image.seed, ..ImageKey::default() };
+            (if is_of_one { image.clone() } else { of_any() }, *repetition)
         };
-        let mut choices: Vec<BTreeSet<_>> = kinds.keys().map(|own| (*own).clone()).collect();
-        choices.sort_by_key(|own| std::cmp::Reverse(own.len()));
-        for at in 1..choices.len() {
-            // The cells of the most repetitions may each lack another one, as after a failure.
-            let before = choices.last().filter(|_| at > 1).unwrap_or(&choices[0]);
-            choices.push(before.intersection(&choices[at]).copied().collect());
-        }
-        let Some(block) = choices.iter().max_by_key(|block| size(block)) else { continue };
+        let places = indices.iter().map(|index| {
+            let mut counts: BTreeMap<Place, usize> = BTreeMap::new();
+            cells[*index].1.0.keys().for_each(|key| *counts.entry(place(key)).or_default() += 1);
+            // A round counts if each image of the cell has it.
+            let whole = if is_of_one { 1 } else { counts.values().copied().max().unwrap_or(0) };
+            counts.into_iter().filter(|(_, count)| *count >= whole).map(|(place, _)| place).collect()
+        });
+        let places: Vec<BTreeSet<Place>> = places.collect();
+        let block = common(&places);
         for (index, own) in indices.iter().zip(&places) {
             let is_partial = !block.is_subset(own);
-            let is_meant = |(image, _, repetition): &Shared| is_partial || block.contains(&(image, *repetition));
-            let values = cells[*index].1.0.iter().filter(|(key, _)| is_meant(key)).map(|(_, value)| *value);
-            let told = Told::median(&values.collect::<Vec<f64>>(), stopping);
+            let values = cells[*index].1.0.iter().filter(|(key, _)| is_partial || block.contains(&place(key)));
+            let told = Told::median(&values.map(|(_, value)| *value).collect::<Vec<f64>>(), stopping);
             found[*index] = told.map(|told| Told { is_partial, ..told });
         }
     }
     cells.into_iter().zip(found).filter_map(|((thing, _), told)| Some((thing, told?))).collect()
 }
 
-/// The medians that have an interval.
-pub(super) fn estimates<T>(cells: impl IntoIterator<Item = (T, Repeats)>, stopping: Stopping) -> Vec<(T, Ratio)> {
-    medians(cells, stopping).into_iter().filter_map(|(thing, told)| Some((thing, Ratio::of(told)?))).collect()
+/// Which cells are compared with one another: those of the same images or the same line, directly or through others.
+fn peers<L: Ord>(images: &[BTreeSet<ImageKey>], lines: &[L]) -> Vec<Vec<usize>> {
+    let (mut by_images, mut by_line) = (BTreeMap::new(), BTreeMap::new());
+    for index in 0..images.len() {
+        by_images.entry(&images[index]).or_insert_with(Vec::new).push(index);
+        by_line.entry(&lines[index]).or_insert_with(Vec::new).push(index);
+    }
+    let mut is_taken = vec![false; images.len()];
+    let mut all = Vec::new();
+    for first in 0..images.len() {
+        let (mut own, mut next) = (Vec::new(), vec![first]);
+        while let Some(index) = next.pop() {
+            if !std::mem::replace(&mut is_taken[index], true) {
+                own.push(index);
+                // Taking a group out visits each group once.
+                next.extend(by_images.remove(&images[index]).into_iter().flatten());
+                next.extend(by_line.remove(&lines[index]).into_iter().flatten());
+            }
+        }
+        if !own.is_empty() {
+            own.sort_unstable();
+            all.push(own);
+        }
+    }
+    all
+}
+
+/// The repetitions over which cells are compared.
+fn common(places: &[BTreeSet<Place>]) -> BTreeSet<Place> {
+    let mut kinds: BTreeMap<&BTreeSet<Place>, usize> = BTreeMap::new();
+    for own in places {
+        *kinds.entry(own).or_default() += 1;
+    }
+    // Only cells that have a place of the block can have all of them.
+    let mut having: BTreeMap<&Place, Vec<_>> = BTreeMap::new();
+    for (own, count) in &kinds {
+        own.iter().for_each(|place| having.entry(place).or_default().push((*own, *count)));
+    }
+    let size = |block: &BTreeSet<Place>| {
+        let others = block.iter().filter_map(|place| having.get(place)).min_by_key(|others| others.len());
+        let whole = others.into_iter().flatten().filter(|(own, _)| block.is_subset(own));
+        (whole.map(|(_, count)| count).sum::<usize>() * block.len(), block.len())
+    };
+    let mut choices: Vec<BTreeSet<Place>> = kinds.keys().map(|own| (*own).clone()).collect();
+    choices.sort_by_key(|own| std::cmp::Reverse(own.len()));
+    for at in 1..choices.len() {
+        // The cells of the most repetitions may each lack another one, as after a failure.
+        let before = choices.last().filter(|_| at > 1).unwrap_or(&choices[0]);
+        choices.push(before.intersection(&choices[at]).cloned().collect());
+    }
+    choices.into_iter().max_by_key(size).unwrap_or_default()
 }
 
 /// The values of cells in the seeds and repetitions that all of them have, for one fit through all of them.

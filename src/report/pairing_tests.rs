@@ -300,6 +300,88 @@ fn no_figure_ranks_a_cell_with_fewer_repetitions() {
     assert_eq!(sentence("granularity", "", plain()), "");
 }
 
+/// Points of a line that show other images are compared over their common repetitions, too: the drift that begins at
+/// the third repetition would bend a line whose last point has no such repetition.
+#[test]
+fn no_line_joins_points_of_other_repetitions() {
+    let of = |repetitions: u32, shape: fn(&mut Record)| {
+        (0..repetitions).map(move |repetition| {
+            let mut own = Record { repetition, ..row() };
+            shape(&mut own);
+            own
+        })
+    };
+    let drift = |row: &Record| if row.repetition < 3 { 1.0 } else { 2.0 };
+    let blocks_of = |figure: &str, rows: Vec<Record>| blocks(&results(&[figure], "", rows).unwrap()).unwrap();
+    let svg = |blocks: &[Block], name: &str| {
+        let found = blocks.iter().find_map(|block| match block {
+            Block::Figure { stem, figure } if *stem == name => Some(figure.svg().unwrap()),
+            _ => None,
+        });
+        found.unwrap()
+    };
+    let is_hollow = |svg: String| svg.contains("Hollow: fewer seeds");
+
+    // Weak scaling: each number of threads renders an image of its own.
+    let weak = |last: u32| {
+        let mut rows = Vec::new();
+        for (spp, repetitions) in [(4, 12), (8, 12), (16, last)] {
+            let threads = spp as usize / 4;
+            let seconds = f64::from(spp);
+            rows.extend(of(repetitions, |_| ()).map(|row| Record { spp, makespan_s: Some(seconds), ..row }));
+            rows.extend(of(repetitions, pool).map(|row| {
+                let makespan_s = Some(seconds / threads as f64 * drift(&row));
+                Record { spp, threads, makespan_s, ..row }
+            }));
+        }
+        svg(&blocks_of("weak-scaling", rows), "weak-scaling")
+    };
+    assert!(!is_hollow(weak(12)));
+    assert!(is_hollow(weak(3)));
+
+    // Acceleration: each number of spheres is a scene of its own, and each number of samples an image.
+    let accelerated = |last: u32| {
+        let mut rows = Vec::new();
+        for (place, spp, repetitions) in [(10, 4, 12), (100, 8, 12), (1000, 16, last)] {
+            for (accelerator, seconds) in [("none", 8.0), ("sah", 4.0)] {
+                let own = |row: Record| {
+                    let drift = if accelerator == "sah" { drift(&row) } else { 1.0 };
+                    let (accelerator, makespan_s) = (accelerator.to_string(), Some(seconds * drift));
+                    Record { accelerator, makespan_s, rays: Some(1000), ..row }
+                };
+                rows.extend(of(repetitions, |_| ()).map(|row| own(Record { spp, ..row })));
+                rows.extend(of(repetitions, |_| ()).map(|row| own(Record { scene: format!("balls:{place}"), ..row })));
+            }
+        }
+        blocks_of("acceleration", rows)
+    };
+    let (whole, partial) = (accelerated(12), accelerated(3));
+    for name in ["acceleration", "acceleration-spp"] {
+        assert!(!is_hollow(svg(&whole, name)), "{name}");
+        assert!(is_hollow(svg(&partial, name)), "{name}");
+    }
+    // Over all repetitions the gain is 1; only the point of three repetitions, which is not ranked, has 2.
+    let findings = |blocks: &[Block]| blocks.iter().filter_map(Block::as_finding).collect::<Vec<_>>().join("\n");
+    assert!(findings(&whole).contains("at 1000 spheres"), "{}", findings(&whole));
+    assert!(findings(&partial).contains("at 100 spheres"), "{}", findings(&partial));
+    assert!(findings(&partial).contains("1.00 at 4, 1.00 at 8;"), "{}", findings(&partial));
+
+    // Error against time: each number of samples is an image.
+    let priced = |last: u32| {
+        let mut rows = Vec::new();
+        for (spp, repetitions) in [(4, 12), (8, 12), (16, last)] {
+            let of_spp = |row: Record| {
+                let (makespan_s, mse) = (Some(f64::from(spp) * drift(&row)), Some(1.0 / f64::from(spp)));
+                Record { spp, makespan_s, mse, ..row }
+            };
+            rows.extend(of(repetitions, |_| ()).map(of_spp));
+        }
+        svg(&blocks_of("rmse-against-time", rows), "rmse-against-time")
+    };
+    assert!(!is_hollow(priced(12)));
+    assert!(is_hollow(priced(3)));
+}
+
 /// Times of two images have no common order: the typical run is one of the image with the most runs.
 #[test]
 fn the_typical_run_is_of_one_image() {

@@ -1,6 +1,6 @@
 //! Schedules paired with the serial runs of the same image in the same repetition.
 
-use super::paired::{Pairs, Partners, Ratio, Repeats, estimates, in_common, medians};
+use super::paired::{Pairs, Partners, Ratio, Repeats, along, in_common, medians, with_intervals};
 use super::results::Results;
 use super::rows::{Row, gathered};
 use super::schedule::Schedule;
@@ -94,7 +94,7 @@ impl<'a> Serial<'a> {
     /// The speedup of each schedule: the median of the ratios to `serial`.
     pub(super) fn speedups(&self) -> Vec<(&'a Schedule, Ratio)> {
         let own = |schedule| (schedule, self.gains(self.rows(schedule), |row| row.makespan_s));
-        estimates(self.others().map(own), self.stopping)
+        with_intervals(along(self.others().map(own), |schedule| self.line(schedule), self.stopping))
     }
 
     /// The speedups at numbers of workers that have a processor each, by line; in each line only those repetitions that

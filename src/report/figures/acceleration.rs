@@ -26,12 +26,13 @@ pub(super) fn blocks(results: &Results) -> Result<Vec<Block>> {
     let mut blocks = Vec::new();
     blocks.extend(against_primitives(results, &sizes, &accelerators));
     let hierarchies = || accelerators.iter().copied().filter(|(_, name)| *name != yardstick);
+    let mut of_sizes = gains(&sizes, &yardstick, results.stopping())?;
     for (_, name) in hierarchies() {
-        blocks.extend(crossover(name, &gains(&sizes, &yardstick, name, results.stopping())?));
+        blocks.extend(crossover(name, &of_sizes.remove(name).unwrap_or_default()));
     }
-    let gains =
-        hierarchies().map(|(place, name)| Ok((place, name, gains(&samples, &yardstick, name, results.stopping())?)));
-    blocks.extend(against_spp(results, &samples, &gains.collect::<Result<Vec<_>>>()?));
+    let mut of_samples = gains(&samples, &yardstick, results.stopping())?;
+    let gains = hierarchies().map(|(place, name)| (place, name, of_samples.remove(name).unwrap_or_default()));
+    blocks.extend(against_spp(results, &samples, &gains.collect::<Vec<_>>()));
     for (_, name) in hierarchies() {
         blocks.extend(marginal(&others, &yardstick, name, results.stopping())?);
     }
@@ -61,37 +62,48 @@ fn any_accelerator(_: &mut ImageKey, schedule: &mut ScheduleKey) {
 
 fn against_primitives(results: &Results, sizes: &Places<'_>, accelerators: &[(usize, &str)]) -> Option<Block> {
     let first = sizes.values().next()?.values().next()?.first()?;
-    let (mut series, mut intervals) = (Vec::new(), Vec::new());
-    for (place, name) in accelerators {
-        let points = sizes.iter().filter_map(|(count, rows)| {
-            let time = results.median(&values(rows.get(name)?.iter().copied(), ns_per_ray))?;
-            intervals.extend(time.interval);
-            Some(time.above(*count as f64))
-        });
-        series.push(Series::new(*name, Look::nth(*place), points.collect()));
-    }
+    let cells = sizes.iter().flat_map(|(count, by_name)| {
+        let cell = |(name, rows): (&&'_ str, &Vec<&Row>)| {
+            ((*count, (*name).to_string()), Repeats::of_rows(rows.iter().copied(), ns_per_ray))
+        };
+        by_name.iter().map(cell)
+    });
+    let times = along(cells, |(_, name)| name.clone(), results.stopping());
+    let intervals = times.iter().filter_map(|(_, time)| time.interval);
+    let hollow = hollow(times.iter().map(|(_, time)| *time));
+    let series = accelerators.iter().map(|(place, name)| {
+        let own = times.iter().filter(|((_, of), _)| of == name);
+        Series::new(*name, Look::nth(*place), own.map(|((count, _), time)| time.above(*count as f64)).collect())
+    });
     let (x, y) = (Axis::log("spheres"), Axis::log("nanoseconds per ray"));
-    let mut chart = LineChart::new("Time per ray against the number of spheres", x, y, series);
+    let mut chart = LineChart::new("Time per ray against the number of spheres", x, y, series.collect());
     chart.subtitle = format!("balls filling the same share of a cube, {}", results.machine_line());
     let bars = confidence(intervals);
-    chart.caption = format!("Median of repetitions of {}, shading and all. Bars: {bars}.", first.estimator);
+    chart.caption = format!("Median of repetitions of {}, shading and all. Bars: {bars}.{hollow}", first.estimator);
     Some(Block::figure("acceleration", chart))
 }
 
-fn gains(places: &Places<'_>, yardstick: &str, name: &str, stopping: Stopping) -> Result<Gains> {
-    let gains = places.iter().map(|(place, rows)| {
-        let of = |name: &str| rows.get(name).into_iter().flatten().copied();
-        Ok((*place, ratios(of(yardstick), of(name), any_accelerator, |row| row.makespan_s)?))
-    });
-    Ok(estimates(gains.collect::<Result<Vec<_>>>()?, stopping))
+/// The gains of each accelerator other than the yardstick.
+fn gains<'a>(places: &Places<'a>, yardstick: &str, stopping: Stopping) -> Result<BTreeMap<&'a str, Gains>> {
+    let mut cells = Vec::new();
+    for (place, rows) in places {
+        for (name, own) in rows.iter().filter(|(name, _)| **name != yardstick) {
+            let base = rows.get(yardstick).into_iter().flatten().copied();
+            let gains = ratios(base, own.iter().copied(), any_accelerator, |row| row.makespan_s)?;
+            cells.push(((*name, *place), gains));
+        }
+    }
+    let found = with_intervals(along(cells, |(name, _)| *name, stopping)).into_iter();
+    Ok(gathered(found.map(|((name, place), gain)| (name, (place, gain)))))
 }
 
 /// A finding: the number of primitives from which a hierarchy is faster, and its gain in the largest scene that was
 /// also rendered without it.
 fn crossover(name: &str, gains: &Gains) -> Option<Block> {
-    let (most, largest) = gains.last()?;
-    let slower = gains.iter().rev().find(|(_, gain)| gain.interval.low <= 1.0);
-    let faster = gains.iter().find(|(count, _)| slower.is_none_or(|(slower, _)| count > slower));
+    let ranked = || gains.iter().filter(|(_, gain)| !gain.is_partial);
+    let (most, largest) = ranked().next_back()?;
+    let slower = ranked().rev().find(|(_, gain)| gain.interval.low <= 1.0);
+    let faster = ranked().find(|(count, _)| slower.is_none_or(|(slower, _)| count > slower));
     let from = match (slower, faster) {
         (None, Some((count, _))) => {
             format!("is faster than testing every sphere from the smallest number on, {count}")
@@ -134,6 +146,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
     chart.caption = format!("Median of ratios within a repetition. Bars: {}.{hollow}", confidence(intervals));
     chart.dodge = 4.0;
     let finding = |(_, name, gains): &(usize, &str, Gains)| {
+        let gains: Vec<_> = gains.iter().filter(|(_, gain)| !gain.is_partial).collect();
         let low = gains.iter().map(|(_, gain)| gain.interval.low).fold(0.0, f64::max);
         let high = gains.iter().map(|(_, gain)| gain.interval.high).fold(f64::INFINITY, f64::min);
         let listed: Vec<String> = gains.iter().map(|(spp, gain)| format!("{:.2} at {spp}", gain.value)).collect();
@@ -147,7 +160,7 @@ fn against_spp(results: &Results, samples: &Places<'_>, gains: &[(usize, &str, G
             listed.join(", ")
         ))
     };
-    let findings = gains.iter().filter(|(.., gains)| !gains.is_empty()).map(finding);
+    let findings = gains.iter().filter(|(.., gains)| gains.iter().any(|(_, gain)| !gain.is_partial)).map(finding);
     [Block::figure("acceleration-spp", chart)].into_iter().chain(findings).collect()
 }
 

@@ -13,7 +13,8 @@ pub(super) use crate::plot::{
 pub(super) use crate::report::block::Block;
 pub(super) use crate::report::naming::joined;
 pub(super) use crate::report::paired::{
-    Forget, Partners, Ratio, Repeats, any_schedule, estimates, in_common, medians, ratios, time_ratio,
+    Forget, Partners, Ratio, Repeats, along, any_schedule, estimates, in_common, medians, ratios, time_ratio,
+    with_intervals,
 };
 pub(super) use crate::report::results::Results;
 pub(super) use crate::report::rows::{Row, gathered, group};
