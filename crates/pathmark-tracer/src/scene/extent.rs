@@ -28,7 +28,7 @@ const WIDEST: f64 = (1 << 20) as f64;
 const FINEST: f64 = 1.0 / (1 << 17) as f64;
 
 /// The length of a vector. If squares underflow, it is the largest coordinate.
-fn length(v: Vec3) -> f64 {
+pub(super) fn length(v: Vec3) -> f64 {
     let square = dot(v, v);
     if square.is_normal() { square.sqrt() } else { v.x.abs().max(v.y.abs()).max(v.z.abs()) }
 }
@@ -151,6 +151,11 @@ impl Scene {
             if extent < finest {
                 return error("triangles that extend over", extent, format!("f64, or an extent from {finest:.3e}"));
             }
+        }
+        if let Some([one, other]) = self.near_in_single_precision() {
+            let problem = format!("cannot tell which of {one} and {other} is in front, so near are their surfaces");
+            let allowed = "f64, or surfaces farther apart than 2^-20 of their coordinates and the camera's";
+            return Err(InputError::new("precision", "f32", problem).allowed(allowed).into());
         }
         let (_, exponent) = libm::frexp(size);
         let is_usual = size == 0.0 || exponent.abs() <= USUAL;

@@ -222,7 +222,7 @@ fn surfaces_that_only_touch_are_kept() {
         &object("one", &square(1.0, 0.0), 0.5, 0.0),
         &object("neighbour", &square(1.0, 2.0), 0.5, 0.0),
         &object("shell", "sphere = { center = [0.0, 3.0, 0.0], radius = 1.0 }", 0.5, 0.0),
-        &object("inner shell", "sphere = { center = [0.0, 3.0, 0.0], radius = 0.999999999999 }", 0.5, 0.0),
+        &object("inner shell", "sphere = { center = [0.0, 3.0, 0.0], radius = 0.9999999999 }", 0.5, 0.0),
         &object("floor", "plane = { point = [0.0, 1.000000000001, 0.0], normal = [0.0, 1.0, 0.0] }", 0.5, 0.0),
         &object("slope", "plane = { point = [0.0, 1.0, 0.0], normal = [1e-9, 1.0, 0.0] }", 0.5, 0.0),
     ]);

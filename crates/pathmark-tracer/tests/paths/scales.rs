@@ -168,3 +168,81 @@ fn lengths_out_of_the_range_of_single_precision_are_refused() {
         assert!(choose(&scene, &spec("f64", "bsdf")).is_ok());
     }
 }
+
+/// The back surface reflects half of a white sky and the front one four fifths. The front is seen, unless the two are
+/// removed to one place when the scene is read, or refused because single precision cannot tell them apart.
+#[test]
+fn surfaces_a_hair_apart_are_told_apart_or_refused() {
+    let mut refused = 0;
+    for away in [[0.0, 0.0, 0.0], [3.0, -7.0, 11.0], [-200.0, 90.0, 40.0]] {
+        let at = |[x, y, z]: [f64; 3]| [x + away[0], y + away[1], z + away[2]];
+        let lengths = away.iter().fold(8.0, |sum, part| sum + part.abs());
+        let camera = format!(
+            "about = 'near'\nbackground = [1.0, 1.0, 1.0]\n[camera.pinhole]\nposition = {:?}\nlook-at = {:?}\nfield-of-view = 10.0\n",
+            at([0.3, -5.0, 0.2]),
+            at([0.0, 1.0, 0.0])
+        );
+        // Surfaces at the height `up` towards the camera.
+        let ball = |up: f64| format!("sphere = {{ center = {:?}, radius = {:?} }}", at([0.0, 4.0, 0.0]), 3.0 + up);
+        let ground = |up: f64| format!("sphere = {{ center = {:?}, radius = 1e6 }}", at([0.0, 1.000_001e6 - up, 0.0]));
+        let plane =
+            |up: f64| format!("plane = {{ point = {:?}, normal = [0.3, -1.0, 0.2] }}", at([0.0, 1.0 - up, 0.0]));
+        let tilted = |up: f64| {
+            let corner = |x: f64, z: f64| at([x, 1.0 - up + 0.3 * x + 0.2 * z, z]);
+            let corners = [corner(-9.0, -9.0), corner(-9.0, 9.0), corner(9.0, 9.0), corner(9.0, -9.0)];
+            format!("quad = {{ corners = {corners:?} }}")
+        };
+        let kinds: [(&str, [&dyn Fn(f64) -> String; 2]); 5] = [
+            ("balls", [&ball, &ball]),
+            ("large spheres", [&ground, &ground]),
+            ("planes", [&plane, &plane]),
+            ("quads", [&tilted, &tilted]),
+            ("a plane and a quad", [&plane, &tilted]),
+        ];
+        for (kind, [back, front]) in kinds {
+            let mut pebble = String::new();
+            if kind == "large spheres" {
+                // They are large next to something near the origin; this here cannot be told from the sky.
+                if away != [0.0; 3] {
+                    continue;
+                }
+                pebble = object("pebble", "sphere = { center = [0.0, -6.0, 0.0], radius = 0.1 }", 0.0, 1.0);
+            }
+            for exponent in -60..=-14 {
+                let up = lengths * libm::exp2(f64::from(exponent));
+                let objects = object("back", &back(0.0), 0.5, 0.0) + &object("front", &front(up), 0.8, 0.0) + &pebble;
+                let scene = Arc::new(Scene::from_toml(&(camera.clone() + &objects)).unwrap());
+                let value = if scene.remarks.iter().any(|remark| remark.contains("coincide")) { 0.5 } else { 0.8 };
+                let mean = |precision: &str| mean(&image(&scene, &spec(precision, "bsdf"), 16));
+                let double = mean("f64");
+                assert!((double - value).abs() < 1e-9, "{kind} at {away:?}, 2^{exponent}: {double}");
+                match choose(&scene, &spec("f32", "bsdf")) {
+                    Ok(_) => {
+                        let single = mean("f32");
+                        assert!((single - value).abs() < 1e-4, "{kind} at {away:?}, 2^{exponent}: {single}");
+                    }
+                    Err(error) => {
+                        let told = error.to_string();
+                        assert!(
+                            error.exit_code() == 2 && told.contains("which of back and front is in front"),
+                            "{told}"
+                        );
+                        assert!(exponent < -16, "{kind} at {away:?}, 2^{exponent}: {told}");
+                        refused += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(refused > 200, "{refused}");
+}
+
+/// Scenes that belong to the program have no such surfaces.
+#[test]
+fn no_shipped_scene_is_refused_in_single_precision() {
+    for (name, _) in pathmark_tracer::scene::SCENES {
+        let scene = load(name).unwrap();
+        let found = choose(&scene, &Spec { estimator: scene.estimator().into(), ..spec("f32", "mis") });
+        assert!(found.is_ok(), "{name}: {}", found.err().unwrap());
+    }
+}

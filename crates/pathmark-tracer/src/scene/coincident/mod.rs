@@ -6,8 +6,10 @@
 //! keeps the rest of its area, unless there are very many of these: then a remark says that rounding decides. So it
 //! says of a surface that light passes, such as glass: what lies behind that must stay.
 //!
-//! Two places are the same if they differ by no more than rounding moves a surface.
+//! Two places are the same if they differ by no more than rounding moves a surface. Single precision moves surfaces
+//! farther, so that two of them may be one to it and not to this search; `near.rs` finds these.
 
+mod near;
 mod overlap;
 
 use super::{Plane, Primitives, Scene, Sphere, Triangle};
@@ -15,11 +17,33 @@ use crate::math::{Vec3, dot};
 use overlap::Flat;
 use std::collections::BTreeMap;
 
-/// Largest distance of surfaces in one place, in units of their largest coordinate.
-const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;
+/// How far rounding moves surfaces.
+#[derive(Debug, Clone, Copy)]
+struct Slack {
+    /// In units of the largest coordinate.
+    flat: f64,
+    /// The same for spheres, whose hits have the rounding of a square root.
+    sphere: f64,
+    /// The least distance, whatever the coordinates.
+    least: f64,
+}
 
-/// The same for spheres, whose hits have the rounding of a square root.
-const SPHERE_SLACK: f64 = 1.0 / (1_u64 << 43) as f64;
+impl Slack {
+    /// In double precision.
+    const DOUBLE: Self = Self { flat: 1.0 / (1_u64 << 48) as f64, sphere: 1.0 / (1_u64 << 40) as f64, least: 0.0 };
+
+    /// The largest height of a point above another one in its plane. Coordinates along the plane do not round heights.
+    fn across(&self, normal: Vec3, point: Vec3, other: Vec3) -> f64 {
+        let part = |normal: f64, point: f64, other: f64| normal.abs() * (point.abs() + other.abs());
+        let parts =
+            [part(normal.x, point.x, other.x), part(normal.y, point.y, other.y), part(normal.z, point.z, other.z)];
+        self.flat * parts.iter().sum::<f64>() + self.least
+    }
+
+    fn of(&self, sphere: &Sphere) -> f64 {
+        self.sphere * (largest(sphere.center) + sphere.radius) + self.least
+    }
+}
 
 /// The most triangles that are cut out of another one. The number of its parts may grow with the square of this.
 const MOST_COVERS: usize = 64;
@@ -31,17 +55,9 @@ fn largest(v: Vec3) -> f64 {
     v.x.abs().max(v.y.abs()).max(v.z.abs())
 }
 
-/// The largest height of a point above another one in its plane. Coordinates along the plane do not round heights.
-fn slack_across(normal: Vec3, point: Vec3, other: Vec3) -> f64 {
-    let part = |normal: f64, point: f64, other: f64| normal.abs() * (point.abs() + other.abs());
-    let parts = [part(normal.x, point.x, other.x), part(normal.y, point.y, other.y), part(normal.z, point.z, other.z)];
-    SLACK * parts.iter().sum::<f64>()
-}
-
 impl Sphere {
-    fn is_where(&self, other: &Self) -> bool {
-        let distance = largest(self.center - other.center).max((self.radius - other.radius).abs());
-        distance <= SPHERE_SLACK * (largest(self.center) + self.radius)
+    fn is_where(&self, other: &Self, slack: &Slack) -> bool {
+        largest(self.center - other.center).max((self.radius - other.radius).abs()) <= slack.of(self)
     }
 
     /// A number that is nearly the same for spheres in one place, and hardly ever for others.
@@ -51,38 +67,41 @@ impl Sphere {
 }
 
 impl Plane {
-    fn is_where(&self, other: &Self) -> bool {
-        largest(self.normal.cross(other.normal)) <= SLACK && self.contains(other.point)
+    fn is_where(&self, other: &Self, slack: &Slack) -> bool {
+        largest(self.normal.cross(other.normal)) <= slack.flat && self.contains(other.point, slack)
     }
 
-    fn contains(&self, point: Vec3) -> bool {
-        dot(point - self.point, self.normal).abs() <= slack_across(self.normal, point, self.point)
+    fn contains(&self, point: Vec3, slack: &Slack) -> bool {
+        dot(point - self.point, self.normal).abs() <= slack.across(self.normal, point, self.point)
     }
 
-    fn holds(&self, triangle: &Triangle) -> bool {
-        triangle.corners.iter().all(|corner| self.contains(*corner))
+    fn holds(&self, triangle: &Triangle, slack: &Slack) -> bool {
+        triangle.corners.iter().all(|corner| self.contains(*corner, slack))
     }
+}
+
+/// Pairs of spheres in one place, the lower number first.
+fn spheres_in_one_place<'a>(spheres: &'a [Sphere], slack: &'a Slack) -> impl Iterator<Item = (usize, usize)> + 'a {
+    let mut order: Vec<(f64, u32)> = spheres.iter().map(Sphere::key).zip(0..).collect();
+    order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
+    (0..order.len()).flat_map(move |place| {
+        let (key, one) = (order[place].0, order[place].1 as usize);
+        let reach = 8.0 * slack.of(&spheres[one]);
+        let near = order[place + 1..].iter().take_while(|(other, _)| other - key <= reach);
+        let others = near.map(|(_, other)| *other as usize);
+        let pairs = others.filter(|other| spheres[one].is_where(&spheres[*other], slack));
+        pairs.map(|other| (one.min(other), one.max(other))).collect::<Vec<_>>()
+    })
 }
 
 /// For each hidden sphere, the one that hides it.
 fn hidden_spheres(spheres: &[Sphere]) -> BTreeMap<usize, usize> {
-    let mut order: Vec<(f64, u32)> = spheres.iter().map(Sphere::key).zip(0..).collect();
-    order.sort_unstable_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)));
-    let mut hidden = BTreeMap::new();
-    for (place, (key, one)) in order.iter().enumerate() {
-        let one = *one as usize;
-        let reach = 8.0 * SPHERE_SLACK * (largest(spheres[one].center) + spheres[one].radius);
-        let near = order[place + 1..].iter().take_while(|(other, _)| other - key <= reach);
-        for other in near.map(|(_, other)| *other as usize).filter(|other| spheres[one].is_where(&spheres[*other])) {
-            hidden.insert(one.max(other), one.min(other));
-        }
-    }
-    hidden
+    spheres_in_one_place(spheres, &Slack::DOUBLE).map(|(hider, hidden)| (hidden, hider)).collect()
 }
 
 /// For each hidden plane, the one that hides it.
 fn hidden_planes(planes: &[Plane]) -> BTreeMap<usize, usize> {
-    let hider = |plane: usize| planes[..plane].iter().position(|other| other.is_where(&planes[plane]));
+    let hider = |plane: usize| planes[..plane].iter().position(|other| other.is_where(&planes[plane], &Slack::DOUBLE));
     (0..planes.len()).filter_map(|plane| Some((plane, hider(plane)?))).collect()
 }
 
@@ -127,7 +146,7 @@ impl Scene {
         // The rest of each triangle that is hidden in part or as a whole.
         let mut rests: BTreeMap<usize, Vec<Triangle>> = BTreeMap::new();
         for (index, triangle) in triangles.iter().enumerate() {
-            if let Some(plane) = planes.iter().position(|plane| plane.holds(triangle)) {
+            if let Some(plane) = planes.iter().position(|plane| plane.holds(triangle, &Slack::DOUBLE)) {
                 if is_through(first_triangle + index, first_plane + plane) {
                     undecided.push((self.owners[first_plane + plane], self.owners[first_triangle + index]));
                     continue;
@@ -139,7 +158,7 @@ impl Scene {
         let owners = &self.owners[first_triangle..];
         let is_light = |owner: u32| !self.objects[owner as usize].emission.is_black();
         let mut covers: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (hider, hidden) in Flat::overlaps(triangles, owners, is_light) {
+        for (hider, hidden) in Flat::overlaps(triangles, owners, &Slack::DOUBLE, is_light) {
             if is_through(first_triangle + hidden, first_triangle + hider) {
                 undecided.push((owners[hider], owners[hidden]));
             } else {

@@ -1,6 +1,6 @@
 //! Triangles that overlap in one plane.
 
-use super::{MOST_COVERS, SLACK, largest, slack_across};
+use super::{MOST_COVERS, Slack, largest};
 use crate::math::{Vec3, dot};
 use crate::scene::{Bounds, Primitive, Triangle};
 use std::collections::HashMap;
@@ -43,10 +43,10 @@ fn meet(a: &Bounds, b: &Bounds) -> bool {
 }
 
 impl Flat {
-    fn of(triangles: &[Triangle], first: usize, end: usize) -> Self {
+    fn of(triangles: &[Triangle], first: usize, end: usize, slack: &Slack) -> Self {
         let boxes = triangles[first..end].iter().filter_map(Primitive::bounds);
         let bounds = boxes.fold(Bounds::EMPTY, |all, own| all.and(&own));
-        Self { bounds: bounds.grown(SLACK * bounds.largest()), first, end }
+        Self { bounds: bounds.grown(slack.flat * bounds.largest() + slack.least), first, end }
     }
 
     /// Returns the pairs of triangles that overlap in one plane, the lower number first, in order. Triangles of one
@@ -54,6 +54,7 @@ impl Flat {
     pub(super) fn overlaps(
         triangles: &[Triangle],
         owners: &[u32],
+        slack: &Slack,
         is_light: impl Fn(u32) -> bool,
     ) -> Vec<(usize, usize)> {
         let mut objects: Vec<Self> = Vec::new();
@@ -71,23 +72,24 @@ impl Flat {
             meeting(&mut candidates, |one, other| {
                 let is_pair = is_wanted(one.first, other.first)
                     && covers.get(&other.first).is_none_or(|covers| *covers <= MOST_COVERS);
-                if is_pair && overlap(&triangles[one.first], &triangles[other.first]) {
+                if is_pair && overlap(&triangles[one.first], &triangles[other.first], slack) {
                     pairs.push((one.first, other.first));
                     *covers.entry(other.first).or_default() += 1;
                 }
             });
         };
-        let each =
-            |object: &Self| (object.first..object.end).map(|k| Self::of(triangles, k, k + 1)).collect::<Vec<_>>();
+        let each = |object: &Self| {
+            (object.first..object.end).map(|k| Self::of(triangles, k, k + 1, slack)).collect::<Vec<_>>()
+        };
         for object in &mut objects {
-            *object = Self::of(triangles, object.first, object.end);
+            *object = Self::of(triangles, object.first, object.end, slack);
             if is_light(owners[object.first]) {
                 compare(each(object), &|_, _| true);
             }
         }
         meeting(&mut objects, |one, other| {
             let within = |object: &Self, around: &Bounds| {
-                let triangles = (object.first..object.end).map(|k| Self::of(triangles, k, k + 1));
+                let triangles = (object.first..object.end).map(|k| Self::of(triangles, k, k + 1, slack));
                 triangles.filter(|triangle| meet(&triangle.bounds, around)).collect::<Vec<_>>()
             };
             let mut candidates = within(one, &other.bounds);
@@ -117,28 +119,30 @@ fn component(v: Vec3, axis: usize) -> f64 {
     [v.x, v.y, v.z][axis]
 }
 
-fn longest_edge(Triangle { corners: [a, b, c] }: &Triangle) -> f64 {
+pub(super) fn longest_edge(Triangle { corners: [a, b, c] }: &Triangle) -> f64 {
     largest(*b - *a).max(largest(*c - *b)).max(largest(*a - *c))
 }
 
 /// The largest distance of two places that are the same.
-fn slack(one: &Triangle, other: &Triangle) -> f64 {
-    SLACK * one.corners.iter().chain(&other.corners).map(|corner| largest(*corner)).fold(0.0, f64::max)
+pub(super) fn largest_distance(one: &Triangle, other: &Triangle, slack: &Slack) -> f64 {
+    slack.least
+        + slack.flat * one.corners.iter().chain(&other.corners).map(|corner| largest(*corner)).fold(0.0, f64::max)
 }
 
 /// Whether two triangles are in one plane and share an area.
-fn overlap(one: &Triangle, other: &Triangle) -> bool {
+fn overlap(one: &Triangle, other: &Triangle, slack: &Slack) -> bool {
     let (wide, small) = if longest_edge(one) < longest_edge(other) { (other, one) } else { (one, other) };
-    let (normal, slack) = (wide.normal(wide.corners[0]), slack(one, other));
     let origin = wide.corners[0];
-    let is_in_plane = |corner: &Vec3| dot(*corner - origin, normal).abs() <= slack_across(normal, *corner, origin);
+    let normal = wide.normal(origin);
+    let is_in_plane = |corner: &Vec3| dot(*corner - origin, normal).abs() <= slack.across(normal, *corner, origin);
     let is_flat = small.corners.iter().all(is_in_plane);
-    is_flat && cut(&small.corners, wide, slack).is_some()
+    is_flat && cut(&small.corners, wide, largest_distance(one, other, slack)).is_some()
 }
 
 /// The parts of a triangle that another one in its plane does not cover.
 pub(super) fn rest(triangle: &Triangle, cover: &Triangle) -> Vec<Triangle> {
-    let Some(parts) = cut(&triangle.corners, cover, slack(triangle, cover)) else { return vec![*triangle] };
+    let slack = largest_distance(triangle, cover, &Slack::DOUBLE);
+    let Some(parts) = cut(&triangle.corners, cover, slack) else { return vec![*triangle] };
     let fans = parts.into_iter().flat_map(|part| {
         let triangles = (2..part.len()).map(|k| Triangle { corners: [part[0], part[k - 1], part[k]] });
         triangles.collect::<Vec<_>>()
