@@ -49,6 +49,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 pub use out_of_memory::Allocator;
 use progress::Talk;
+use std::ffi::OsString;
 use std::io;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -137,7 +138,7 @@ impl Lab {
         let cli = match read_arguments(&self) {
             Ok(cli) => cli,
             Err(told) if told.kind() == ErrorKind::InvalidUtf8 => {
-                let error = no_text();
+                let error = no_text(&mut described());
                 Talk::new(false).error(&error);
                 return ExitCode::from(error.exit_code());
             }
@@ -155,11 +156,21 @@ impl Lab {
 }
 
 /// The error for an argument that must be text and is not; clap's message does not say which. Paths of other files may
-/// be any bytes, but rows and traces keep the name of a scene or an experiment as text.
-fn no_text() -> Error {
-    let bad = std::env::args_os().skip(1).filter(|argument| argument.to_str().is_none());
-    let bad: Vec<String> = bad.map(|argument| argument.to_string_lossy().into_owned()).collect();
-    InputError::new("argument", bad.join(" "), "is not UTF-8 text").allowed("a name of UTF-8 text").into()
+/// be any bytes, but rows and traces keep the name of a scene or an experiment as text. So an argument is the culprit if
+/// the command line is refused even with text in place of all others that are not text.
+fn no_text(command: &mut clap::Command) -> Error {
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let is_text = |argument: &OsString| argument.to_str().is_some();
+    let is_refused = |culprit: &usize| {
+        let kept =
+            |(place, argument)| if place == *culprit || is_text(argument) { argument.clone() } else { "x".into() };
+        let told = command.try_get_matches_from_mut(arguments.iter().enumerate().map(kept));
+        told.is_err_and(|told| told.kind() == ErrorKind::InvalidUtf8)
+    };
+    let mut bad = (1..arguments.len()).filter(|place| !is_text(&arguments[*place]));
+    let culprit = bad.find(is_refused).map(|place| arguments[place].to_string_lossy().into_owned());
+    let value = culprit.unwrap_or_else(|| "one of several".to_string());
+    InputError::new("argument", value, "is not UTF-8 text").allowed("a name of UTF-8 text").into()
 }
 
 /// Reads the process's arguments. `--version` tells the program's own name and version.

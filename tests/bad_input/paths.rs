@@ -80,6 +80,9 @@ fn paths_need_not_be_text() {
         let arguments = [OsStr::new(verb), &name(".toml")];
         refused(folder.path(), &arguments, 2, &["argument = a\u{fffd}.toml", "is not UTF-8 text"]);
     }
+    // The argument that must be text is named, not the picture before it.
+    let arguments = [OsStr::new("render"), OsStr::new("-o"), &name(".pfm"), &name(".toml")];
+    refused(folder.path(), &arguments, 2, &["argument = a\u{fffd}.toml: is not"]);
 }
 
 /// A byte order mark is no part of a definition: places count without it.
